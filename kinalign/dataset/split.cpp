@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/split.h"
 
+#include "kinalign/core/nearest_name.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -128,6 +130,22 @@ std::vector<SplitPart> a_part_each(const std::vector<SplitTake>& takes) {
   return out;
 }
 
+Result<std::vector<SplitPart>> parts_of_people(const std::vector<SplitTake>& takes,
+                                               const std::vector<std::string>& test_people) {
+  const std::set<std::string> tested(test_people.begin(), test_people.end());
+  std::vector<SplitPart> parts{{"train", {}}, {"test", {}}};
+  std::set<std::string> known;
+  for (const SplitTake& take : takes) {
+    known.insert(take.name.subject);
+    parts[tested.contains(take.name.subject) ? 1 : 0].takes.push_back(take.name);
+  }
+  for (const std::string& id : test_people) {
+    if (known.contains(id)) continue;
+    return Failure(unknown_name(id, "a subject that has takes", {known.begin(), known.end()}));
+  }
+  return parts;
+}
+
 std::vector<SplitPart> imu_parts(const std::vector<SplitTake>& takes, const Catalogue& catalogue) {
   std::vector<SplitPart> parts{{"train", {}}, {"test", {}}};
   for (const SplitTake& take : takes) {
@@ -202,7 +220,9 @@ std::vector<std::string> split_methods() {
 Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& catalogue,
                          const SplitOptions& options) {
   Split out{options, {}, {}};
-  if (options.by == "leave-one-out") {
+  if (!options.test_people.empty()) {
+    out.parts = KA_TRY(parts_of_people(takes, options.test_people));
+  } else if (options.by == "leave-one-out") {
     out.parts = a_part_each(takes);
   } else if (options.by == "hfut-imu") {
     out.parts = imu_parts(takes, catalogue);
@@ -265,9 +285,16 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
 std::string split_json(const Split& split, const std::vector<SplitTake>& takes) {
   const SplitOptions& o = split.options;
   const TakesByName known = by_name(takes);
-  Json out = {{"schema", split_schema},     {"by", o.by},     {"test", o.test},
-              {"validation", o.validation}, {"seed", o.seed}, {"stratified", o.stratified},
-              {"parts", Json::array()}};
+  Json out = {{"schema", split_schema}, {"by", o.by}};
+  if (o.test_people.empty()) {
+    out["test"] = o.test;
+  } else {
+    out["test_people"] = o.test_people;
+  }
+  out.update({{"validation", o.validation},
+              {"seed", o.seed},
+              {"stratified", o.stratified},
+              {"parts", Json::array()}});
   for (const SplitPart& part : split.parts) {
     Json one = {{"name", part.name}, {"takes", Json::array()}};
     for (const TakeName& name : part.takes) {
@@ -289,9 +316,13 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
     if (parsed.at("schema").get<std::string>() != split_schema)
       return wrong(parsed["schema"].get<std::string>());
     Split out;
-    out.options = {parsed.at("by").get<std::string>(), parsed.at("test").get<double>(),
-                   parsed.at("validation").get<double>(), parsed.at("seed").get<std::int64_t>(),
-                   parsed.at("stratified").get<bool>()};
+    const bool has_people = parsed.contains("test_people");
+    out.options = {parsed.at("by").get<std::string>(),
+                   has_people ? 0.0 : parsed.at("test").get<double>(),
+                   parsed.at("validation").get<double>(),
+                   parsed.at("seed").get<std::int64_t>(),
+                   parsed.at("stratified").get<bool>(),
+                   parsed.value("test_people", std::vector<std::string>())};
     for (const Json& part : parsed.at("parts")) {
       SplitPart& made = out.parts.emplace_back();
       made.name = part.at("name").get<std::string>();

@@ -27,6 +27,8 @@ struct SplitOptions {
   std::int64_t seed = 1;
   bool stratified =
       false;  // each class has the same shares, as near as whole takes or people allow
+  /// In place of shares and seed: who is tested; all others are trained on. By subject alone.
+  std::vector<std::string> test_people{};
 };
 
 /// subject: nobody is in two parts. take: whole takes at random. leave-one-out: a part for each
@@ -46,7 +48,8 @@ struct Split {
   std::map<TakeName, std::string> sha256;  // of takes, when the split was made; of a file alone
 };
 
-/// The same takes, options and seed give the same split. Fails where a part would be empty.
+/// The same takes, options and seed give the same split. Fails where a part would be empty,
+/// or where no take is of one of the test people.
 Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& catalogue,
                          const SplitOptions& options);
 

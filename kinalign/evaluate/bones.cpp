@@ -55,26 +55,4 @@ std::optional<LengthMarks> length_marks(const Sequence& sequence, Prediction pre
   return LengthMarks{error.value_or(0.0), constancy.value_or(0.0)};
 }
 
-std::optional<BoneMarks> bone_marks(const Sequence& sequence, Prediction prediction,
-                                    std::span<const Bone> bones) {
-  assert(prediction.size() == sequence.truth.size());
-  Mean error, bias, constancy, true_constancy;
-  for (const Bone& bone : bones) {
-    const auto lengths = lengths_of(sequence, prediction, bone);
-    const auto truth = lengths_of(sequence, sequence.truth, bone);
-    if (lengths.empty()) continue;
-    Mean apart;
-    for (std::size_t i = 0; i < lengths.size(); ++i) {
-      error.add(std::abs(lengths[i] - truth[i]));
-      apart.add(lengths[i] - truth[i]);
-    }
-    bias.add(std::abs(apart.value_or(0.0)));
-    constancy.add(deviation(lengths));
-    true_constancy.add(deviation(truth));
-  }
-  if (error.count() == 0) return std::nullopt;
-  return BoneMarks{error.value_or(0.0), bias.value_or(0.0), constancy.value_or(0.0),
-                   true_constancy.value_or(0.0)};
-}
-
 }  // namespace kinalign

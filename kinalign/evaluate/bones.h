@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lengths of bones against the truth's (models.md 8.4), and against a length given from outside
-// (UI-PRMD's protocol: BONE and CONST).
+// Lengths of bones against a length given from outside (UI-PRMD's protocol: BONE and CONST).
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
@@ -23,15 +22,5 @@ struct LengthMarks {
 std::optional<LengthMarks> length_marks(const Sequence& sequence, Prediction prediction,
                                         std::span<const Bone> bones,
                                         std::span<const std::optional<double>> given);
-
-struct BoneMarks {
-  double error_m = 0.0;           // mean over cells of |length - true length of the frame|
-  double bias_m = 0.0;            // mean over bones of |mean length - mean true length|
-  double constancy_m = 0.0;       // mean over bones of the length's standard deviation
-  double true_constancy_m = 0.0;  // the truth's own
-};
-/// Absent where no bone has both ends valid.
-std::optional<BoneMarks> bone_marks(const Sequence& sequence, Prediction prediction,
-                                    std::span<const Bone> bones);
 
 }  // namespace kinalign

@@ -49,16 +49,13 @@ double skate(std::span<const double> places, std::size_t i, const Sequence& sequ
 }
 
 struct FootMeans {
-  Mean skate, true_skate, depth, true_depth;
+  Mean skate, true_skate;
 
-  void add(const Sequence& sequence, Prediction prediction, std::size_t foot, double floor_m,
+  void add(const Sequence& sequence, Prediction prediction, std::size_t foot,
            const std::vector<std::uint8_t>& in_contact) {
     for (std::size_t t = 0; t < sequence.frames(); ++t) {
-      if (!sequence.has(t, foot)) continue;
-      const std::size_t i = t * sequence.joints + foot;
-      depth.add(std::max(0.0, floor_m - vec3(prediction, i).y()));
-      true_depth.add(std::max(0.0, floor_m - vec3(sequence.truth, i).y()));
       if (in_contact[t] == 0) continue;
+      const std::size_t i = t * sequence.joints + foot;
       skate.add(kinalign::skate(prediction, i, sequence));
       true_skate.add(kinalign::skate(sequence.truth, i, sequence));
     }
@@ -75,11 +72,10 @@ std::optional<FeetMarks> feet_marks(const Sequence& sequence, Prediction predict
   for (const std::size_t foot : feet) {
     const auto floor_m = floor_of(sequence, foot);
     if (!floor_m) continue;
-    means.add(sequence, prediction, foot, *floor_m, contacts(sequence, foot, *floor_m, options));
+    means.add(sequence, prediction, foot, contacts(sequence, foot, *floor_m, options));
   }
   if (means.skate.count() == 0) return std::nullopt;
-  return FeetMarks{means.skate.count(), means.skate.value_or(0.0), means.true_skate.value_or(0.0),
-                   means.depth.value_or(0.0), means.true_depth.value_or(0.0)};
+  return FeetMarks{means.skate.count(), means.skate.value_or(0.0), means.true_skate.value_or(0.0)};
 }
 
 }  // namespace kinalign

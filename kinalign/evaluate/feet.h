@@ -17,8 +17,6 @@ struct FeetMarks {
   std::size_t contacts = 0;  // frames and feet in contact
   double skate_m_s = 0.0;    // mean horizontal speed of the predicted foot in contact
   double true_skate_m_s = 0.0;
-  double penetration_m = 0.0;  // mean depth below the foot's floor, of all valid frames
-  double true_penetration_m = 0.0;
 };
 /// Absent where no foot is ever in contact.
 std::optional<FeetMarks> feet_marks(const Sequence& sequence, Prediction prediction,

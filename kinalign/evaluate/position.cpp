@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/evaluate/position.h"
 
-#include "kinalign/evaluate/statistics.h"
-
 #include <Eigen/SVD>
 
-#include <algorithm>
 #include <cassert>
 
 namespace kinalign {
@@ -19,7 +16,7 @@ Vec3 mean_place(std::span<const double> places, const std::vector<std::size_t>& 
 }
 
 /// Appends the distances of one frame's cells after the fit of the prediction onto the truth.
-void append_fitted(const Sequence& sequence, Prediction prediction, Fit fit,
+void append_fitted(const Sequence& sequence, Prediction prediction,
                    const std::vector<std::size_t>& cells, std::vector<double>& out) {
   const Vec3 from = mean_place(prediction, cells), to = mean_place(sequence.truth, cells);
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
@@ -35,7 +32,7 @@ void append_fitted(const Sequence& sequence, Prediction prediction, Fit fit,
   const bool mirrored = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0;
   const Vec3 signs(1.0, 1.0, mirrored ? -1.0 : 1.0);
   const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  const double scale = fit == Fit::rigid ? 1.0 : sizes.dot(signs) / spread;
+  const double scale = sizes.dot(signs) / spread;
   for (const std::size_t i : cells) {
     const Vec3 moved = scale * (turn * (vec3(prediction, i) - from)) + to;
     out.push_back((moved - vec3(sequence.truth, i)).norm());
@@ -54,23 +51,7 @@ std::vector<double> distances(const Sequence& sequence, Prediction prediction) {
   return out;
 }
 
-std::vector<double> root_aligned_distances(const Sequence& sequence, Prediction prediction,
-                                           std::size_t root) {
-  assert(prediction.size() == sequence.truth.size() && root < sequence.joints);
-  std::vector<double> out;
-  for (std::size_t t = 0; t < sequence.frames(); ++t) {
-    if (!sequence.has(t, root)) continue;
-    const std::size_t at = t * sequence.joints;
-    const Vec3 apart = vec3(prediction, at + root) - vec3(sequence.truth, at + root);
-    for (std::size_t i = at; i < at + sequence.joints; ++i) {
-      if (sequence.valid[i] == 0) continue;
-      out.push_back((vec3(prediction, i) - vec3(sequence.truth, i) - apart).norm());
-    }
-  }
-  return out;
-}
-
-std::vector<double> fitted_distances(const Sequence& sequence, Prediction prediction, Fit fit,
+std::vector<double> fitted_distances(const Sequence& sequence, Prediction prediction,
                                      std::size_t least_joints) {
   assert(prediction.size() == sequence.truth.size() && least_joints >= 4);
   std::vector<double> out;
@@ -80,30 +61,9 @@ std::vector<double> fitted_distances(const Sequence& sequence, Prediction predic
     for (std::size_t j = 0; j < sequence.joints; ++j) {
       if (sequence.has(t, j)) cells.push_back(t * sequence.joints + j);
     }
-    if (cells.size() >= least_joints) append_fitted(sequence, prediction, fit, cells, out);
+    if (cells.size() >= least_joints) append_fitted(sequence, prediction, cells, out);
   }
   return out;
-}
-
-std::optional<DistanceSummary> summary_of(const std::vector<double>& distances) {
-  if (distances.empty()) return std::nullopt;
-  Mean mean;
-  for (const double d : distances) mean.add(d);
-  return DistanceSummary{distances.size(), mean.value_or(0.0), quantile(distances, 0.5),
-                         quantile(distances, 0.95)};
-}
-
-std::optional<double> share_within(const std::vector<double>& distances, double most_m) {
-  Mean mean;
-  for (const double d : distances) mean.add(d <= most_m ? 1.0 : 0.0);
-  return mean.value();
-}
-
-std::optional<double> area_under_share(const std::vector<double>& distances, double most_m) {
-  // A distance d counts from d on: for most_m - d of the way.
-  Mean mean;
-  for (const double d : distances) mean.add(std::max(0.0, 1.0 - d / most_m));
-  return mean.value();
 }
 
 }  // namespace kinalign

@@ -39,8 +39,7 @@ ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
   assert(sequence.joints == shared_joint_count && lengths_m.size() == limb_bones.size());
   ProtocolMarks out;
   out.position_cm = mean_cm(distances(sequence, prediction));
-  out.fitted_cm =
-      mean_cm(fitted_distances(sequence, prediction, Fit::similarity, least_fitted_joints));
+  out.fitted_cm = mean_cm(fitted_distances(sequence, prediction, least_fitted_joints));
   if (const auto lengths = length_marks(sequence, prediction, bones(), lengths_m)) {
     out.bone_cm = lengths->error_m / cm;
     out.constancy_cm = lengths->constancy_m / cm;

@@ -33,8 +33,6 @@ double length(std::span<const double> places, std::size_t at, const Bone& bone) 
 
 }  // namespace
 
-double TableNine::smooth_apart() const { return std::abs(smooth - true_smooth); }
-
 TableNine table_nine(std::span<const double> truth, Prediction prediction, std::size_t joints,
                      std::span<const Bone> bones) {
   assert(!truth.empty() && prediction.size() == truth.size());
@@ -51,18 +49,6 @@ TableNine table_nine(std::span<const double> truth, Prediction prediction, std::
           roughness(truth, joints)};
 }
 
-TableNine mean_of(std::span<const TableNine> windows) {
-  Mean position, bone, smooth, true_smooth;
-  for (const TableNine& one : windows) {
-    position.add(one.position);
-    bone.add(one.bone);
-    smooth.add(one.smooth);
-    true_smooth.add(one.true_smooth);
-  }
-  return {position.value_or(0.0), bone.value_or(0.0), smooth.value_or(0.0),
-          true_smooth.value_or(0.0)};
-}
-
 std::vector<double> own_root(std::span<const double> positions, std::size_t joints,
                              const OwnRootJoints& own) {
   std::vector<double> out(positions.size());
@@ -76,33 +62,6 @@ std::vector<double> own_root(std::span<const double> positions, std::size_t join
     for (std::size_t i = at; i < at + joints; ++i) {
       vec3(out, i) = turn * Vec3(vec3(positions, i) - root);
     }
-  }
-  return out;
-}
-
-UnitScale unit_scale(std::span<const double> positions, std::size_t joints) {
-  assert(!positions.empty());
-  const std::size_t width = 3 * joints;
-  UnitScale out{std::vector<double>(width), Vec3::Zero()};
-  const double share = static_cast<double>(width) / static_cast<double>(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    out.mean_pose[i % width] += share * positions[i];
-  }
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    double& largest = out.largest[static_cast<Eigen::Index>(i % 3)];
-    largest = std::max(largest, std::abs(positions[i] - out.mean_pose[i % width]));
-  }
-  for (double& largest : out.largest) {
-    if (!(largest > 0.0)) largest = 1.0;
-  }
-  return out;
-}
-
-std::vector<double> scaled(std::span<const double> positions, const UnitScale& scale) {
-  std::vector<double> out(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    out[i] = (positions[i] - scale.mean_pose[i % scale.mean_pose.size()]) /
-             scale.largest[static_cast<Eigen::Index>(i % 3)];
   }
   return out;
 }

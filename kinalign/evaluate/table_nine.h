@@ -15,13 +15,11 @@ struct TableNine {
   double bone = 0.0;      // E_b: mean |length - true length|, unit
   double smooth = 0.0;    // E_s: the output's own roughness, unit
   double true_smooth = 0.0;
-  double smooth_apart() const;  // |E_s - the truth's|
 };
 
-/// The columns of one window [T,J,3] of any unit; windows are averaged (mean_of).
+/// The columns of one window [T,J,3] of any unit.
 TableNine table_nine(std::span<const double> truth, Prediction prediction, std::size_t joints,
                      std::span<const Bone> bones);
-TableNine mean_of(std::span<const TableNine> windows);
 
 /// The joints that say where a skeleton stands and looks.
 struct OwnRootJoints {
@@ -33,14 +31,5 @@ struct OwnRootJoints {
 /// turned.
 std::vector<double> own_root(std::span<const double> positions, std::size_t joints,
                              const OwnRootJoints& own);
-
-/// BRA's normalisation to [-1, 1]: less the mean pose, over the largest size of each direction.
-struct UnitScale {
-  std::vector<double> mean_pose;  // [3J]
-  Vec3 largest = Vec3::Ones();
-};
-/// The scale of the training people's truth [N,J,3], after own_root.
-UnitScale unit_scale(std::span<const double> positions, std::size_t joints);
-std::vector<double> scaled(std::span<const double> positions, const UnitScale& scale);
 
 }  // namespace kinalign

@@ -2,8 +2,10 @@
 """A twin of the paper's data set: its counts, its bytes, stopped and gone on; methods run on it. benchmark_check.py BUILD_FOLDER [CASE...]"""
 import collections
 import hashlib
+import html
 import json
 import pathlib
+import shlex
 import signal
 import subprocess
 import sys
@@ -273,6 +275,18 @@ def a_dry_run_says_what_would_be_trained_and_writes_nothing(folder):
     assert said["seconds"] > 0 and not results.exists()
 
 
+@case
+def a_dry_run_names_methods_whose_time_is_not_known_and_each_network_once(folder):
+    data, _ = twin(folder)
+    _, said = run(data, folder, "raw", "smoothnet", "cnn+project", "cnn", "--dry-run")
+    assert [(one["method"], one["seconds"] is None) for one in said["trainings"]] == [
+        ("smoothnet", True), ("cnn", False)], said
+    for words, last in ((("smoothnet",), "smoothnet     to train, 1,200 steps, time not known"),
+                        (("raw",), "nothing to train")):
+        out, _ = done_with(0, "benchmark", "run", data, *words, "-o", folder / "results", "--dry-run")
+        assert out.splitlines()[-1] == last, out
+
+
 PROGRAM = """#!/usr/bin/python3
 import sys, numpy
 asked = numpy.load(sys.argv[1])
@@ -301,7 +315,13 @@ def program(folder, last="None"):
 @case
 def a_program_of_others_is_marked_as_the_methods_are(folder):
     data, _ = twin(folder)
-    results, said = run(data, folder, "raw", "--method", f"own={program(folder)}")
+    split = folder / "other people.json"
+    split.write_bytes((data / "splits/people.json").read_bytes())
+    results, said = run(data, folder, "raw", "--method", f"own={program(folder)}", "--split", split)
+    page = html.unescape((results / "benchmark.html").read_text())
+    command = shlex.split("kinalign benchmark run " + page.split("kinalign benchmark run ")[-1].split("<")[0])
+    assert command[3:] == [str(data), "raw", "--method", f"own={program(folder)}", "--split", str(split), "--seed", "1",
+                           "-o", str(results)], command
     rows = {row["method"]: row for row in said["rows"]}
     # It gives the Kinect's joints back under the suit's names, as raw does.
     for key in ("position_cm", "fitted_cm", "bone_cm", "table_9_position_cm2"):

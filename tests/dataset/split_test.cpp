@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 using namespace kinalign;
@@ -106,6 +107,33 @@ TEST_CASE("the same seed gives the same split, another one another, in whatever 
   const auto other = make_split(takes, catalogue(), {"take", 0.2, 0.0, 2, false});
   CHECK(first->parts[1].takes == again->parts[1].takes);
   CHECK(first->parts[1].takes != other->parts[1].takes);
+}
+
+TEST_CASE("the test has the people who are named, the training all others") {
+  const auto takes = many();
+  SplitOptions options;
+  options.test_people = {"03", "11"};
+  const auto split = make_split(takes, catalogue(), options);
+  REQUIRE(split);
+  REQUIRE(split->parts.size() == 2);
+  CHECK(split->parts[0].name == "train");
+  CHECK(split->parts[1].name == "test");
+  CHECK(split->parts[0].takes.size() + split->parts[1].takes.size() == takes.size());
+  std::map<std::string, std::set<std::string>> people;
+  for (const SplitPart& part : split->parts) {
+    for (const TakeName& name : part.takes) people[part.name].insert(name.subject);
+  }
+  CHECK(people["test"] == std::set<std::string>{"03", "11"});
+  CHECK(people["train"].size() == 10);
+  const std::string json = split_json(*split, takes);
+  const auto again = parse_split_json(json, "s.json");
+  REQUIRE(again);
+  CHECK(split_json(*again, takes) == json);
+  CHECK(again->options.test_people == options.test_people);
+  options.test_people = {"03", "nobody"};
+  CHECK(to_string(make_split(takes, catalogue(), options).error()) ==
+        "expected a subject that has takes (known: 00, 01, 02, 03, 04, 05, 06, 07, ...), found "
+        "\"nobody\"");
 }
 
 TEST_CASE("leave one out has a part for each person") {

@@ -3,10 +3,8 @@
 #include "tests/evaluate/moving_body.h"
 #include "tests/seeds.h"
 
-#include "kinalign/evaluate/bones.h"
 #include "kinalign/evaluate/feet.h"
 #include "kinalign/evaluate/position.h"
-#include "kinalign/evaluate/rotations.h"
 #include "kinalign/evaluate/smoothness.h"
 #include "kinalign/evaluate/table_nine.h"
 #include "kinalign/evaluate/uncertainty.h"
@@ -29,7 +27,6 @@ std::vector<double> changed(const std::vector<double>& places, const Change& cha
   return out;
 }
 
-double mean_of(const std::vector<double>& values) { return summary_of(values).value().mean_m; }
 doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-9).scale(1e-3); }
 
 }  // namespace
@@ -40,24 +37,15 @@ TEST_CASE("the truth itself has no error") {
     const MovingBody body = moving_body(seed);
     const Sequence s = body.sequence();
     CHECK(mean_of(distances(s, body.truth)) == 0.0);
-    CHECK(mean_of(root_aligned_distances(s, body.truth, 0)) == 0.0);
-    CHECK(mean_of(fitted_distances(s, body.truth, Fit::rigid)) == near(0.0));
-    CHECK(mean_of(fitted_distances(s, body.truth, Fit::similarity)) == near(0.0));
-    CHECK(share_within(distances(s, body.truth), 0.05) == 1.0);
-    CHECK(area_under_share(distances(s, body.truth)) == 1.0);
-    const auto lengths = bone_marks(s, body.truth, some_bones);
-    CHECK(lengths->error_m == 0.0);
-    CHECK(lengths->bias_m == 0.0);
-    CHECK(lengths->constancy_m == lengths->true_constancy_m);
+    CHECK(mean_of(fitted_distances(s, body.truth)) == near(0.0));
     CHECK(acceleration_error(s, body.truth) == 0.0);
     CHECK(jitter(s, body.truth)->ratio() == 1.0);
     CHECK(std::abs(lag_s(s, body.truth).value()) < 0.5 / body.rate_hz);
     CHECK(amplitude_ratio(s, body.truth, 0) == 1.0);
-    CHECK(swing_error(s, body.truth, some_bones) == near(0.0));
     const TableNine nine = table_nine(body.truth, body.truth, 18, some_bones);
     CHECK(nine.position == 0.0);
     CHECK(nine.bone == 0.0);
-    CHECK(nine.smooth_apart() == 0.0);
+    CHECK(nine.smooth == nine.true_smooth);
   }
 }
 
@@ -69,17 +57,13 @@ TEST_CASE("a constant shift is an error of the world alone") {
     const Vec3 shift(0.03, -0.04, 0.12);
     const auto moved = changed(body.truth, [&](const Vec3& p) -> Vec3 { return p + shift; });
     CHECK(mean_of(distances(s, moved)) == near(0.13));
-    CHECK(mean_of(root_aligned_distances(s, moved, 0)) == near(0.0));
-    CHECK(mean_of(fitted_distances(s, moved, Fit::rigid)) == near(0.0));
-    CHECK(bone_marks(s, moved, some_bones)->error_m == near(0.0));
+    CHECK(mean_of(fitted_distances(s, moved)) == near(0.0));
     CHECK(acceleration_error(s, moved).value() == near(0.0));
     CHECK(jitter(s, moved)->ratio().value() == near(1.0));
-    CHECK(share_within(distances(s, moved), 0.12) == 0.0);
-    CHECK(area_under_share(distances(s, moved)).value() == near(1.0 - 0.13 / 0.15));
   }
 }
 
-TEST_CASE("a similarity leaves nothing after a similarity, and a rigid fit keeps its scale") {
+TEST_CASE("a similarity leaves nothing after the fit, a mirror image does") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     const MovingBody body = moving_body(seed);
@@ -87,16 +71,15 @@ TEST_CASE("a similarity leaves nothing after a similarity, and a rigid fit keeps
     const Quat turn = Quat(0.2, -0.4, 0.5, 0.7).normalized();
     const auto moved = changed(
         body.truth, [&](const Vec3& p) -> Vec3 { return 1.3 * (turn * p) + Vec3(1.0, 2.0, 3.0); });
-    CHECK(mean_of(fitted_distances(s, moved, Fit::similarity)) == near(0.0));
-    CHECK(mean_of(fitted_distances(s, moved, Fit::rigid)) > 0.01);
+    CHECK(mean_of(fitted_distances(s, moved)) == near(0.0));
     const auto mirrored = changed(body.truth, [](const Vec3& p) -> Vec3 {
       return {-p.x(), p.y(), p.z()};
     });
-    CHECK(mean_of(fitted_distances(s, mirrored, Fit::similarity)) > 0.01);
+    CHECK(mean_of(fitted_distances(s, mirrored)) > 0.01);
   }
 }
 
-TEST_CASE("truth and prediction may change places in errors of position, bones, acceleration") {
+TEST_CASE("truth and prediction may change places in errors of position and acceleration") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     const MovingBody body = moving_body(seed);
@@ -104,10 +87,6 @@ TEST_CASE("truth and prediction may change places in errors of position, bones, 
     Sequence swapped = s;
     swapped.truth = body.prediction;
     CHECK(mean_of(distances(s, body.prediction)) == near(mean_of(distances(swapped, body.truth))));
-    CHECK(mean_of(fitted_distances(s, body.prediction, Fit::rigid)) ==
-          near(mean_of(fitted_distances(swapped, body.truth, Fit::rigid))));
-    CHECK(bone_marks(s, body.prediction, some_bones)->error_m ==
-          near(bone_marks(swapped, body.truth, some_bones)->error_m));
     CHECK(acceleration_error(s, body.prediction).value() ==
           near(acceleration_error(swapped, body.truth).value()));
   }
@@ -118,14 +97,11 @@ TEST_CASE("cells that are not valid do not count") {
   const Sequence s = body.sequence();
   const auto marks = [&] {
     return std::array{mean_of(distances(s, body.prediction)),
-                      mean_of(root_aligned_distances(s, body.prediction, 0)),
-                      mean_of(fitted_distances(s, body.prediction, Fit::similarity)),
-                      bone_marks(s, body.prediction, some_bones)->error_m,
+                      mean_of(fitted_distances(s, body.prediction)),
                       acceleration_error(s, body.prediction).value(),
                       jitter(s, body.prediction)->predicted,
                       lag_s(s, body.prediction).value(),
-                      amplitude_ratio(s, body.prediction, 0).value(),
-                      swing_error(s, body.prediction, some_bones).value()};
+                      amplitude_ratio(s, body.prediction, 0).value()};
   };
   const auto before = marks();
   for (std::size_t i = 0; i < body.valid.size(); ++i) {
@@ -154,7 +130,7 @@ TEST_CASE("a delay is found to a part of a frame, and a flattened motion by its 
   }
 }
 
-TEST_CASE("a foot that slides while the true one stands skates, and one below the floor sinks") {
+TEST_CASE("a foot that slides while the true one stands skates") {
   // Two joints: a foot that stands for 20 frames and swings for 20, and a hip.
   std::vector<double> truth(40 * 2 * 3);
   for (std::size_t t = 0; t < 40; ++t) {
@@ -165,7 +141,7 @@ TEST_CASE("a foot that slides while the true one stands skates, and one below th
   const Sequence s{2, 30.0, truth, valid};
   std::vector<double> slid = truth;
   for (std::size_t t = 0; t < 40; ++t) {
-    vec3(slid, 2 * t) += Vec3(0.01 * double(t), t < 20 ? -0.02 : 0.0, 0.0);
+    vec3(slid, 2 * t) += Vec3(0.01 * double(t), -0.02, 0.0);
   }
   const std::array<std::size_t, 1> foot{0};
   const auto marks = feet_marks(s, slid, foot);
@@ -173,27 +149,7 @@ TEST_CASE("a foot that slides while the true one stands skates, and one below th
   CHECK(marks->contacts == 19);  // frame 0 has no speed
   CHECK(marks->skate_m_s == near(0.3));
   CHECK(marks->true_skate_m_s == 0.0);
-  CHECK(marks->penetration_m == near(0.01));  // half of the frames, 2 cm
-  CHECK(marks->true_penetration_m == near(0.0));
   CHECK_FALSE(feet_marks(s, slid, std::array<std::size_t, 1>{1}, {.highest_m = -1.0}));
-}
-
-TEST_CASE("a turn of every joint by one angle is the error of rotation") {
-  const std::size_t cells = 5 * 3;
-  std::vector<double> truth(4 * cells), turned(4 * cells);
-  for (std::size_t i = 0; i < cells; ++i) {
-    const Quat q = Quat(1.0, 0.1 * double(i), -0.3, 0.2).normalized();
-    put_quat(truth, i, q);
-    Quat other = q * Quat(Eigen::AngleAxisd(0.4, Vec3(1.0, 2.0, -1.0).normalized()));
-    if (i % 2 == 0) other.coeffs() = -other.coeffs();  // the same rotation
-    put_quat(turned, i, other);
-  }
-  std::vector<std::uint8_t> valid(cells, 1);
-  const std::array<std::size_t, 2> some{0, 2};
-  CHECK(rotation_error({3, truth, valid}, turned, some).value() == near(0.4));
-  CHECK(rotation_error({3, truth, valid}, truth, some).value() == near(0.0));
-  std::fill(valid.begin(), valid.end(), std::uint8_t{0});
-  CHECK_FALSE(rotation_error({3, truth, valid}, turned, some));
 }
 
 TEST_CASE("stated radii that know the error are smaller than one radius of the same coverage") {
@@ -228,22 +184,17 @@ TEST_CASE("own-root data of a body that walks and turns stand still") {
   }
   const auto again = own_root(walking, 18, own);
   for (std::size_t i = 0; i < still.size(); ++i) CHECK(again[i] == near(still[i]));
-  const auto unit = scaled(still, unit_scale(still, 18));
-  CHECK(*std::max_element(unit.begin(), unit.end()) <= 1.0);
-  CHECK(std::abs(*std::min_element(unit.begin(), unit.end())) <= 1.0);
 }
 
 TEST_CASE("without a valid cell every mark is absent") {
   MovingBody body = moving_body(3, 10);
   std::fill(body.valid.begin(), body.valid.end(), std::uint8_t{0});
   const Sequence s = body.sequence();
-  CHECK_FALSE(summary_of(distances(s, body.prediction)));
-  CHECK_FALSE(share_within(distances(s, body.prediction), 0.1));
-  CHECK_FALSE(bone_marks(s, body.prediction, some_bones));
+  CHECK(distances(s, body.prediction).empty());
+  CHECK(fitted_distances(s, body.prediction).empty());
   CHECK_FALSE(acceleration_error(s, body.prediction));
   CHECK_FALSE(jitter(s, body.prediction));
   CHECK_FALSE(lag_s(s, body.prediction));
   CHECK_FALSE(amplitude_ratio(s, body.prediction, 0));
   CHECK_FALSE(feet_marks(s, body.prediction, two_feet));
-  CHECK_FALSE(swing_error(s, body.prediction, some_bones));
 }

@@ -6,10 +6,15 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <vector>
 
 namespace kinalign {
+
+inline double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
 
 inline constexpr std::array<Bone, 4> some_bones{{{4, 5}, {5, 6}, {10, 11}, {11, 12}}};
 inline constexpr std::array<std::size_t, 2> two_feet{13, 17};

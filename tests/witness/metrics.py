@@ -9,33 +9,16 @@ y, p = given("truth", -1, J, 3), given("prediction", -1, J, 3)
 ok = given("valid", -1, J) > 0
 bones = given("bones", -1, 2).astype(int)
 e = np.linalg.norm(p - y, axis=-1)
-answer("distances", [e[ok].mean(), np.median(e[ok]), np.percentile(e[ok], 95)])
-grid = np.linspace(0, 0.15, 150001)
-shares = np.searchsorted(np.sort(e[ok]), grid, side="right") / ok.sum()
-answer("shares", [(e[ok] <= d).mean() for d in (0.05, 0.1, 0.15)] + [np.trapz(shares, grid) / 0.15])
-rooted = ok & ok[:, :1]
-answer("root_aligned", [np.linalg.norm((p - p[:, :1]) - (y - y[:, :1]), axis=-1)[rooted].mean()])
-
-
-def fitted(scaled):
-    out = []
-    for a, b, w in zip(p, y, ok):
-        if w.sum() < 4:
-            continue
-        X, Y = a[w] - a[w].mean(0), b[w] - b[w].mean(0)
-        R, _ = Rotation.align_vectors(Y, X)  # Kabsch by SciPy
-        s = (Y * R.apply(X)).sum() / (X ** 2).sum() if scaled else 1.0
-        out.append(np.linalg.norm(s * R.apply(X) - Y, axis=-1))
-    return np.concatenate(out).mean()
-
-
-answer("fitted", [fitted(False), fitted(True)])
-both = [ok[:, a] & ok[:, b] for a, b in bones]
-lp = [np.linalg.norm(p[w, a] - p[w, b], axis=-1) for w, (a, b) in zip(both, bones)]
-ly = [np.linalg.norm(y[w, a] - y[w, b], axis=-1) for w, (a, b) in zip(both, bones)]
-answer("bones", [np.abs(np.concatenate(lp) - np.concatenate(ly)).mean(),
-                 np.mean([abs(a.mean() - b.mean()) for a, b in zip(lp, ly)]),
-                 np.mean([a.std() for a in lp]), np.mean([b.std() for b in ly])])
+answer("distances", [e[ok].mean()])
+fitted = []
+for a, b, w in zip(p, y, ok):
+    if w.sum() < 4:
+        continue
+    X, Y = a[w] - a[w].mean(0), b[w] - b[w].mean(0)
+    R, _ = Rotation.align_vectors(Y, X)  # Kabsch by SciPy
+    s = (Y * R.apply(X)).sum() / (X ** 2).sum()
+    fitted.append(np.linalg.norm(s * R.apply(X) - Y, axis=-1))
+answer("fitted", [np.concatenate(fitted).mean()])
 w3 = ok[2:] & ok[1:-1] & ok[:-2]
 w4 = w3[1:] & ok[:-3]
 answer("smoothness", [np.linalg.norm(np.diff(p - y, 2, axis=0), axis=-1)[w3].mean(),
@@ -62,10 +45,11 @@ k = int(c.argmax())
 if 0 < k < 30:  # at the end of the range there is no lag
     top = np.polynomial.Polynomial.fit([-1, 0, 1], c[k - 1:k + 2], 2).deriv().roots()[0]
 answer("lag", [(k - 15 + top) / RATE] if 0 < k < 30 else [])
+rooted = ok & ok[:, :1]
 far = lambda x: np.ma.array(np.linalg.norm(x - x[:, :1], axis=-1), mask=~rooted).std(0).sum()
 answer("amplitude", [far(p) / far(y)])
 
-skates, true_skates, depths = [], [], []
+skates, true_skates = [], []
 for foot in (13, 17):
     w, h = ok[:, foot], y[:, foot, 1]
     floor = np.percentile(h[w], 1)
@@ -78,16 +62,8 @@ for foot in (13, 17):
     flat = lambda x: np.linalg.norm(np.diff(x[:, foot][:, [0, 2]], axis=0), axis=-1)[low[1:]] * RATE
     skates.append(flat(p))
     true_skates.append(flat(y))
-    depths.append(np.maximum(0, floor - p[w, foot, 1]))
-skates, depths = np.concatenate(skates), np.concatenate(depths)
-answer("feet", [len(skates), skates.mean(), np.concatenate(true_skates).mean(), depths.mean()])
-
-a = [p[w, j] - p[w, i] for w, (i, j) in zip(both, bones)]
-b = [y[w, j] - y[w, i] for w, (i, j) in zip(both, bones)]
-a, b = np.concatenate(a), np.concatenate(b)
-answer("swing", [np.arccos((a * b).sum(-1) / np.linalg.norm(a, axis=-1) / np.linalg.norm(b, axis=-1)).mean()])
-q, r = given("rotations", -1, 4)[:, [1, 2, 3, 0]], given("true_rotations", -1, 4)[:, [1, 2, 3, 0]]
-answer("rotation", [(Rotation.from_quat(q) * Rotation.from_quat(r).inv()).magnitude()[ok.ravel()].mean()])
+skates = np.concatenate(skates)
+answer("feet", [len(skates), skates.mean(), np.concatenate(true_skates).mean()])
 
 radius = 2.5 * given("sigmas", -1, J)[ok]
 error = np.linalg.norm((p - y)[ok], axis=-1)
@@ -113,7 +89,4 @@ def own_root(x):
     return np.stack([Rotation.from_euler("y", one).apply(body) for one, body in zip(angle, moved)])
 
 
-rooted_y, rooted_p = own_root(y), own_root(p)
-pose = rooted_y.mean(0)
-largest = np.abs(rooted_y - pose).max((0, 1))
-answer("nine", nine(100 * y, 100 * p) + nine((rooted_y - pose) / largest, (rooted_p - pose) / largest))
+answer("nine", nine(100 * y, 100 * p) + nine(100 * own_root(y), 100 * own_root(p)))

@@ -39,14 +39,11 @@ constexpr const char *rough_stream = "kinect", *true_stream = "mocap";
 /// scale 0.02. An idle machine needs less.
 struct TrainingSpeed {
   std::string_view method;
-  std::int64_t own_steps = 1200;
   double step_s = 0.0;
 };
-constexpr std::array<TrainingSpeed, 5> training_speeds{{{"cnn", 1200, 0.73},
-                                                        {"bra", 1200, 2.7},
-                                                        {"bra-p", 1200, 5.9},
-                                                        {"refine", 1200, 0.24},
-                                                        {"refine-linear", 1200, 0.28}}};
+constexpr std::array<TrainingSpeed, 5> training_speeds{
+    {{"cnn", 0.73}, {"bra", 2.7}, {"bra-p", 5.9}, {"refine", 0.24}, {"refine-linear", 0.28}}};
+constexpr std::int64_t own_steps = 1200;  // of every method that cleans
 
 std::string model_file(const CleaningOptions& o, const std::string& method) {
   return o.folder + "/models/" + method + ".safetensors";
@@ -305,14 +302,17 @@ Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const Cl
 
 std::vector<TrainingPlan> training_plan(const CleaningOptions& o) {
   std::vector<TrainingPlan> out;
-  for (const std::string& method : o.methods) {
-    const auto speed = std::find_if(training_speeds.begin(), training_speeds.end(),
-                                    [&](const TrainingSpeed& one) { return one.method == method; });
-    if (speed == training_speeds.end()) continue;
+  std::set<std::string> planned;
+  for (const std::string& name : o.methods) {
+    const std::string method = trained_part(name);
+    if (!is_trained(name) || !planned.insert(method).second) continue;
     std::error_code fault;
-    const std::int64_t steps = o.steps > 0 ? o.steps : speed->own_steps;
-    out.push_back({method, fs::exists(model_file(o, method), fault), steps,
-                   speed->step_s * static_cast<double>(steps)});
+    TrainingPlan plan{method, fs::exists(model_file(o, method), fault),
+                      o.steps > 0 ? o.steps : own_steps, std::nullopt};
+    for (const TrainingSpeed& speed : training_speeds) {
+      if (speed.method == method) plan.seconds = speed.step_s * static_cast<double>(plan.steps);
+    }
+    out.push_back(std::move(plan));
   }
   return out;
 }

@@ -11,6 +11,7 @@
 #include "kinalign/view/table.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,7 @@ struct TrainingPlan {
   std::string method;
   bool is_there = false;
   std::int64_t steps = 0;
-  double seconds = 0.0;  // on one busy core; an idle one needs less
+  std::optional<double> seconds;  // on one busy core; an idle one needs less. Absent: not known
 };
 std::vector<TrainingPlan> training_plan(const CleaningOptions& o);
 

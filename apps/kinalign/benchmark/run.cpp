@@ -18,7 +18,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <optional>
 
 namespace kinalign {
 
@@ -57,7 +59,7 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   usage.positionals = {folder_word(o.data),
                        {"METHOD",
                         "which methods clean the Kinect (default: raw, savgol, offset, ridge, cnn, "
-                        "bra, bra-p, refine)",
+                        "bra, bra-p, refine, refine-linear)",
                         &o.methods, 0, 100}};
   for (const EvalMethod& method : eval_methods()) {
     usage.positionals.back().choices.push_back(method.name);
@@ -112,20 +114,27 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
   std::string text;
   Json json = Json::array();
   double seconds = 0.0;
+  std::size_t trainings = 0, not_known = 0;
   for (const TrainingPlan& one : training_plan(o)) {
-    text += one.is_there ? fmt::format("{:<8} is there\n", one.method)
-                         : fmt::format("{:<8} to train, {} steps, at most about {}\n", one.method,
-                                       grouped(static_cast<std::uint64_t>(one.steps)),
-                                       duration_text(one.seconds));
-    if (!one.is_there) seconds += one.seconds;
+    const std::optional<double> takes = one.is_there ? 0.0 : one.seconds;
+    trainings += one.is_there ? 0 : 1;
+    not_known += takes ? 0 : 1;
+    seconds += takes.value_or(0.0);
+    text += one.is_there
+                ? fmt::format("{:<13} is there\n", one.method)
+                : fmt::format("{:<13} to train, {} steps, {}\n", one.method,
+                              grouped(static_cast<std::uint64_t>(one.steps)),
+                              takes ? "at most about " + duration_text(*takes) : "time not known");
     json.push_back({{"method", one.method},
                     {"is_there", one.is_there},
                     {"steps", one.steps},
-                    {"seconds", one.is_there ? 0.0 : one.seconds}});
+                    {"seconds", takes ? Json(*takes) : Json()}});
   }
-  text += seconds > 0.0
-              ? fmt::format("at most about {} of training on one core\n", duration_text(seconds))
-              : "nothing to train\n";
+  if (trainings == 0) text += "nothing to train\n";
+  if (trainings > not_known) {
+    text += fmt::format("at most about {} of training on one core{}\n", duration_text(seconds),
+                        not_known > 0 ? ", without those whose time is not known" : "");
+  }
   call.console.print(text);
   call.console.print_json(Json{{"trainings", json}, {"seconds", seconds}}.dump());
   return 0;
@@ -200,10 +209,40 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
   page.poses = pose_table(data, all);
   page.errors = error_plot(data, all);
   page.motion = side_by_side(data, all);
-  page.command = fmt::format(
-      "kinalign benchmark run {} {}{} --seed {} -o {}", o.data, fmt::join(o.methods, " "),
-      o.steps > 0 ? fmt::format(" --steps {}", o.steps) : "", o.seed, o.folder);
   return page;
+}
+
+/// As a shell takes it.
+std::string shell_word(const std::string& word) {
+  const bool is_plain = std::all_of(word.begin(), word.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_-./=+,:").find(c) != std::string_view::npos;
+  });
+  if (is_plain && !word.empty()) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + "'";
+}
+
+/// That makes the page again.
+std::string command_of(const BenchmarkRun& o, const CleaningOptions& cleaning) {
+  std::vector<std::string> words{cleaning.data};
+  words.insert(words.end(), cleaning.methods.begin(), cleaning.methods.end());
+  const auto flag = [&words](const char* name, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {name, value});
+  };
+  for (const std::string& program : cleaning.programs) flag("--method", program);
+  flag("--split", o.split);
+  flag("--pose-model", o.pose_model);
+  flag("--head-model", o.head_model);
+  flag("--fuse-model", o.fuse_model);
+  if (o.device != "cpu") flag("--device", o.device);
+  if (o.steps > 0) flag("--steps", std::to_string(o.steps));
+  flag("--seed", std::to_string(o.seed));
+  flag("-o", cleaning.folder);
+  std::string out = "kinalign benchmark run";
+  for (const std::string& word : words) out += " " + shell_word(word);
+  return out;
 }
 
 /// A line for each row of the figures' tables: "figure 8   five nodes: all 8.7 cm".
@@ -258,6 +297,7 @@ Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
   const Table table = marks_table(data, all);
   KA_TRY(write_tables(table, cleaning.folder, call));
   ModelsPage page = page_of(cleaning, data, all, table);
+  page.command = command_of(o, cleaning);
   page.figures = KA_TRY(node_figures(
       {cleaning.data, cleaning.split, o.pose_model, o.head_model, o.fuse_model}, call));
   KA_TRY(write_whole(call.surroundings.files, page_path, models_html(page), Overwrite::yes));

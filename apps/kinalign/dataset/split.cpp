@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 namespace kinalign {
 
@@ -20,7 +21,7 @@ namespace {
 struct SplitVerb {
   std::vector<std::string> folder;
   SplitOptions options;
-  std::string check;
+  std::string test_people, check;
 };
 
 Usage describe_split(SplitVerb& o) {
@@ -29,11 +30,22 @@ Usage describe_split(SplitVerb& o) {
   usage.flags = {
       {"by", "how takes are divided", &o.options.by, 0.0, 0.0, split_methods()},
       {"test", "share of the frames for the test", &o.options.test, 0.0, 1.0},
+      {"test-people",
+       "who is tested, in place of --by and --test; all others are trained on",
+       &o.test_people,
+       0.0,
+       0.0,
+       {},
+       "ID,ID,..."},
       {"validation", "share of the frames for validation", &o.options.validation, 0.0, 1.0},
       {"stratified", "of takes: each class is divided by itself", &o.options.stratified},
       {"seed", "of the random numbers", &o.options.seed, 0.0, 9e15},
       {"check", "look at a split that is there instead", &o.check, 0.0, 0.0, {}, "FILE"}};
-  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+  usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
+    for (const char* name : {"by", "test", "validation", "stratified", "seed"}) {
+      if (o.test_people.empty() || given.count(name) == 0) continue;
+      return Failure(Error{"--test-people", 0, std::string("no --") + name + " beside it", "both"});
+    }
     if (o.options.test + o.options.validation >= 1.0) {
       return Failure(Error{"--test", 0, "shares that leave something for training", "all of it"});
     }
@@ -86,6 +98,8 @@ Result<int> run_split(SplitVerb& o, Call& call) {
   const std::string file = o.check.empty() ? call.common.out : o.check;
   Split split;
   if (o.check.empty()) {
+    std::istringstream ids(o.test_people);
+    for (std::string id; std::getline(ids, id, ',');) o.options.test_people.push_back(id);
     split = KA_TRY(make_split(takes, index.catalogue(), o.options));
   } else {
     split = KA_TRY(read_split(files, o.check));
@@ -119,6 +133,8 @@ Verb dataset_split_verb() {
        .examples = {{"kinalign dataset split walks --by subject --test 0.2 --seed 7 -o "
                      "walks/splits/people.json",
                      "a fifth of the frames, of people who are not in the training"},
+                    {"kinalign dataset split walks --test-people 1 -o walks/splits/first.json",
+                     "one person is the test, all others are the training"},
                     {"kinalign dataset split walks --check walks/splits/people.json",
                      "whether it still holds"}},
        .common = {"out", "force", "json"}},

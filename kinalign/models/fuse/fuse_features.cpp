@@ -54,11 +54,6 @@ FuseFeatureMaker::FuseFeatureMaker(const FuseLayout& layout)
               {place_of_joint(layout.joints, "ShoulderLeft"),
                place_of_joint(layout.joints, "ShoulderRight")}}} {}
 
-void FuseFeatureMaker::reset() {
-  space_ = {};
-  left_.reset();
-}
-
 void FuseFeatureMaker::find_space(const FuseInput& input, std::size_t t) {
   const JointFrames& kinect = input.kinect;
   Eigen::Vector2f across = Eigen::Vector2f::Zero();

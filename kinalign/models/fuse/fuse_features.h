@@ -74,7 +74,6 @@ class FuseFeatureMaker {
   void make(const FuseInput& input, std::size_t t, std::span<float> out);
   /// Of the last frame made.
   const FuseSpace& space() const { return space_; }
-  void reset();
 
  private:
   void find_space(const FuseInput& input, std::size_t t);

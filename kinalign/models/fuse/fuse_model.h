@@ -3,7 +3,7 @@
 // and everything needed to use it. Layout of its file: docs/formats/model.md.
 #pragma once
 
-#include "kinalign/infer/online.h"
+#include "kinalign/infer/network.h"
 #include "kinalign/models/fuse/bone_filter.h"
 #include "kinalign/models/fuse/fuse_features.h"
 #include "kinalign/models/fuse/node_headings.h"
@@ -64,7 +64,6 @@ class Fuser {
   void use_body(Skeleton body) { model_.body.skeleton = std::move(body); }
 
  private:
-  friend class OnlineFuser;
   Fuser(FuseModel model, Network network);
 
   void turn_to_measured(const FuseInput& input, FusedPose& pose) const;
@@ -72,36 +71,6 @@ class Fuser {
   FuseModel model_;
   Network network_;
   Workspace workspace_;
-};
-
-/// A model that runs frame by frame, with headings by the frames so far and without smoothing. Its
-/// network runs twice a frame: on the Kinect alone, for the headings, and on both.
-class OnlineFuser {
- public:
-  /// `fuser` must live longer and must not be moved. Fails where its network needs later frames.
-  static Result<OnlineFuser> make(const Fuser& fuser);
-
-  /// Takes one frame: `input` holds it alone. The rotations [B] are valid until the next step.
-  std::span<const Turn> step(const FuseInput& input);
-  /// Root and place of the last step.
-  const FusedFrame& frame() const { return frame_; }
-  void reset();
-
- private:
-  OnlineFuser(const Fuser& fuser, OnlineNetwork network, OnlineNetwork of_kinect);
-  void find_headings();
-
-  const FuseModel* model_;
-  OnlineNetwork network_, of_kinect_;
-  HeadingFilter headings_;
-  FuseFeatureMaker maker_, kinect_maker_;
-  FuseInput given_, corrected_;
-  std::vector<CarriedBone> carried_;
-  std::vector<SeenBone> seen_bones_;
-  std::vector<HeadingState> states_;
-  std::vector<float> input_;
-  std::vector<Turn> rotations_;
-  FusedFrame frame_;
 };
 
 }  // namespace kinalign

@@ -246,13 +246,9 @@ std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& 
   return mean + *middle;
 }
 
-void turn_world(NodeFrames& nodes, double yaw) {
-  HeadingState state;
-  state.yaw = static_cast<float>(yaw);
-  const std::vector<HeadingState> states(nodes.nodes, state);
-  for (std::size_t t = 0; t < nodes.frames(); ++t) correct_frame(nodes, t, states);
-}
+namespace {
 
+/// The nodes of frame `t` with corrected numbers; `states` [N].
 void correct_frame(NodeFrames& nodes, std::size_t t, std::span<const HeadingState> states) {
   for (std::size_t n = 0; n < nodes.nodes; ++n) {
     const auto orientation = orientation_at(nodes, t, n);
@@ -266,6 +262,15 @@ void correct_frame(NodeFrames& nodes, std::size_t t, std::span<const HeadingStat
     Eigen::Map<Eigen::Vector3f> rate(&nodes.angular_velocity[3 * at]);
     rate = (turn_by(states[n].mount).conjugate() * Eigen::Vector3f(rate)).eval();
   }
+}
+
+}  // namespace
+
+void turn_world(NodeFrames& nodes, double yaw) {
+  HeadingState state;
+  state.yaw = static_cast<float>(yaw);
+  const std::vector<HeadingState> states(nodes.nodes, state);
+  for (std::size_t t = 0; t < nodes.frames(); ++t) correct_frame(nodes, t, states);
 }
 
 NodeFrames with_headings(NodeFrames nodes, const std::vector<HeadingState>& states) {

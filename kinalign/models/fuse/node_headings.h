@@ -110,7 +110,5 @@ void turn_world(NodeFrames& nodes, double yaw);
 
 /// The nodes with corrected orientations and accelerations; angular velocities turn with the mount.
 NodeFrames with_headings(NodeFrames nodes, const std::vector<HeadingState>& states);
-/// The same of frame `t` alone; `states` [N].
-void correct_frame(NodeFrames& nodes, std::size_t t, std::span<const HeadingState> states);
 
 }  // namespace kinalign

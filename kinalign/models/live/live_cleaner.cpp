@@ -20,6 +20,19 @@ std::size_t smoothed_frames(const DenoiseModel& model) {
   return half(model.layout.smoothing) + half(model.steadying.smoothing);
 }
 
+bool misses_joints(const JointFrames& body, std::size_t row) {
+  const auto begin = body.seen.begin() + static_cast<std::ptrdiff_t>(row * body.joints);
+  const auto end = begin + static_cast<std::ptrdiff_t>(body.joints);
+  return std::find(begin, end, std::uint8_t{0}) != end;
+}
+
+JointFrames rows_from(const JointFrames& body, std::size_t first) {
+  const auto begin = static_cast<std::ptrdiff_t>(first * body.joints);
+  return {body.joints,
+          {body.positions.begin() + 3 * begin, body.positions.end()},
+          {body.seen.begin() + begin, body.seen.end()}};
+}
+
 Steadying without_bones(Steadying how) {
   how.bones = false;
   return how;
@@ -52,12 +65,22 @@ std::optional<std::vector<float>> LiveCleaner::finish() {
   return joints_at(next_);
 }
 
+/// Of the rows that an answer for `row` depends on. No row before it matters where it sees all
+/// joints; else earlier rows fill what it misses.
+std::size_t LiveCleaner::first_row_for(std::size_t row) const {
+  std::size_t first = row - std::min(row, behind_ - filled_frames);
+  while (first > 0 && misses_joints(window_, first)) --first;
+  return first;
+}
+
 std::vector<float> LiveCleaner::joints_at(std::size_t row) {
   const auto answer = [this](const JointFrames& body) { return denoiser_->answer(body); };
-  const std::vector<float> all = steadier_.steadied(answer, window_, answer(window_)).positions;
+  const std::size_t first = first_row_for(row);
+  const JointFrames body = rows_from(window_, first);
+  const std::vector<float> all = steadier_.steadied(answer, body, answer(body)).positions;
   const DenoiseLayout& layout = denoiser_->model().layout;
   const auto width = static_cast<std::ptrdiff_t>(3 * layout.outputs.size());
-  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row) * width;
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row - first) * width;
   std::vector<float> out(begin, begin + width);
   answers_.insert(answers_.end(), out.begin(), out.end());
   const std::size_t remembered = std::min(answers_.size(), remembered_lengths * out.size());

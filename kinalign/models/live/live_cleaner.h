@@ -31,6 +31,7 @@ class LiveCleaner {
   std::vector<float> whole() const;
 
  private:
+  std::size_t first_row_for(std::size_t row) const;
   std::vector<float> joints_at(std::size_t row);
 
   Denoiser* denoiser_;

@@ -75,7 +75,6 @@ class PoseFeatureMaker {
                std::span<float> out);
   /// The root in the world, in the last frame made.
   const Eigen::Quaternionf& root() const { return root_; }
-  void reset() { root_ = Eigen::Quaternionf::Identity(); }
 
  private:
   const PoseLayout* layout_;

@@ -57,29 +57,4 @@ Clip PoseSolver::clip(const NodeFrames& nodes, Time start) {
           clip_frames(model_.body, pose.rotations, pose.root, model_.layout.rate_hz, start)};
 }
 
-Result<OnlinePoseSolver> OnlinePoseSolver::make(const PoseSolver& solver) {
-  return OnlinePoseSolver(solver, KA_TRY(OnlineNetwork::make(solver.network_)));
-}
-
-OnlinePoseSolver::OnlinePoseSolver(const PoseSolver& solver, OnlineNetwork network)
-    : model_(&solver.model_),
-      network_(std::move(network)),
-      maker_(model_->layout),
-      input_(model_->layout.channels()),
-      rotations_(model_->layout.bones.size()) {}
-
-std::span<const Turn> OnlinePoseSolver::step(const NodeFrames& nodes, std::size_t t) {
-  maker_.make(nodes, t, input_);
-  standardise(model_->input_mean, model_->input_scale, input_);
-  const std::span<const float> answers = network_.step(input_);
-  for (std::size_t b = 0; b < rotations_.size(); ++b)
-    rotations_[b] = turn_of_answer(&answers[6 * b]);
-  return rotations_;
-}
-
-void OnlinePoseSolver::reset() {
-  network_.reset();
-  maker_.reset();
-}
-
 }  // namespace kinalign

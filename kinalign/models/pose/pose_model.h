@@ -3,7 +3,7 @@
 // to use it. Layout of its file: docs/formats/model.md.
 #pragma once
 
-#include "kinalign/infer/online.h"
+#include "kinalign/infer/network.h"
 #include "kinalign/models/pose/body_model.h"
 #include "kinalign/models/pose/pose_features.h"
 
@@ -45,37 +45,12 @@ class PoseSolver {
   void use_body(Skeleton body) { model_.body.skeleton = std::move(body); }
 
  private:
-  friend class OnlinePoseSolver;
   friend class WindowSolver;
   PoseSolver(PoseModel model, Network network);
 
   PoseModel model_;
   Network network_;
   Workspace workspace_;
-};
-
-/// A model that runs frame by frame, without later frames and without smoothing.
-class OnlinePoseSolver {
- public:
-  /// `solver` must live longer and must not be moved. Fails where its network needs later frames.
-  static Result<OnlinePoseSolver> make(const PoseSolver& solver);
-
-  /// The rotations [B] at frame `t` of `nodes`, the frame after the one before. They are valid
-  /// until the next step. Nothing is allocated.
-  std::span<const Turn> step(const NodeFrames& nodes, std::size_t t);
-  /// The root in the world, at that frame.
-  const Eigen::Quaternionf& root() const { return maker_.root(); }
-  /// Forgets all frames.
-  void reset();
-
- private:
-  OnlinePoseSolver(const PoseSolver& solver, OnlineNetwork network);
-
-  const PoseModel* model_;
-  OnlineNetwork network_;
-  PoseFeatureMaker maker_;
-  std::vector<float> input_;
-  std::vector<Turn> rotations_;
 };
 
 /// Rotations [T,B], each the mean of five frames with weights 1, 4, 6, 4, 1, brought back to a

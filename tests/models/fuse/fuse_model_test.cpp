@@ -33,24 +33,6 @@ std::string refusal_of(const FuseModel& model) {
   return again ? "none" : to_string(again.error());
 }
 
-FuseInput frame_of(const FuseInput& input, std::size_t t) {
-  const auto rows = [&](const auto& from, std::size_t width, auto& to) {
-    to.assign(from.begin() + static_cast<std::ptrdiff_t>(t * width),
-              from.begin() + static_cast<std::ptrdiff_t>((t + 1) * width));
-  };
-  FuseInput out;
-  const std::size_t nodes = input.nodes.nodes, joints = input.kinect.joints;
-  out.nodes.nodes = nodes;
-  out.kinect.joints = joints;
-  rows(input.nodes.orientation, 4 * nodes, out.nodes.orientation);
-  rows(input.nodes.acceleration, 3 * nodes, out.nodes.acceleration);
-  rows(input.nodes.angular_velocity, 3 * nodes, out.nodes.angular_velocity);
-  rows(input.nodes.valid, nodes, out.nodes.valid);
-  rows(input.kinect.positions, 3 * joints, out.kinect.positions);
-  rows(input.kinect.seen, joints, out.kinect.seen);
-  return out;
-}
-
 }  // namespace
 
 TEST_CASE("a fusing model's file is read as it was written") {
@@ -81,48 +63,6 @@ TEST_CASE("a fusing model whose parts do not fit is refused") {
   other.layout = fuse_test_layout();
   other.layout.joints.pop_back();
   CHECK(to_string(Fuser::make(other).error()).find("channels in") != std::string::npos);
-}
-
-TEST_CASE("frame by frame the fused answers are those with the headings of the frames so far") {
-  const FusePerson person = fuse_person(40);
-  auto fuser = Fuser::make(random_fuse_model(2));
-  REQUIRE(fuser);
-  auto online = OnlineFuser::make(*fuser);
-  REQUIRE(online);
-  const FuseModel& model = fuser->model();
-  HeadingFilter filter(model.layout, model.body);
-  FuseInput alone = person.input;
-  lose_all(alone.nodes.valid);
-  const FusedPose seen = fuser->answer(alone);
-  const auto directions =
-      directions_of_pose(filter, person.input.kinect, seen.rotations, seen.root);
-  FuseInput corrected_input = person.input;
-  for (std::size_t t = 0; t < 40; ++t) {
-    filter.step(person.input.nodes, t, std::span(directions).subspan(5 * t, 5));
-    std::vector<HeadingState> states;
-    for (std::size_t n = 0; n < 5; ++n) states.push_back(filter.state(n));
-    correct_frame(corrected_input.nodes, t, states);
-  }
-  FusedPose whole = fuser->answer(corrected_input);
-  const auto bones = seen_bones(model.body, model.layout.joints);
-  const auto carried = carried_bones(model.layout, model.body);
-  for (std::size_t t = 0; t < 40; ++t) {
-    const auto rotations =
-        std::span(whole.rotations).subspan(t * pose_bones.size(), pose_bones.size());
-    turn_to_nodes(carried, corrected_input.nodes, t, whole.root[t], rotations);
-    turn_to_seen(bones, person.input.kinect, t, whole.root[t], rotations);
-  }
-  for (int round = 0; round < 2; ++round) {
-    for (std::size_t t = 0; t < 40; ++t) {
-      const auto turns = online->step(frame_of(person.input, t));
-      for (std::size_t b = 0; b < turns.size(); ++b) {
-        REQUIRE((turns[b] - whole.rotations[t * turns.size() + b]).norm() < 1e-5F);
-      }
-      REQUIRE(online->frame().root.angularDistance(whole.root[t]) < 1e-3F);
-      REQUIRE((online->frame().place - whole.place[t]).norm() < 1e-5F);
-    }
-    online->reset();
-  }
 }
 
 TEST_CASE("the fused skeleton has bones of one length, at the Kinect's place") {

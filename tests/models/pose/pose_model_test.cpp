@@ -99,27 +99,6 @@ TEST_CASE("a network of other channels is refused") {
         "expected 48 channels in and 90 out, found 61 and 90");
 }
 
-TEST_CASE("frame by frame the answers are those to the whole sequence") {
-  std::mt19937_64 random(2);
-  auto solver = PoseSolver::make(random_model(random));
-  REQUIRE(solver);
-  NodeFrames nodes = random_nodes(5, 40, random);
-  nodes.valid[7] = nodes.valid[5 * 20 + 4] = 0;
-  const SolvedPose whole = solver->answer(nodes);
-  auto online = OnlinePoseSolver::make(*solver);
-  REQUIRE(online);
-  for (int round = 0; round < 2; ++round) {
-    for (std::size_t t = 0; t < nodes.frames(); ++t) {
-      const auto turns = online->step(nodes, t);
-      for (std::size_t b = 0; b < turns.size(); ++b) {
-        CHECK(turns[b] == whole.rotations[t * turns.size() + b]);
-      }
-      CHECK(online->root().coeffs() == whole.root[t].coeffs());
-    }
-    online->reset();
-  }
-}
-
 TEST_CASE("a window that sees all that the network sees answers as the whole sequence does") {
   std::mt19937_64 random(2);
   for (const bool causal : {false, true}) {
