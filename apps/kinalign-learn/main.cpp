@@ -75,6 +75,10 @@ int main(int argc, char** argv) {
   try {
     auto job = kinalign::read_job(text, argv[1]);
     if (!job) return fail(job.error());
+    if (job->device == "cuda" && !torch::cuda::is_available()) {
+      return fail({"--device", 0, "a GPU, and a LibTorch that knows CUDA (docs/training.md)",
+                   "none of both at once"});
+    }
     torch::set_num_threads(static_cast<int>(job->threads));
     if (job->device == "cpu") warn_of_slow_products();
     const auto done = kinalign::run_job(*job);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/clean_motion.h"
 
+#include "kinalign/learn/denoise_task.h"
 #include "kinalign/learn/losses.h"
 #include "kinalign/simulate/random.h"
 
@@ -18,6 +19,8 @@ class CleanMotionTask : public TrainingTask {
  public:
   CleanMotionTask(const DenoiseLayout& layout, const std::vector<Pair>& pairs, torch::Device device)
       : device_(device) {
+    const auto joints = torch::tensor(weights_of_outputs(layout, 1.0));
+    weights_ = (joints / joints.mean()).repeat_interleave(3).to(device);
     for (const Pair& pair : pairs) {
       if (pair.input.frames() < static_cast<std::size_t>(crop)) continue;
       std::vector<float> truth = pair.truth;
@@ -55,7 +58,8 @@ class CleanMotionTask : public TrainingTask {
       return x.slice(0, part.begin, part.begin + part.count);
     };
     const auto error = (network.forward(own(rough), part) - own(clean)) * 100.0;
-    return part.mean(error.pow(2)) + 0.5 * part.mean(second_differences(error).abs());
+    return part.mean(error.pow(2) * weights_) +
+           0.5 * part.mean(second_differences(error).abs() * weights_);
   }
 
   std::optional<double> judge(const TorchNetwork&) override { return std::nullopt; }
@@ -63,6 +67,7 @@ class CleanMotionTask : public TrainingTask {
  private:
   torch::Device device_;
   std::vector<torch::Tensor> motions_;  // [T,3 Jout]
+  torch::Tensor weights_;               // [3 Jout], of mean 1
 };
 
 }  // namespace

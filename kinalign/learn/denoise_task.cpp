@@ -31,9 +31,18 @@ bool is_hand(const std::string& name) {
   return false;
 }
 
-/// Outputs of the Kinect's own joints count 1. The others that one input joint stands for count 1
-/// together: a suit's forty joints of fingers would be two thirds of the loss, and no Kinect sees
-/// them.
+/// Rows begin ... begin + count of `x`, the last of them repeated where it ends sooner.
+torch::Tensor rows(const torch::Tensor& x, std::int64_t begin, std::int64_t count) {
+  const auto piece = x.slice(0, begin, begin + count);
+  const std::int64_t missing = count - piece.size(0);
+  if (missing == 0) return piece;
+  std::vector<std::int64_t> shape(piece.sizes().begin(), piece.sizes().end());
+  shape[0] = missing;
+  return torch::cat({piece, piece.slice(0, piece.size(0) - 1).expand(shape)});
+}
+
+}  // namespace
+
 std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands) {
   const auto inputs = inputs_of_outputs(layout);
   std::vector<float> out;
@@ -46,18 +55,6 @@ std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands)
   }
   return out;
 }
-
-/// Rows begin ... begin + count of `x`, the last of them repeated where it ends sooner.
-torch::Tensor rows(const torch::Tensor& x, std::int64_t begin, std::int64_t count) {
-  const auto piece = x.slice(0, begin, begin + count);
-  const std::int64_t missing = count - piece.size(0);
-  if (missing == 0) return piece;
-  std::vector<std::int64_t> shape(piece.sizes().begin(), piece.sizes().end());
-  shape[0] = missing;
-  return torch::cat({piece, piece.slice(0, piece.size(0) - 1).expand(shape)});
-}
-
-}  // namespace
 
 DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
                          const std::vector<Pair>& learnt, const std::vector<Pair>& judged,

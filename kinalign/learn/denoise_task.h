@@ -42,6 +42,11 @@ struct DenoiseScales {
   std::vector<float> answer_mean;              // [3 Jout] m, of truth minus base
 };
 
+/// [Jout] of joints in a loss. Outputs of the Kinect's own joints count 1. The others that one
+/// input joint stands for count 1 together: a suit's forty joints of fingers would be two thirds of
+/// the loss, and no Kinect sees them. `hands`: a factor of wrists and hands.
+std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands);
+
 class DenoiseTask : public TrainingTask {
  public:
   /// `judged`: of people who are not trained on; may be empty. `known`: for the loss `hidden`, a

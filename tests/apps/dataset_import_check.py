@@ -104,12 +104,12 @@ def a_new_data_set_gets_the_terms_of_the_corpus_and_one_with_people_keeps_its_ow
     packed = SHARED / "cmu"
     if not packed.exists():
         raise Skip("no shared/data")
-    said("dataset", "init", folder / "new")
-    said("dataset", "import", folder / "new", packed)
+    said("init", folder / "new")
+    said("import", folder / "new", packed)
     terms = (folder / "new/dataset.toml").read_text()
     assert 'licence = "free for all uses' in terms and "NSF EIA-0196217" in terms, terms[:600]
-    said("dataset", "init", folder / "own", "--template", "hfut-mmd")
-    said("dataset", "import", folder / "own", packed)
+    said("init", folder / "own", "--template", "hfut-mmd")
+    said("import", folder / "own", packed)
     assert 'licence = ""' in (folder / "own/dataset.toml").read_text()
 
 

@@ -52,7 +52,8 @@ def the_shipped_model_answers_a_simulated_persons_nodes_within_20_cm_of_the_suit
         mean = sum(apart.values()) / len(apart)
         assert mean < 14, apart
         assert max(apart.values()) < 25, apart
-        told("pose", take, "-o", folder / "wrong.bvh", "--heading", "shared", "--force")
+        said = told("pose", take, "-o", folder / "wrong.bvh", "--heading", "shared", "--force", code=1)
+        assert len(said["warnings"]) == 1 and said["warnings"][0].endswith("--heading mounting?"), said["warnings"]
         wrong_mean = sum(errors(folder / "wrong.bvh", take, folder).values()) / len(apart)
         assert wrong_mean > mean + 4, (wrong_mean, mean)
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The program that trains: its files as others read them, and its models in PyTorch.
 learn_check.py KINALIGN_LEARN RUN_DENOISER [CASE...]"""
+import hashlib
 import importlib.util
 import json
 import os
@@ -96,8 +97,10 @@ def a_run_leaves_a_model_a_log_and_no_checkpoint(folder):
     model, _ = read_model(folder / "m.safetensors")
     assert model["task"] == "denoise" and model["method"] == "refine", model
     data, = model["training"]["data"]
-    assert data == {"name": "waves", "licence": "CC0-1.0", "citation": "none", "stretches": 1, "frames": 70,
-                    "subjects": ["S01"]}, data
+    hashed = hashlib.sha256((folder / "w.npz").read_bytes()).hexdigest()
+    assert data == {"name": "waves", "licence": "CC0-1.0", "citation": "none", "windows_sha256": hashed, "stretches": 1,
+                    "frames": 70, "subjects": ["S01"]}, data
+    assert model["software"].startswith("kinalign "), model["software"]
     assert model["training"]["steps"] == 3 and model["training"]["seed"] == 1, model["training"]
     log = (folder / "run/log.csv").read_text().splitlines()
     assert log[0] == "step,loss,rate,gradient,judgement" and [line.split(",")[0] for line in log[1:]] == ["1", "2", "3"], log

@@ -3,7 +3,6 @@
 
 #include "apps/cli/console.h"
 #include "apps/kinalign/benchmark/program_method.h"
-#include "apps/kinalign/dataset/own_process.h"
 #include "apps/kinalign/learn/eval_methods.h"
 #include "apps/kinalign/learn/worker.h"
 #include "apps/kinalign/text/counts_text.h"
@@ -47,15 +46,6 @@ constexpr std::int64_t own_steps = 1200;  // of every method that cleans
 
 std::string model_file(const CleaningOptions& o, const std::string& method) {
   return o.folder + "/models/" + method + ".safetensors";
-}
-
-Result<void> cut_windows(const CleaningOptions& o, const std::string& file) {
-  const Ended ended = KA_TRY(run_own_process(
-      {"dataset",  "windows",  o.data,       "-o",       file,        "--force", "--quiet",
-       "--length", "32",       "--step",     "32",       "--valid",   "0",       "--rate",
-       "30",       "--stream", rough_stream, "--stream", true_stream, "--split", o.split}));
-  if (ended.code == 0) return {};
-  return Failure(Error{o.data, 0, "a data set that windows can be cut from", ended.complaint});
 }
 
 /// The job of kinalign-learn. Its identity is the same wherever the files lie.
@@ -253,7 +243,13 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
   KA_TRY(make_folders(o.folder + "/models"));
   CleaningData out;
   out.windows = o.folder + "/windows.npz";
-  KA_TRY(cut_windows(o, out.windows));
+  const WindowsWanted wanted{.data = o.data,
+                             .split = o.split,
+                             .where = "",
+                             .input = std::string(rough_stream),
+                             .truth = std::string(true_stream),
+                             .valid = "0"};
+  KA_TRY(cut_windows(wanted, Learns::denoise, out.windows));
   const std::string bytes =
       KA_TRY(read_whole(call.surroundings.files, out.windows, most_bench_windows));
   Sha256 hash;

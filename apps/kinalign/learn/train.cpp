@@ -7,12 +7,19 @@
 
 #include "kinalign/core/hash.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 namespace kinalign {
 
@@ -55,7 +62,8 @@ Usage describe_train(Train& o) {
        {},
        "FILE"},
       {"where",
-       "of the data set: a condition as dataset query has it",
+       "of the data set: a condition as dataset query has it (default: no take whose verdict is "
+       "bad)",
        &o.where,
        0.0,
        0.0,
@@ -248,6 +256,35 @@ Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
   return last;
 }
 
+/// Keeps other trainings out of the folder while it lives. The system frees it when this program
+/// ends, however it does.
+class FolderLock {
+ public:
+  static Result<FolderLock> take(const std::string& folder) {
+    std::string path = folder + "/lock";
+    const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
+    FolderLock out(file);
+    if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) {
+      out.path_ = std::move(path);
+      return out;
+    }
+    return Failure(Error{folder, 0, "a folder that no other training uses now",
+                         file < 0 ? std::strerror(errno) : "one that does"});
+  }
+  FolderLock(FolderLock&& other) noexcept
+      : file_(std::exchange(other.file_, -1)), path_(std::exchange(other.path_, "")) {}
+  FolderLock& operator=(FolderLock&&) = delete;
+  ~FolderLock() {
+    if (!path_.empty()) ::unlink(path_.c_str());
+    if (file_ >= 0) ::close(file_);
+  }
+
+ private:
+  explicit FolderLock(int file) : file_(file) {}
+  int file_;
+  std::string path_;  // while it is held
+};
+
 Result<int> run_train(Train& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& out = call.common.out;
@@ -258,6 +295,12 @@ Result<int> run_train(Train& o, Call& call) {
   const Places places = KA_TRY(places_of(o, call));
   const std::string folder = run_folder(out);
   KA_TRY(make_folders(folder));
+  std::optional<FolderLock> lock;  // processes of one training share the folder: the first takes it
+  if (places.is_first()) lock.emplace(KA_TRY(FolderLock::take(folder)));
+  if (o.resume && !fs::exists(folder + "/checkpoint.safetensors", fault)) {
+    call.console.note("kinalign train: nothing to go on from in " + harmless(folder) +
+                      ": the training begins anew");
+  }
   const std::string windows = KA_TRY(windows_of(o, folder));
   const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
   const auto jobs = KA_TRY(write_jobs(

@@ -144,10 +144,13 @@ Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::st
       "--stream", wanted.truth};
   if (!wanted.input.empty()) words.insert(words.end(), {"--stream", wanted.input});
   if (!wanted.split.empty()) words.insert(words.end(), {"--split", wanted.split});
-  if (!wanted.where.empty()) words.insert(words.end(), {"--where", wanted.where});
+  words.insert(words.end(), {"--where", wanted.where.empty() ? "verdict <> 'bad'" : wanted.where});
   const Ended ended = KA_TRY(run_own_process(words));
   if (ended.code == 0) return {};
-  return Failure(Error{wanted.data, 0, "a data set that windows can be cut from", ended.complaint});
+  std::string why = ended.complaint;  // "kinalign dataset windows: ..."
+  if (const auto end = why.find(": "); end != std::string::npos) why = why.substr(end + 2);
+  while (!why.empty() && why.back() == '\n') why.pop_back();
+  return Failure(Error{wanted.data, 0, "a data set that windows can be cut from", why});
 }
 
 Result<std::string> trained_model(const TrainingWanted& wanted, Call& call) {

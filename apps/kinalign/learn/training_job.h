@@ -38,10 +38,11 @@ Result<void> check_task_flags(const TrainedMethod& method, const Sources& given)
 
 /// Windows to be cut of a data set.
 struct WindowsWanted {
-  std::string data, split, where;  // split, where: empty: all
-  std::string input, truth;        // streams; input may be empty
-  double rate_hz = 30.0;           // of methods that clean; others have their own
-  std::string valid = "0.2";       // least share of valid cells
+  std::string data, split;    // split: empty: all is trained on
+  std::string where;          // empty: takes whose verdict is not bad
+  std::string input, truth;   // streams; input may be empty
+  double rate_hz = 30.0;      // of methods that clean; others have their own
+  std::string valid = "0.2";  // least share of valid cells
 };
 /// Writes the windows that methods of the task learn from. Fails where there are none.
 Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::string& file);

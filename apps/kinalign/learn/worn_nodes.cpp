@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double longest_lost_s = 2.0;  // a node that is lost longer is told
-constexpr double most_left_m_s2 = 2.0;  // of a node that rests
+constexpr double most_left_m_s2 = 3.0;  // of a node that rests
 constexpr double longest_frozen_s = 1.0;
 /// Beyond it a node is surely not worn as docs/pose.md says.
 constexpr double sure_tilt_deg = 60.0;
@@ -167,10 +167,12 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
                                      const std::string& headings) {
   std::string names, tilts;
   std::size_t as_told = 0, off = 0;
+  bool arms_alone = true;  // which hang, as far as anybody can tell
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const auto& worn = calibration.nodes[n];
     if (worn && worn->tilt_deg <= most_tilt_deg) ++as_told;
     if (!worn || worn->tilt_deg <= sure_tilt_deg) continue;
+    if (!worn_place(layout.nodes[n])->on_arm) arms_alone = false;
     names += (off == 0 ? "" : " and ") + layout.nodes[n];
     tilts += fmt::format("{}{:.0f}", off == 0 ? "" : " and ", worn->tilt_deg);
     ++off;
@@ -181,7 +183,7 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
                   " m/s2 are left in the T-pose beside gravity: accelerations in another unit, "
                   "gravity in them or not, or another order of the quaternion's numbers");
   }
-  if (headings == "auto" && as_told >= 2 && off >= 2) {
+  if (headings == "auto" && as_told >= 2 && off >= 2 && !arms_alone) {
     out.push_back(names + " are worn " + tilts +
                   " deg off what docs/pose.md says, the others as it says: are they in each "
                   "other's place?");
