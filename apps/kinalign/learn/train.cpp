@@ -274,6 +274,8 @@ class FolderLock {
   FolderLock(FolderLock&& other) noexcept
       : file_(std::exchange(other.file_, -1)), path_(std::exchange(other.path_, "")) {}
   FolderLock& operator=(FolderLock&&) = delete;
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock() {
     if (!path_.empty()) ::unlink(path_.c_str());
     if (file_ >= 0) ::close(file_);
@@ -285,6 +287,20 @@ class FolderLock {
   std::string path_;  // while it is held
 };
 
+/// The run's folder, locked by the first of the processes, which share it.
+Result<std::optional<FolderLock>> open_folder(const Train& o, const std::string& folder,
+                                              const Places& places, Call& call) {
+  KA_TRY(make_folders(folder));
+  std::optional<FolderLock> out;
+  if (places.is_first()) out.emplace(KA_TRY(FolderLock::take(folder)));
+  std::error_code fault;
+  if (o.resume && !fs::exists(folder + "/checkpoint.safetensors", fault)) {
+    call.console.note("kinalign train: nothing to go on from in " + harmless(folder) +
+                      ": the training begins anew");
+  }
+  return out;
+}
+
 Result<int> run_train(Train& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& out = call.common.out;
@@ -294,13 +310,7 @@ Result<int> run_train(Train& o, Call& call) {
   }
   const Places places = KA_TRY(places_of(o, call));
   const std::string folder = run_folder(out);
-  KA_TRY(make_folders(folder));
-  std::optional<FolderLock> lock;  // processes of one training share the folder: the first takes it
-  if (places.is_first()) lock.emplace(KA_TRY(FolderLock::take(folder)));
-  if (o.resume && !fs::exists(folder + "/checkpoint.safetensors", fault)) {
-    call.console.note("kinalign train: nothing to go on from in " + harmless(folder) +
-                      ": the training begins anew");
-  }
+  const auto lock = KA_TRY(open_folder(o, folder, places, call));
   const std::string windows = KA_TRY(windows_of(o, folder));
   const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
   const auto jobs = KA_TRY(write_jobs(

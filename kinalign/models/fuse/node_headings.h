@@ -91,8 +91,8 @@ using NodeDirections = std::vector<std::optional<SeenDirection>>;
 /// As the Kinect's joints lie.
 NodeDirections directions_of_joints(const HeadingFilter& filter, const JointFrames& kinect);
 /// Half as the joints lie, half as a pose has them, where the Kinect sees the bone: their errors
-/// differ, and each alone is worse (docs/models_nodes.md). `rotations` [T,B] against the root, `root`
-/// [T] in the world.
+/// differ, and each alone is worse (docs/models_nodes.md). `rotations` [T,B] against the root,
+/// `root` [T] in the world.
 NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames& kinect,
                                   std::span<const Turn> rotations,
                                   std::span<const Eigen::Quaternionf> root);
