@@ -125,9 +125,10 @@ struct LearntFrom {
   }
 };
 
-/// `before`: what the model that it went on from says of its own training; "" where there is none.
-std::string training_json(const TrainingJob& job, const WindowsFacts& facts, const LearntFrom& from,
-                          const std::string& before) {
+/// States by what and on what a model was trained. `before`: what the model that it went on from
+/// says of its own training; "" where there is none.
+void state_training(const TrainingJob& job, const WindowsFacts& facts, const LearntFrom& from,
+                    const std::string& before, ModelFacts& model) {
   Json out{{"data",
             {{{"name", facts.dataset},
               {"licence", facts.licence},
@@ -142,7 +143,8 @@ std::string training_json(const TrainingJob& job, const WindowsFacts& facts, con
            {"identity", job.identity}};
   if (job.hand_weight > 0.0) out["hand_weight"] = job.hand_weight;
   if (!job.from.empty()) out["from"] = Json::parse(before, nullptr, false);
-  return out.dump();
+  model.software = "kinalign " KINALIGN_VERSION;
+  model.training = out.dump();
 }
 
 /// The model to go on from, of this method; nothing where the job names none.
@@ -218,9 +220,7 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
                                       hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const Pair& pair : divided.learnt) learnt.add(pair.subject, pair.input.frames());
-  fit.model.facts.software = "kinalign " KINALIGN_VERSION;
-  fit.model.facts.training =
-      training_json(job, windows.facts, learnt, from ? from->facts.training : "");
+  state_training(job, windows.facts, learnt, from ? from->facts.training : "", fit.model.facts);
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
 }
 
@@ -236,9 +236,7 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
       fit_pose(method, data, fit_options(job), std::move(state), hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const PoseSequence& one : data.learnt) learnt.add(one.subject, one.frames());
-  fit.model.facts.software = "kinalign " KINALIGN_VERSION;
-  fit.model.facts.training =
-      training_json(job, windows.facts, learnt, from ? from->facts.training : "");
+  state_training(job, windows.facts, learnt, from ? from->facts.training : "", fit.model.facts);
   if (hooks.share.is_first()) {
     fit.model.facts.metrics = KA_TRY(pose_metrics_json(fit.model, data));
   }
@@ -258,9 +256,7 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
       fit_fuse(method, data, fit_options(job), std::move(state), hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const PoseSequence& one : data.pose.learnt) learnt.add(one.subject, one.frames());
-  fit.model.facts.software = "kinalign " KINALIGN_VERSION;
-  fit.model.facts.training =
-      training_json(job, windows.facts, learnt, from ? from->facts.training : "");
+  state_training(job, windows.facts, learnt, from ? from->facts.training : "", fit.model.facts);
   if (hooks.share.is_first()) {
     fit.model.facts.metrics = KA_TRY(fuse_metrics_json(fit.model, data));
   }

@@ -212,7 +212,7 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
   return page;
 }
 
-/// As a shell takes it.
+/// The word as a shell takes it.
 std::string shell_word(const std::string& word) {
   const bool is_plain = std::all_of(word.begin(), word.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -224,7 +224,7 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
-/// That makes the page again.
+/// The command that makes the page again.
 std::string command_of(const BenchmarkRun& o, const CleaningOptions& cleaning) {
   std::vector<std::string> words{cleaning.data};
   words.insert(words.end(), cleaning.methods.begin(), cleaning.methods.end());

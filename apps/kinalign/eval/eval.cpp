@@ -304,7 +304,7 @@ void put_mean(const std::vector<double>& values, bool has_interval, std::vector<
   }
 }
 
-/// Of these columns.
+/// The means of all rows in these columns.
 Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows,
                std::span<const MarkColumn> columns) {
   const std::size_t count = count_of_values(rows);
@@ -512,9 +512,8 @@ Verb eval_verb() {
            "rows have the same smoothing and constant bones for every method. \"both\", "
            "\"kinect\" and \"nodes\" say what a method that fuses was given; \"filter\" is fusion "
            "without learning. The folder gets table, people (each person's values) and tests "
-           "(paired ones), each as .md, .tex, .csv and .json; of methods that state how sure they "
-           "are, "
-           "also radii.",
+           "(paired ones), each as .md, .tex, .csv and .json; of methods that clean a Kinect also "
+           "joints (each joint's error) and, where they state how sure they are, radii.",
        .examples = {{"kinalign eval raw offset ridge --data walks -o results",
                      "without training: a table in seconds"},
                     {"kinalign eval refine bra --data walks -o results --folds people --seeds 3",

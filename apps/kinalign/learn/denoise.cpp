@@ -292,9 +292,6 @@ void print(const Json& about, const std::string& out, Call& call) {
         "model's\n",
         about.at("radius_90_cm").get<double>());
   }
-  for (const auto& warning : about.at("warnings")) {
-    text += "warning  " + harmless(warning.get<std::string>()) + "\n";
-  }
   if (about.contains("projected")) {
     const auto said = [&](const char* what, std::size_t i) {
       return about.at("projected").at(what).at(i).get<double>();
@@ -304,8 +301,7 @@ void print(const Json& about, const std::string& out, Call& call) {
         "before {:.1f}\n",
         said("feet_cm", 1), said("feet_cm", 0), said("bone_cm", 1), said("bone_cm", 0));
   }
-  call.console.print(text);
-  call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
+  print_answer(std::move(text), about, call);
 }
 
 Result<SeenJoints> seen_joints_of_file(const DenoiseLayout& layout, const Denoise& o, Call& call) {

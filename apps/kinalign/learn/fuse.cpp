@@ -78,10 +78,9 @@ void tell_headings(const std::vector<std::string>& names, const std::vector<Head
     const HeadingState& last = states[states.size() - names.size() + n];
     const double degrees = 180.0 / std::numbers::pi;
     const double spread = degrees * static_cast<double>(last.spread);
-    found[names[n]] = {{"turned_deg", degrees * static_cast<double>(last.yaw)},
-                       {"spread_deg", spread}};
-    const bool is_there = about.at("nodes").at(names[n]).at("valid").get<double>() > 0.0;
     const double turned = degrees * static_cast<double>(last.yaw);
+    found[names[n]] = {{"turned_deg", turned}, {"spread_deg", spread}};
+    const bool is_there = about.at("nodes").at(names[n]).at("valid").get<double>() > 0.0;
     if (is_there && std::abs(turned) > most_turned_deg && spread <= most_unsure_deg) {
       about["warnings"].push_back(fmt::format(
           "{}: the Kinect turned it by {:.0f} deg: is it in another's place, or worn in "

@@ -26,7 +26,7 @@ Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
                                    const std::string& stream);
 Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call);
 
-/// What is to be said of a Kinect's frames before a model sees them. `left_out`: NamedPoints'.
+/// Warnings of a Kinect's frames, before a model sees them. `left_out`: NamedPoints'.
 std::vector<std::string> warnings_of(const EvenFrames& frames, std::size_t left_out);
 
 }  // namespace kinalign

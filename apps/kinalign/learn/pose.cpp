@@ -52,7 +52,7 @@ Usage describe_pose(PoseWords& o) {
   return usage;
 }
 
-/// Whose bones the answer has.
+/// The member "body": the bones are the model's, or those of --body.
 Json body_of_answer(const PoseModel& model, const PoseWords& o) {
   return about_body(model.body.skeleton, o.body.empty() ? "the model" : "--body");
 }
@@ -70,7 +70,8 @@ bool has_head(const NamedNodes& nodes) {
   return head && nodes.tracks[*head].stamps.size() > 1;
 }
 
-/// Of the shipped ones, the model that has a node on the head where the stream has one.
+/// The model that was asked for; else the shipped one, with a node on the head where the stream has
+/// one.
 Result<std::string> model_for(const NamedNodes& nodes, const PoseWords& o) {
   if (!o.model.empty()) return o.model;
   return shipped_model(has_head(nodes) ? "pose_head" : "pose");
