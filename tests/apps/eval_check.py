@@ -138,6 +138,7 @@ def a_finished_model_on_a_split_has_the_error_that_follows_from_the_BVH(folder):
     constant_model(next(results.glob("models/*/model.safetensors")), model)
     said = compared("wouda", "--model", model, "--data", data, "--split", data / "people.json", "-o", results)
     assert [row["method"] for row in said["rows"]] == ["wouda", str(model)], said["rows"]
+    assert "was trained on" not in (results / "table.md").read_text()
     row = said["rows"][1]
     person = int(tested[4:6])
     assert [one["tested"] for one in said["people"]] == [f"{person:02}"] * 2, said["people"]
@@ -148,6 +149,17 @@ def a_finished_model_on_a_split_has_the_error_that_follows_from_the_BVH(folder):
                              angle(18, 0 * swing)]).mean()
     assert abs(row["sip_deg"] - sip) < 1e-3 and abs(row["lost_sip_deg"] - sip) < 1e-3, (row, sip)
     assert row["jitter"] < 1e-3, row
+
+
+@case
+def a_model_that_is_tested_on_people_of_its_training_is_named_in_the_caption(folder):
+    data, results = people(folder), folder / "results"
+    model = folder / "all.safetensors"
+    words = ("train", "wouda", "--data", data, "-o", model, "--jobs", "1")
+    assert kinalign(*words, memory=1 << 36, seconds=400).returncode == 0
+    compared("--model", model, "--data", data, "-o", results)
+    caption = (results / "table.md").read_text()
+    assert "all.safetensors was trained on people that it is tested on: 01, 02, 03" in caption, caption
 
 
 @case

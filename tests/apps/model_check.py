@@ -77,6 +77,9 @@ def a_kinect_that_is_upside_down_jumps_or_sends_nonsense_is_told(folder):
     down = of_kinect(kinect, folder / "down.csv", moved(2, lambda i, y: -y))
     first = refused("denoise", down, "--model", shipped, "-o", folder / "o.bvh", naming=down)
     assert "expected y up: a head above the hips, found one below them in" in first, first
+    mirrored = of_kinect(kinect, folder / "mirrored.csv", moved(1, lambda i, x: -x))
+    said = told("denoise", mirrored, "--model", shipped, "-o", folder / "mirrored.bvh", code=1)
+    assert any("if it was mirrored, use a layout with" in one for one in said["warnings"]), said["warnings"]
     jump = of_kinect(kinect, folder / "jump.csv", moved(1, lambda i, x: x + 1.8 * (i > 60)))
     said = told("denoise", jump, "--model", shipped, "-o", folder / "jump.bvh", code=1)
     assert len(said["warnings"]) == 1 and said["warnings"][0].startswith("the body jumps at 2.0 s"), said["warnings"]
@@ -205,6 +208,19 @@ def the_same_seed_trains_the_same_model_and_another_one_another(folder):
         trained(data, folder / f"{name}.safetensors", "--seed", seed)
     a, b, c = ((folder / f"{name}.safetensors").read_bytes() for name in "abc")
     assert a == b != c
+
+
+@case
+def a_prepared_job_is_done_by_kinalign_learn_alone_with_the_same_result(folder):
+    needs_learn()
+    data = data_sets.small_set(folder, takes=1)
+    data_sets.done("build", data)
+    trained(data, folder / "here.safetensors")
+    out = folder / "there.safetensors"
+    said = trained(data, out, "--prepare")
+    assert not out.exists() and said["jobs"] == [str(folder / "there.training/job.json")], said
+    subprocess.run([BUILD / "apps/kinalign-learn/kinalign-learn", *said["jobs"]], check=True, capture_output=True)
+    assert out.read_bytes() == (folder / "here.safetensors").read_bytes()
 
 
 @case

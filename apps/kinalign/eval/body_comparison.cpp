@@ -128,7 +128,9 @@ std::vector<FoldTake> takes_of_windows(const Windows& windows) {
 Result<Comparison> body_comparison(const Eval& o, Learns task, const std::string& bytes,
                                    const std::string& file) {
   Comparison out;
-  out.takes = takes_of_windows(KA_TRY(read_windows(bytes, file)));
+  const Windows windows = KA_TRY(read_windows(bytes, file));
+  out.dataset = windows.facts.dataset;
+  out.takes = takes_of_windows(windows);
   if (task == Learns::pose) {
     out.columns = {{"sip_deg", "SIP, °"},
                    {"angle_deg", "angle, °"},

@@ -45,6 +45,7 @@ struct FoldMarks {
 
 /// How trials are marked, and what the table says of them.
 struct Comparison {
+  std::string dataset;  // its name, as the windows state it
   std::vector<FoldTake> takes;
   std::vector<MarkColumn> columns;
   std::vector<MarkColumn> joints{};  // a table of their own; empty: none

@@ -217,7 +217,7 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   std::vector<ProtocolMarks> marks;
   double skate = 0.0, contacts = 0.0;
   RadiusMarks radii;
-  Mean hands, lag, amplitude;
+  Mean hands, lag, amplitude, position, bone, smooth;
   std::array<Mean, shared_joint_count> joints{};
   for (const Marked* one : group) {
     const DenoiseMarks& m = one->marks[which];
@@ -233,6 +233,9 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
     add(m.hand_cm, hands);
     add(m.lag_ms, lag);
     add(m.amplitude, amplitude);
+    position.add(m.table_nine.position);
+    bone.add(m.table_nine.bone);
+    smooth.add(m.table_nine.smooth);
     for (std::size_t j = 0; j < joints.size(); ++j) add(m.joint_cm[j], joints[j]);
     const auto standing = static_cast<double>(m.feet.contacts);
     skate += 100.0 * m.feet.skate_m_s * standing;
@@ -255,6 +258,9 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   put("hand_cm", hands.value());
   put("lag_ms", lag.value());
   put("amplitude", amplitude.value());
+  put("table_9_position_cm2", position.value());
+  put("table_9_bone_cm", bone.value());
+  put("table_9_smooth_cm", smooth.value());
   for (std::size_t j = 0; j < joints.size(); ++j) put(joint_key(j), joints[j].value());
   if (contacts > 0.0) put("skate_cm_s", skate / contacts);
 }
@@ -291,6 +297,7 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
   const auto data = std::make_shared<BenchData>(
       BenchData{std::move(windows), input, o.truth, marked_in, std::move(own)});
   Comparison out;
+  out.dataset = data->windows.facts.dataset;
   out.takes = takes_of(data->own.pairs);
   out.columns = {{"mpjpe_cm", "position, cm", 2},
                  {"pa_mpjpe_cm", "fitted, cm", 2},
@@ -303,7 +310,10 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                  {"hand_cm", "wrists, cm", 2},
                  {"skate_cm_s", "standing feet, cm/s", 2},
                  {"lag_ms", "lag, ms", 1},
-                 {"amplitude", "amplitude, × truth", 3}};
+                 {"amplitude", "amplitude, × truth", 3},
+                 {"table_9_position_cm2", "E_p, cm²", 1},
+                 {"table_9_bone_cm", "E_b, cm", 2},
+                 {"table_9_smooth_cm", "E_s, cm", 3}};
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     out.joints.push_back({joint_key(j), std::string(shared_joints[j]), 1});
   }

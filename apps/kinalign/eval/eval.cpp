@@ -3,6 +3,7 @@
 #include "apps/kinalign/dataset/table_output.h"
 #include "apps/kinalign/eval/comparison.h"
 #include "apps/kinalign/learn/eval_methods.h"
+#include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <span>
 
@@ -187,6 +189,49 @@ struct EvalRun {
   std::vector<Fold> folds;
 };
 
+/// Adds the people of that data set whom a model learnt from, and those of the model that it went
+/// on from. `training`: as the models' files have it.
+void add_people_learnt(const Json& training, const std::string& dataset,
+                       std::set<std::string>& people) {
+  if (!training.is_object()) return;
+  for (const Json& data : training.value("data", Json::array())) {
+    if (!data.is_object() || data.value("name", "") != dataset) continue;
+    for (const Json& subject : data.value("subjects", Json::array())) {
+      if (subject.is_string()) people.insert(subject.get<std::string>());
+    }
+  }
+  if (training.contains("from")) add_people_learnt(training.at("from"), dataset, people);
+}
+
+/// Tested people whom finished models learnt from: their rows do not tell how well they do on
+/// others. Empty where there are none.
+Result<std::string> known_people(const Eval& o, const Comparison& comparison,
+                                 const std::vector<Fold>& folds, Call& call) {
+  std::set<std::string> tested;
+  for (const FoldTake& take : comparison.takes) {
+    for (const Fold& fold : folds) {
+      if (std::find(fold.tested.begin(), fold.tested.end(), take.name) == fold.tested.end())
+        continue;
+      tested.insert(take.subject);
+    }
+  }
+  std::string out;
+  for (const std::string& file : o.models) {
+    const std::string bytes = KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes));
+    const ModelHeader header =
+        KA_TRY(read_model_header(KA_TRY(read_safetensors(bytes, file)), file));
+    std::set<std::string> learnt, both;
+    add_people_learnt(header.value("training", Json()), comparison.dataset, learnt);
+    std::set_intersection(learnt.begin(), learnt.end(), tested.begin(), tested.end(),
+                          std::inserter(both, both.end()));
+    if (both.empty()) continue;
+    out += (out.empty() ? "" : "; ") +
+           fmt::format("{} was trained on {} that it is tested on: {}", file_name(file),
+                       both.size() == 1 ? "a person" : "people", fmt::join(both, ", "));
+  }
+  return out;
+}
+
 Result<EvalRun> open_run(const Eval& o, Call& call) {
   const Learns task = KA_TRY(task_of_all(o, call));
   KA_TRY(make_folders(call.common.out + "/cache"));
@@ -195,6 +240,11 @@ Result<EvalRun> open_run(const Eval& o, Call& call) {
       KA_TRY(task == Learns::denoise ? denoise_comparison(o, windows.bytes, windows.file)
                                      : body_comparison(o, task, windows.bytes, windows.file));
   auto folds = KA_TRY(folds_of(o.split.empty() ? o.folds : "split", comparison.takes));
+  const std::string known = KA_TRY(known_people(o, comparison, folds, call));
+  if (!known.empty()) {
+    call.console.note("kinalign eval: warning: " + harmless(known));
+    comparison.note += (comparison.note.empty() ? "" : "; ") + known;
+  }
   return EvalRun{o, task, windows.file, windows.hash, std::move(comparison), std::move(folds)};
 }
 
@@ -480,6 +530,7 @@ void add_new(const std::vector<MethodMarks>& more, std::vector<MethodMarks>& row
 }
 
 Result<int> run_eval(Eval& o, Call& call) {
+  for (std::string& model : o.models) model = KA_TRY(model_named(model, ""));
   const EvalRun run = KA_TRY(open_run(o, call));
   std::vector<MethodMarks> rows;
   for (const std::string& method : chosen_methods(o)) {
@@ -520,8 +571,7 @@ Verb eval_verb() {
                      "two networks, three trainings each for every person left out"},
                     {"kinalign eval inertial wouda --data cmu -o results --folds people",
                      "poses from nodes"},
-                    {"kinalign eval --model models/fuse.safetensors --data cmu --split "
-                     "cmu/split.json -o results",
+                    {"kinalign eval --model fuse --data cmu --split cmu/split.json -o results",
                      "a finished model, and the filter, on the part test"}},
        .common = {"out", "json", "jobs"},
        .out_is_folder = true},

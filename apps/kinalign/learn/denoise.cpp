@@ -48,7 +48,13 @@ Usage describe_denoise(Denoise& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in, 0}};
   usage.flags = {
-      {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
+      {"model",
+       "a model's file, or the name of a shipped one (default: the one that fits)",
+       &o.model,
+       0.0,
+       0.0,
+       {},
+       "FILE"},
       {"stream", "which stream (default: the only one of joints)", &o.stream, 0.0, 0.0, {}, "NAME"},
       {"project",
        "feet that stand do not slide, bones keep their lengths: steps in the hidden space of a "
@@ -191,7 +197,10 @@ Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> 
   auto frames = even_frames(layout.inputs, kinect_names(named.joints), named.frames,
                             {layout.rate_hz, longest_gap_s});
   if (frames) {
-    std::vector<std::string> warnings = warnings_of(*frames, named.left_out);
+    std::vector<std::string> warnings = named.warnings;
+    for (std::string& one : warnings_of(*frames, named.left_out)) {
+      warnings.push_back(std::move(one));
+    }
     return SeenJoints{named.stream, *std::move(frames), std::move(warnings)};
   }
   Error error = frames.error();
@@ -337,9 +346,9 @@ Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
 
 Result<int> run_denoise(Denoise& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  const std::string path = o.model.empty() ? KA_TRY(shipped_model("denoise")) : o.model;
-  const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
-  Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, path))));
+  o.model = KA_TRY(model_named(o.model, "denoise"));
+  const std::string bytes = KA_TRY(read_whole(files, o.model, most_model_bytes));
+  Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, o.model))));
   if (!o.live.live.empty()) return clean_live(denoiser, o, call);
   KA_TRY(keep_inputs(call.common.out, o.in));
   const DenoiseModel& model = denoiser.model();
@@ -348,7 +357,7 @@ Result<int> run_denoise(Denoise& o, Call& call) {
   Json of_projection = Json::object();
   cleaned.answer =
       o.project
-          ? KA_TRY(clean_with_constraints(model, path, cleaned.input.body, of_projection, call))
+          ? KA_TRY(clean_with_constraints(model, o.model, cleaned.input.body, of_projection, call))
           : denoiser.clean(cleaned.input.body);
   cleaned.about = about(model, cleaned, seen.stream, std::move(seen.warnings));
   cleaned.about.update(of_projection);

@@ -39,22 +39,27 @@ Usage describe_fuse(FuseWords& o) {
   Usage usage;
   usage.positionals = {
       {"IN", "a take, a recording or a manifest with a Kinect and nodes", &o.in, 0}};
-  usage.flags = {
-      {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
-      {"kinect",
-       "the stream of the Kinect (default: the only one of joints)",
-       &o.kinect,
-       0.0,
-       0.0,
-       {},
-       "NAME"},
-      {"nodes",
-       "the stream of the nodes (default: the only one of nodes)",
-       &o.nodes,
-       0.0,
-       0.0,
-       {},
-       "NAME"}};
+  usage.flags = {{"model",
+                  "a model's file, or the name of a shipped one (default: the one that fits)",
+                  &o.model,
+                  0.0,
+                  0.0,
+                  {},
+                  "FILE"},
+                 {"kinect",
+                  "the stream of the Kinect (default: the only one of joints)",
+                  &o.kinect,
+                  0.0,
+                  0.0,
+                  {},
+                  "NAME"},
+                 {"nodes",
+                  "the stream of the nodes (default: the only one of nodes)",
+                  &o.nodes,
+                  0.0,
+                  0.0,
+                  {},
+                  "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "as long as the Kinect sees them"));
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
@@ -180,9 +185,9 @@ Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
 
 Result<int> run_fuse(FuseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  const std::string path = o.model.empty() ? KA_TRY(shipped_model("fuse")) : o.model;
-  const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
-  Fuser fuser = KA_TRY(Fuser::make(KA_TRY(read_fuse_model(bytes, path))));
+  o.model = KA_TRY(model_named(o.model, "fuse"));
+  const std::string bytes = KA_TRY(read_whole(files, o.model, most_model_bytes));
+  Fuser fuser = KA_TRY(Fuser::make(KA_TRY(read_fuse_model(bytes, o.model))));
   if (!o.live.live.empty()) return fuse_live(fuser, o, call);
   const std::string& in = o.in.front();
   KA_TRY(keep_inputs(call.common.out, o.in));

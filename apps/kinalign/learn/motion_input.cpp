@@ -28,4 +28,14 @@ Result<Input> open_motion(const std::string& path, Call& call) {
   return out;
 }
 
+std::vector<std::string> warnings_of(const RecordedStream& stream) {
+  std::vector<std::string> out;
+  for (const Finding& one : all_findings(stream)) {
+    if (one.severity < Severity::warning) continue;
+    out.push_back(to_string(one.what) + ": " + one.meaning +
+                  (one.repair.empty() ? "" : "; " + one.repair));
+  }
+  return out;
+}
+
 }  // namespace kinalign

@@ -163,6 +163,7 @@ Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& str
         input.manifest ? options_of(*input.manifest, one->name) : StreamOptions{};
     add_tracks(nodes.node_names, nodes.content, worn_by(options, nodes.node_names, false), out);
     KA_TRY(read_nodes(*one, nodes, first, out));
+    for (std::string& warning : warnings_of(*one)) out.warnings.push_back(std::move(warning));
   }
   return out;
 }

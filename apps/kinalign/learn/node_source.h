@@ -17,6 +17,7 @@ struct NamedNodes {
   std::vector<std::string> names;         // [S]
   std::vector<NodeTrack> tracks;          // [S] in each node's own space
   std::vector<std::optional<Quat>> worn;  // [S] CalibrationOptions::worn, by a stated mounting
+  std::vector<std::string> warnings{};    // of the file's reader
 };
 
 /// `stream`: its name; empty: the only stream of nodes. Samples that are not valid, and stamps that

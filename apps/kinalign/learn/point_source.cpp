@@ -157,6 +157,7 @@ Result<NamedPoints> points_of_file(const std::string& path, const std::string& s
   } else {
     KA_TRY(read_clip(found->clock, std::get<ClipInput>(found->data), out));
   }
+  out.warnings = warnings_of(*found);
   return out;
 }
 

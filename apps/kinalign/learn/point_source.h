@@ -15,8 +15,9 @@ namespace kinalign {
 struct NamedPoints {
   std::string stream;
   std::vector<std::string> joints;
-  PointFrames frames;        // stamps rise
-  std::size_t left_out = 0;  // frames whose stamps repeat or step back
+  PointFrames frames;                   // stamps rise
+  std::size_t left_out = 0;             // frames whose stamps repeat or step back
+  std::vector<std::string> warnings{};  // of the file's reader
 };
 
 /// `stream`: its name; empty: the only stream of points. A skeleton's joints are taken as tracked

@@ -35,7 +35,13 @@ Usage describe_pose(PoseWords& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in, 0}};
   usage.flags = {
-      {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
+      {"model",
+       "a model's file, or the name of a shipped one (default: the one that fits)",
+       &o.model,
+       0.0,
+       0.0,
+       {},
+       "FILE"},
       {"stream", "which stream (default: the only one of nodes)", &o.stream, 0.0, 0.0, {}, "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "the mean of the training people"));
@@ -73,8 +79,7 @@ bool has_head(const NamedNodes& nodes) {
 /// The model that was asked for; else the shipped one, with a node on the head where the stream has
 /// one.
 Result<std::string> model_for(const NamedNodes& nodes, const PoseWords& o) {
-  if (!o.model.empty()) return o.model;
-  return shipped_model(has_head(nodes) ? "pose_head" : "pose");
+  return model_named(o.model, has_head(nodes) ? "pose_head" : "pose");
 }
 
 Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
@@ -90,8 +95,7 @@ Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
              {"method", model.facts.method},    {"model", path},
              {"body", body_of_answer(model, o)}};
   about.update(about_nodes(model.layout, posed, calibrated, names));
-  KA_TRY(
-      write_answer(solver.clip(calibrated, posed.even.start), model.layout.rate_hz, o.model, call));
+  KA_TRY(write_answer(solver.clip(calibrated, posed.even.start), model.layout.rate_hz, path, call));
   return about;
 }
 
@@ -118,7 +122,7 @@ std::string pose_text(const Json& about, const std::string& out) {
 
 /// The same of what record receives now. A file is written where one is wanted.
 Result<int> solve_live(const PoseWords& o, Call& call) {
-  const std::string path = o.model.empty() ? KA_TRY(shipped_model("pose")) : o.model;
+  const std::string path = KA_TRY(model_named(o.model, "pose"));
   PoseSolver solver = KA_TRY(solver_of(path, o, call));
   LiveJob job{o.live, o.stream, "", {}};
   job.worn = KA_TRY(live_options(o.worn));
@@ -127,7 +131,7 @@ Result<int> solve_live(const PoseWords& o, Call& call) {
   Json about = KA_TRY(run_live_pose(solver, job, clip, call));
   about["body"] = body_of_answer(solver.model(), o);
   if (!call.common.out.empty()) {
-    KA_TRY(write_answer(std::move(clip), solver.model().layout.rate_hz, o.model, call));
+    KA_TRY(write_answer(std::move(clip), solver.model().layout.rate_hz, path, call));
     call.console.wrote(call.common.out);
   }
   print_live(pose_text(about, call.common.out) + live_lines(about), about, call);

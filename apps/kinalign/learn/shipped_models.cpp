@@ -21,4 +21,12 @@ Result<std::string> shipped_model(const std::string& name) {
   return Failure(Error{"--model", 0, "a model's file, since none is installed", "none"});
 }
 
+Result<std::string> model_named(const std::string& given, const std::string& usual) {
+  if (given.empty()) return shipped_model(usual);
+  std::error_code fault;
+  const bool is_name = given.find_first_of("./") == std::string::npos;
+  if (!is_name || std::filesystem::exists(given, fault)) return given;
+  return shipped_model(given).value_or(given);
+}
+
 }  // namespace kinalign

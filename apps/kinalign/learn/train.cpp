@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/kinalign/dataset/share.h"
+#include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/learn/training_job.h"
 #include "apps/kinalign/learn/worker.h"
 #include "apps/kinalign/verbs.h"
@@ -34,7 +35,7 @@ struct Train {
   std::string from, input, truth = "mocap", nodes, device = "cpu";
   double rate_hz = 30.0, hand_weight = 0.0;
   std::int64_t steps = 0, seed = 1, patience = 0, processes = 1;
-  bool resume = false;
+  bool resume = false, prepare = false;
 };
 
 /// The choices of the command line are those methods.
@@ -74,7 +75,7 @@ Usage describe_train(Train& o) {
       nodes_field(o.nodes),
       {"rate", "frames a second that the model works at", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
       {"from",
-       "a model of the same method to go on from, such as one that comes with the program",
+       "a model of the same method to go on from: a file, or the name of a shipped one",
        &o.from,
        0.0,
        0.0,
@@ -90,7 +91,9 @@ Usage describe_train(Train& o) {
       {"device", "where it is trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
       {"processes", "of this machine that train together, with the result of one", &o.processes,
        1.0, 32.0},
-      {"resume", "go on with a run that was stopped", &o.resume}};
+      {"resume", "go on with a run that was stopped", &o.resume},
+      {"prepare", "write the job and its windows and train nothing: for another machine",
+       &o.prepare}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     KA_TRY(check_task_flags(method_of(o), given));
     if (!common.out.ends_with(".safetensors")) {
@@ -228,6 +231,16 @@ void print_trained(const Train& o, const Json& last, Call& call) {
   call.console.print_json(last.dump(1));
 }
 
+/// What the other machine needs, and what is done there.
+void print_prepared(const std::vector<std::string>& jobs, const std::string& windows, Call& call) {
+  std::string text = harmless(windows) + ": windows\n";
+  for (const std::string& job : jobs) text += harmless(job) + ": a job\n";
+  text += "Bring both to the other machine, with the same names, and say there:\n";
+  for (const std::string& job : jobs) text += "  kinalign-learn " + harmless(job) + "\n";
+  call.console.print(text);
+  call.console.print_json(Json{{"windows", windows}, {"jobs", jobs}}.dump(1));
+}
+
 /// The file of windows: the given one, or one that is cut of the data set into the run's folder.
 Result<std::string> windows_of(const Train& o, const std::string& folder) {
   if (!o.windows.empty()) return o.windows;
@@ -312,9 +325,14 @@ Result<int> run_train(Train& o, Call& call) {
   const std::string folder = run_folder(out);
   const auto lock = KA_TRY(open_folder(o, folder, places, call));
   const std::string windows = KA_TRY(windows_of(o, folder));
+  if (!o.from.empty()) o.from = KA_TRY(model_named(o.from, ""));
   const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
   const auto jobs = KA_TRY(write_jobs(
       job_of(o, windows, KA_TRY(hash_of(files, windows)), from_hash, call), places, call));
+  if (o.prepare) {
+    print_prepared(jobs, windows, call);
+    return 0;
+  }
   const Json last = KA_TRY(run_jobs(jobs, call));
   if (!places.is_first()) return 0;
   if (o.windows.empty()) fs::remove(windows, fault);
@@ -348,9 +366,10 @@ Verb train_verb() {
              "a network that answers five nodes with a pose"},
             {"kinalign train gated --data walks -o fuse.safetensors",
              "a network for a Kinect and nodes together"},
-            {"kinalign train refine --data own --from models/denoise.safetensors -o "
-             "own.safetensors",
-             "the model that comes with the program, fitted to one's own takes"}},
+            {"kinalign train refine --data own --from denoise -o own.safetensors",
+             "the model that comes with the program, fitted to one's own takes"},
+            {"kinalign train bra --data walks -o bra.safetensors --device cuda --prepare",
+             "a folder bra.training for a machine with a GPU, where kinalign-learn trains"}},
        .common = {"out", "force", "json", "jobs"}},
       describe_train, run_train);
 }

@@ -292,7 +292,10 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
     options.worn.back() = nodes.worn[*choice[n]];
     KA_TRY(complete(tracks[n]));
   }
-  out.warnings = sample_warnings(layout, tracks, !span);
+  out.warnings = std::move(nodes.warnings);
+  for (std::string& one : sample_warnings(layout, tracks, !span)) {
+    out.warnings.push_back(std::move(one));
+  }
   out.even = KA_TRY(even_nodes(tracks, layout.rate_hz, span));
   out.t_pose = KA_TRY(choose_t_pose(o.t_pose, out.even.worn, layout.rate_hz));
   options.t_pose = out.t_pose.frames;

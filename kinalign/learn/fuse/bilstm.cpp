@@ -31,6 +31,7 @@ FuseMethod bilstm_method(Devices devices) {
                  .architecture = bilstm_architecture,
                  .training = {},
                  .options = {.steps = 900, .rate = 2e-3, .rise = 0.1, .average = false}};
+  out.training.variety = no_variety;
   out.training.draws.devices = devices;
   if (devices == Devices::kinect) {
     out.name = "bilstm-kinect";

@@ -79,17 +79,4 @@ FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws
   return input;
 }
 
-JointFrames crop_of(const JointFrames& kinect, std::size_t begin, std::size_t count) {
-  JointFrames out{.joints = kinect.joints, .positions = {}, .seen = {}};
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t t = std::min(begin + i, kinect.frames() - 1);
-    const auto row = static_cast<std::ptrdiff_t>(t * kinect.joints);
-    const auto width = static_cast<std::ptrdiff_t>(kinect.joints);
-    out.positions.insert(out.positions.end(), kinect.positions.begin() + 3 * row,
-                         kinect.positions.begin() + 3 * (row + width));
-    out.seen.insert(out.seen.end(), kinect.seen.begin() + row, kinect.seen.begin() + row + width);
-  }
-  return out;
-}
-
 }  // namespace kinalign

@@ -47,7 +47,4 @@ void lose_nodes(NodeFrames& nodes);
 FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws& draws,
                       std::uint64_t seed, std::uint64_t number);
 
-/// Frames begin ... begin + count of joints; the last one is repeated where they end sooner.
-JointFrames crop_of(const JointFrames& kinect, std::size_t begin, std::size_t count);
-
 }  // namespace kinalign

@@ -276,11 +276,13 @@ std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLay
   const auto after = static_cast<std::size_t>(heading_seconds * layout.nodes.rate_hz);
   std::vector<HeadingMark> out;
   for (const std::string& node : layout.nodes.nodes) out.push_back({.node = node});
+  const Sides sides(data.pose.body, layout.nodes.nodes, layout.joints);
   const auto truths = sessions_of(data, no_node_errors());
   for (const auto& [name, session] : sessions_of(data, errors)) {
     if (session.input.frames() <= after) continue;
-    const FuseInput shown{crop_of(session.input.nodes, 0, after),
-                          crop_of(session.input.kinect, 0, after)};
+    const Crop first{.begin = 0, .count = after};
+    const FuseInput shown{crop_of(session.input.nodes, first, sides),
+                          crop_of(session.input.kinect, first, sides)};
     const auto found = headings(shown);
     // The states of the last frame, for all frames: what is known after that time.
     std::vector<HeadingState> last;

@@ -37,7 +37,8 @@ FuseTask::FuseTask(FuseLayout layout, FuseTraining training, const FuseData& dat
       training_(training),
       data_(data),
       device_(device),
-      crops_(data.pose.learnt),
+      sides_(data.pose.body, data.pose.nodes, layout_.joints),
+      crops_(data.pose.learnt, sides_),
       body_(data.pose.body, device) {
   find_scales();
   make_judged();
@@ -59,22 +60,19 @@ void FuseTask::make_judged() {
     const FuseInput input =
         drawn_input({one.nodes, data_.judged[i].front()}, layout_, draws, fuse_judging_seed, i);
     Rows rows;
-    add(one, input, 0, rows);
+    add(one, input, rows);
     judged_.push_back(tensors_of(std::move(rows), 1, one.frames()));
   }
 }
 
-void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, std::size_t begin,
-                   Rows& rows) const {
+void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, Rows& rows) const {
   const FuseFeatures features = fuse_features(layout_, input);
   rows.input.insert(rows.input.end(), features.input.begin(), features.input.end());
   const auto roots = true_roots(sequence);
   const std::size_t bones = layout_.nodes.bones.size(), base = 0;  // SpineBase
-  const std::size_t last = sequence.frames() - 1;
-  const Eigen::Quaternionf turn = truth_turn(input, roots[std::min(begin, last)]);
-  for (std::size_t i = 0; i < input.frames(); ++i) {
-    const std::size_t t = std::min(begin + i, last);
-    const FuseSpace& space = features.space[i];
+  const Eigen::Quaternionf turn = truth_turn(input, roots.front());
+  for (std::size_t t = 0; t < input.frames(); ++t) {
+    const FuseSpace& space = features.space[t];
     const Eigen::Matrix3f from_world = space.turn.toRotationMatrix().transpose();
     const Turn root = from_world * (turn * roots[t]).toRotationMatrix();
     for (std::size_t b = 0; b < bones; ++b) {
@@ -84,7 +82,7 @@ void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, std::si
     const Eigen::Vector3f way =
         from_world * (sequence.places[t].cast<float>() - space.place) / fuse_place_unit_m;
     rows.way.insert(rows.way.end(), {way.x(), way.y(), way.z()});
-    rows.placed.push_back(input.kinect.seen[i * input.kinect.joints + base] == 0 ? 0.0F : 1.0F);
+    rows.placed.push_back(input.kinect.seen[t * input.kinect.joints + base] == 0 ? 0.0F : 1.0F);
   }
   for (const Vec3& offset : sequence.rest_offsets) {
     for (const double value : offset) rows.offsets.push_back(static_cast<float>(value));
@@ -112,15 +110,14 @@ FuseTask::Batch FuseTask::draw(std::uint64_t seed, std::uint64_t step,
   for (std::size_t k = first; k < first + batch; ++k) {
     const std::uint64_t number = step * training_.batch + k;
     const RandomStream places(seed, number);
-    const auto [at, begin] = crops_.draw(places, crop);
-    const auto& seen = data_.learnt[at];
+    const auto drawn = crops_.draw(places, crop, training_.variety);
+    const auto& seen = data_.learnt[drawn.sequence];
     const auto which =
         std::min(static_cast<std::size_t>(places.uniform(0, 2) * static_cast<double>(seen.size())),
                  seen.size() - 1);
-    const FuseInput clean{crop_of(data_.pose.learnt[at].nodes, begin, crop),
-                          crop_of(seen[which], begin, crop)};
-    add(data_.pose.learnt[at],
-        drawn_input(clean, layout_, training_.draws, mix64(seed + 1), number), begin, rows);
+    const PoseSequence one = crop_of(data_.pose.learnt[drawn.sequence], drawn.crop, sides_);
+    const FuseInput clean{one.nodes, crop_of(seen[which], drawn.crop, sides_)};
+    add(one, drawn_input(clean, layout_, training_.draws, mix64(seed + 1), number), rows);
   }
   return tensors_of(std::move(rows), batch, crop);
 }

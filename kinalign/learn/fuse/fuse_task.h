@@ -17,6 +17,7 @@ struct FuseTraining {
   PoseLoss loss{};
   double place = 1.0;  // weight of the root's distance to its place, dm; where a Kinect sees it
   FuseDraws draws{};
+  Variety variety{};
   std::size_t batch = 32, crop = 64;
 };
 
@@ -46,18 +47,13 @@ class FuseTask : public TrainingTask {
   const std::vector<float>& input_scale() const { return input_scale_; }
 
  private:
-  struct Example {
-    FuseInput input;
-    std::size_t sequence = 0, begin = 0;
-  };
   /// Arrays of a batch while it is filled.
   struct Rows {
     std::vector<float> input, offsets, way, placed;
     std::vector<Turn> rotations;
   };
   BatchPart all() const { return BatchShare().part(static_cast<std::int64_t>(training_.batch)); }
-  void add(const PoseSequence& sequence, const FuseInput& input, std::size_t begin,
-           Rows& rows) const;
+  void add(const PoseSequence& sequence, const FuseInput& input, Rows& rows) const;
   Batch tensors_of(Rows rows, std::size_t batch, std::size_t frames) const;
   void find_scales();
   void make_judged();
@@ -66,6 +62,7 @@ class FuseTask : public TrainingTask {
   FuseTraining training_;
   const FuseData& data_;
   torch::Device device_;
+  Sides sides_;
   CropDraws crops_;
   BodyTensors body_;
   std::vector<float> input_mean_, input_scale_;

@@ -49,6 +49,7 @@ PoseMethod dip_method() {
           .architecture = dip_architecture,
           .training = {.loss = {.matrices = 1.0, .position = 0.0, .acceleration = 0.0},
                        .errors = no_node_errors(),
+                       .variety = no_variety,
                        .standardised = true},
           .options = {.steps = 900, .rate = 2e-3, .rise = 0.1, .average = false}};
 }

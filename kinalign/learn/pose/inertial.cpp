@@ -50,7 +50,7 @@ PoseMethod inertial_method() {
           .source = "kinalign",
           .architecture = inertial_architecture,
           .training = {},
-          .options = {.steps = 1500, .rate = 2e-3, .rise = 0.1, .average = false}};
+          .options = {.steps = 4500, .rate = 2e-3, .rise = 0.1, .average = false}};
 }
 
 PoseMethod inertial_online_method() {

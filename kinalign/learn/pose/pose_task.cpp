@@ -20,24 +20,8 @@ constexpr float least_scale = 1e-3F;
 
 }  // namespace
 
-NodeFrames crop_of(const NodeFrames& nodes, std::size_t begin, std::size_t count) {
-  NodeFrames out;
-  out.nodes = nodes.nodes;
-  const auto append = [&](const auto& from, std::size_t width, std::size_t t, auto& to) {
-    const auto at = from.begin() + static_cast<std::ptrdiff_t>(t * nodes.nodes * width);
-    to.insert(to.end(), at, at + static_cast<std::ptrdiff_t>(nodes.nodes * width));
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t t = std::min(begin + i, nodes.frames() - 1);
-    append(nodes.orientation, 4, t, out.orientation);
-    append(nodes.acceleration, 3, t, out.acceleration);
-    append(nodes.angular_velocity, 3, t, out.angular_velocity);
-    append(nodes.valid, 1, t, out.valid);
-  }
-  return out;
-}
-
-CropDraws::CropDraws(const std::vector<PoseSequence>& sequences) {
+CropDraws::CropDraws(const std::vector<PoseSequence>& sequences, const Sides& sides)
+    : can_mirror_(sides.can_mirror) {
   double sum = 0.0;
   for (const PoseSequence& one : sequences) {
     sum += std::pow(static_cast<double>(one.frames()), length_power);
@@ -46,13 +30,18 @@ CropDraws::CropDraws(const std::vector<PoseSequence>& sequences) {
   }
 }
 
-CropDraws::Place CropDraws::draw(const RandomStream& random, std::size_t crop) const {
+CropDraws::Drawn CropDraws::draw(const RandomStream& random, std::size_t frames,
+                                 const Variety& variety) const {
   const double weight = random.uniform(0, 0) * reached_.back();
   const auto at = static_cast<std::size_t>(
       std::upper_bound(reached_.begin(), reached_.end() - 1, weight) - reached_.begin());
-  const std::size_t places = frames_[at] > crop ? frames_[at] - crop + 1 : 1;
+  Crop crop{.begin = 0, .count = frames, .variation = draw_variation(variety, random)};
+  if (!can_mirror_) crop.variation.mirrored = false;
+  const std::size_t covered = crop.source_frames();
+  const std::size_t places = frames_[at] > covered ? frames_[at] - covered + 1 : 1;
   const auto begin = static_cast<std::size_t>(random.uniform(0, 1) * static_cast<double>(places));
-  return {at, std::min(begin, places - 1)};
+  crop.begin = std::min(begin, places - 1);
+  return {at, crop};
 }
 
 PoseTask::PoseTask(PoseLayout layout, PoseTraining training, const PoseData& data,
@@ -61,7 +50,8 @@ PoseTask::PoseTask(PoseLayout layout, PoseTraining training, const PoseData& dat
       training_(training),
       data_(data),
       device_(device),
-      crops_(data.learnt),
+      sides_(data.body, data.nodes, {}),
+      crops_(data.learnt, sides_),
       body_(data.body, device) {
   find_scales();
   make_judged();
@@ -113,16 +103,12 @@ PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step,
   for (std::size_t k = first; k < first + batch; ++k) {
     const std::uint64_t number = step * training_.batch + k;
     const RandomStream places(seed, 2 * number), errors(seed, 2 * number + 1);
-    const auto [at, begin] = crops_.draw(places, crop);
-    const PoseSequence& one = data_.learnt[at];
-    const NodeFrames nodes = with_errors(crop_of(one.nodes, begin, crop), training_.errors, errors);
+    const auto drawn = crops_.draw(places, crop, training_.variety);
+    const PoseSequence one = crop_of(data_.learnt[drawn.sequence], drawn.crop, sides_);
+    const NodeFrames nodes = with_errors(one.nodes, training_.errors, errors);
     const auto features = pose_features(layout_, nodes).input;
     input.insert(input.end(), features.begin(), features.end());
-    for (std::size_t i = 0; i < crop; ++i) {
-      const std::size_t t = std::min(begin + i, one.frames() - 1);
-      const auto frame = one.rotations.begin() + static_cast<std::ptrdiff_t>(t * bones);
-      rotations.insert(rotations.end(), frame, frame + static_cast<std::ptrdiff_t>(bones));
-    }
+    rotations.insert(rotations.end(), one.rotations.begin(), one.rotations.end());
     for (const Vec3& offset : one.rest_offsets) {
       for (const double value : offset) offsets.push_back(static_cast<float>(value));
     }

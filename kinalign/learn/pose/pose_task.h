@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/learn/pose/body_tensors.h"
+#include "kinalign/learn/pose/crops.h"
 #include "kinalign/learn/pose/node_errors.h"
 #include "kinalign/learn/pose/pose_data.h"
 #include "kinalign/learn/trainer.h"
@@ -24,25 +25,24 @@ struct PoseLoss {
 struct PoseTraining {
   PoseLoss loss{};
   NodeErrors errors{};        // drawn anew for each crop
+  Variety variety{};          // drawn anew for each crop
   bool standardised = false;  // channels with mean 0 and deviation 1, as DIP has them
   std::size_t batch = 32, crop = 64;
 };
 
-/// Frames begin ... begin + count; the last frame is repeated where the nodes end sooner.
-NodeFrames crop_of(const NodeFrames& nodes, std::size_t begin, std::size_t count);
-
-/// Draws sequences of the parts that are learnt from, longer ones more often, and where a crop of
-/// them begins.
+/// Draws sequences of the parts that are learnt from, longer ones more often, and crops of them.
 class CropDraws {
  public:
-  explicit CropDraws(const std::vector<PoseSequence>& sequences);
+  CropDraws(const std::vector<PoseSequence>& sequences, const Sides& sides);
 
-  struct Place {
-    std::size_t sequence = 0, begin = 0;
+  struct Drawn {
+    std::size_t sequence = 0;
+    Crop crop;
   };
-  Place draw(const RandomStream& random, std::size_t crop) const;
+  Drawn draw(const RandomStream& random, std::size_t frames, const Variety& variety) const;
 
  private:
+  bool can_mirror_;
   std::vector<std::size_t> frames_;
   std::vector<double> reached_;  // sums of the weights with which they are drawn
 };
@@ -84,6 +84,7 @@ class PoseTask : public TrainingTask {
   PoseTraining training_;
   const PoseData& data_;
   torch::Device device_;
+  Sides sides_;
   CropDraws crops_;
   std::vector<float> input_mean_, input_scale_;
   BodyTensors body_;

@@ -67,6 +67,7 @@ TEST_CASE("the truth of a batch is the pose in the space of each frame") {
   FuseTraining training;
   training.batch = 1;
   training.crop = 64;
+  training.variety = no_variety;
   training.draws = {.errors = no_node_errors(),
                     .unknown_heading = 0.0,
                     .without_kinect = 0.0,
@@ -102,6 +103,7 @@ TEST_CASE("nodes alone are judged by the way their root looks") {
   FuseTraining training;
   training.batch = 1;
   training.crop = 64;
+  training.variety = no_variety;
   training.draws.devices = Devices::nodes;
   training.draws.errors = no_node_errors();
   training.draws.errors.yaw_deg = 90.0;
@@ -119,6 +121,7 @@ TEST_CASE("one window of both devices is learnt by heart") {
   for (const FuseMethod& method : {gated_method(), bilstm_method(Devices::both)}) {
     CAPTURE(method.name);
     FuseTraining training = small(method).training;
+    training.variety = no_variety;
     training.draws = {.errors = no_node_errors(),
                       .unknown_heading = 0.0,
                       .without_kinect = 0.0,

@@ -16,6 +16,7 @@ namespace {
 /// A method that sees one window again and again.
 PoseMethod one_window(PoseMethod method) {
   method.training.errors = no_node_errors();
+  method.training.variety = no_variety;
   method.training.batch = 1;
   method.training.crop = 24;
   return method;
