@@ -142,6 +142,8 @@ void state_training(const TrainingJob& job, const WindowsFacts& facts, const Lea
            {"seed", job.options.seed},
            {"identity", job.identity}};
   if (job.hand_weight > 0.0) out["hand_weight"] = job.hand_weight;
+  if (job.vary_speed > 0.0) out["vary_speed"] = job.vary_speed;
+  if (job.vary_size > 0.0) out["vary_size"] = job.vary_size;
   if (!job.from.empty()) out["from"] = Json::parse(before, nullptr, false);
   model.software = "kinalign " KINALIGN_VERSION;
   model.training = out.dump();
@@ -224,9 +226,16 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
 }
 
-Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
-                            const Windows& windows, TrainingState state,
-                            const TrainingHooks& hooks) {
+/// The method's variety, as far as the job does not set it.
+Variety variety_of(const TrainingJob& job, Variety own) {
+  if (job.vary_speed > 0.0) own.speed = job.vary_speed;
+  if (job.vary_size > 0.0) own.size = job.vary_size;
+  return own;
+}
+
+Result<Fitted> fit_pose_job(const TrainingJob& job, PoseMethod method, const Windows& windows,
+                            TrainingState state, const TrainingHooks& hooks) {
+  method.training.variety = variety_of(job, method.training.variety);
   const auto from = KA_TRY(model_before<PoseModel>(job, read_pose_model));
   const PoseData data = KA_TRY(pose_data(windows, job.truth, job.nodes));
   if (from && (method.begin != nullptr || from->layout.nodes != data.nodes)) {
@@ -243,9 +252,9 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
-Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
-                            const Windows& windows, TrainingState state,
-                            const TrainingHooks& hooks) {
+Result<Fitted> fit_fuse_job(const TrainingJob& job, FuseMethod method, const Windows& windows,
+                            TrainingState state, const TrainingHooks& hooks) {
+  method.training.variety = variety_of(job, method.training.variety);
   const auto from = KA_TRY(model_before<FuseModel>(job, read_fuse_model));
   const FuseData data =
       KA_TRY(fuse_data(windows, job.truth, job.nodes, fuse_options(job.input, windows)));
@@ -365,6 +374,8 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.device = json.value("device", "cpu");
     out.identity = json.value("identity", "");
     out.hand_weight = json.value("hand_weight", out.hand_weight);
+    out.vary_speed = json.value("vary_speed", out.vary_speed);
+    out.vary_size = json.value("vary_size", out.vary_size);
     out.from = json.value("from", "");
     if (json.contains("place")) out.place = place_of(json.at("place"));
     out.options = KA_TRY(options_of(out.method, name));

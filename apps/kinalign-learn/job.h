@@ -31,7 +31,8 @@ struct TrainingJob {
   std::int64_t threads = 1;
   ProcessPlace place;  // where several processes train: this one. The first writes all files
   TrainingOptions options;
-  double hand_weight = 0.0;  // of the loss; 0: the method's own
+  double hand_weight = 0.0;                  // of the loss; 0: the method's own
+  double vary_speed = 0.0, vary_size = 0.0;  // of poses and fusion (Variety)
   /// Names of takes that are trained on, and that judge; all others are the test part. Empty: by
   /// the parts of the file's split.
   std::vector<std::string> learn, judge;

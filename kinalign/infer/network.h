@@ -65,6 +65,7 @@ class Network {
 
  private:
   friend class OnlineNetwork;
+  friend class WindowNetwork;
   explicit Network(std::unique_ptr<const PreparedNetwork> prepared);
 
   std::unique_ptr<const PreparedNetwork> prepared_;

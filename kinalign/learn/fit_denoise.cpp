@@ -82,8 +82,10 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
     for (auto& [name, tensor] : clean->tensors()) tensor.set_requires_grad(false);
     task.compare_features(
         [&](const torch::Tensor& answers) { return motion_features(*clean, answers); });
-    out.model.second = clean->architecture();
-    put_tensors(*clean, "second.", out.model.tensors);
+    if (method.has_second) {
+      out.model.second = clean->architecture();
+      put_tensors(*clean, "second.", out.model.tensors);
+    }
   }
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));

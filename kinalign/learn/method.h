@@ -27,6 +27,7 @@ struct DenoiseMethod {
   bool from_base = true;  // answers what the smoothed input joint is off by; else where a joint is
   Begins begins = Begins::as_drawn;
   bool perceptual = false;  // BRA-P: trains a network of clean motion first
+  bool has_second = false;  // and that network stands behind it
 };
 
 }  // namespace kinalign

@@ -93,6 +93,20 @@ DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body) 
   return out;
 }
 
+void mirror(DenoiseFeatures& features, const std::vector<std::size_t>& inputs,
+            const std::vector<std::size_t>& outputs) {
+  const std::size_t joints = inputs.size();
+  for (std::size_t at = 0; at < features.input.size(); at += 7 * joints) {
+    const std::span<float> row = std::span(features.input).subspan(at, 7 * joints);
+    mirror_positions(row.first(3 * joints), inputs);
+    mirror_positions(row.subspan(3 * joints, 3 * joints), inputs);
+    for (std::size_t j = 0; j < joints; ++j) {
+      if (inputs[j] > j) std::swap(row[6 * joints + j], row[6 * joints + inputs[j]]);
+    }
+  }
+  mirror_positions(features.base, outputs);
+}
+
 void to_body(const std::vector<BodyFrame>& frames, std::span<float> positions) {
   move(frames, positions, [](const BodyFrame& frame, float* at) {
     const std::array<float, 3> moved{at[0] - frame.root[0], at[1] - frame.root[1],

@@ -50,6 +50,11 @@ struct DenoiseFeatures {
 /// `body`: the layout's inputs at its rate.
 DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body);
 
+/// The features of the mirrored body, in its mirrored frames. Partners: of inputs and outputs
+/// (mirror_partners()).
+void mirror(DenoiseFeatures& features, const std::vector<std::size_t>& inputs,
+            const std::vector<std::size_t>& outputs);
+
 /// [T,Jout,3] m from the world's space to the body's frame, and back.
 void to_body(const std::vector<BodyFrame>& frames, std::span<float> positions);
 void to_world(const std::vector<BodyFrame>& frames, std::span<float> positions);

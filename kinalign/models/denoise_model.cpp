@@ -68,28 +68,45 @@ Denoiser::Denoiser(DenoiseModel model, Network network, std::optional<Network> s
       second_(std::move(second)),
       steadier_(model_.steadying, model_.layout) {}
 
-Denoised Denoiser::answer(const JointFrames& body) {
-  DenoiseFeatures features = denoise_features(model_.layout, body);
-  const std::size_t frames = body.frames(), channels = model_.layout.channels();
-  const std::size_t answers = model_.layout.answers(), joints = model_.layout.outputs.size();
-  for (std::size_t i = 0; i < features.input.size(); ++i) {
-    const std::size_t c = i % channels;
-    features.input[i] = (features.input[i] - model_.input_mean[c]) / model_.input_scale[c];
+void Denoiser::standardise(DenoiseFeatures& features) const {
+  const std::size_t channels = model_.layout.channels();
+  for (std::size_t at = 0; at < features.input.size(); at += channels) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      float& value = features.input[at + c];
+      value = (value - model_.input_mean[c]) / model_.input_scale[c];
+    }
   }
-  std::vector<float> out;
-  network_.run(features.input, frames, workspace_, out);
-  Denoised answer{.positions = std::move(features.base), .spread = {}};
+}
+
+Denoised Denoiser::answer_of(const DenoiseFeatures& features, std::span<const float> answers,
+                             std::size_t first, std::size_t end) const {
+  const std::size_t width = model_.layout.answers(), joints = model_.layout.outputs.size();
   const std::size_t row = network_.outputs();
   const auto scale = static_cast<float>(model_.answer_scale);
-  for (std::size_t t = 0; t < frames; ++t) {
-    for (std::size_t c = 0; c < answers; ++c) {
-      answer.positions[t * answers + c] += model_.answer_mean[c] + scale * out[t * row + c];
+  const auto base = features.base.begin();
+  Denoised out{.positions = {base + static_cast<std::ptrdiff_t>(first * width),
+                             base + static_cast<std::ptrdiff_t>(end * width)},
+               .spread = {}};
+  for (std::size_t t = first; t < end; ++t) {
+    for (std::size_t c = 0; c < width; ++c) {
+      out.positions[(t - first) * width + c] +=
+          model_.answer_mean[c] + scale * answers[t * row + c];
     }
     for (std::size_t j = 0; j < joints && model_.states_spread; ++j) {
-      const double centimetres = std::exp(static_cast<double>(out[t * row + answers + j]));
-      answer.spread.push_back(static_cast<float>(centimetres * 0.01 * model_.spread_factor));
+      const double centimetres = std::exp(static_cast<double>(answers[t * row + width + j]));
+      out.spread.push_back(static_cast<float>(centimetres * 0.01 * model_.spread_factor));
     }
   }
+  return out;
+}
+
+Denoised Denoiser::answer(const JointFrames& body) {
+  DenoiseFeatures features = denoise_features(model_.layout, body);
+  standardise(features);
+  const std::size_t frames = body.frames();
+  std::vector<float> out;
+  network_.run(features.input, frames, workspace_, out);
+  Denoised answer = answer_of(features, out, 0, frames);
   if (second_) {
     second_->run(answer.positions, frames, workspace_, out);
     answer.positions = out;

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,14 @@ class Denoiser {
   Denoised clean(const JointFrames& body);
   /// The same without the steadying, for comparisons.
   Denoised answer(const JointFrames& body);
+
+  const Network& network() const { return network_; }
+  /// Brings features to the scales that the network sees.
+  void standardise(DenoiseFeatures& features) const;
+  /// What the network's answers [T, outputs] mean, rows `first` ... `end` - 1, in the body's frames
+  /// (to_world()). The second network has still to see it, where there is one.
+  Denoised answer_of(const DenoiseFeatures& features, std::span<const float> answers,
+                     std::size_t first, std::size_t end) const;
 
  private:
   Denoiser(DenoiseModel model, Network network, std::optional<Network> second);

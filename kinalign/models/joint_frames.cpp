@@ -39,7 +39,7 @@ std::vector<std::size_t> mirror_partners(const std::vector<std::string>& names) 
   return out;
 }
 
-void mirror_positions(std::vector<float>& positions, const std::vector<std::size_t>& partners) {
+void mirror_positions(std::span<float> positions, const std::vector<std::size_t>& partners) {
   const std::size_t joints = partners.size();
   for (std::size_t at = 0; at + 3 * joints <= positions.size() && joints > 0; at += 3 * joints) {
     float* row = &positions[at];

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct JointFrames {
 std::vector<std::size_t> mirror_partners(const std::vector<std::string>& names);
 
 /// Positions [T,J,3] as a mirror shows them: x negated, left and right exchanged.
-void mirror_positions(std::vector<float>& positions, const std::vector<std::size_t>& partners);
+void mirror_positions(std::span<float> positions, const std::vector<std::size_t>& partners);
 
 /// The body as a mirror shows it: x negated, left and right exchanged.
 void mirror(JointFrames& body, const std::vector<std::size_t>& partners);

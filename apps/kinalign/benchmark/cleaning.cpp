@@ -40,8 +40,12 @@ struct TrainingSpeed {
   std::string_view method;
   double step_s = 0.0;
 };
-constexpr std::array<TrainingSpeed, 5> training_speeds{
-    {{"cnn", 0.73}, {"bra", 2.7}, {"bra-p", 5.9}, {"refine", 0.24}, {"refine-linear", 0.28}}};
+constexpr std::array<TrainingSpeed, 6> training_speeds{{{"cnn", 0.73},
+                                                        {"bra", 2.7},
+                                                        {"bra-p", 5.9},
+                                                        {"bra-p-plain", 5.9},
+                                                        {"refine", 0.24},
+                                                        {"refine-linear", 0.28}}};
 constexpr std::int64_t own_steps = 1200;  // of every method that cleans
 
 std::string model_file(const CleaningOptions& o, const std::string& method) {

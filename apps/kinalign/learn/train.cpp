@@ -33,7 +33,7 @@ struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
   std::string from, input, truth = "mocap", nodes, device = "cpu";
-  double rate_hz = 30.0, hand_weight = 0.0;
+  double rate_hz = 30.0, hand_weight = 0.0, vary_speed = 0.0, vary_size = 0.0;
   std::int64_t steps = 0, seed = 1, patience = 0, processes = 1;
   bool resume = false, prepare = false;
 };
@@ -84,6 +84,12 @@ Usage describe_train(Train& o) {
       {"hand-weight",
        "of wrists and hands in the loss, beside 1 for other joints; 0: the method's own",
        &o.hand_weight, 0.0, 100.0},
+      {"vary-speed",
+       "of poses and fusion: movements are learnt faster and slower, by up to this share",
+       &o.vary_speed, 0.0, 1.0},
+      {"vary-size",
+       "of poses and fusion: people are learnt taller and smaller, by up to this share",
+       &o.vary_size, 0.0, 1.0},
       {"steps", "batches; 0: the method's own number", &o.steps, 0.0, 1e8},
       {"seed", "of everything that is random", &o.seed, 0.0, 1e9},
       {"patience", "judgements without a better one before it stops; 0: never", &o.patience, 0.0,
@@ -96,6 +102,11 @@ Usage describe_train(Train& o) {
        &o.prepare}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     KA_TRY(check_task_flags(method_of(o), given));
+    for (const char* flag : {"vary-speed", "vary-size"}) {
+      if (method_of(o).task != Learns::denoise || given.count(flag) == 0) continue;
+      return Failure(Error{std::string("--") + flag, 0, "a method for poses or for fusion",
+                           method_of(o).name});
+    }
     if (!common.out.ends_with(".safetensors")) {
       return Failure(
           Error{"-o", 0, "-o FILE.safetensors", common.out.empty() ? "none" : shown(common.out)});
@@ -137,6 +148,8 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   job["options"] = options;
   if (o.hand_weight > 0.0) job["hand_weight"] = o.hand_weight;
   if (!o.nodes.empty()) job["nodes"] = split_at_commas(o.nodes);
+  if (o.vary_speed > 0.0) job["vary_speed"] = o.vary_speed;
+  if (o.vary_size > 0.0) job["vary_size"] = o.vary_size;
   if (!from_hash.empty()) job["from_sha256"] = from_hash;
   Sha256 identity;
   identity.update(job.dump());
@@ -349,7 +362,8 @@ Verb train_verb() {
        .summary = "a model from a data set",
        .text =
            "Trains a network and writes one SafeTensors file, which denoise, pose or fuse reads "
-           "and PyTorch and NumPy open. refine, cnn, cnn-manifold, bra, bra-p and smoothnet "
+           "and PyTorch and NumPy open. refine, cnn, cnn-manifold, bra, bra-p, bra-p-plain and "
+           "smoothnet "
            "clean a Kinect; inertial, inertial-online, dip, dip-512, dip-robust and wouda answer "
            "nodes with a pose; "
            "gated, gated-online and bilstm answer a Kinect and nodes together. The last two "

@@ -68,6 +68,7 @@ const std::vector<TrainedMethod>& trained_methods() {
       {"cnn-manifold", "convolutional autoencoder of clean motion", Learns::denoise, true},
       {"bra", "bidirectional recurrent autoencoder (Li 2019)", Learns::denoise},
       {"bra-p", "the same, perceptual (Li 2020)", Learns::denoise},
+      {"bra-p-plain", "bra-p without its second network behind it", Learns::denoise},
       {"smoothnet", "layers along time (Zeng 2022), then the mean offset", Learns::denoise},
       {"inertial", "ours", Learns::pose},
       {"inertial-online", "ours, without later frames", Learns::pose},

@@ -55,7 +55,16 @@ DenoiseMethod bra_p_method() {
   out.summary = "the same with a perceptual loss and a second network behind it";
   out.source = "Li et al., IEEE Access 8, 2020";
   out.perceptual = true;
+  out.has_second = true;
   out.training.loss.hidden = 0.1;
+  return out;
+}
+
+DenoiseMethod bra_p_plain_method() {
+  DenoiseMethod out = bra_p_method();
+  out.name = "bra-p-plain";
+  out.summary = "bra-p without the second network behind it";
+  out.has_second = false;
   return out;
 }
 

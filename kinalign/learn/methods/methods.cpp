@@ -4,8 +4,8 @@
 namespace kinalign {
 
 std::vector<DenoiseMethod> denoise_methods() {
-  return {refine_method(), refine_linear_method(), cnn_method(),      cnn_manifold_method(),
-          bra_method(),    bra_p_method(),         smoothnet_method()};
+  return {refine_method(), refine_linear_method(), cnn_method(),         cnn_manifold_method(),
+          bra_method(),    bra_p_method(),         bra_p_plain_method(), smoothnet_method()};
 }
 
 Layer chosen_positions(const DenoiseLayout& layout) {

@@ -14,6 +14,7 @@ DenoiseMethod cnn_method();
 DenoiseMethod cnn_manifold_method();
 DenoiseMethod bra_method();
 DenoiseMethod bra_p_method();
+DenoiseMethod bra_p_plain_method();
 DenoiseMethod smoothnet_method();
 
 std::vector<DenoiseMethod> denoise_methods();

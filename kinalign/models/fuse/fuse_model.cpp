@@ -42,22 +42,31 @@ Result<Fuser> Fuser::make(FuseModel model) {
 Fuser::Fuser(FuseModel model, Network network)
     : model_(std::move(model)), network_(std::move(network)) {}
 
-FusedPose Fuser::answer(const FuseInput& input) {
-  FuseFeatures features = fuse_features(model_.layout, input);
-  standardise(model_.input_mean, model_.input_scale, features.input);
-  std::vector<float> answers;
-  network_.run(features.input, input.frames(), workspace_, answers);
+FusedPose Fuser::pose_of(const FuseAnswers& said) const {
   const std::size_t bones = model_.layout.nodes.bones.size(), width = model_.layout.answers();
   FusedPose out;
-  out.rotations.resize(input.frames() * bones);
-  for (std::size_t t = 0; t < input.frames(); ++t) {
+  out.rotations.resize((said.end - said.first) * bones);
+  for (std::size_t t = said.first; t < said.end; ++t) {
     const FusedFrame frame =
-        fused_frame(features.space[t], std::span(answers).subspan(t * width, width),
-                    std::span(out.rotations).subspan(t * bones, bones));
+        fused_frame(said.spaces[t], said.answers.subspan(t * width, width),
+                    std::span(out.rotations).subspan((t - said.first) * bones, bones));
     out.root.push_back(frame.root);
     out.place.push_back(frame.place);
   }
   return out;
+}
+
+std::vector<float> Fuser::run(FuseFeatures& features) {
+  standardise(model_.input_mean, model_.input_scale, features.input);
+  std::vector<float> out;
+  network_.run(features.input, features.space.size(), workspace_, out);
+  return out;
+}
+
+FusedPose Fuser::answer(const FuseInput& input) {
+  FuseFeatures features = fuse_features(model_.layout, input);
+  const std::vector<float> answers = run(features);
+  return pose_of({features.space, answers, 0, input.frames()});
 }
 
 std::vector<HeadingState> Fuser::headings(const FuseInput& given) {
@@ -75,8 +84,14 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
   FuseInput own = input;
   unexchange(model_.layout, own);
   own.nodes = with_headings(std::move(own.nodes), headings);
-  FusedPose out = answer(own);
-  turn_to_measured(own, out);
+  FuseFeatures features = fuse_features(model_.layout, own);
+  const std::vector<float> answers = run(features);
+  return measured_pose_of({features.space, answers, 0, own.frames()}, own);
+}
+
+FusedPose Fuser::measured_pose_of(const FuseAnswers& said, const FuseInput& input) const {
+  FusedPose out = pose_of(said);
+  turn_to_measured(input, said.first, out);
   if (!model_.smoothing) return out;
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
   std::vector<Turn> roots;
@@ -94,7 +109,8 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
   return out;
 }
 
-void Fuser::turn_to_measured(const FuseInput& input, FusedPose& pose) const {
+/// `first`: the row of `input` that the pose begins at.
+void Fuser::turn_to_measured(const FuseInput& input, std::size_t first, FusedPose& pose) const {
   JointFrames smoothed = input.kinect;
   fill_missing(smoothed, false);
   smooth(Smoothing{.window = smoothed_kinect_frames}, 3 * smoothed.joints, smoothed.positions);
@@ -104,8 +120,8 @@ void Fuser::turn_to_measured(const FuseInput& input, FusedPose& pose) const {
   const std::size_t bones = model_.layout.nodes.bones.size();
   for (std::size_t t = 0; t < pose.root.size(); ++t) {
     const std::span<Turn> rotations = std::span(pose.rotations).subspan(t * bones, bones);
-    turn_to_nodes(carried, input.nodes, t, pose.root[t], rotations);
-    turn_to_seen(seen, smoothed, t, pose.root[t], rotations);
+    turn_to_nodes(carried, input.nodes, first + t, pose.root[t], rotations);
+    turn_to_seen(seen, smoothed, first + t, pose.root[t], rotations);
   }
 }
 

@@ -37,6 +37,13 @@ struct FusedFrame {
 FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
                        std::span<Turn> rotations);
 
+/// What a network says of rows `first` ... `end` - 1 of a sequence.
+struct FuseAnswers {
+  std::span<const FuseSpace> spaces;  // [T]
+  std::span<const float> answers;     // [T,answers]
+  std::size_t first = 0, end = 0;
+};
+
 /// A model ready for whole sequences. It can be used by one thread at a time.
 class Fuser {
  public:
@@ -55,6 +62,13 @@ class Fuser {
   std::vector<HeadingState> headings(const FuseInput& input);
   /// The network's answer alone. `input`: with corrected headings.
   FusedPose answer(const FuseInput& input);
+
+  const Network& network() const { return network_; }
+  /// The same of these rows, once the network has run.
+  FusedPose pose_of(const FuseAnswers& said) const;
+  /// Turned to what `input` [T] measures, and smoothed. At both ends fewer rows are smoothed over.
+  FusedPose measured_pose_of(const FuseAnswers& said, const FuseInput& input) const;
+
   /// Of solve(): a skeleton with constant bones, at its place in the Kinect's world. Where no
   /// Kinect has seen anything, x and z of the root are 0 and the lowest joint is at y = 0.
   Clip clip(const FuseInput& input, Time start) { return clip(input, headings(input), start); }
@@ -66,7 +80,8 @@ class Fuser {
  private:
   Fuser(FuseModel model, Network network);
 
-  void turn_to_measured(const FuseInput& input, FusedPose& pose) const;
+  std::vector<float> run(FuseFeatures& features);
+  void turn_to_measured(const FuseInput& input, std::size_t first, FusedPose& pose) const;
 
   FuseModel model_;
   Network network_;

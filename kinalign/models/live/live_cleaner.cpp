@@ -20,30 +20,34 @@ std::size_t smoothed_frames(const DenoiseModel& model) {
   return half(model.layout.smoothing) + half(model.steadying.smoothing);
 }
 
-bool misses_joints(const JointFrames& body, std::size_t row) {
-  const auto begin = body.seen.begin() + static_cast<std::ptrdiff_t>(row * body.joints);
-  const auto end = begin + static_cast<std::ptrdiff_t>(body.joints);
-  return std::find(begin, end, std::uint8_t{0}) != end;
+/// The row from which on `rows` differ from `before`, whose frames they begin with. Behind a row
+/// that is the same no earlier one counts: what lies at the window's begin is seen differently as
+/// the window moves on, and was seen better before.
+std::size_t first_changed(std::span<const float> rows, std::span<const float> before,
+                          std::size_t channels) {
+  std::size_t row = std::min(rows.size(), before.size()) / channels;
+  const auto is_same = [&](std::size_t t) {
+    const auto at = rows.begin() + static_cast<std::ptrdiff_t>(t * channels);
+    return std::equal(at, at + static_cast<std::ptrdiff_t>(channels),
+                      before.begin() + static_cast<std::ptrdiff_t>(t * channels));
+  };
+  while (row > 0 && !is_same(row - 1)) --row;
+  return row;
 }
 
-JointFrames rows_from(const JointFrames& body, std::size_t first) {
-  const auto begin = static_cast<std::ptrdiff_t>(first * body.joints);
-  return {body.joints,
-          {body.positions.begin() + 3 * begin, body.positions.end()},
-          {body.seen.begin() + begin, body.seen.end()}};
-}
-
-Steadying without_bones(Steadying how) {
-  how.bones = false;
-  return how;
+template <class T>
+void erase_first(std::vector<T>& all, std::size_t count) {
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace
 
 LiveCleaner::LiveCleaner(Denoiser& denoiser, std::size_t look_ahead)
     : denoiser_(&denoiser),
-      steadier_(without_bones(denoiser.model().steadying), denoiser.model().layout),
-      partners_(mirror_partners(denoiser.model().layout.outputs)) {
+      inputs_(mirror_partners(denoiser.model().layout.inputs)),
+      outputs_(mirror_partners(denoiser.model().layout.outputs)),
+      plain_{WindowNetwork(denoiser.network())},
+      mirrored_{WindowNetwork(denoiser.network())} {
   const DenoiseModel& model = denoiser.model();
   const auto ahead = kinalign::look_ahead(model.architecture);
   const auto back = look_back(model.architecture);
@@ -65,44 +69,83 @@ std::optional<std::vector<float>> LiveCleaner::finish() {
   return joints_at(next_);
 }
 
-/// Of the rows that an answer for `row` depends on. No row before it matters where it sees all
-/// joints; else earlier rows fill what it misses.
-std::size_t LiveCleaner::first_row_for(std::size_t row) const {
-  std::size_t first = row - std::min(row, behind_ - filled_frames);
-  while (first > 0 && misses_joints(window_, first)) --first;
-  return first;
+/// What the network says of rows `first` ... `end` - 1 [.., Jout, 3], in the body's frames.
+std::vector<float> LiveCleaner::positions_of(Seen& seen, DenoiseFeatures features,
+                                             std::size_t first, std::size_t end) {
+  denoiser_->standardise(features);
+  const std::size_t channels = denoiser_->model().layout.channels();
+  const std::size_t changed = first_changed(features.input, seen.rows, channels);
+  const auto answers = seen.network.run(features.input, features.frames.size(), changed, end);
+  std::vector<float> out = denoiser_->answer_of(features, answers, first, end).positions;
+  seen.rows = std::move(features.input);
+  return out;
+}
+
+/// The answer for that row, as Steadier has it without constant bones.
+std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
+  const DenoiseModel& model = denoiser_->model();
+  const auto width = static_cast<std::ptrdiff_t>(model.layout.answers());
+  if (model.second) {
+    Steadying how = model.steadying;
+    how.bones = false;
+    const auto answer = [this](const JointFrames& body) { return denoiser_->answer(body); };
+    const Steadier steadier(how, model.layout);
+    const auto all = steadier.steadied(answer, window_, answer(window_)).positions;
+    const auto at = all.begin() + static_cast<std::ptrdiff_t>(row) * width;
+    return {at, at + width};
+  }
+  const Smoothing& smoothing = model.steadying.smoothing;
+  const std::size_t first = row - std::min(row, smoothing.window);
+  const std::size_t end = std::min(row + half(smoothing) + 1, window_.frames());
+  const DenoiseFeatures features = denoise_features(model.layout, window_);
+  std::vector<float> positions = positions_of(plain_, features, first, end);
+  if (model.steadying.mirror) {
+    DenoiseFeatures other = features;
+    mirror(other, inputs_, outputs_);
+    std::vector<float> mirrored = positions_of(mirrored_, std::move(other), first, end);
+    mirror_positions(mirrored, outputs_);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      positions[i] = 0.5F * (positions[i] + mirrored[i]);
+    }
+  }
+  to_world({features.frames.begin() + static_cast<std::ptrdiff_t>(first),
+            features.frames.begin() + static_cast<std::ptrdiff_t>(end)},
+           positions);
+  smooth(smoothing, model.layout.answers(), positions);
+  const auto at = positions.begin() + static_cast<std::ptrdiff_t>(row - first) * width;
+  return {at, at + width};
 }
 
 std::vector<float> LiveCleaner::joints_at(std::size_t row) {
-  const auto answer = [this](const JointFrames& body) { return denoiser_->answer(body); };
-  const std::size_t first = first_row_for(row);
-  const JointFrames body = rows_from(window_, first);
-  const std::vector<float> all = steadier_.steadied(answer, body, answer(body)).positions;
+  std::vector<float> out = steadied_at(row);
   const DenoiseLayout& layout = denoiser_->model().layout;
-  const auto width = static_cast<std::ptrdiff_t>(3 * layout.outputs.size());
-  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row - first) * width;
-  std::vector<float> out(begin, begin + width);
   answers_.insert(answers_.end(), out.begin(), out.end());
   const std::size_t remembered = std::min(answers_.size(), remembered_lengths * out.size());
   if (denoiser_->model().steadying.bones) {
     impose_lengths(layout.parents,
-                   typical_lengths(layout.parents, partners_,
+                   typical_lengths(layout.parents, outputs_,
                                    std::span(answers_).subspan(answers_.size() - remembered)),
                    out);
   }
-  for (++next_; next_ > behind_; --next_) {
-    const auto joints = static_cast<std::ptrdiff_t>(window_.joints);
-    window_.positions.erase(window_.positions.begin(), window_.positions.begin() + 3 * joints);
-    window_.seen.erase(window_.seen.begin(), window_.seen.begin() + joints);
-  }
+  for (++next_; next_ > behind_; --next_) forget_first();
   return out;
+}
+
+void LiveCleaner::forget_first() {
+  erase_first(window_.positions, 3 * window_.joints);
+  erase_first(window_.seen, window_.joints);
+  const std::size_t channels = denoiser_->model().layout.channels();
+  for (Seen* seen : {&plain_, &mirrored_}) {
+    if (!seen->rows.empty()) erase_first(seen->rows, channels);
+    seen->network.forget(1);
+  }
 }
 
 std::vector<float> LiveCleaner::whole() const {
   std::vector<float> out = answers_;
   const std::vector<int>& parents = denoiser_->model().layout.parents;
   if (denoiser_->model().steadying.bones && !out.empty()) {
-    impose_lengths(parents, typical_lengths(parents, partners_, out), out);
+    impose_lengths(parents, typical_lengths(parents, outputs_, out), out);
   }
   return out;
 }

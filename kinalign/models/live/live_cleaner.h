@@ -3,6 +3,7 @@
 // newest frames. Bones have the lengths that they had in the last ten seconds.
 #pragma once
 
+#include "kinalign/infer/window_network.h"
 #include "kinalign/models/denoise_model.h"
 
 #include <cstddef>
@@ -31,14 +32,23 @@ class LiveCleaner {
   std::vector<float> whole() const;
 
  private:
-  std::size_t first_row_for(std::size_t row) const;
+  /// The window as a network sees it, which is run again only where it has changed.
+  struct Seen {
+    WindowNetwork network;
+    std::vector<float> rows{};  // [window, channels] of the run before
+  };
+
+  std::vector<float> positions_of(Seen& seen, DenoiseFeatures features, std::size_t first,
+                                  std::size_t end);
+  std::vector<float> steadied_at(std::size_t row);
   std::vector<float> joints_at(std::size_t row);
+  void forget_first();
 
   Denoiser* denoiser_;
   std::size_t ahead_, behind_;  // frames of the window on both sides of the one that is answered
-  Steadier steadier_;           // without constant bones
-  std::vector<std::size_t> partners_;  // of the outputs
+  std::vector<std::size_t> inputs_, outputs_;  // each joint's partner on the other side
   JointFrames window_;
+  Seen plain_, mirrored_;
   std::size_t next_ = 0;        // row of the window that is answered next
   std::vector<float> answers_;  // of all frames, with bones of any length
 };

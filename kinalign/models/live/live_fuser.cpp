@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t remembered_by_network = 60;  // of one that sees the whole sequence
 constexpr std::size_t smoothed_places = 4;  // frames on each side, Smoothing{} of the root's place
+/// Rows before one that it is smoothed over: of places at the window's end, of the Kinect's joints.
+constexpr std::size_t smoothed_rows = 9;
 
 template <class T>
 void append_to(std::vector<T>& all, const std::vector<T>& more) {
@@ -61,15 +63,33 @@ void forget_first(FuseInput& all) {
 
 }  // namespace
 
+/// Appends the network's channels of row `row` of `input`.
+void LiveFuser::Seen::make(const FuseModel& model, const FuseInput& input, std::size_t row) {
+  const std::size_t channels = model.layout.channels(), begin = rows.size();
+  rows.resize(begin + channels);
+  const std::span<float> out = std::span(rows).subspan(begin, channels);
+  maker.make(input, row, out);
+  standardise(model.input_mean, model.input_scale, out);
+  spaces.push_back(maker.space());
+}
+
+void LiveFuser::Seen::forget_first() {
+  erase_begin(rows, rows.size() / spaces.size());
+  erase_begin(spaces, 1);
+  network.forget(1);
+}
+
 LiveFuser::LiveFuser(Fuser& fuser, std::size_t look_ahead)
     : fuser_(&fuser),
+      kinect_{FuseFeatureMaker(fuser.model().layout), WindowNetwork(fuser.network())},
+      both_{FuseFeatureMaker(fuser.model().layout), WindowNetwork(fuser.network())},
       filter_(fuser.model().layout, fuser.model().body),
       states_(fuser.model().layout.nodes.nodes.size()) {
   const Architecture& network = fuser.model().architecture;
   const std::size_t smoothed = fuser.model().smoothing ? smoothed_places : 0;
   const auto ahead = kinalign::look_ahead(network);
   ahead_ = ahead ? std::min(look_ahead, *ahead + smoothed) : look_ahead;
-  behind_ = look_back(network).value_or(remembered_by_network) + smoothed_places;
+  behind_ = look_back(network).value_or(remembered_by_network) + smoothed_rows;
 }
 
 void LiveFuser::begin_headings() {
@@ -102,31 +122,68 @@ void LiveFuser::take(FuseInput input) {
   turn_world(input.nodes, *yaw_);
   unexchange(fuser_->model().layout, input);
   append_input(window_, input);
+  std::fill(input.nodes.valid.begin(), input.nodes.valid.end(), std::uint8_t{0});
+  kinect_.make(fuser_->model(), input, 0);
+}
+
+/// Of the rows before `end`, by the network's answer to the Kinect alone. All later rows have the
+/// headings of now.
+void LiveFuser::find_headings(std::size_t end) {
+  const std::size_t bones = fuser_->model().layout.nodes.bones.size();
+  const std::size_t nodes = states_.size(), frames = window_.frames();
+  const auto answers = kinect_.network.run(kinect_.rows, frames, kinect_run_, end);
+  kinect_run_ = frames;
+  const FusedPose seen = fuser_->pose_of({kinect_.spaces, answers, next_, end});
+  headings_.resize(next_ * nodes);
+  for (std::size_t row = next_; row < end; ++row) {
+    const FuseInput now = frame_at(window_, row);
+    const std::size_t at = row - next_;
+    filter_.step(now.nodes, 0,
+                 directions_of_pose(filter_, now.kinect,
+                                    std::span(seen.rotations).subspan(at * bones, bones),
+                                    std::span(seen.root).subspan(at, 1)));
+    for (std::size_t n = 0; n < nodes; ++n) states_[n] = filter_.state(n);
+    append_to(headings_, states_);
+  }
+  while (headings_.size() < frames * nodes) append_to(headings_, states_);
+}
+
+/// To the rows before `end`. Rows before next_ were made before; all others have new headings, and
+/// those before `answered` keep them.
+std::span<const float> LiveFuser::answers_to_both(const FuseInput& corrected, std::size_t answered,
+                                                  std::size_t end) {
+  const FuseModel& model = fuser_->model();
+  const std::size_t frames = corrected.frames();
+  both_.rows.resize(next_ * model.layout.channels());
+  both_.spaces.resize(next_);
+  for (std::size_t row = next_; row < answered; ++row) both_.make(model, corrected, row);
+  const FuseFeatureMaker at_answered = both_.maker;
+  for (std::size_t row = answered; row < frames; ++row) both_.make(model, corrected, row);
+  both_.maker = at_answered;
+  return both_.network.run(both_.rows, frames, next_, end);
 }
 
 void LiveFuser::answer_rows(std::size_t count, std::vector<FusedFramePose>& out) {
   const std::size_t bones = fuser_->model().layout.nodes.bones.size();
-  const std::size_t nodes = states_.size(), end = next_ + count;
-  FuseInput kinect = window_;
-  std::fill(kinect.nodes.valid.begin(), kinect.nodes.valid.end(), std::uint8_t{0});
-  const FusedPose seen = fuser_->answer(kinect);
-  std::vector<HeadingState> all;  // of each row; rows before have the headings of now, too
-  for (std::size_t row = next_; row < end; ++row) {
-    const FuseInput now = frame_at(window_, row);
-    filter_.step(now.nodes, 0,
-                 directions_of_pose(filter_, now.kinect,
-                                    std::span(seen.rotations).subspan(row * bones, bones),
-                                    std::span(seen.root).subspan(row, 1)));
-    for (std::size_t n = 0; n < nodes; ++n) states_[n] = filter_.state(n);
-    while (all.size() < row * nodes) append_to(all, states_);
-    append_to(all, states_);
-  }
-  while (all.size() < window_.frames() * nodes) append_to(all, states_);
-  const FusedPose pose = fuser_->solve(window_, all);
+  const std::size_t frames = window_.frames(), end = next_ + count;
+  find_headings(end);
+  FuseInput corrected = window_;
+  corrected.nodes = with_headings(std::move(corrected.nodes), headings_);
+  const std::size_t last = std::min(frames, end + smoothed_places);
+  const auto answers = answers_to_both(corrected, end, last);
+  const std::size_t first = next_ - std::min(next_, smoothed_rows);
+  const FusedPose pose = fuser_->measured_pose_of({both_.spaces, answers, first, last}, corrected);
   for (; next_ < end; ++next_) {
-    out.push_back({row_of(pose.rotations, next_, bones), pose.root[next_], pose.place[next_]});
+    const std::size_t at = next_ - first;
+    out.push_back({row_of(pose.rotations, at, bones), pose.root[at], pose.place[at]});
   }
-  for (; next_ > behind_; --next_) forget_first(window_);
+  for (; next_ > behind_; --next_) {
+    forget_first(window_);
+    kinect_.forget_first();
+    both_.forget_first();
+    erase_begin(headings_, states_.size());
+    --kinect_run_;
+  }
 }
 
 }  // namespace kinalign

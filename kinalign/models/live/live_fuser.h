@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A model that fuses a Kinect and nodes frame by frame, some frames late: it runs over a window of
-// the newest frames. The headings of the nodes are found by earlier frames alone.
+// the newest frames. The headings of the nodes are found by earlier frames alone: those of a frame
+// that is answered stay as they were then, and later ones have the newest.
 #pragma once
 
+#include "kinalign/infer/window_network.h"
 #include "kinalign/models/fuse/fuse_model.h"
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace kinalign {
@@ -50,7 +53,21 @@ class LiveFuser {
   const std::vector<HeadingState>& headings() const { return states_; }
 
  private:
+  /// The window as the network sees it: the Kinect alone, or both devices.
+  struct Seen {
+    FuseFeatureMaker maker;
+    WindowNetwork network;
+    std::vector<float> rows{};        // [window, channels] standardised
+    std::vector<FuseSpace> spaces{};  // [window]
+
+    void make(const FuseModel& model, const FuseInput& input, std::size_t row);
+    void forget_first();
+  };
+
   void take(FuseInput input);
+  void find_headings(std::size_t end);
+  std::span<const float> answers_to_both(const FuseInput& corrected, std::size_t answered,
+                                         std::size_t end);
   void answer_rows(std::size_t count, std::vector<FusedFramePose>& out);
 
   Fuser* fuser_;
@@ -58,7 +75,10 @@ class LiveFuser {
   std::optional<double> yaw_;  // that brings the nodes' world to the Kinect's
   FuseInput waiting_;          // frames that no yaw is known for
   FuseInput window_;
-  std::size_t next_ = 0;  // row of the window that is answered next
+  Seen kinect_, both_;          // of both_ the maker stands at the row that is answered next
+  std::size_t kinect_run_ = 0;  // rows that the network has seen of the Kinect alone
+  std::vector<HeadingState> headings_;  // [window,N]
+  std::size_t next_ = 0;                // row of the window that is answered next
   std::size_t forgotten_ = 0;
   HeadingFilter filter_;
   std::vector<HeadingState> states_;

@@ -27,7 +27,8 @@ WindowSolver::WindowSolver(const PoseSolver& solver, std::size_t look_ahead)
     : solver_(&solver),
       ahead_(std::min(look_ahead, most_ahead(solver.model()).value_or(look_ahead))),
       behind_(look_back(solver.model().architecture).value_or(remembered) + beside(solver.model())),
-      maker_(solver.model().layout) {}
+      maker_(solver.model().layout),
+      network_(solver.network_) {}
 
 std::optional<FramePose> WindowSolver::step(const NodeFrames& nodes, std::size_t t) {
   const PoseModel& model = solver_->model();
@@ -50,12 +51,13 @@ std::optional<FramePose> WindowSolver::finish() {
 std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
   const std::size_t bones = solver_->model().layout.bones.size();
   const std::size_t frames = roots_.size();
-  solver_->network_.run(rows_, frames, workspace_, answers_);
   const std::size_t first = row - std::min(row, smoothed_beside);
   const std::size_t end = std::min(row + smoothed_beside + 1, frames);
+  const auto answers = network_.run(rows_, frames, run_, end);
+  run_ = frames;
   std::vector<Turn> turns;
   for (std::size_t at = first * bones; at < end * bones; ++at) {
-    turns.push_back(turn_of_answer(&answers_[6 * at]));
+    turns.push_back(turn_of_answer(&answers[6 * at]));
   }
   if (solver_->model().smoothing) smooth_turns(bones, turns);
   FramePose out;
@@ -67,6 +69,8 @@ std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
     const std::size_t channels = rows_.size() / roots_.size();
     rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(channels));
     roots_.pop_front();
+    network_.forget(1);
+    --run_;
     --next_;
   }
   return out;

@@ -4,6 +4,7 @@
 // see, the answers are those of PoseSolver::solve() over the whole sequence, bit by bit.
 #pragma once
 
+#include "kinalign/infer/window_network.h"
 #include "kinalign/models/pose/pose_model.h"
 
 #include <cstddef>
@@ -44,8 +45,8 @@ class WindowSolver {
   std::vector<float> rows_;               // [window,C] channels, standardised
   std::deque<Eigen::Quaternionf> roots_;  // [window]
   std::size_t next_ = 0;                  // row of the window that is answered next
-  Workspace workspace_;
-  std::vector<float> answers_;
+  WindowNetwork network_;
+  std::size_t run_ = 0;  // rows of the window that the network has seen
 };
 
 }  // namespace kinalign

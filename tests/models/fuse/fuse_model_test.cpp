@@ -9,25 +9,6 @@ using namespace kinalign;
 
 namespace {
 
-/// A causal network of random weights.
-FuseModel random_fuse_model(std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  FuseModel out;
-  out.facts = {"fuse", "test", "", "", ""};
-  out.layout = fuse_test_layout();
-  out.body = pose_body(test_offsets());
-  const std::size_t in = out.layout.channels(), answers = out.layout.answers();
-  out.input_mean.assign(in, 0.1F);
-  out.input_scale.assign(in, 0.9F);
-  out.architecture = {in, {{.kind = LayerKind::conv, .out = answers, .kernel = 3, .causal = true}}};
-  std::uniform_real_distribution<float> weight(-0.03F, 0.03F);
-  Tensor weights{{answers, in, 3}, {}}, bias{{answers}, {}};
-  for (std::size_t i = 0; i < answers * in * 3; ++i) weights.values.push_back(weight(random));
-  for (std::size_t i = 0; i < answers; ++i) bias.values.push_back(weight(random));
-  out.tensors = {{"net.0.weight", weights}, {"net.0.bias", bias}};
-  return out;
-}
-
 std::string refusal_of(const FuseModel& model) {
   const auto again = read_fuse_model(write_fuse_model(model), "m");
   return again ? "none" : to_string(again.error());

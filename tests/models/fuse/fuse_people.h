@@ -6,10 +6,12 @@
 
 #include "kinalign/models/fuse/bone_filter.h"
 #include "kinalign/models/fuse/fuse_features.h"
+#include "kinalign/models/fuse/fuse_model.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 namespace kinalign {
 
@@ -74,6 +76,26 @@ inline void turn_heading(NodeFrames& nodes, std::size_t n, double degrees) {
     Eigen::Map<Eigen::Vector3f> a(&nodes.acceleration[3 * at]);
     a = (yaw * Eigen::Vector3f(a)).eval();
   }
+}
+
+/// One convolution of three taps and random weights.
+inline FuseModel random_fuse_model(std::uint64_t seed, bool causal = true) {
+  std::mt19937_64 random(seed);
+  FuseModel out;
+  out.facts = {"fuse", "test", "", "", ""};
+  out.layout = fuse_test_layout();
+  out.body = pose_body(test_offsets());
+  const std::size_t in = out.layout.channels(), answers = out.layout.answers();
+  out.input_mean.assign(in, 0.1F);
+  out.input_scale.assign(in, 0.9F);
+  out.architecture = {in,
+                      {{.kind = LayerKind::conv, .out = answers, .kernel = 3, .causal = causal}}};
+  std::uniform_real_distribution<float> weight(-0.03F, 0.03F);
+  Tensor weights{{answers, in, 3}, {}}, bias{{answers}, {}};
+  for (std::size_t i = 0; i < answers * in * 3; ++i) weights.values.push_back(weight(random));
+  for (std::size_t i = 0; i < answers; ++i) bias.values.push_back(weight(random));
+  out.tensors = {{"net.0.weight", weights}, {"net.0.bias", bias}};
+  return out;
 }
 
 inline void lose_all(std::vector<std::uint8_t>& flags) {
