@@ -241,10 +241,7 @@ Result<EvalRun> open_run(const Eval& o, Call& call) {
                                      : body_comparison(o, task, windows.bytes, windows.file));
   auto folds = KA_TRY(folds_of(o.split.empty() ? o.folds : "split", comparison.takes));
   const std::string known = KA_TRY(known_people(o, comparison, folds, call));
-  if (!known.empty()) {
-    call.console.note("kinalign eval: warning: " + harmless(known));
-    comparison.note += (comparison.note.empty() ? "" : "; ") + known;
-  }
+  if (!known.empty()) comparison.note += (comparison.note.empty() ? "" : "; ") + known;
   return EvalRun{o, task, windows.file, windows.hash, std::move(comparison), std::move(folds)};
 }
 
