@@ -36,6 +36,7 @@ Json errors_json(const FuseErrors& errors) {
           {"seen_trunk_cm", errors.seen_trunk_cm},
           {"seen_arms_cm", errors.seen_arms_cm},
           {"seen_legs_cm", errors.seen_legs_cm},
+          {"place_cm", errors.place_cm},
           {"sip_deg", errors.sip_deg},
           {"frames", errors.frames},
           {"hidden", errors.hidden}};

@@ -54,6 +54,7 @@ void add_people(const Json& row, const std::vector<RowMark>& names, MethodMarks&
   for (const auto& [person, values] : row.at("people").items()) {
     for (const RowMark& name : names) {
       if (name.row == "hidden_cm" && values.at("hidden") == 0) continue;
+      if (name.row == "place_cm" && row.at("devices") == "nodes") continue;
       const double value = values.at(std::string(name.row)).get<double>();
       out.marks[std::string(name.table)][person].add(value);
     }
@@ -82,10 +83,13 @@ void add_headings(const Json& rows, const std::string& method, MethodMarks& out)
 }
 
 void add_rows(const std::string& name, const Json& rows, std::vector<MethodMarks>& out) {
-  static const std::vector<RowMark> fusion{
-      {"all_cm", "position_cm"},          {"hidden_cm", "hidden_cm"},
-      {"seen_trunk_cm", "seen_trunk_cm"}, {"seen_arms_cm", "seen_arms_cm"},
-      {"seen_legs_cm", "seen_legs_cm"},   {"sip_deg", "sip_deg"}};
+  static const std::vector<RowMark> fusion{{"all_cm", "position_cm"},
+                                           {"hidden_cm", "hidden_cm"},
+                                           {"seen_trunk_cm", "seen_trunk_cm"},
+                                           {"seen_arms_cm", "seen_arms_cm"},
+                                           {"seen_legs_cm", "seen_legs_cm"},
+                                           {"place_cm", "place_cm"},
+                                           {"sip_deg", "sip_deg"}};
   for (const Json& row : rows) {
     const auto method = row.at("method").get<std::string>();
     const std::string& called = method == "filter" ? method : name;
@@ -148,6 +152,7 @@ Result<Comparison> body_comparison(const Eval& o, Learns task, const std::string
                    {"seen_trunk_cm", "seen trunk, cm"},
                    {"seen_arms_cm", "seen arms, cm"},
                    {"seen_legs_cm", "seen legs, cm"},
+                   {"place_cm", "place, cm"},
                    {"sip_deg", "SIP, °"},
                    {"heading_deg", "headings after 60 s, °"}};
     out.note = o.input.empty() ? "a simulated Kinect" : "the Kinect " + o.input;

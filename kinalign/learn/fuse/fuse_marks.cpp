@@ -110,6 +110,7 @@ class FuseScore {
                                                                : Eigen::Quaternionf::Identity();
     const std::size_t joints = body_.skeleton.joints();
     for (std::size_t t = 0; t < truth.frames(); ++t) {
+      place_.add(100.0 * (answer.place[t].cast<double>() - truth.places[t]).norm());
       const Eigen::Quaternionf root = turn * answer.root[t];
       for (const ScoredJoint& joint : joints_) {
         const auto at = [&](const std::vector<float>& places) {
@@ -134,6 +135,7 @@ class FuseScore {
 
   void add(const FuseScore& more) {
     all_.add(more.all_);
+    place_.add(more.place_);
     hidden_.add(more.hidden_);
     for (std::size_t group = 0; group < seen_.size(); ++group) seen_[group].add(more.seen_[group]);
     errors_.add(more.errors_);
@@ -146,6 +148,7 @@ class FuseScore {
             .seen_trunk_cm = seen_[0].value(),
             .seen_arms_cm = seen_[1].value(),
             .seen_legs_cm = seen_[2].value(),
+            .place_cm = place_.value(),
             .sip_deg = errors_.sip_deg,
             .frames = frames_,
             .hidden = hidden_.count};
@@ -163,7 +166,7 @@ class FuseScore {
   Devices devices_;
   const PoseBody& body_;
   std::vector<ScoredJoint> joints_;
-  MeanOf all_, hidden_;
+  MeanOf all_, hidden_, place_;
   std::array<MeanOf, 3> seen_;
   PoseErrors errors_;
   std::size_t frames_ = 0;

@@ -21,6 +21,7 @@ struct FuseErrors {
   /// Joints that the Kinect does not track, or that it puts more than 20 cm off.
   double hidden_cm = 0.0;
   double seen_trunk_cm = 0.0, seen_arms_cm = 0.0, seen_legs_cm = 0.0;  // all others
+  double place_cm = 0.0;               // of the root in the Kinect's world; not of nodes alone
   double sip_deg = 0.0;                // global rotation of thighs and upper arms against the root
   std::size_t frames = 0, hidden = 0;  // frames; joints in frames
 };

@@ -5,6 +5,7 @@
 #include "kinalign/models/pose/pose_model.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace kinalign {
@@ -12,6 +13,25 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t smoothed_kinect_frames = 11;
+constexpr std::size_t least_tracked_joints = 8;  // of 21, that tell where a body stands
+
+/// A joint of the Kinect, and the body's joint that lies there.
+struct SameJoint {
+  std::size_t kinect = 0, body = 0;
+};
+
+std::vector<SameJoint> body_joints_of(const std::vector<std::string>& kinect,
+                                      const Skeleton& body) {
+  std::vector<SameJoint> out;
+  for (const FuseJoint& one : fuse_joints) {
+    const auto seen = std::find(kinect.begin(), kinect.end(), one.kinect);
+    const auto own = std::find(body.joint_names.begin(), body.joint_names.end(), one.body);
+    if (seen == kinect.end() || own == body.joint_names.end()) continue;
+    out.push_back({static_cast<std::size_t>(seen - kinect.begin()),
+                   static_cast<std::size_t>(own - body.joint_names.begin())});
+  }
+  return out;
+}
 
 /// Whether any frame shows the root's place.
 bool is_placed(const FuseInput& input) {
@@ -92,6 +112,7 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
 FusedPose Fuser::measured_pose_of(const FuseAnswers& said, const FuseInput& input) const {
   FusedPose out = pose_of(said);
   turn_to_measured(input, said.first, out);
+  place_at_seen(input, said.first, out);
   if (!model_.smoothing) return out;
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
   std::vector<Turn> roots;
@@ -107,6 +128,33 @@ FusedPose Fuser::measured_pose_of(const FuseAnswers& said, const FuseInput& inpu
     out.place[t] = Eigen::Map<const Eigen::Vector3f>(&places[3 * t]);
   }
   return out;
+}
+
+/// Moves the body of each frame by the median of the ways from its joints to those that the Kinect
+/// tracks. A network places the root as it has learnt it from other skeletons, whose hips lie
+/// elsewhere. A frame with few tracked joints keeps the network's place.
+void Fuser::place_at_seen(const FuseInput& input, std::size_t first, FusedPose& pose) const {
+  const auto pairs = body_joints_of(model_.layout.joints, model_.body.skeleton);
+  const std::size_t joints = model_.body.skeleton.joints();
+  const auto about_root =
+      bone_positions(model_.body, model_.body.skeleton.rest_offsets, pose.rotations);
+  for (std::size_t t = 0; t < pose.place.size(); ++t) {
+    std::array<std::vector<float>, 3> ways;
+    for (const auto& [kinect, body] : pairs) {
+      const std::size_t at = (first + t) * input.kinect.joints + kinect;
+      if (input.kinect.seen[at] != 2) continue;
+      const Eigen::Map<const Eigen::Vector3f> seen(&input.kinect.positions[3 * at]);
+      const Eigen::Map<const Eigen::Vector3f> own(&about_root[3 * (t * joints + body)]);
+      const Eigen::Vector3f way = seen - pose.place[t] - pose.root[t] * Eigen::Vector3f(own);
+      for (std::size_t k = 0; k < 3; ++k) ways[k].push_back(way[static_cast<Eigen::Index>(k)]);
+    }
+    if (ways[0].size() < least_tracked_joints) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto middle = ways[k].begin() + static_cast<std::ptrdiff_t>(ways[k].size() / 2);
+      std::nth_element(ways[k].begin(), middle, ways[k].end());
+      pose.place[t][static_cast<Eigen::Index>(k)] += *middle;
+    }
+  }
 }
 
 /// `first`: the row of `input` that the pose begins at.

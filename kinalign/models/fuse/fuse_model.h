@@ -53,8 +53,8 @@ class Fuser {
 
   /// `input`: the layout's, at its rate. The network answers to the Kinect alone first; that pose
   /// shows the nodes' headings (node_headings.h), and with these it answers to both. The answer is
-  /// turned towards what the nodes and the Kinect measure (turn_to_nodes(), turn_to_seen()), and
-  /// smoothed.
+  /// turned towards what the nodes and the Kinect measure (turn_to_nodes(), turn_to_seen()), placed
+  /// where the Kinect's joints lie, and smoothed.
   FusedPose solve(const FuseInput& input) { return solve(input, headings(input)); }
   /// With headings that were found before.
   FusedPose solve(const FuseInput& input, const std::vector<HeadingState>& headings);
@@ -82,6 +82,7 @@ class Fuser {
 
   std::vector<float> run(FuseFeatures& features);
   void turn_to_measured(const FuseInput& input, std::size_t first, FusedPose& pose) const;
+  void place_at_seen(const FuseInput& input, std::size_t first, FusedPose& pose) const;
 
   FuseModel model_;
   Network network_;
