@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node's clock costs: exchanges of ten minutes on each of three links pushed into a live
-// clock, with and without asking for a certified stamp after each; and a whole recording fitted.
-// One item is one exchange (a frame and the echo that it carries), of recordings one recording of
-// 60 s.
+// The cost of a node's clock: exchanges of ten minutes on each of three links are pushed into a
+// live clock, with and without asking for a certified stamp after each; and a whole recording is
+// fitted. One item is one exchange (a frame and the echo that it carries); for recordings one item
+// is one recording of 60 s.
 #include "tools/clock_table/judge.h"
 
 #include "kinalign/clock/offline/offline_clock.h"
@@ -51,7 +51,7 @@ void push_and_ask(benchmark::State& state) {
   count(state, exchanges.size());
 }
 
-/// Simulated, judged live and offline: what a table of a thousand recordings is made of.
+/// One recording, simulated and judged live and offline: a table is made of a thousand of these.
 void recording(benchmark::State& state) {
   ExchangeOptions options;
   options.link.link = static_cast<Link>(state.range(0));

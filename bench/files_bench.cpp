@@ -81,7 +81,7 @@ std::string put(const std::string& name, const std::string& text) {
   return folder() + name;
 }
 
-/// Every number of a text with std::from_chars, whatever stands between them.
+/// Parses every number of a text with std::from_chars, whatever stands between them.
 void parse_all(benchmark::State& state, const std::string& text) {
   std::vector<double> out(text.size() / 2 + 1);
   for (auto _ : state) {
@@ -148,7 +148,7 @@ void csv_kinalign(benchmark::State& state) {
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
 }
 
-/// Does everything but wait for the disk.
+/// Does all file work but waiting for the disk.
 class Unsynced final : public PosixFiles {
  public:
   int sync(int) override { return 0; }
@@ -231,7 +231,7 @@ BENCHMARK(bvh_from_chars)->Name("bvh/from_chars");
 BENCHMARK(bvh_kinalign)->Name("bvh/kinalign");
 BENCHMARK(csv_from_chars)->Name("csv/from_chars");
 BENCHMARK(csv_kinalign)->Name("csv/kinalign");
-constexpr std::int64_t large = 25, small = 3;  // slabs: 118 and 14 MB of floats
+constexpr std::int64_t large = 25, small = 3;  // number of slabs: 118 and 14 MB of floats
 constexpr auto floats = Stored::float32, doubles = Stored::float64;
 BENCHMARK(take_write<PosixFiles>)->Name("take/write")->Arg(large)->UseRealTime();
 BENCHMARK(take_kinalign<PosixFiles, floats>)->Name("take/kinalign")->Arg(large)->UseRealTime();
@@ -240,7 +240,7 @@ BENCHMARK(take_kinalign<Unsynced, floats>)
     ->Name("take_unsynced/kinalign")
     ->Arg(small)
     ->UseRealTime();
-// 19 MB of doubles, which are not narrowed on the way.
+// 19 MB of doubles, which are not converted to floats.
 BENCHMARK(take_write<Unsynced>)->Name("take_doubles/write")->Arg(4)->UseRealTime();
 BENCHMARK(take_kinalign<Unsynced, doubles>)->Name("take_doubles/kinalign")->Arg(2)->UseRealTime();
 

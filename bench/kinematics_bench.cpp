@@ -51,7 +51,7 @@ struct Data {
   std::unique_ptr<double[]> memory;
   std::span<double> positions, rotations;  // [frames, joints, 3 and 4]
 
-  /// Memory that was not touched before, as a whole file's results go into.
+  /// Allocates memory that was not touched before, as for a whole file's results.
   void renew() {
     constexpr std::size_t cells = frames * joints;
     memory.reset(new double[7 * cells]);
@@ -116,7 +116,7 @@ ClipFrames empty_block() {
   return part;
 }
 
-/// Once before timing: both give the same positions.
+/// Checks once before timing that both give the same positions.
 void check() {
   Data ours, theirs;
   ClipFrames part = empty_block();
@@ -155,7 +155,7 @@ void eigen_way(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(frames * joints));
 }
 
-/// The same bytes read and written, without the work.
+/// Reads and writes the same bytes without the computation.
 void traffic(benchmark::State& state) {
   Data data;
   double total = 0.0;

@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: lab_recording SECONDS FOLDER\n";
     return 2;
   }
-  doctest::Context context;  // what the lab requires of itself ends the program
+  doctest::Context context;  // a failed check in the lab's code ends the program
   context.setAsDefaultForAssertsOutOfTestCases();
   const double seconds = std::atof(argv[1]);
   const std::string folder = argv[2];

@@ -17,7 +17,7 @@ namespace {
 
 using namespace kinalign;
 
-/// A second of a lab: five nodes at 100, mocap at 125, a Kinect at 30 messages.
+/// The messages of one second of a lab: 100 of each of five nodes, 125 of mocap, 30 of a Kinect.
 std::vector<std::pair<std::uint16_t, std::string>> second_of_a_lab() {
   std::mt19937 random(1);
   const auto payload = [&](std::size_t size) {
@@ -43,7 +43,7 @@ Result<void> write_all(const std::string& path, std::uint64_t count) {
   KA_TRY(writer.begin({"", "bench"}));
   const auto messages = second_of_a_lab();
   McapChunkContent chunk;
-  std::uint64_t in_chunk = 0;  // channels, a bit each
+  std::uint64_t in_chunk = 0;  // channels with messages in the chunk, one bit each
   for (std::uint64_t k = 0; k < count; ++k) {
     const auto& [channel, payload] = messages[k % messages.size()];
     if ((in_chunk >> channel & 1U) == 0) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t frames = 900;
 constexpr std::size_t filling = 150;   // frames after which every window is full
-constexpr std::size_t look_ahead = 2;  // the standard of --live
+constexpr std::size_t look_ahead = 2;  // the default of --live
 
 std::string bytes_of(const std::string& name) {
   std::ifstream in(KINALIGN_MODELS "/" + name + ".safetensors", std::ios::binary);
@@ -57,7 +57,7 @@ FuseInput any_both(const FuseModel& model, std::size_t count, std::size_t first 
           any_joints(model.layout.joints.size(), count, first)};
 }
 
-/// Times real time, of a clip at 30 Hz.
+/// Counts how many times faster than real time a clip at 30 Hz is processed.
 void count_frames(benchmark::State& state, std::size_t count) {
   state.counters["x_real_time"] = benchmark::Counter(static_cast<double>(count) / 30.0,
                                                      benchmark::Counter::kIsIterationInvariantRate);
@@ -93,8 +93,8 @@ double thread_ms() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// Half of the frames, and 99 of 100, take at most so long. `input(t)` makes frame t, which
-/// `push(frame)` takes.
+/// Measures the time within which half of the frames, and 99 of 100, are done. `input(t)` makes
+/// frame t, which `push(frame)` takes.
 template <class Input, class Push>
 void time_frames(benchmark::State& state, const Input& input, const Push& push) {
   std::size_t t = 0;

@@ -71,7 +71,7 @@ Network network_of(const Architecture& architecture, const Kernels& kernels) {
   return *std::move(network);
 }
 
-// ---- Eigen
+// ---- the same network in Eigen
 
 void activate(Matrix& values) {
   values = values.unaryExpr([](float x) { return 0.5F * x * (1.0F + std::erf(x * 0.70710678F)); });
@@ -163,7 +163,7 @@ struct EigenGru {
   }
 };
 
-// ---- the jobs; an item is a frame
+// ---- the benchmarks; an item is a frame
 
 Matrix random_frames(std::size_t n, std::size_t size) {
   return Matrix::Random(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(n));

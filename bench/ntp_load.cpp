@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks an NTP server on loopback for some seconds, with so many requests under way at any time, and
-// prints how many were answered and how soon: ntp_load PORT IN_FLIGHT SECONDS SOURCES. Each request
-// comes from the next of so many addresses of 127/8. ntp_bench.py runs it.
+// Asks an NTP server on loopback for SECONDS, with IN_FLIGHT requests under way at any time, and
+// prints the number of answers and their delays: ntp_load PORT IN_FLIGHT SECONDS SOURCES. The
+// requests come in turn from SOURCES addresses of 127/8. ntp_bench.py runs it.
 #include "kinalign/wire/ntp_packet.h"
 
 #include <arpa/inet.h>
@@ -46,7 +46,7 @@ struct Messages {
       head->cmsg_len = CMSG_LEN(sizeof(in_pktinfo));
     }
   }
-  /// The address that message `i` comes from.
+  /// Sets the address from which message `i` comes.
   void set_source(std::size_t i, std::uint32_t address) {
     in_pktinfo info{};
     info.ipi_spec_dst.s_addr = htonl(address);
@@ -88,14 +88,14 @@ class Load {
     }
   }
 
-  /// Good answers that came; 0 after a tenth of a second without.
+  /// Receives answers and gives the number of good ones; 0 after a tenth of a second without any.
   std::size_t receive() {
     const int got = ::recvmmsg(fd_, in_.heads.data(), most, MSG_WAITFORONE, nullptr);
     const std::int64_t now = now_ns();
     std::size_t good = 0;
     for (int i = 0; i < got; ++i) {
       const auto& bytes = in_.bytes[static_cast<std::size_t>(i)];
-      std::uint64_t asked = 0;  // the originate stamp says which request it was
+      std::uint64_t asked = 0;  // the originate stamp holds the request's number
       for (std::size_t k = 24; k < 32; ++k) asked = asked << 8 | bytes[k];
       NtpPacket answer;
       if (asked == 0 || asked > sent_at_.size()) continue;
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
   load.ask(in_flight);
   while (now_ns() < end) {
     const std::size_t good = load.receive();
-    if (good == 0) lost += in_flight;  // all of them: nothing came for a tenth of a second
+    if (good == 0) lost += in_flight;  // all are lost, because nothing came for a tenth of a second
     load.ask(good == 0 ? in_flight : good);
   }
   const double elapsed = static_cast<double>(now_ns() - begin) / 1e9;

@@ -39,7 +39,7 @@ void count(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(samples * channels));
 }
 
-/// Reads the values, writes bends and output: what no spline can do without in one piece.
+/// Reads the values and writes bends and output: the memory traffic that any spline needs.
 void traffic(benchmark::State& state) {
   Data d;
   for (auto _ : state) {
@@ -65,7 +65,8 @@ void whole(benchmark::State& state) {
   count(state);
 }
 
-enum class Output { whole, slab };  // slab: the same rows again and again, as alignment does
+// Slab: the same rows are written again and again, as alignment does.
+enum class Output { whole, slab };
 
 template <Output output>
 void windows(benchmark::State& state) {

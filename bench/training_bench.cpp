@@ -37,8 +37,8 @@ void recurrent_step(benchmark::State& state) {
     for (auto& [name, tensor] : network.tensors()) tensor.mutable_grad().reset();
     network.forward(input, true).pow(2).mean().backward();
   }
-  // Forward, and backward for the values and for the weights; each layer reads its input and its
-  // own last state, in both directions.
+  // Multiplications and additions, forward, and backward for the values and for the weights. Each
+  // layer reads its input and its own last state, in both directions.
   const double weights = 2.0 * 4.0 * double(units) * (double(units + units) + double(3 * units));
   rate(state, 3.0 * 2.0 * weights * double(batch * frames));
 }

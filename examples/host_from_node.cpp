@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exchanges in, stamps out: each line of the input is a frame, «n_tx_us h_rx_ns», with the echo
-// that it carries, «n_rx_us h_tx_ns», if it carries one. Any program can do this with any device
-// that has a counter; times as in kinalign/clock/live/live_clock.h. Here µs of the counter become
-// ns.
+// Reads exchanges and prints stamps. Each line of the input is a frame, «n_tx_us h_rx_ns», followed
+// by the echo that it carries, «n_rx_us h_tx_ns», if it carries one. Any program can do this with
+// any device that has a counter; the times are those of kinalign/clock/live/live_clock.h. Here the
+// counter's µs become ns.
 #include "kinalign/clock/live/live_clock.h"
 
 #include <iostream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The law of every reader: rows do not depend on where the file is cut into pieces.
+// The rule for every reader: its rows do not depend on where the file is cut into pieces.
 #pragma once
 
 #include "tests/pieces.h"
@@ -15,7 +15,7 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Numbers that a reader lets through can be computed with.
+/// Whether all numbers that a reader gives are finite and can be computed with.
 inline bool sound(const PointFrames& rows) {
   const auto finite = [](double x) { return x - x == 0.0; };
   return std::all_of(rows.positions.begin(), rows.positions.end(), finite) &&
@@ -29,7 +29,7 @@ inline bool sound(const ImuSamples& rows) {
          std::all_of(rows.angular_velocity.begin(), rows.angular_velocity.end(), finite);
 }
 
-/// `make` gives a fresh reader; the text's own bytes say how it is cut.
+/// `make` gives a fresh reader; the text's own bytes decide where it is cut.
 template <class MakeReader>
 void check_pieces(MakeReader make, std::string_view text) {
   const std::size_t piece = text.empty() ? 1 : 1 + static_cast<unsigned char>(text.back()) % 61;

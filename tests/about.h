@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// doctest's Approx forgives `epsilon` of one and the value together: a tenth of a second where a
-// millisecond is compared to a tenth. This one forgives a share of the value itself, and of 0
-// nothing.
+// A comparison like doctest's Approx, but relative. Approx allows `epsilon` of the sum of one and
+// the value, which is a tenth of a second if a millisecond is compared with a tolerance of a tenth.
+// This one allows a share of the value itself, and nothing for 0.
 #pragma once
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The disk, with a count of what is read of it.
+// The disk's files, with a count of the bytes that are read.
 #pragma once
 
 #include "kinalign/core/files.h"

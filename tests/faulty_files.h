@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The machine's files with one call that fails: for tests of all that writes or reads.
+// The machine's files with one call that fails, for tests of all code that writes or reads files.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,15 +16,16 @@
 
 namespace kinalign {
 
-/// Does as the machine's; removing always works, and a close that fails has closed all the same, as
-/// on Linux.
+/// Works like the machine's files. Removing always works, and a close that fails has closed the
+/// file nevertheless, as on Linux.
 class FaultyFiles final : public FileSystem {
  public:
   int fail_at = 0;              // the call that fails, from 1; 0: none
-  int code = ENOSPC;            // with this errno
-  bool nameless = true;         // O_TMPFILE is there
-  std::size_t most = SIZE_MAX;  // bytes a write takes, and a read at a place gives
-  std::size_t first_read = 0;   // bytes the first read gives, the next ones one more each; 0: all
+  int code = ENOSPC;            // errno of the failing call
+  bool nameless = true;         // whether O_TMPFILE works
+  std::size_t most = SIZE_MAX;  // most bytes of a write, and of a read at an offset
+  /// Bytes that the first read gives; each later one gives one more; 0: all.
+  std::size_t first_read = 0;
   int calls = 0;
 
   bool failed() const { return fail_at != 0 && calls >= fail_at; }
@@ -76,14 +77,14 @@ class FaultyFiles final : public FileSystem {
   PosixFiles files_;
 };
 
-/// The machine's, but one page of a file the disk can't give: at each reading, or at one.
+/// The machine's files, but the disk can't read one page of a file: at each reading, or at one.
 class BadPage final : public PosixFiles {
  public:
   static constexpr off_t size = 4096;
   BadPage(std::string path, off_t at) : path_(std::move(path)), at_(at / size * size) {}
 
-  int only_opening = 0;     // from 1: the one in which it fails; 0: each
-  bool comes_short = true;  // what is asked for up to the page; else that fails, too
+  int only_opening = 0;     // from 1: the opening whose reads fail; 0: each opening
+  bool comes_short = true;  // a read ends at the bad page; false: a read that reaches it fails
 
   int open(const char* path, int flags, mode_t mode) override {
     const int fd = PosixFiles::open(path, flags, mode);
@@ -121,7 +122,7 @@ class BadPage final : public PosixFiles {
   std::string path_;
   off_t at_;
   int openings_ = 0;
-  std::map<int, off_t> bad_;  // where read() goes on
+  std::map<int, off_t> bad_;  // offset of the next read() of each descriptor
 };
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fresh folder for one test, removed with all it holds at the end. Its name has a blank: users'
-// do.
+// A fresh folder for one test, removed with its contents at the end. Its name has a blank, because
+// users' folders have some.
 #pragma once
 
 #include <filesystem>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The main of every room's tests. Beside doctest's own output it writes one line a case to the file
-// named by KINALIGN_TEST_LOG (passed | failed | skipped, a tab, the case), from which ./dev test
-// counts: a case that reads ../shared/data and can't find it is skipped, and says so there; what is
-// skipped for another reason says it in its doctest::description, which stands behind a second tab.
-// Each line is written at once: several programs share the file.
+// The main function of all test programs. Beside doctest's own output it writes one line for each
+// case to the file named by KINALIGN_TEST_LOG: passed, failed or skipped, a tab, the case. ./dev
+// test counts these lines. A case that needs ../shared/data and can't find it is skipped, and its
+// line says so. A case that is skipped for another reason says it in its doctest::description,
+// which follows after a second tab. Each line is written at once, because several programs share
+// the file.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The worked examples of docs/formats, read from the pages: what they show is what we read and
-// send.
+// The worked examples of docs/formats, read from the pages: the bytes that they show must be those
+// that we read and send.
 #pragma once
 
 #include "tests/folder.h"

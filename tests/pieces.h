@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// What a pass over a text gave.
+/// The result of one pass over a text.
 template <class ReaderType>
 struct Read {
   typename ReaderType::Header header;

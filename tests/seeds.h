@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Seeds for laws over random cases: new ones in every run, printed where a case fails, and given
-// again by KINALIGN_SEED=number, which runs that one alone.
+// Seeds for rules that are tested on random cases. They are new in every run and are printed when a
+// case fails. KINALIGN_SEED=number runs that seed alone.
 #pragma once
 
 #include <cstdint>

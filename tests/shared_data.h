@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real recordings for tests. They are no part of the repository: a case that needs them is
-// `* doctest::skip(!shared_data())` and shows in the count.
+// Real recordings for tests. They are not in the repository: a case that needs them has `*
+// doctest::skip(!shared_data())` and is counted as skipped without them.
 #pragma once
 
 #include "tests/folder.h"
@@ -19,7 +19,7 @@ inline std::string shared_path(std::string_view name) {
 
 inline bool shared_data() { return std::filesystem::is_directory(shared_path("bvh")); }
 
-/// All real BVH files, but those below wild/: what becomes of these is asked file by file.
+/// All real BVH files, except those below wild/, for which each file has its own expectation.
 inline std::vector<std::filesystem::path> shared_bvh_files() {
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(shared_path(""))) {

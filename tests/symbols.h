@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a library calls, for what is built freestanding.
+// The outside functions that a library calls, for libraries that are built freestanding.
 #pragma once
 
 #include "tests/folder.h"
@@ -26,8 +26,9 @@ inline std::set<std::string> symbols(const std::string& library, const std::stri
   return names;
 }
 
-/// What a library calls that it does not define, but for the four functions that any compiler asks
-/// for (GCC's manual, section 2.1: what a freestanding environment has to give).
+/// The functions that a library calls and does not define, without the four functions that any
+/// compiler asks for (GCC's manual, section 2.1: the functions that a freestanding environment must
+/// provide).
 inline std::set<std::string> called_from_outside(const std::string& library) {
   auto called = symbols(library, "-u");
   const auto defined = symbols(library, "--defined-only");
@@ -39,7 +40,7 @@ inline std::set<std::string> called_from_outside(const std::string& library) {
 }
 
 #ifdef KINALIGN_SANITIZED
-inline constexpr bool sanitized = true;  // its calls are in the library
+inline constexpr bool sanitized = true;  // the library then also has the sanitizer's calls
 #else
 inline constexpr bool sanitized = false;
 #endif

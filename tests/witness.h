@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Independent computations by NumPy and SciPy: a script of tests/witness/ gets named arrays and
-// leaves named arrays (tests/witness/arrays.py is its side).
+// Independent computations by NumPy and SciPy. A script of tests/witness/ gets named arrays and
+// returns named arrays (tests/witness/arrays.py is the script's side).
 #pragma once
 
 #include "tests/folder.h"
@@ -16,7 +16,7 @@ namespace kinalign {
 
 using Arrays = std::map<std::string, std::vector<double>>;
 
-/// Runs a script of tests/witness with Debian's Python; its exit status.
+/// Runs a script of tests/witness with Debian's Python; gives its exit status.
 inline int run_witness(const std::string& script, const std::string& path) {
   const std::string command = "OPENBLAS_NUM_THREADS=1 /usr/bin/python3 " KINALIGN_SOURCE_DIR
                               "/tests/witness/" +
@@ -24,8 +24,8 @@ inline int run_witness(const std::string& script, const std::string& path) {
   return std::system(command.c_str());
 }
 
-/// Runs a script on arrays. Throws, which fails the test, where it fails: NumPy and
-/// SciPy stand in packages.txt.
+/// Runs a script on arrays. Throws if it fails, which fails the test: NumPy and SciPy are in
+/// packages.txt, so they must be there.
 inline Arrays run_python(const std::string& script, const Arrays& given) {
   const FreshFolder folder;
   for (const auto& [name, values] : given) {

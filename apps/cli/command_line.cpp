@@ -24,7 +24,7 @@ bool looks_like_a_flag(std::string_view word) {
   return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
 }
 
-/// One walk over the words.
+/// Parses the words of one call in one pass.
 class Walk {
  public:
   Walk(const std::vector<std::string>& words, const Usage& usage, const Fields& common)
@@ -34,6 +34,7 @@ class Walk {
     }
   }
 
+  // Flags may stand between other words; after "--" every word is taken as it stands.
   Result<Parsed> parse() {
     bool flags = true;
     for (; at_ < words_.size(); ++at_) {
@@ -52,6 +53,7 @@ class Walk {
   }
 
  private:
+  // A flag with two dashes: "--flag", "--flag=value" or "--no-flag".
   Result<void> long_flag(const std::string& word) {
     const auto equals = word.find('=');
     const std::string flag = word.substr(0, equals);
@@ -69,6 +71,7 @@ class Walk {
     return unknown(flag);
   }
 
+  // Flags of one letter, which may be joined: "-vo FILE".
   Result<void> letter(const std::string& word) {
     for (std::size_t i = 1; i < word.size(); ++i) {
       const std::string flag{'-', word[i]};
@@ -84,7 +87,7 @@ class Walk {
     return {};
   }
 
-  /// A flag whose value, where it has one, is the next word.
+  /// A flag without '='. If it needs a value, the next word is the value.
   Result<void> set_bare(const Field& field, const std::string& flag) {
     if (is_switch(field)) return set(field, flag, "true");
     if (at_ + 1 == words_.size() || looks_like_a_flag(words_[at_ + 1])) {
@@ -94,6 +97,8 @@ class Walk {
     return set(field, flag, words_[++at_]);
   }
 
+  // Sets an option. The first value of a list replaces its default; other options may be given only
+  // once.
   Result<void> set(const Field& field, const std::string& flag, const std::string& text) {
     const bool many = std::holds_alternative<std::vector<std::string>*>(field.value);
     const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
@@ -105,11 +110,15 @@ class Walk {
     });
   }
 
+  // Gives the words to the verb's positionals. One that takes several leaves enough words for those
+  // after it.
   Result<void> place_words() {
     std::size_t next = 0;
-    std::size_t needed = 0;  // by the positionals behind the current one
+    std::size_t needed = 0;  // words that the positionals after this one need
     for (const Positional& place : usage_.positionals) needed += place.least;
-    if (plain_.size() < needed) needed = 0;  // the last ones are missing, not the first
+    if (plain_.size() < needed)
+      needed = 0;  // too few words: then the last ones are missing, not
+                   // the first
     for (const Positional& place : usage_.positionals) {
       needed -= std::min(needed, place.least);
       for (std::size_t n = 0; n < place.most && next + needed < plain_.size(); ++n, ++next) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Completions of verbs, flags, choices and layouts for bash, zsh and fish; everything else
-// completes to file names.
+// Completion scripts for bash, zsh and fish. Verbs, flags, choices and layouts are completed; every
+// other word is completed as a file name.
 #include "apps/cli/command_line.h"
 #include "apps/cli/field_text.h"
 #include "apps/cli/help.h"
@@ -23,7 +23,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Calls use(page, usage, fields) for each verb, with all its flags in one list.
+/// Calls use(page, usage, fields) for each verb; `fields` has all of its flags.
 template <class Use>
 void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
   for (const Verb& verb : verbs) {
@@ -38,14 +38,14 @@ void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
   }
 }
 
-/// Words that a flag may be given; none: any, or a file.
+/// The words that a flag accepts; empty: any text, or a file.
 std::vector<std::string> values_of(const Field& field) {
   if (field.name != "layout" && !field.name.ends_with("_layout")) return field.choices;
   const auto names = format_names();
   return {names.begin(), names.end()};
 }
 
-/// The first words of all verbs.
+/// The first words of all verbs: single verbs, then groups.
 std::string verb_names(const std::vector<Verb>& verbs) {
   std::vector<std::string> names;
   for (const Verb& verb : verbs) {
@@ -64,13 +64,14 @@ std::string names_in(const std::string& group, const std::vector<Verb>& verbs) {
   return joined(names);
 }
 
-/// Text within single quotes of a shell, without what zsh's _arguments reads as its own.
+/// Text for single quotes of a shell, without characters that have a meaning in zsh's _arguments.
 std::string quotable(std::string text) {
   std::erase_if(text, [](char c) { return c == '\'' || c == '[' || c == ']'; });
   std::replace(text.begin(), text.end(), ':', ',');
   return text;
 }
 
+/// A bash script with one case for each flag that takes a value, and one for each verb.
 std::string bash_script(const std::vector<Verb>& verbs) {
   std::string cases;
   for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
@@ -106,6 +107,7 @@ std::string bash_script(const std::vector<Verb>& verbs) {
       verb_names(verbs), groups, cases);
 }
 
+/// A zsh script with one call of _arguments for each verb.
 std::string zsh_script(const std::vector<Verb>& verbs) {
   std::string list;
   for (const Verb& verb : verbs) {
@@ -151,8 +153,8 @@ std::string zsh_script(const std::vector<Verb>& verbs) {
       list, groups, cases);
 }
 
-/// The lines that complete one verb's options and its places with a fixed set of words, after
-/// `within`.
+/// The lines that complete one verb's options, and its positionals with fixed choices. `within`:
+/// the beginning of each line.
 std::string fish_options(const std::string& within, const Usage& usage, const Fields& fields) {
   std::string text;
   for (const Field& field : fields) {
@@ -169,6 +171,7 @@ std::string fish_options(const std::string& within, const Usage& usage, const Fi
   return text;
 }
 
+/// A fish script with a line for each verb and each flag.
 std::string fish_script(const std::vector<Verb>& verbs) {
   std::string text = "# fish completion of kinalign\n";
   for (const std::string& group : groups_of(verbs)) {

@@ -17,9 +17,9 @@ namespace kinalign {
 
 namespace {
 
-// The only variable that outlives a call: a signal handler can be told nothing.
+// The only variable that outlives a call: a signal handler gets no argument of ours.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
-std::atomic<bool> ctrl_c = false;  // any thread reads it
+std::atomic<bool> ctrl_c = false;  // any thread may read it
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 constexpr std::array<std::string_view, 7> codes{"",         "\x1b[32m", "\x1b[33m", "\x1b[31m",
@@ -38,13 +38,14 @@ bool colour_wanted(const Surroundings& surroundings, const Common& common, bool 
          surroundings.variable("TERM") != "dumb";
 }
 
-/// Not where it would stand within the lines of --json.
+/// No progress if it would stand between the lines of --json on the same terminal.
 bool progress_wanted(const Surroundings& surroundings, const Common& common) {
   return surroundings.err_is_terminal && !common.quiet && surroundings.variable("TERM") != "dumb" &&
          !(common.json && surroundings.out_is_terminal);
 }
 
-/// These go by bytes, comparing by takes, all else by frames.
+/// The rate in the unit of the job: bytes for reading, hashing and building, takes for comparing,
+/// frames for all else.
 std::string rate_text(std::string_view what, double per_s) {
   const bool by_bytes = what.starts_with("reading") || what == "hashing" || what == "building";
   if (what == "comparing") return fmt::format("{:.0f} takes/s", per_s);
@@ -61,6 +62,8 @@ std::string time_text(double s) {
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
+/// Installs the signal handler. SIGPIPE and SIGXFSZ are ignored, so that a failed write is an
+/// error.
 void note_signals(unsigned flags) {
   ctrl_c = false;
   struct sigaction action {};
@@ -70,9 +73,12 @@ void note_signals(unsigned flags) {
   ::sigaction(SIGTERM, &action, nullptr);
   struct sigaction hang_up {};
   ::sigaction(SIGHUP, nullptr, &hang_up);
-  if (hang_up.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);  // else it is nohup's
+  if (hang_up.sa_handler != SIG_IGN)
+    ::sigaction(SIGHUP, &action, nullptr);  // an ignored SIGHUP
+                                            // (nohup) stays
+                                            // ignored
   ::signal(SIGPIPE, SIG_IGN);
-  ::signal(SIGXFSZ, SIG_IGN);  // a limit on files' sizes is then a full disk like any other
+  ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes then acts like a full disk
 }
 
 }  // namespace
@@ -121,6 +127,7 @@ void Console::print(std::string_view text) {
   put(surroundings_.out_is_terminal ? broken(text, size_of(surroundings_.out).columns) : text);
 }
 
+/// Before the object it reports lines that were dropped, if there were any.
 void Console::print_json(std::string_view object, int version) {
   if (!prints_json()) return;
   if (const std::uint64_t missed = out_.take_dropped()) {
@@ -129,6 +136,7 @@ void Console::print_json(std::string_view object, int version) {
   put_json(object, version);
 }
 
+/// Inserts the member "schema" at the front of the object.
 void Console::put_json(std::string_view object, int version) {
   const std::string_view members = object.substr(object.find('{') + 1);
   const bool none = members.find_first_not_of(" \n") == members.find('}');
@@ -171,7 +179,7 @@ void Console::show(std::vector<std::pair<std::string, Colour>> lines) {
   err_.flush();
 }
 
-/// With as much of it as has room now.
+/// Draws the part of the table for which the terminal has room now.
 void Console::draw_table() {
   const std::size_t count = std::min(table_.size(), rows());
   for (std::size_t i = 0; i < count; ++i) {
@@ -218,6 +226,7 @@ std::string Console::out_trouble() const {
   return out_.fault() == 0 ? "" : std::strerror(out_.fault());
 }
 
+/// Waits up to a second for a slow reader. A reader that went away (EPIPE) is no error.
 Result<void> Console::finish() {
   constexpr std::chrono::milliseconds last_words{1000};
   erase_shown();
@@ -229,6 +238,7 @@ Result<void> Console::finish() {
   return Failure(Error{"standard output", 0, "room to write", std::strerror(out_.fault())});
 }
 
+/// Redraws the progress line, at most ten times a second.
 void Console::show_progress(std::string_view what, std::uint64_t done, std::uint64_t total) {
   const Clock::time_point now = Clock::now();
   if (doing_ != what) {
@@ -240,14 +250,15 @@ void Console::show_progress(std::string_view what, std::uint64_t done, std::uint
   drawn_ = now;
   const double elapsed_s = std::chrono::duration<double>(now - began_).count();
   const std::string line = progress_line(what, done, total, elapsed_s, columns());
-  if (standing_.empty()) err_.put(start_of_lines(1));  // "^C" may stand there
+  if (standing_.empty()) err_.put(start_of_lines(1));  // the terminal may have printed "^C" there
   erase_shown();
   err_.put(line);
   err_.flush();
   standing_ = {places(line)};
 }
 
-/// A terminal that was made narrower since has broken the lines anew.
+/// Erases the progress line or table. A terminal that was made narrower has broken its lines into
+/// more rows.
 void Console::erase_shown() {
   if (standing_.empty()) return;
   const std::size_t width = size_of(surroundings_.err).columns;
@@ -257,8 +268,8 @@ void Console::erase_shown() {
   standing_.clear();
 }
 
-/// In one piece, so that nothing flickers, but for what stdout holds, which comes first. For a
-/// terminal that takes nothing no table is kept with each message.
+/// Writes the message above the table in one piece, so that nothing flickers; text held for stdout
+/// goes first. If the terminal takes nothing, the table is not added to each message.
 void Console::say_above_table(std::string_view message) {
   const bool stuck = err_.holds();
   erase_shown();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a verb says: results on stdout, everything else on stderr. Colour and the progress line only
-// where they are wanted (docs/commands.md).
+// The output of a verb: results on stdout, everything else on stderr. Colour and the progress line
+// appear only if wanted (docs/commands.md).
 #pragma once
 
 #include "apps/cli/outlet.h"
@@ -20,13 +20,13 @@ namespace kinalign {
 
 enum class Colour { plain, good, warning, bad, mocap, kinect, imu };
 
-/// The colour that a finding's word has.
+/// The colour of a finding's severity.
 constexpr Colour colour_of(Severity severity) {
   if (severity == Severity::note) return Colour::plain;
   return severity == Severity::warning ? Colour::warning : Colour::bad;
 }
 
-/// Lines under an error: what was left undone, what to do next.
+/// Lines below an error: the work that was not done, and the next step.
 using Advice = std::function<std::vector<std::string>(const Error&)>;
 
 class Console {
@@ -36,72 +36,74 @@ class Console {
   Console& operator=(const Console&) = delete;
   ~Console();
 
-  /// A piece of the result, whole lines for people: on stdout, as it stands, on a terminal with
-  /// lines no wider than that. Silent with --quiet and --json.
+  /// Prints whole lines of the result on stdout. On a terminal, lines are broken at its width.
+  /// Silent with --quiet and --json.
   void print(std::string_view text);
 
-  /// What --json asks for: `object` is the text "{...}" of a JSON object, which gets
-  /// "schema": "kinalign.<verb>/<version>" as its first member. Silent without --json.
+  /// Prints JSON for --json. `object` is the text "{...}" of a JSON object, which gets "schema":
+  /// "kinalign.<verb>/<version>" as its first member. Silent without --json.
   void print_json(std::string_view object, int version = 1);
-  /// Another name for <verb>: the schema kinalign.report is that of the report in a take.
+  /// Sets another name for <verb>: the schema kinalign.report is that of the report in a take.
   void name_json(std::string name) { json_name_ = std::move(name); }
-  /// Whether print_json() prints anything: what is told each second is made only then.
+  /// True if print_json() prints. Callers use it to skip making JSON every second.
   bool prints_json() const { return common_.json; }
 
-  /// Text that is the result itself (a man page, a completion): on stdout whatever the flags.
+  /// Prints text that is the result itself (a man page, a completion) on stdout, whatever the
+  /// flags.
   void put(std::string_view text);
 
-  /// A line on stderr; silent with --quiet.
+  /// Prints a line on stderr; silent with --quiet.
   void note(std::string_view line);
-  /// A line on stderr, with --verbose only.
+  /// Prints a line on stderr, only with --verbose.
   void detail(std::string_view line);
-  /// A line on stderr in any case.
+  /// Prints a line on stderr, with any flags.
   void complain(std::string_view line);
 
-  /// `text` in a colour where stdout shows one.
+  /// The text in a colour if stdout shows colours.
   std::string paint(Colour colour, std::string_view text) const;
 
-  /// One line on stderr, on a terminal only, gone when the job is done; none where --json goes to a
-  /// terminal. Asks the job to stop after the first Ctrl-C (the second one ends the program at
-  /// once).
+  /// The progress line on stderr. It is shown only on a terminal, not if --json goes to a terminal
+  /// too, and erased at the end. The returned function is false after the first Ctrl-C; a second
+  /// one ends the program at once.
   Progress progress();
 
-  /// Lines that stand on stderr until the next ones, on a terminal where progress would be, below
-  /// all that is said meanwhile, and are gone when the job is done; no wider and no more than the
-  /// terminal has room for.
+  /// Shows lines on stderr below all other output, under the same conditions as the progress line.
+  /// They stay until the next call and are erased at the end. Lines that do not fit into the
+  /// terminal are cut.
   void show(std::vector<std::pair<std::string, Colour>> lines);
-  /// Whether show() shows anything.
+  /// True if show() shows anything.
   bool shows() const { return progress_; }
-  /// A sound, where show() shows anything.
+  /// Rings the bell, under the same conditions as show().
   void ring();
 
-  /// To be said if the verb fails; the last call counts. Asked after the verb has returned: it
-  /// holds what it needs, by value.
+  /// Sets the advice for the case that the verb fails; the last call counts. It is called after the
+  /// verb has returned, so it must hold its data by value.
   void if_it_fails(Advice advice) { advice_ = std::move(advice); }
-  /// Whatever fails from here on, the file is there. An empty path: there is none.
+  /// States that the file is complete, even if the verb fails later. An empty path is ignored.
   void wrote(const std::string& path);
 
-  /// Wrong use that only the files show: the failure to return, with the exit code of wrong use.
+  /// Returns the failure for wrong use that only the files show. The exit code is that of wrong
+  /// use.
   Failure refuse(Error error);
   bool refused() const { return refused_; }
 
-  /// Places in a line of what show() shows, and lines that it has room for.
+  /// The columns and the rows that show() can use.
   std::size_t columns() const;
   std::size_t rows() const;
 
-  /// Says what went wrong and what was advised.
+  /// Prints the error and the advice.
   void report(const Error& error);
 
-  /// For a job that must not stand still while nobody reads: see Outlet. What --json then lacks is
-  /// told, once there is room again, by a line {"event": "missed", "lines": N}.
+  /// For a job that must go on while no program reads its output: see Outlet. Lines of --json that
+  /// were dropped are reported later by a line {"event": "missed", "lines": N}.
   void never_wait();
 
-  /// Writes what is held, for a job that goes on.
+  /// Writes held text, for a job that goes on.
   void flush();
-  /// What keeps stdout from taking it, for a job that goes on: "No space left on device"; empty:
-  /// nothing.
+  /// The reason why stdout takes no text: "No space left on device". Empty if it works.
   std::string out_trouble() const;
-  /// Writes what is still held. Fails where stdout took no more; a reader that went away is fine.
+  /// Writes the held text at the end. Fails if stdout refused it; a reader that went away is no
+  /// failure.
   Result<void> finish();
 
  private:
@@ -121,23 +123,24 @@ class Console {
   bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
   Outlet out_, err_;
-  std::string doing_;                                  // what the progress line says
-  std::vector<std::pair<std::string, Colour>> table_;  // what show() showed last
-  std::vector<std::size_t> standing_;  // of each line that stands, the table's or progress: places
+  std::string doing_;                                  // the job in the progress line
+  std::vector<std::pair<std::string, Colour>> table_;  // the lines of the last show()
+  std::vector<std::size_t> standing_;  // the width of each line on the terminal: table or progress
   Clock::time_point began_{}, drawn_{};
 };
 
-/// "reading  43 %  1.2 MB/s  12 s left": of a job that has run for `elapsed_s`, cut to `width`.
+/// The progress line: "reading  43 %  1.2 MB/s  12 s left". `elapsed_s`: since the job's begin;
+/// `width`: the line is cut there.
 std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
                           double elapsed_s, std::size_t width);
 
 /// From here on the first Ctrl-C, SIGTERM or SIGHUP is only noted, and a reader of stdout that goes
-/// away is no signal. Who started the program with SIGHUP ignored (nohup) wants it to go on.
+/// away raises no signal. If SIGHUP was ignored at the start (nohup), it stays ignored.
 void take_signals();
-/// As take_signals(), but all of them are only noted, however soon one follows another: a terminal
-/// that is closed and its shell send SIGHUP both. Who asks for it has to end by itself.
+/// Like take_signals(), but every such signal is only noted: a closed terminal sends SIGHUP, and so
+/// does its shell. The caller has to end by itself.
 void take_every_signal();
-/// Ctrl-C was pressed, or SIGTERM or SIGHUP came, since take_signals().
+/// True if Ctrl-C, SIGTERM or SIGHUP came since take_signals().
 bool interrupted();
 
 }  // namespace kinalign

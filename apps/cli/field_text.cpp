@@ -19,7 +19,7 @@ struct Overloaded : Kinds... {
   using Kinds::operator()...;
 };
 template <class... Kinds>
-Overloaded(Kinds...) -> Overloaded<Kinds...>;  // clang 14 needs to be told
+Overloaded(Kinds...) -> Overloaded<Kinds...>;  // clang 14 needs this guide
 
 std::string text_of(double number) {
   std::array<char, number_room> room{};
@@ -48,6 +48,7 @@ Result<double> number_in(const Field& field, std::string_view text) {
   return value;
 }
 
+/// A whole number within the option's range.
 Result<std::int64_t> integer_in(const Field& field, std::string_view text) {
   std::int64_t value = 0;
   const char* end = text.data() + text.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options as people write them.
+// Options in the form in which people write them.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,26 +11,27 @@
 
 namespace kinalign {
 
-/// Sets the option from text ("0.5", "true", "slerp"); a vector of strings grows by it. Fails, with
-/// an Error that names no place, outside the range or the choices.
+/// Sets the option from text ("0.5", "true", "slerp"); a vector of strings gets one more element.
+/// Fails outside the range or the choices; the Error names no place.
 Result<void> set_field(const Field& field, std::string_view text);
 
-/// The value as set_field reads it; empty for an optional without one. Vectors: joined by ", ".
+/// The value in the form that set_field() reads. Empty for an optional without value; vectors are
+/// joined by ", ".
 std::string field_text(const Field& field);
 
-/// Whether a flag of it stands alone: --double, not --double true.
+/// True if the option's flag stands alone: --double, not --double true.
 bool is_switch(const Field& field);
 
-/// What stands behind the flag in a help page: "NUMBER", "FILE", "spline|slerp", "" for a switch.
+/// The word after the flag in a help page: "NUMBER", "FILE", "spline|slerp"; "" for a switch.
 std::string placeholder(const Field& field);
 
-/// "--gap-ms" of gap_ms.
+/// The flag of an option: gap_ms gives "--gap-ms".
 std::string flag_of(std::string_view name);
 
-/// "KINALIGN_GAP_MS" of gap_ms.
+/// The variable of an option: gap_ms gives "KINALIGN_GAP_MS".
 std::string variable_of(std::string_view name);
 
-/// "a, b or c"
+/// The words as a choice: "a, b or c".
 std::string any_of(const std::vector<std::string>& words);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines below a failure that say which file to name instead, or which command reads it.
+// The lines below a failure that name another file or another command.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -9,8 +9,8 @@
 
 namespace kinalign {
 
-/// For a folder that was named instead of a file: the first recording in it. For a recording that a
-/// bad disk can't read: `recover`. Empty for any other failure.
+/// If a folder was named instead of a file: its first recording. If a bad disk can't read a
+/// recording: `recover`. Empty for any other failure.
 std::vector<std::string> file_advice(const Error& error);
 
 }  // namespace kinalign

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t meaning_column = 28;  // where meanings begin
+constexpr std::size_t meaning_column = 28;  // the column of the meanings
 
 std::string line_of(const std::string& left, const std::string& meaning) {
   std::string line = "  " + left;
@@ -34,7 +34,7 @@ std::string lines_of(const Fields& fields, const std::string& head) {
   return text;
 }
 
-/// "init, add, build": a group's verbs without its name.
+/// The verbs of a group without its name: "init, add, build".
 std::string words_of(const std::string& group, const std::vector<Verb>& verbs) {
   std::string text;
   for (const Verb& verb : verbs) {
@@ -67,6 +67,7 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
 
 std::string program_version() { return KINALIGN_VERSION; }
 
+/// The flag as a help page lists it; the default follows in brackets unless the meaning states it.
 FlagText flag_text(const Field& field) {
   FlagText text{flag_of(field.name), field.meaning};
   if (field.name == "out") text.flag = "-o, --out";
@@ -105,7 +106,7 @@ std::string overview(const std::vector<Verb>& verbs) {
                                   [](const Verb& verb) { return verb.page.name == "align"; });
   if (!aligns) text = "  kinalign config\n";
   text += "\nAligns motion capture, Kinect v2 and IMU recordings.\n\nverbs\n";
-  std::string listed;  // the group in which the verb before stands
+  std::string listed;  // the group of the verb before
   for (const Verb& verb : verbs) {
     const std::string group = group_of(verb.page.name);
     if (group.empty()) text += line_of(verb.page.name, verb.page.summary);

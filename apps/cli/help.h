@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program says of itself: help pages, the man page, completions. All from the verbs'
+// The program's help: help pages, the man page, completions. All are made from the verbs'
 // descriptions.
 #pragma once
 
@@ -11,30 +11,31 @@
 
 namespace kinalign {
 
-/// `text` in lines of at most `width` characters, those behind the first one moved to `indent`.
+/// Breaks `text` into lines of at most `width` characters; all but the first begin at column
+/// `indent`.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width = 80);
 
-/// "0.1.0"
+/// The version, such as "0.1.0".
 std::string program_version();
 
-/// The list of verbs; a group of them is one line.
+/// The list of verbs; each group is one line.
 std::string overview(const std::vector<Verb>& verbs);
-/// The verbs of one group: "dataset".
+/// The verbs of one group, such as "dataset".
 std::string group_page(const std::string& group, const std::vector<Verb>& verbs);
 
-/// One verb's page; its first line is an example that works.
+/// The page of one verb. Its first line is an example that works.
 std::string help_page(const Page& page, const Usage& usage);
 
-/// kinalign(1) in roff.
+/// The page kinalign(1) in roff.
 std::string man_page(const std::vector<Verb>& verbs);
 
 /// A script for `shell`: bash, zsh or fish.
 std::string completion_script(const std::string& shell, const std::vector<Verb>& verbs);
 
-/// `kinalign align [--gap-ms NUMBER] ... FILE`, without the flags: what --help's usage line says.
+/// The usage line of a help page: `kinalign align FILE [FLAGS]`.
 std::string usage_line(const Page& page, const Usage& usage);
 
-/// A flag as a page lists it: "-o, --out TEXT", its meaning with the standard value.
+/// A flag as a page lists it: "-o, --out TEXT", and its meaning with the default.
 struct FlagText {
   std::string flag, meaning;
 };

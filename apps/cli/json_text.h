@@ -5,7 +5,7 @@
 
 namespace kinalign {
 
-/// JSON (nlohmann's) of what may come from files: bytes that are no UTF-8 become U+FFFD.
+/// JSON (nlohmann's) of text that may come from files: bytes that are not UTF-8 become U+FFFD.
 template <class Json>
 std::string json_text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// kinalign(1), in the man macros of roff (groff_man(7)).
+// Makes kinalign(1) with the man macros of roff (groff_man(7)).
 #include "apps/cli/command_line.h"
 #include "apps/cli/field_text.h"
 #include "apps/cli/help.h"
@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// Text that roff takes literally.
+/// The text with roff's special characters escaped.
 std::string literal(std::string_view text) {
   std::string out;
   if (text.starts_with('.') || text.starts_with('\'')) out += "\\&";
@@ -39,6 +39,8 @@ std::string items(const Fields& fields) {
   return text;
 }
 
+/// The section of one verb. Flags that all verbs share are left out; a section of its own lists
+/// them.
 std::string verb_section(const Page& page, const Usage& usage) {
   std::string text =
       fmt::format(".SS \"{}\"\n{}\n", literal(usage_line(page, usage)), literal(page.summary));

@@ -15,7 +15,9 @@ namespace kinalign {
 
 namespace {
 
+/// Text is written once this number of bytes is held.
 constexpr std::size_t enough = std::size_t{64} << 10;
+/// Text beyond this number of bytes is dropped if the reader is not waited for.
 constexpr std::size_t most_waiting = std::size_t{1} << 20;
 
 }  // namespace
@@ -24,8 +26,9 @@ Outlet::~Outlet() {
   if (terminal_ >= 0) ::close(terminal_);
 }
 
-/// A terminal has room by poll(2) where a write of more than that sleeps; and not to block is a
-/// property that others who have it open would share.
+/// Opens the terminal anew with O_NONBLOCK. poll(2) reports room on a terminal even if a longer
+/// write would sleep, and O_NONBLOCK on the given descriptor would affect other programs that share
+/// it.
 void Outlet::never_wait() {
   waits_ = false;
   if (terminal_ >= 0 || ::isatty(fd_) == 0) return;
@@ -44,10 +47,10 @@ void Outlet::put(std::string_view text) {
 
 bool Outlet::takes_more(std::chrono::milliseconds patience) const {
   pollfd waiting{writes_to(), POLLOUT, 0};
-  return ::poll(&waiting, 1, static_cast<int>(patience.count())) == 1;  // write tells of faults
+  return ::poll(&waiting, 1, static_cast<int>(patience.count())) == 1;  // write() reports faults
 }
 
-/// A disk that may have room again, where nobody waits to hear that it has none.
+/// True if the disk was full but may have room again, and the output is not waited for.
 bool Outlet::is_full() const { return !waits_ && (fault_ == ENOSPC || fault_ == EDQUOT); }
 
 void Outlet::flush(std::chrono::milliseconds patience) {
@@ -57,7 +60,7 @@ void Outlet::flush(std::chrono::milliseconds patience) {
   while (!left.empty() && !gave_up()) {
     const auto still = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
     if (!waits_ && !takes_more(std::max(still, std::chrono::milliseconds{0}))) break;
-    // A pipe that takes anything takes so much without waiting.
+    // POSIX: a pipe that is writable takes up to PIPE_BUF bytes without blocking.
     const std::size_t piece = waits_ ? left.size() : std::min<std::size_t>(left.size(), PIPE_BUF);
     const ssize_t put = ::write(writes_to(), left.data(), piece);
     if (put < 0 && errno == EINTR) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text on its way to a file descriptor: waiting for its reader, or never.
+// Text on its way to a file descriptor; its reader is waited for, or never.
 #pragma once
 
 #include <chrono>
@@ -17,23 +17,23 @@ class Outlet {
   Outlet& operator=(const Outlet&) = delete;
   ~Outlet();
 
-  /// From here on a reader that doesn't read (a full pipe, a stopped terminal), or a full disk,
-  /// holds up nothing: up to 1 MiB waits for it, what comes then is dropped, by whole texts, and
-  /// counted.
+  /// From here on a reader that does not read (a full pipe, a stopped terminal) or a full disk
+  /// delays nothing. Up to 1 MiB of text waits for it; later texts are dropped whole and counted.
   void never_wait();
 
-  /// Holds it until there is enough to write.
+  /// Holds the text until there is enough to write.
   void put(std::string_view text);
-  /// Writes what is held; what a reader that isn't waited for does not take within so long, stays.
+  /// Writes the held text. If the reader is not waited for, the text that it does not take within
+  /// `patience` stays held.
   void flush(std::chrono::milliseconds patience = {});
 
-  /// Texts dropped since this was asked; 0 as long as there is no room to tell it.
+  /// The texts dropped since the last call; 0 while there is no room to report them.
   std::uint64_t take_dropped();
   bool holds() const { return !held_.empty(); }
   int fd() const { return fd_; }
-  /// errno of the write that failed last; 0: none, or another went well since.
+  /// errno of the last write if it failed; 0 if it succeeded or there was none.
   int fault() const { return fault_; }
-  /// Nothing more is written.
+  /// True if a write failed for good: nothing more is written.
   bool gave_up() const { return fault_ != 0 && !is_full(); }
 
  private:
@@ -42,7 +42,7 @@ class Outlet {
   int writes_to() const { return terminal_ >= 0 ? terminal_ : fd_; }
 
   int fd_;
-  int terminal_ = -1;  // the same one opened anew, so that writing never blocks
+  int terminal_ = -1;  // the same terminal opened anew, so that writing never blocks
   bool waits_ = true;
   std::string held_;
   std::uint64_t dropped_ = 0;

@@ -16,7 +16,7 @@ namespace kinalign {
 
 namespace {
 
-/// A file of a few bytes may say that it needs gigabytes.
+/// Turns bad_alloc into an error: a file of a few bytes may ask for gigabytes.
 template <class Work>
 Result<int> with_memory(const Work& work) {
   try {
@@ -26,7 +26,7 @@ Result<int> with_memory(const Work& work) {
   }
 }
 
-/// One call of one verb.
+/// One call of one verb: options, run, exit code.
 class Run {
  public:
   Run(const Verb& verb, const std::vector<Verb>& verbs, std::vector<std::string> words,
@@ -42,7 +42,7 @@ class Run {
   }
 
  private:
-  /// True: go on. Otherwise early_ is the exit code.
+  /// Sets the options. True: go on; false: early_ is the exit code.
   bool take_words(Usage& usage) {
     const Result<bool> help = set_options(usage);
     Console console(surroundings_, common_, verb_.page.name);
@@ -59,6 +59,7 @@ class Run {
     return filled_;
   }
 
+  // The advice for an error before the verb has run.
   std::vector<std::string> advice(const Error& error) const {
     const std::string variable = surroundings_.variable("KINALIGN_CONFIG");
     const bool by_variable = common_.config.empty() && error.file == variable;
@@ -74,7 +75,8 @@ class Run {
     return parse_settings(KA_TRY(found));
   }
 
-  /// Whether the help page was asked for.
+  /// Sets the options from the flags, then files, then the environment, each only where no stronger
+  /// source has. True if the help page was asked for.
   Result<bool> set_options(Usage& usage) {
     const Fields common = common_fields(common_, verb_.page);
     Parsed parsed = KA_TRY(parse_words(words_, usage, common));
@@ -100,6 +102,7 @@ class Run {
     return Call{common_, sources_, jobs, *console_, verbs_, surroundings_};
   }
 
+  // The exit code of a verb that has run. Text that stdout did not take is a failure, too.
   int leave(const Result<int>& code) {
     if (interrupted() && !code) {
       console_->complain("kinalign " + verb_.page.name + ": stopped; no unfinished file is left");
@@ -123,11 +126,11 @@ class Run {
   Sources sources_;
   std::optional<Console> console_;
   bool filled_ = false;
-  bool unreadable_ = false;  // a file of settings is
+  bool unreadable_ = false;  // a settings file can't be read
   int early_ = done;
 };
 
-/// `text` on stdout, or where it answers wrong use on stderr.
+/// Prints `text` on stdout; as an answer to wrong use on stderr.
 int say(const std::string& text, ExitCode code, const Surroundings& surroundings) {
   const Common common;
   Console console(surroundings, common, "");
@@ -139,6 +142,7 @@ int say(const std::string& text, ExitCode code, const Surroundings& surroundings
   return code;
 }
 
+/// Reports a word that is no verb, with the most similar known one.
 int unknown_verb(const std::vector<Verb>& verbs, const std::string& word,
                  const Surroundings& surroundings) {
   std::vector<std::string> known{"--help", "--version", "help"};
@@ -155,7 +159,7 @@ int unknown_verb(const std::vector<Verb>& verbs, const std::string& word,
   return wrong_use;
 }
 
-/// Puts the words of a verb that stands in a group together: "dataset", "build" to "dataset build".
+/// Joins the two words of a verb in a group: "dataset", "build" gives "dataset build".
 void join_group(const std::vector<Verb>& verbs, std::vector<std::string>& words) {
   if (words.size() < 2) return;
   const std::vector<std::string> groups = groups_of(verbs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program behind main: from words to a verb, its settings, its run and its exit code.
+// The program behind main(): finds the verb, sets its options, runs it and gives the exit code.
 #pragma once
 
 #include "apps/cli/verb.h"

@@ -16,10 +16,12 @@ namespace kinalign {
 
 namespace {
 
+/// A larger settings file is refused.
 constexpr std::size_t most_bytes = std::size_t{1} << 20;
 
 std::int64_t line_of(const toml::node& node) { return node.source().begin.line; }
 
+/// A TOML value as text, in the form that set_field() reads. Absent for tables, arrays and dates.
 std::optional<std::string> scalar_text(const toml::node& node) {
   if (node.is_string()) return node.value<std::string>();
   if (const auto truth = node.value<bool>(); node.is_boolean()) return *truth ? "true" : "false";
@@ -33,6 +35,7 @@ std::optional<std::string> scalar_text(const toml::node& node) {
   return std::nullopt;
 }
 
+/// The values of a key; an array gives several.
 Result<Setting> setting_of(const std::string& path, const toml::key& key, const toml::node& node) {
   Setting setting{"", std::string(key.str()), {}, line_of(node)};
   const auto add = [&](const toml::node& one) -> Result<void> {
@@ -52,7 +55,8 @@ Result<Setting> setting_of(const std::string& path, const toml::key& key, const 
   return setting;
 }
 
-/// Tables within tables are a lab's devices alone; but people confuse a lab's file with a manifest.
+/// The error for a table within a table. Only devices of a lab may have one; people often give a
+/// manifest instead of a lab's file.
 Failure no_table(const std::string& path, const toml::node& node, const std::string& name) {
   if (name.starts_with("stream.") || name.starts_with("space.")) {
     return Failure(Error{path, line_of(node), "settings, or a lab's devices",
@@ -64,6 +68,7 @@ Failure no_table(const std::string& path, const toml::node& node, const std::str
                        "[" + name + "]"});
 }
 
+/// Adds the settings of a verb's table.
 Result<void> add_table(const toml::key& key, const toml::table& table, SettingsFile& file) {
   for (const auto& [inner_key, inner] : table) {
     const toml::table* within = inner.as_table();
@@ -79,7 +84,7 @@ Result<void> add_table(const toml::key& key, const toml::table& table, SettingsF
 
 Result<SettingsFile> settings_of(const toml::table& all, SettingsFile file) {
   for (const auto& [key, node] : all) {
-    if (key == "device" && node.is_table()) continue;  // a lab's: documents/lab_toml.h reads them
+    if (key == "device" && node.is_table()) continue;  // documents/lab_toml.h reads a lab's devices
     if (node.is_array_of_tables()) {
       return no_table(file.path, node, "[" + shown(key.str()) + "]");
     }
@@ -135,6 +140,7 @@ Failure unknown(const SettingsFile& file, const Setting& setting,
                        shown(word)});
 }
 
+/// Refuses unknown names. Settings of other verbs are only checked for the verb's name.
 Result<void> check_name(const SettingsFile& file, const Setting& setting, const Settable& settable,
                         const std::vector<Verb>& verbs) {
   std::vector<std::string> known;
@@ -202,7 +208,7 @@ Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
     if (!setting.verb.empty() && setting.verb != settable.page.name) continue;
     const Fields& fields = setting.verb.empty() ? settable.common : settable.settings;
     const Field* field = named(fields, setting.name);
-    if (field == nullptr) continue;  // a setting of all verbs that this one has no use for
+    if (field == nullptr) continue;  // a common setting that this verb does not take
     const auto known = sources.find(setting.name);
     if (known != sources.end() && known->second > file.source) continue;
     KA_TRY(set_all(*field, setting.values).map_error([&](Error error) {
@@ -215,6 +221,8 @@ Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
   return {};
 }
 
+/// An empty variable counts as not set. The environment wins over files, and a flag over the
+/// environment.
 Result<void> apply_environment(const Surroundings& surroundings, const Settable& settable,
                                Sources& sources) {
   for (const Fields* fields : {&settable.settings, &settable.common}) {
@@ -234,6 +242,7 @@ Result<void> apply_environment(const Surroundings& surroundings, const Settable&
   return {};
 }
 
+/// Reads the files again, since options keep no line numbers.
 SettingPlace setting_place(const std::string& verb, const std::string& name, const Call& call) {
   const auto source = call.sources.find(name);
   if (source == call.sources.end() || source->second == Source::flag) return {};

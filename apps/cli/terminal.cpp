@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-/// Where a line's text begins: behind "  space  ", "warning  ".
+/// The column in which a line's text begins: after "  space  " or "warning  ".
 std::size_t text_column(std::string_view line) {
   constexpr std::size_t most = 24;
   const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
@@ -19,6 +19,8 @@ std::size_t text_column(std::string_view line) {
   return column < most ? column : begin + 2;
 }
 
+/// Breaks one line; a line is left as it is if it fits or the terminal is too narrow for the
+/// indent.
 std::string broken_line(std::string_view line, std::size_t width) {
   const std::size_t indent = text_column(line);
   if (places(line) <= width || indent + 20 > width) return std::string(line);
@@ -59,7 +61,7 @@ std::size_t places(std::string_view text) {
   bool colour = false;
   for (const char c : text) {
     if (c == '\x1b') colour = true;
-    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // of a UTF-8 character
+    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // within a character
     if (!colour && !goes_on) ++count;
     if (c == 'm') colour = false;
   }

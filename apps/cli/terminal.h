@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text on a terminal: how much room there is, and how much it takes.
+// Text on a terminal: the room there is, and the room that a text needs.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,25 @@ namespace kinalign {
 struct TerminalSize {
   std::size_t rows = 24, columns = 80;
 };
-/// Of what a descriptor leads to; the usual one where that is no terminal.
+/// The size of the terminal behind a descriptor; the default if it is no terminal.
 TerminalSize size_of(int fd);
 
-/// To the beginning of a line, or of the first of so many, of which the last is not ended; all are
-/// erased, each by itself: who erases all that is below the screen's first place makes tmux keep a
-/// copy of it.
+/// Goes to the beginning of the current line, or of the first of `lines` lines that end at the
+/// cursor, and erases each. Erasing everything below the top of the screen at once would make tmux
+/// keep a copy.
 std::string start_of_lines(std::size_t lines);
 
-/// That a text takes: a character each, none for a colour.
+/// The columns that a text takes: one for each character, none for a colour.
 std::size_t places(std::string_view text);
 
-/// Rows that a line of so many places takes on a terminal that breaks it at `columns`.
+/// The rows that a line of so many columns takes on a terminal with `columns` columns.
 std::size_t rows_of(std::size_t places, std::size_t columns);
 
-/// As much of a text without colours as has room in so many places.
+/// The beginning of a text without colours that fits into `most` columns.
 std::string_view first_places(std::string_view text, std::size_t most);
 
-/// Whole lines, each broken at blanks where it is wider than `width`; what goes on stands below the
-/// line's second column or, where there is none, two blanks further in. Colours have no width.
+/// Breaks each line at blanks if it is wider than `width`. The rest of a line begins below the
+/// line's second column or, without one, two blanks further right. Colours have no width.
 std::string broken(std::string_view lines, std::size_t width);
 
 }  // namespace kinalign

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verb of the program, described once: its flags, settings, help page, completion and place in
-// the man page all come from these structures. A verb is one file; CONTRIBUTING.md shows how.
+// A verb of the program, described once: its flags, settings, help page, completion and section of
+// the man page all come from these structures. A verb is one file; CONTRIBUTING.md shows how to add
+// one.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -19,44 +20,45 @@ class Console;
 struct Verb;
 struct Common;
 
-/// Where an option's value comes from; a later one wins.
+/// The source of an option's value; a later one wins.
 enum class Source { standard, user, project, environment, flag };
 
-/// By name of the option.
+/// The sources of options, by the option's name.
 using Sources = std::map<std::string, Source>;
 
-/// A command that works as it stands, and what it does.
+/// A command that works as written, and its meaning.
 struct Example {
   std::string command, meaning;
 };
 
-/// Words behind the verb that are no flags, in the order given.
+/// Words after the verb that are not flags, in the order given.
 struct Positional {
-  std::string name;     // as the help page shows it: "FILE"
+  std::string name;     // in the help page: "FILE"
   std::string meaning;  // one line
   std::vector<std::string>* words;
   std::size_t least = 1, most = 1;
   std::vector<std::string> choices{};  // empty: any text
-  std::string if_more{};               // what to do where more than `most` are given
+  std::string if_more{};               // advice if more than `most` are given
 };
 
-/// What a verb takes. The pointers lead into the verb's own options.
+/// The options of a verb. The pointers lead into the verb's own options.
 struct Usage {
   std::vector<Positional> positionals;
-  Fields flags;     // on the command line only; a vector of strings may be given as often as wanted
-  Fields settings;  // also from KINALIGN_<NAME> and from the verb's table in kinalign.toml
-  /// What the parts can't say; its failures are wrong use. `given`: what was said, and where.
+  Fields flags;     // only on the command line; a vector of strings may be given repeatedly
+  Fields settings;  // also from KINALIGN_<NAME> and the verb's table in kinalign.toml
+  /// Checks that single fields can't express; a failure is wrong use. `given`: the options that
+  /// were set, and their sources.
   std::function<Result<void>(const Common& common, const Sources& given)> check;
 };
 
-/// The flags that mean the same everywhere. A verb names those it takes (Page::common); config,
-/// quiet, verbose and color are always there.
+/// The flags that mean the same for every verb. A verb names those that it takes (Page::common);
+/// config, quiet, verbose and color always exist.
 struct Common {
   std::string out;
   bool force = false;
   bool json = false;
   bool dry_run = false;
-  std::int64_t jobs = 0;  // as given: 0 is the number of processors; Call::jobs is never 0
+  std::int64_t jobs = 0;  // 0: one for each processor; Call::jobs is never 0
   std::string config;
   bool quiet = false, verbose = false;
   std::string color = "auto";
@@ -64,46 +66,47 @@ struct Common {
   Overwrite overwrite() const { return force ? Overwrite::yes : Overwrite::no; }
 };
 
-/// The machine as the program finds it: a test makes its own.
+/// The system around the program. A test makes its own.
 struct Surroundings {
-  std::function<std::string(const std::string&)> variable;  // of the environment; empty: not set
-  std::string folder;                                       // the current one, absolute
+  std::function<std::string(const std::string&)> variable;  // environment; empty: not set
+  std::string folder;                                       // the current folder, absolute
   int out = 1, err = 2;
   bool out_is_terminal = false, err_is_terminal = false;
   FileSystem& files;
 };
 
-/// All that a verb gets beside its own options.
+/// Everything that a verb gets besides its own options.
 struct Call {
   const Common& common;
-  const Sources& sources;  // of the verb's settings and flags that were given somewhere
+  const Sources& sources;  // only options that were set anywhere
   std::size_t jobs;        // threads to use, at least 1
   Console& console;
   const std::vector<Verb>& verbs;
   const Surroundings& surroundings;
 };
 
-/// A verb as people see it.
+/// A verb as its help page shows it.
 struct Page {
-  std::string name;                 // "align"; of a group of verbs "dataset build"
+  std::string name;                 // "align"; in a group of verbs "dataset build"
   std::string summary;              // one line, for the list of verbs
-  std::string text;                 // what more there is to know; may be empty
+  std::string text;                 // the rest of the page's text; may be empty
   std::vector<Example> examples;    // the first one opens the help page
-  std::vector<std::string> common;  // of out, force, json, dry_run, jobs: those it takes
+  std::vector<std::string> common;  // the verb takes these of out, force, json, dry_run, jobs
   bool out_is_folder = false;
-  bool out_is_new = false;  // of a folder: none may be there
+  bool out_is_new = false;  // the folder must not exist yet
 };
 
 struct Verb {
   Page page;
-  /// Makes the verb's options, lets `fill` set them, and where that says so runs with them. The
-  /// int is the exit code: 0 done, 1 findings.
+  /// Makes the verb's options and lets `fill` set them; if `fill` returns true, runs the verb with
+  /// them. The int is the exit code: 0 done, 1 findings.
   std::function<Result<int>(const std::function<bool(Usage&)>& fill,
                             const std::function<Call()>& call)>
       enter;
 };
 
-/// A verb from its options' structure, the description of it and the function that does the job.
+/// Makes a verb from the structure of its options, their description and the function that does the
+/// job.
 template <class Options>
 Verb make_verb(Page page, Usage (*describe)(Options&), Result<int> (*run)(Options&, Call&)) {
   return {std::move(page),
@@ -117,17 +120,17 @@ Verb make_verb(Page page, Usage (*describe)(Options&), Result<int> (*run)(Option
           }};
 }
 
-/// "dataset" of "dataset build"; empty for a verb of its own.
+/// The group of a verb: "dataset" for "dataset build"; empty for a verb without group.
 std::string group_of(const std::string& verb_name);
 
 /// The groups of verbs, in the order of their first verbs.
 std::vector<std::string> groups_of(const std::vector<Verb>& verbs);
 
-/// The description of a verb's options with their standard values, while `use` looks at it.
+/// Calls `use` with the description of a verb's options, which have their defaults.
 void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& use);
 
-/// Sets in `onto` what `from` says, for those options whose source is `least` or later: how flags
-/// win over a manifest that was read in the meantime.
+/// Copies from `from` to `onto` those options whose source is `least` or stronger. With it, flags
+/// win over a manifest that was read later.
 void copy_given(const Fields& from, const Fields& onto, const Sources& sources, Source least);
 
 }  // namespace kinalign

@@ -32,7 +32,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t least_rows = 8;
+constexpr std::size_t least_rows = 8;  // frames; shorter stretches are left out
 
 Result<std::string> bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -40,7 +40,8 @@ Result<std::string> bytes_of(const std::string& path) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-/// Beside its place first, so that a kill leaves the old file or the new one.
+/// Writes a file under another name first and renames it, so that a kill leaves the old file or the
+/// new one.
 Result<void> write_file(const std::string& path, const std::string& bytes) {
   const std::string unfinished = path + ".part";
   std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
@@ -59,7 +60,7 @@ const Method* find_method(const std::vector<Method>& all, const std::string& nam
   return found == all.end() ? nullptr : &*found;
 }
 
-/// The settings of the method, of whatever task.
+/// The default settings of a method of any task.
 Result<TrainingOptions> options_of(const std::string& method, const std::string& name) {
   const auto denoise = denoise_methods();
   const auto pose = pose_methods();
@@ -70,7 +71,8 @@ Result<TrainingOptions> options_of(const std::string& method, const std::string&
   return Failure(Error{name, 0, "a method that is known", method});
 }
 
-/// A model that goes on learns a fifth as fast, so that it forgets little, and not for long.
+/// A model that goes on learns with a fifth of the rate and at most 300 steps, so that it forgets
+/// little.
 void go_on_gently(TrainingOptions& options) {
   options.rate *= 0.2;
   options.steps = std::min<std::int64_t>(options.steps, 300);
@@ -92,6 +94,7 @@ void read_options(const Json& json, TrainingOptions& out) {
   out.patience = json.value("patience", out.patience);
 }
 
+/// Writes the log as CSV, as a curve and as events for TensorBoard.
 Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& points) {
   if (job.log.empty()) return {};
   KA_TRY(write_file(job.log, csv_of(points)));
@@ -100,7 +103,7 @@ Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& 
   return write_file(folder / "events.out.tfevents.0.kinalign", events_of(points));
 }
 
-/// A line a second at most, and the last one.
+/// Prints progress as JSON lines, at most two a second, and the last one.
 Progress progress_lines() {
   using Clock = std::chrono::steady_clock;
   auto last = std::make_shared<Clock::time_point>();
@@ -109,11 +112,11 @@ Progress progress_lines() {
     if (done != total && now - *last < std::chrono::milliseconds(500)) return true;
     *last = now;
     std::cout << Json{{"what", what}, {"done", done}, {"total", total}}.dump() << std::endl;
-    return static_cast<bool>(std::cout);  // the program that started this one is gone: stop
+    return static_cast<bool>(std::cout);  // the parent program is gone: stop
   };
 }
 
-/// The data that a model was learnt from.
+/// Counts of the data that a model learnt from.
 struct LearntFrom {
   std::size_t stretches = 0, frames = 0;
   std::set<std::string> subjects;
@@ -125,8 +128,8 @@ struct LearntFrom {
   }
 };
 
-/// States by what and on what a model was trained. `before`: what the model that it went on from
-/// says of its own training; "" where there is none.
+/// States in the model what it was trained on and with which settings. `before`: the statement of
+/// the model that it went on from; "" if there is none.
 void state_training(const TrainingJob& job, const WindowsFacts& facts, const LearntFrom& from,
                     const std::string& before, ModelFacts& model) {
   Json out{{"data",
@@ -149,7 +152,7 @@ void state_training(const TrainingJob& job, const WindowsFacts& facts, const Lea
   model.training = out.dump();
 }
 
-/// The model to go on from, of this method; nothing where the job names none.
+/// The model to go on from. Absent if the job names none; fails if it is of another method.
 template <class Model, class Read>
 Result<std::optional<Model>> model_before(const TrainingJob& job, Read read) {
   if (job.from.empty()) return std::optional<Model>();
@@ -163,7 +166,7 @@ Failure cannot_go_on(const TrainingJob& job, const std::string& expected) {
   return Failure(Error{job.from, 0, expected, "another one"});
 }
 
-/// By the parts of the file's split; all is trained on where it has none.
+/// Divides pairs by the parts of the file's split. Without a split, all are trained on.
 DividedPairs divide(std::vector<Pair> all) {
   DividedPairs out;
   for (Pair& pair : all) {
@@ -173,8 +176,8 @@ DividedPairs divide(std::vector<Pair> all) {
   return out;
 }
 
-/// The parts that the job's lists of takes make: train, validation, and test for all others. As the
-/// file has them where the job has no list.
+/// Replaces the file's parts by those of the job's lists of takes: train, validation, and test for
+/// all others. Without a list the file's parts stay.
 void divide_by_lists(const TrainingJob& job, Windows& windows) {
   if (job.learn.empty()) return;
   const auto holds = [](const std::vector<std::string>& list, const std::string& name) {
@@ -187,7 +190,7 @@ void divide_by_lists(const TrainingJob& job, Windows& windows) {
   }
 }
 
-/// A model's file, and how its training went.
+/// The bytes of a model's file, and the course of its training.
 struct Fitted {
   std::string model;
   std::vector<TrainingPoint> points;
@@ -197,7 +200,7 @@ FitOptions fit_options(const TrainingJob& job) {
   return {job.options, job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
 }
 
-/// The file's joints, or those of the model that it goes on from.
+/// The pairs with the file's joints, or with those of the model that the training goes on from.
 Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
                              const std::optional<DenoiseModel>& from) {
   if (!from) return pairs_of(windows, job.input, job.truth, least_rows);
@@ -209,6 +212,7 @@ Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
   return pairs_for(windows, job.input, job.truth, joints, least_rows);
 }
 
+/// Trains a model that cleans a Kinect.
 Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, const Windows& windows,
                                TrainingState state, const TrainingHooks& hooks) {
   if (job.hand_weight > 0.0) method.training.loss.hands = job.hand_weight;
@@ -226,13 +230,14 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
 }
 
-/// The method's variety, as far as the job does not set it.
+/// The method's variety, with the values that the job sets.
 Variety variety_of(const TrainingJob& job, Variety own) {
   if (job.vary_speed > 0.0) own.speed = job.vary_speed;
   if (job.vary_size > 0.0) own.size = job.vary_size;
   return own;
 }
 
+/// Trains a model for poses. The first process also computes its marks on the test part.
 Result<Fitted> fit_pose_job(const TrainingJob& job, PoseMethod method, const Windows& windows,
                             TrainingState state, const TrainingHooks& hooks) {
   method.training.variety = variety_of(job, method.training.variety);
@@ -252,6 +257,7 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, PoseMethod method, const Win
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
+/// Trains a model for fusion. The first process also computes its marks on the test part.
 Result<Fitted> fit_fuse_job(const TrainingJob& job, FuseMethod method, const Windows& windows,
                             TrainingState state, const TrainingHooks& hooks) {
   method.training.variety = variety_of(job, method.training.variety);
@@ -272,7 +278,7 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, FuseMethod method, const Win
   return Fitted{write_fuse_model(fit.model), std::move(fit.points)};
 }
 
-/// A body of the file.
+/// One body of the file, found by its number.
 Result<JointFrames> body_of(const TensorFile& file, const std::string& number, std::size_t joints,
                             const std::string& name) {
   const auto positions = file.tensors.find(number + ".positions");
@@ -287,8 +293,8 @@ Result<JointFrames> body_of(const TensorFile& file, const std::string& number, s
   return Failure(Error{name, 0, "positions and states of body " + number, "none, or others"});
 }
 
-/// The answers to all bodies of a file, projected; the last line says how far the constraints were
-/// and are from being met, on average.
+/// Writes the projected answers to all bodies of a file. The last line of output states the mean
+/// errors of the constraints before and after.
 Result<void> project_bodies(const TrainingJob& job) {
   const DenoiseModel model = KA_TRY(read_denoise_model(KA_TRY(bytes_of(job.project)), job.project));
   const TensorFile bodies = KA_TRY(read_safetensors(KA_TRY(bytes_of(job.bodies)), job.bodies));
@@ -326,7 +332,7 @@ Result<void> project_bodies(const TrainingJob& job) {
   return {};
 }
 
-/// By the task of the method; read_job() has proven that there is one of that name.
+/// Trains by the task of the method, which read_job() has checked.
 Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingState state,
                        const TrainingHooks& hooks) {
   const auto denoise = denoise_methods();
@@ -343,6 +349,7 @@ Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingS
 
 }  // namespace
 
+/// A job projects, evaluates or trains; each kind reads only the members that it needs.
 Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || json.value("schema", "") != "kinalign.training_job/1") {
@@ -401,7 +408,7 @@ Result<void> run_job(const TrainingJob& job) {
   }
   Processes processes = KA_TRY(Processes::join(job.place));
   const bool is_first = processes.share().is_first();
-  // All processes read the checkpoint before the first one can write another.
+  // All processes read the checkpoint before the first one may write another.
   KA_TRY(processes.agree(job.identity + " " + std::to_string(job.options.steps) + " " +
                          std::to_string(state.step)));
   TrainingHooks hooks{.keep = {}, .every = job.keep_every, .share = processes.share()};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trains one model: kinalign-learn JOB.json. `kinalign train` writes the job and starts this.
+// Trains one model: kinalign-learn JOB.json. `kinalign train` writes the job and starts this
+// program.
 #include "apps/kinalign-learn/job.h"
 
 #include <nlohmann/json.hpp>
@@ -15,9 +16,9 @@
 
 namespace {
 
-constexpr double least_gflops = 20.0;  // of a matrix product, on one core of 2015 or later
+constexpr double least_gflops = 20.0;  // speed of a matrix product on one core of 2015 or later
 
-/// Billions of operations a second that a product of 256 x 256 numbers makes: the best of ten.
+/// The speed of a product of two 256 x 256 matrices, GFLOP/s: the best of ten.
 double product_gflops() {
   using Clock = std::chrono::steady_clock;
   constexpr int size = 256;
@@ -33,8 +34,8 @@ double product_gflops() {
   return best;
 }
 
-/// Debian's LibTorch multiplies with whatever BLAS is installed. The reference one needs ten times
-/// as long as OpenBLAS.
+/// Warns about a slow BLAS. Debian's LibTorch multiplies with the installed BLAS, and the reference
+/// BLAS takes ten times as long as OpenBLAS.
 void warn_of_slow_products() {
   const double gflops = product_gflops();
   if (gflops >= least_gflops) return;
@@ -46,7 +47,8 @@ void warn_of_slow_products() {
   std::cout << nlohmann::ordered_json{{"warning", text.str()}}.dump() << std::endl;
 }
 
-/// Exit code 4: another process of the training has ended, and its own error says why.
+/// Prints the error as JSON and returns the exit code. Exit code 4: another process of the training
+/// has ended, and its own error states the reason.
 int fail(const kinalign::Error& error) {
   std::cout << nlohmann::ordered_json{{"error",
                                        {{"file", error.file},
@@ -66,8 +68,9 @@ int main(int argc, char** argv) {
                  "Trains one model. kinalign train writes the job and starts this program.\n";
     return 2;
   }
-  std::signal(SIGPIPE, SIG_IGN);  // a parent that is gone shows when a line can't be written
-  // First of all: threads that start later inherit it. Numbers near zero cost a hundredfold.
+  std::signal(SIGPIPE, SIG_IGN);  // a parent that is gone is noticed when a line can't be written
+  // This must come first: threads inherit the setting at their start. Denormal numbers cost a
+  // hundredfold.
   at::globalContext().setFlushDenormal(true);
   at::globalContext().setDeterministicAlgorithms(true, true);
   std::ifstream in(argv[1], std::ios::binary);
@@ -83,7 +86,7 @@ int main(int argc, char** argv) {
     if (job->device == "cpu") warn_of_slow_products();
     const auto done = kinalign::run_job(*job);
     return done ? 0 : fail(done.error());
-  } catch (const std::exception& fault) {  // of LibTorch
+  } catch (const std::exception& fault) {  // LibTorch throws
     return fail({argv[1], 0, "a job that LibTorch can do", fault.what()});
   }
 }

@@ -30,6 +30,7 @@ Fusion fusion_of(Fuser& fuser) {
   return [&](const FuseInput& input) { return fuser.solve(input); };
 }
 
+/// The members of errors of fusion in a row.
 Json errors_json(const FuseErrors& errors) {
   return {{"all_cm", errors.all_cm},
           {"hidden_cm", errors.hidden_cm},
@@ -53,7 +54,7 @@ Json errors_json(const PoseErrors& errors) {
 
 void print_row(const Json& row) { std::cout << row.dump() << std::endl; }
 
-/// The same of each person.
+/// The errors of each person, by name.
 template <class Errors>
 Json people_json(const std::map<std::string, Errors>& people) {
   Json out = Json::object();
@@ -61,7 +62,7 @@ Json people_json(const std::map<std::string, Errors>& people) {
   return out;
 }
 
-/// A row for each state of the nodes.
+/// Prints a row for each state of the nodes.
 Result<void> print_pose_marks(const TrainingJob& job, const Windows& windows, PoseModel model) {
   const std::string method = model.facts.method;
   auto solver = KA_TRY(PoseSolver::make(std::move(model)));
@@ -85,6 +86,7 @@ void print_marks_of(const std::string& method, const std::vector<FuseMark>& mark
   }
 }
 
+/// Prints a row for each node: the error of its heading before and after.
 void print_headings(const std::string& method, const std::vector<HeadingMark>& marks) {
   for (const HeadingMark& mark : marks) {
     print_row({{"method", method},
@@ -96,7 +98,8 @@ void print_headings(const std::string& method, const std::vector<HeadingMark>& m
   }
 }
 
-/// Rows for each device and both, of the model and of the filter, and one for each node's heading.
+/// Prints rows of the model and of the filter: for each device and both, and for each node's
+/// heading. The filter fuses without learning.
 Result<void> print_fuse_marks(const TrainingJob& job, const Windows& windows, FuseModel model) {
   auto fuser = KA_TRY(Fuser::make(std::move(model)));
   const FuseLayout layout = fuser.model().layout;
@@ -140,6 +143,7 @@ Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& da
   return out.dump();
 }
 
+/// The marks that the model's file states, as JSON.
 Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& data) {
   if (data.pose.tested.empty()) return std::string();
   auto fuser = KA_TRY(Fuser::make(model));

@@ -13,16 +13,16 @@
 
 namespace kinalign {
 
-/// For the model's own facts; empty where the data have no test part.
+/// The marks for the model's file. Empty if the data has no test part.
 Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& data);
 Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& data);
 
-/// The file's own Kinect where it has a stream of the name `input`, else simulated ones.
+/// The Kinect of the file if it has a stream named `input`, else simulated ones.
 FuseDataOptions fuse_options(const std::string& input, const Windows& windows);
 
-/// Prints a JSON object a line: of a model for poses for each state of the nodes; of one for fusion
-/// and of the filter for each device and both, and for each node's heading. "people" has the same
-/// of each person. `model`: the bytes of job.evaluate.
+/// Prints one JSON object a line. For poses: one for each state of the nodes. For fusion: for the
+/// model and for the filter, one for each device and both, and one for each node's heading.
+/// "people" holds the marks of each person. `model`: the bytes of job.evaluate.
 Result<void> print_marks(const TrainingJob& job, const Windows& windows, const std::string& model);
 
 }  // namespace kinalign

@@ -34,14 +34,14 @@ Failure too_many(const ProcessPlace& place) {
 namespace {
 
 constexpr std::chrono::minutes longest_start{5};
-/// A process that ends is noticed at once by its closed connections; this is for machines that
-/// vanish.
+/// The closed connections of a process that ends are noticed at once; this limit is for machines
+/// that vanish.
 constexpr std::chrono::minutes longest_step{10};
 
 using Gloo = c10d::ProcessGroupGloo;
 
-/// The own address on the way to the process 0; empty where there is no such way. Names of own
-/// machines often lead to 127.0.1.1, which other machines can't reach.
+/// The address of this machine on the route to process 0; empty without a route. A machine's own
+/// name often resolves to 127.0.1.1, which other machines can't reach.
 std::string own_address(const ProcessPlace& place) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
@@ -77,7 +77,7 @@ struct Processes::Group {
   c10::intrusive_ptr<c10d::Store> store;
   c10::intrusive_ptr<Gloo> gloo;
 
-  /// LibTorch throws where another process has ended.
+  /// Sums the values over all processes. False if another process has ended; LibTorch throws then.
   bool sum(torch::Tensor& values) const {
     try {
       std::vector<at::Tensor> all{values};
@@ -138,7 +138,7 @@ void Processes::leave() {
   if (!group_) return;
   try {
     group_->gloo->barrier()->wait();
-  } catch (const std::exception&) {  // the training is done; who is gone needs nothing more
+  } catch (const std::exception&) {  // the training is done, so a lost process does no harm
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several processes that train one model, joined by LibTorch's c10d with Gloo over TCP.
+// Several processes that train one model together, joined by LibTorch's c10d with Gloo over TCP.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,32 +11,33 @@
 
 namespace kinalign {
 
-/// This process among all of a training.
+/// The place of this process among all processes of a training.
 struct ProcessPlace {
   std::int64_t rank = 0, size = 1;
-  std::string address;       // of the machine of the process 0
-  std::uint16_t port = 0;    // that it waits for the others on
-  std::string interface {};  // of the network between the processes, "eth1"; empty: found by itself
+  std::string address;       // the address of process 0's machine
+  std::uint16_t port = 0;    // on which process 0 waits for the others
+  std::string interface {};  // network between the processes, "eth1"; empty: chosen by the program
 };
 
-/// A batch has 32 examples; each process needs one.
+/// A batch has 32 examples, and each process needs at least one.
 inline constexpr std::int64_t most_processes = 32;
 
 class Processes {
  public:
-  /// Waits for all processes, five minutes at most. Alone where there is one. Fails where one does
-  /// not come, where this program was built without Gloo, and for more than most_processes.
+  /// Waits at most five minutes for all processes. A single process does not wait. Fails if a
+  /// process does not come, if this program was built without Gloo, or with more than
+  /// most_processes.
   static Result<Processes> join(const ProcessPlace& place);
 
   const BatchShare& share() const { return share_; }
-  /// Fails unless all processes say the same `text`.
+  /// Fails unless all processes pass the same `text`.
   Result<void> agree(const std::string& text);
-  /// Waits for the others, so that nobody's last message is lost.
+  /// Waits for the other processes, so that no last message is lost.
   void leave();
 
  private:
   struct Group;
-  std::shared_ptr<Group> group_;  // also held by the share; none where alone
+  std::shared_ptr<Group> group_;  // also held by the share; nullptr for a single process
   BatchShare share_;
 };
 

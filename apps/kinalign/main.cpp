@@ -8,6 +8,7 @@
 #include <climits>
 #include <cstdlib>
 
+/// Collects everything that verbs get from the system; no code below reads the environment itself.
 int main(int argc, char** argv) {
   kinalign::PosixFiles files;
   std::array<char, PATH_MAX> folder{};

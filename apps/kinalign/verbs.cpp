@@ -3,6 +3,7 @@
 
 namespace kinalign {
 
+/// The order is that of the help page.
 std::vector<Verb> all_verbs() {
   return {align_verb(),
           info_verb(),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All verbs, in the order of the help page. A new verb: its file, a line here, a line in verbs.cpp.
+// All verbs, in the order of the help page. A new verb needs its own file, a line here and a line
+// in verbs.cpp.
 #pragma once
 
 #include "apps/cli/verb.h"

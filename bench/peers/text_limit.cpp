@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The limit of a whole job: every number of the given files once, with std::from_chars, from
-// memory. Prints the CPU seconds of the parsing alone.
+// The upper limit for a whole job: parses every number of the given files once, with
+// std::from_chars, from memory. Prints the CPU seconds of the parsing alone.
 #include <sys/resource.h>
 
 #include <charconv>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node on a Cortex-M3, with a serial line for its world: see firmware/script/script.h. The
-// port is Arm's PL011 (technical reference manual DDI 0183, chapter 3), the first of the LM3S6965.
+// The node on a Cortex-M3 that has only a serial line for clock, sensor and radio: see
+// firmware/script/script.h. The port is Arm's PL011 (technical reference manual DDI 0183, chapter
+// 3), the first of the LM3S6965.
 #include "firmware/cortex_m/stack.h"
 #include "firmware/script/script.h"
 
@@ -16,9 +17,10 @@ struct UartRegisters {
   volatile std::uint32_t line_control, control;
 };
 constexpr std::uintptr_t uart_address = 0x4000c000;
-constexpr std::uint32_t receiver_empty = 1 << 4, transmitter_full = 1 << 5;  // of flags
-constexpr std::uint32_t eight_bits = 3 << 5, with_queues = 1 << 4;           // of line_control
-constexpr std::uint32_t enabled = 1 | 1 << 8 | 1 << 9;  // of control: port, transmitter, receiver
+constexpr std::uint32_t receiver_empty = 1 << 4, transmitter_full = 1 << 5;  // bits of flags
+constexpr std::uint32_t eight_bits = 3 << 5, with_queues = 1 << 4;           // bits of line_control
+// Bits of control: port, transmitter, receiver.
+constexpr std::uint32_t enabled = 1 | 1 << 8 | 1 << 9;
 
 class Uart : public kinalign::Line {
  public:
@@ -41,7 +43,8 @@ class Uart : public kinalign::Line {
   }
 
  private:
-  /// An emulator has one lock for all registers: asking without a pause keeps the line itself out.
+  /// Waits a little between two looks at a register. An emulator has one lock for all registers, so
+  /// asking without a pause would keep the serial line itself out.
   static void wait() {
     for (int i = 0; i < 1000; ++i) asm volatile("");
   }

@@ -5,7 +5,8 @@
 
 namespace kinalign {
 
-/// Bytes of the stack that were ever written to, by the paint that is gone.
+/// The bytes of the stack that were ever written to: reset() fills the stack with a pattern, and
+/// this counts the bytes from the lowest word without it.
 std::uint32_t stack_used();
 
 }  // namespace kinalign

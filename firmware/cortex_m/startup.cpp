@@ -15,12 +15,13 @@ extern std::uint32_t stack_begin[], stack_end[];
 using Initializer = void (*)();
 extern Initializer init_array_begin[], init_array_end[];
 
-// A fault ends here: whoever waits for an answer runs out of patience.
+// Stops here for good after a fault. A program that waits for an answer runs into its own time
+// limit.
 [[noreturn]] void stop() {
   for (;;) asm volatile("wfi");
 }
 
-// What the compiler may call and nothing here needs.
+// Functions that the compiler may call, and that nothing here needs.
 [[noreturn]] void abort() { stop(); }
 [[noreturn]] void __cxa_pure_virtual() { stop(); }
 }
@@ -29,7 +30,7 @@ namespace {
 
 constexpr std::uint32_t unused = 0xa5a5a5a5;
 
-/// Below what reset itself has on the stack: it keeps little.
+/// The end of the part of the stack that reset() may overwrite: it keeps 128 bytes for itself.
 std::uint32_t* painted_end() {
   return static_cast<std::uint32_t*>(__builtin_frame_address(0)) - 32;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What host_node says while nobody answers it: seldom, but from the first seconds on. A node that
-// is refused sends on all the same, and would look like one that is heard.
+// The messages of host_node while no host answers it: seldom, but from the first seconds on. A
+// refused node goes on sending, and without a message it would look like one that is accepted.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace kinalign {
 
 class AnswerWatch {
  public:
-  /// `server`: as it was given; `keyed`: the node has a key.
+  /// `server`: the text that the user gave; `keyed`: the node has a key.
   AnswerWatch(std::string server, bool keyed) : server_(std::move(server)), keyed_(keyed) {}
 
-  /// Some times a second, with the answers so far: those that counted, and those that a wrong key
-  /// was behind. A line to be said now, or "".
+  /// To be called some times a second with the answers so far: `accepted` ones, and those with a
+  /// wrong key. Gives a line to print now, or "".
   std::string look(std::int64_t age_ns, std::uint64_t accepted, std::uint64_t wrong_key);
 
  private:
@@ -24,7 +24,7 @@ class AnswerWatch {
   std::string server_;
   bool keyed_;
   bool complained_ = false;
-  std::uint64_t accepted_ = 0, wrong_key_ = 0;  // when it was answered last
+  std::uint64_t accepted_ = 0, wrong_key_ = 0;  // the counts at the last answer
   std::int64_t answered_ns_ = 0;
   std::int64_t next_ns_ = first_ns;
 

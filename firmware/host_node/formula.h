@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the simulated sensor reads, so that who receives it can tell whether it came through.
+// The readings of the simulated sensor, so that a receiver can check that they came through.
 #pragma once
 
 #include "kinalign/wire/node_sample.h"

@@ -48,7 +48,8 @@ Tried<MacKey> read_key_file(const std::string& path) {
   if (!digits.empty() && digits.back() == '\n') digits.remove_suffix(1);
   MacKey key{};
   if (take_hex(digits, key)) return key;
-  std::array<std::uint8_t, 32> lab{};  // what else it is is nobody's business
+  // Any other content may be secret, so the message does not show it.
+  std::array<std::uint8_t, 32> lab{};
   const char* instead = take_hex(digits, lab) ? "64 digits, the lab's key" : "something else";
   return failure(path + ": expected a key of 32 hexadecimal digits, found " + instead);
 }

@@ -67,7 +67,7 @@ Tried<void> Life::befall(const Event& event) {
   if (event.kind == EventKind::drift) clock_.set_drift(now, event.value);
   if (event.kind == EventKind::step) {
     clock_.step(now, event.value);
-    next_tick_us_ += event.value * 1e6;  // the timer itself runs on
+    next_tick_us_ += event.value * 1e6;  // the sample timer does not step with the counter
   }
   if (event.kind == EventKind::reboot) {
     clock_.reboot(now, options_.same_boot_id ? boot_id : random_boot_id());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node's life on the host: ticks, arrivals and what befalls it, until its time is up.
+// A node's life on the host: its ticks, arrivals and events, until its time is over.
 #pragma once
 
 #include "firmware/host_node/answer_watch.h"
@@ -13,7 +13,7 @@
 
 namespace kinalign {
 
-/// Summed over all reboots. What belongs to the other kind of node stays 0.
+/// Counts summed over all reboots. Counts of the other kind of node stay 0.
 struct LifeCounts {
   NodeTally node;
   ClocklessCounts clockless;
@@ -24,8 +24,8 @@ class Life {
  public:
   Life(const HostNodeOptions& options, NodeSocket socket);
 
-  /// Until options.seconds are over or `stop`, a descriptor, can be read. `say` is told lines for
-  /// who started it: that nobody answers.
+  /// Runs until options.seconds are over or the descriptor `stop` can be read. `say` gets lines for
+  /// the user, for example that no host answers.
   using Say = std::function<void(const std::string&)>;
   Tried<void> live(int stop, const Say& say);
   LifeCounts counts();
@@ -45,7 +45,7 @@ class Life {
   PretendedClock clock_;
   PosixBoard board_;
   std::variant<std::monostate, Node, ClocklessNode> node_;
-  LifeCounts past_;  // of the starts before this one
+  LifeCounts past_;  // counts of the starts before this one
   std::int64_t begin_ns_;
   AnswerWatch watch_;
   std::int64_t next_watch_ns_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node's logic as a program: see options.cpp for what it can be told.
+// The node's logic as a program; options.cpp has its options.
 #include "firmware/host_node/key_file.h"
 #include "firmware/host_node/life.h"
 #include "firmware/host_node/pipe_line.h"
@@ -17,7 +17,7 @@ using namespace kinalign;
 
 void complain(const std::string& line) { std::fprintf(stderr, "host_node: %s\n", line.c_str()); }
 
-/// Can be read once the program was asked to end.
+/// A descriptor that can be read once the program was asked to end.
 int stop_descriptor() {
   sigset_t signals{};
   sigemptyset(&signals);

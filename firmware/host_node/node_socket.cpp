@@ -18,8 +18,8 @@ struct Free {
   void operator()(addrinfo* list) const { freeaddrinfo(list); }
 };
 
-// A server that is not there yet answers an earlier datagram by ICMP; the next call is told of it
-// instead of doing its work, and is made again.
+// Repeats a call that failed for an earlier datagram: if the server is not there yet, it answers
+// that datagram by ICMP, and the next call returns the error and does nothing else.
 template <class Call>
 ssize_t past_refusals(Call call) {
   ssize_t done = call();

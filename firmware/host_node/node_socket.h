@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// UDP to one server, IPv4 or IPv6. Nothing waits.
+// A UDP socket to one server, IPv4 or IPv6. No call waits.
 #pragma once
 
 #include "firmware/host_node/trouble.h"
@@ -11,7 +11,7 @@ namespace kinalign {
 
 class NodeSocket {
  public:
-  /// From a port that the system chooses.
+  /// The socket sends from a port that the system chooses.
   static Tried<NodeSocket> connected_to(const std::string& host, const std::string& port);
 
   NodeSocket(NodeSocket&& other) noexcept;
@@ -22,7 +22,7 @@ class NodeSocket {
 
   /// False: nothing was sent.
   bool send(std::span<const std::uint8_t> datagram);
-  /// The next datagram of the server's, cut to `room`. False: there is none.
+  /// Takes the next datagram from the server, cut to the size of `room`. False: there is none.
   bool receive(std::span<std::uint8_t> room, std::size_t& size);
   int descriptor() const { return descriptor_; }
 

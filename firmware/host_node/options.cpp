@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-/// The whole text as a number from least to most.
+/// Reads the whole text as a number from least to most.
 template <class T>
 bool number(std::string_view text, T least, T most, T& value) {
   T read{};
@@ -32,7 +32,7 @@ bool server(std::string_view text, HostNodeOptions& options) {
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
     host = host.substr(1, host.size() - 2);
   } else if (host.find(':') != std::string_view::npos) {
-    return false;  // IPv6 without brackets: where does the port begin?
+    return false;  // an IPv6 address without brackets: it is not clear where the port begins
   }
   options.host = host;
   options.port = text.substr(colon + 1);
@@ -168,7 +168,8 @@ const std::vector<Flag>& flags() {
   return all;
 }
 
-/// Whether one or two letters beside each other are all that differs.
+/// Whether the words differ in one letter or in two neighbouring ones, and in no more than half of
+/// the longer word.
 bool resembles(std::string_view word, std::string_view name) {
   const std::size_t longer = std::max(word.size(), name.size());
   while (!word.empty() && !name.empty() && word.front() == name.front()) {

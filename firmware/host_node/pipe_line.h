@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A script's line over the standard input and output.
+// The line of a script over standard input and output.
 #pragma once
 
 #include "firmware/script/line.h"
@@ -11,7 +11,7 @@ namespace kinalign {
 class PipeLine : public Line {
  public:
   bool read(std::span<std::uint8_t> bytes) override {
-    std::fflush(stdout);  // who waits for an answer has it before the next message
+    std::fflush(stdout);  // a program that waits for an answer gets it before the node reads on
     return std::fread(bytes.data(), 1, bytes.size(), stdin) == bytes.size();
   }
   void write(std::span<const std::uint8_t> bytes) override {

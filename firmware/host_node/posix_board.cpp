@@ -14,7 +14,8 @@ std::int64_t raw_ns() {
 }
 
 bool PosixBoard::read_imu(NodeSample& sample) {
-  if (options_.clockless) counter_us();  // nobody else asks, and nobody is told
+  // A clockless node never asks, so the sensor's time is read here; the node does not get it.
+  if (options_.clockless) counter_us();
   sample = swing_at(asked_us_, options_.orientation);
   ++readings_;
   return options_.sensor_fails_every == 0 || readings_ % options_.sensor_fails_every != 0;

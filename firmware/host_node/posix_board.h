@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// ns of CLOCK_MONOTONIC_RAW, the host's own axis too.
+/// CLOCK_MONOTONIC_RAW in ns, which is the axis of the recorder's times too.
 std::int64_t raw_ns();
 
 class PosixBoard : public Board {
@@ -18,7 +18,7 @@ class PosixBoard : public Board {
       : options_(options), clock_(clock), socket_(socket) {}
 
   std::uint64_t counter_us() override { return asked_us_ = clock_.counter_us(raw_ns()); }
-  /// The swing at the counter's last reading, which the sampler has just made.
+  /// The swing (formula.h) at the counter's last reading; the sampler has just read the counter.
   bool read_imu(NodeSample& sample) override;
   bool send(std::span<const std::uint8_t> datagram) override { return socket_.send(datagram); }
   bool receive(std::span<std::uint8_t> room, std::size_t& size) override {
@@ -26,7 +26,7 @@ class PosixBoard : public Board {
   }
   bool read_battery(std::uint16_t& mv) override;
   void show(const Lights& lights) override { lights_ = lights; }
-  void lock() override {}  // one task
+  void lock() override {}  // there is only one task
   void unlock() override {}
 
   const Lights& lights() const { return lights_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node's counter, made from the host's raw clock by what shall be wrong with it.
+// A node's counter, made from the host's raw clock and the errors that the options ask for.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace kinalign {
 
-/// From raw_ns on the counter stands at counter_us and gains drift_ppm: what nobody but a
-/// simulation knows.
+/// The truth about the counter, which only a simulation knows: at raw_ns it stands at counter_us,
+/// and from then on it gains drift_ppm.
 struct ClockTruth {
   std::uint32_t boot_id = 0;
   std::int64_t raw_ns = 0;

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// An object of JSON, built up; values are text as it stands in JSON.
+/// Builds an object of JSON. Values are given as JSON text.
 class Object {
  public:
   Object& add(const std::string& name, const std::string& value) {
@@ -26,7 +26,8 @@ class Object {
   std::string text_;
 };
 
-/// Without an exponent: of a counter the microseconds are to be seen.
+/// The shortest text of the number without an exponent, so that the microseconds of a counter can
+/// be read.
 std::string shortest(double value) {
   std::array<char, 400> digits{};  // the longest double
   const auto format = std::chars_format::fixed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why host_node does not go on, in one line for who started it.
+// The reason for which host_node does not go on, in one line for the user.
 #pragma once
 
 #include <tl/expected.hpp>

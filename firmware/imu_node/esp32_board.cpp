@@ -16,8 +16,9 @@ namespace {
 
 constexpr gpio_num_t sda_pin = GPIO_NUM_25, scl_pin = GPIO_NUM_21;
 constexpr int led_pin = 27;
-constexpr int bus_timeout_ms = 5;                   // 17 bytes at 400 kHz take 0.4 ms
-constexpr std::uint32_t ask_imu_again_every = 100;  // readings
+constexpr int bus_timeout_ms = 5;  // 17 bytes at 400 kHz take 0.4 ms
+// The sensor is asked again at each 100th reading.
+constexpr std::uint32_t ask_imu_again_every = 100;
 
 i2c_master_dev_handle_t open_imu() {
   i2c_master_bus_config_t bus_config{};
@@ -32,14 +33,14 @@ i2c_master_dev_handle_t open_imu() {
   i2c_device_config_t device_config{};
   device_config.dev_addr_length = I2C_ADDR_BIT_LEN_7;
   device_config.device_address = mpu6886::bus_address;
-  device_config.scl_speed_hz = 400'000;  // the most that the sensor takes
+  device_config.scl_speed_hz = 400'000;  // the fastest clock that the sensor takes
   i2c_master_dev_handle_t device = nullptr;
   ESP_ERROR_CHECK(i2c_master_bus_add_device(bus, &device_config, &device));
   return device;
 }
 
 led_strip_handle_t open_leds() {
-  led_strip_config_t config{};  // in the order green, red, blue where nothing is said
+  led_strip_config_t config{};  // the colours' order is green, red, blue by default
   config.strip_gpio_num = led_pin;
   config.max_leds = matrix_side * matrix_side;
   config.led_model = LED_MODEL_WS2812;
@@ -53,7 +54,8 @@ led_strip_handle_t open_leds() {
 int connected_socket() {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_DGRAM;
-  wanted.ai_flags = AI_NUMERICHOST;  // asking a name server would wait
+  // Only an address in digits, because asking a name server would wait.
+  wanted.ai_flags = AI_NUMERICHOST;
   addrinfo* found = nullptr;
   if (getaddrinfo(config::server, config::server_port, &wanted, &found) != 0) return -1;
   const int made = ::socket(found->ai_family, SOCK_DGRAM, 0);
@@ -108,9 +110,9 @@ bool Esp32Board::set_up_imu() {
 }
 
 bool Esp32Board::read_imu(NodeSample& sample) {
-  if (!imu_ready_) {  // at the start, and after a reading that failed: it may have been reset
+  if (!imu_ready_) {  // at the start, and after a failed reading: the sensor may have been reset
     if (imu_asked_++ % ask_imu_again_every == 0) imu_ready_ = set_up_imu();
-    return false;  // that took time: this tick has no reading
+    return false;  // setting up took time, so this tick has no reading
   }
   std::array<std::uint8_t, mpu6886::values_size> registers{};
   imu_ready_ = read_registers(mpu6886::values_register, registers);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// M5Stack ATOM Matrix: ESP32, MPU-6886, 25 LEDs. No battery that it could measure.
-// Written against ESP-IDF 5.3's documented interface (ESP Timer, I2C master, lwIP sockets) and the
-// component espressif/led_strip; it has not been compiled or run where the rest was.
+// M5Stack ATOM Matrix: ESP32, MPU-6886, 25 LEDs. It has no battery that it can measure. Written
+// against ESP-IDF 5.3's documented interface (ESP Timer, I2C master, lwIP sockets) and the
+// component espressif/led_strip. This board's code has not been compiled or run together with the
+// rest.
 #pragma once
 
 #include "firmware/node/board.h"
@@ -14,11 +15,12 @@ namespace kinalign {
 
 class Esp32Board : public Board {
  public:
-  /// The buses; what does not answer is asked again later.
+  /// Opens the buses. A device that does not answer is asked again later.
   void start();
-  /// A socket to the host of config.h, in place of an earlier one: after each new link.
+  /// Opens a socket to the host of config.h in place of the earlier one. To be called after each
+  /// new link.
   void open_socket();
-  /// Until something arrives, or for so long.
+  /// Waits until a datagram arrives, at most longest_us.
   void wait_for_arrival(std::uint32_t longest_us);
 
   std::uint64_t counter_us() override;

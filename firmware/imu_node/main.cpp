@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two tasks on the core that the radio does not use: one samples when the timer says so, the other
-// sends, receives and looks after the link. All they decide is in firmware/node.
+// Two tasks on the core that the radio does not use. One samples when the timer fires, the other
+// sends, receives and keeps the link. Their decisions are made by the code in firmware/node.
 #include "firmware/imu_node/config.h"
 #include "firmware/imu_node/esp32_board.h"
 #include "firmware/imu_node/wifi.h"
@@ -24,14 +24,15 @@ constexpr UBaseType_t sampling_priority = 20, sending_priority = 10;
 constexpr std::uint32_t stack_size = 4096;
 
 Esp32Board board;
-alignas(Node) std::array<std::byte, sizeof(Node)> node_memory;  // there is a boot id only later
+// The node is made later, once there is a boot id.
+alignas(Node) std::array<std::byte, sizeof(Node)> node_memory;
 Node* node = nullptr;
 TaskHandle_t sampling = nullptr;
 
 void on_timer(void*) { xTaskNotifyGive(sampling); }
 
 [[noreturn]] void sample(void*) {
-  for (;;) node->tick(ulTaskNotifyTake(pdTRUE, portMAX_DELAY));  // how many ticks are due
+  for (;;) node->tick(ulTaskNotifyTake(pdTRUE, portMAX_DELAY));  // the number of ticks that are due
 }
 
 struct Keeper {
@@ -41,7 +42,7 @@ struct Keeper {
   bool was_up = false;
 };
 
-/// Does what the policy wants; whether there is a link.
+/// Does the action that the link policy decides on. True: there is a link.
 bool keep_link(Keeper& keeper) {
   const std::uint64_t accepted = node->replies_accepted();
   const bool heard = accepted != keeper.heard;
@@ -70,7 +71,7 @@ bool keep_link(Keeper& keeper) {
 NodeSettings settings() {
   NodeSettings settings;
   settings.node_id = config::node_id;
-  settings.boot_id = esp_random();  // random once the radio runs
+  settings.boot_id = esp_random();  // esp_random() is random only once the radio runs
   settings.has_key = config::has_key;
   settings.key = config::key;
   settings.frame_period_us = 1'000'000 / config::frame_rate_hz;

@@ -23,7 +23,8 @@ void on_event(void*, esp_event_base_t base, std::int32_t id, void*) {
   if (base == WIFI_EVENT && id == WIFI_EVENT_STA_DISCONNECTED) is_up = false;
 }
 
-/// Where the radio's calibration is kept; erased once where an older version wrote it.
+/// Opens the storage that holds the radio's calibration. It is erased once if an older version
+/// wrote it.
 void start_storage() {
   const esp_err_t error = nvs_flash_init();
   if (error == ESP_ERR_NVS_NO_FREE_PAGES || error == ESP_ERR_NVS_NEW_VERSION_FOUND) {
@@ -32,7 +33,7 @@ void start_storage() {
   }
 }
 
-/// As long as the field at the most; zeros stand behind it.
+/// Copies a text into a field of zeros that is at least as long.
 template <std::size_t n, std::size_t room>
 void copy_text(const char (&text)[n], std::uint8_t (&field)[room]) {
   static_assert(n - 1 <= room);
@@ -64,8 +65,8 @@ bool wifi_is_up() { return is_up; }
 
 void join_wifi() {
   is_up = false;
-  esp_wifi_disconnect();  // may have nothing to leave
-  esp_wifi_connect();     // where it fails at once, LinkPolicy asks again
+  esp_wifi_disconnect();  // fails if there is no link to leave, which does no harm
+  esp_wifi_connect();     // if this fails at once, LinkPolicy asks again
 }
 
 }  // namespace kinalign

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The station of the network in config.h. When to join it again is for LinkPolicy to say.
+// Joins the network of config.h as a station. LinkPolicy decides when to join it again.
 #pragma once
 
 namespace kinalign {
 
-/// Modem sleep is off from here on: with it a reply waits for the next beacon, 100 ms.
+/// Starts the radio without modem sleep: with it a reply would wait for the next beacon, 100 ms.
 void start_wifi();
-/// Whether there is a link with an address.
+/// Whether the node has a link and an address.
 bool wifi_is_up();
-/// Leaves what is left of the link, and asks for it again; returns at once.
+/// Leaves the old link, if there is one, and asks for a new one; returns at once.
 void join_wifi();
 
 }  // namespace kinalign

@@ -14,7 +14,8 @@ DatagramOrigin AnswerGate::issue() {
 bool AnswerGate::admit(const DatagramOrigin& answered) {
   if (answered.node_id != next_.node_id) return ignore(counts_.other_node);
   if (answered.boot_id != next_.boot_id) return ignore(counts_.other_boot);
-  const std::uint32_t back = next_.sequence - answered.sequence;  // 1: the last one; wraps with it
+  // 1: the last frame; the difference wraps with the numbers.
+  const std::uint32_t back = next_.sequence - answered.sequence;
   if (back == 0 || back > sent_) return ignore(counts_.unknown_frame);
   if (back > open_) return ignore(counts_.not_newer);
   open_ = back - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What both kinds of node do with what arrives.
+// Reads the datagrams that have arrived, for both kinds of node.
 #pragma once
 
 #include "firmware/node/board.h"
@@ -11,8 +11,9 @@
 namespace kinalign {
 
 inline constexpr std::size_t arrival_room =
-    64;                                     // an answer has 56 bytes; what is longer is refused
-inline constexpr int arrivals_a_poll = 16;  // a flood delays a frame by no more than these
+    64;  // an answer has 56 bytes; a longer datagram is refused
+/// In one poll; so a flood delays a frame by no more than these.
+inline constexpr int arrivals_a_poll = 16;
 
 template <class Use>
 void for_arrivals(Board& board, Use use) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node asks of the board it runs on: all that is not the same on every board.
+// The functions that a node needs of its board: all that differs from board to board.
 #pragma once
 
 #include "firmware/node/lights.h"
@@ -12,13 +12,14 @@
 
 namespace kinalign {
 
-/// Nothing here waits. counter_us, read_imu, lock and unlock are called by the task that samples,
-/// all but read_imu by the one that sends; they may be one.
+/// No function waits. The task that samples calls counter_us, read_imu, lock and unlock. The task
+/// that sends calls all but read_imu. Both may be one task.
 class Board {
  public:
-  /// us since the start, read now; never backwards. Of a narrower counter the turns are counted.
+  /// The counter in us since the start, read now. It never goes backwards: a board with a narrow
+  /// counter counts its wraps.
   virtual std::uint64_t counter_us() = 0;
-  /// One reading, all but its age. False: the sensor did not answer.
+  /// Takes one reading, and fills in all but its age. False: the sensor did not answer.
   virtual bool read_imu(NodeSample& sample) = 0;
   /// Hands a datagram to the radio. False: it was not taken, and nothing of it will arrive.
   virtual bool send(std::span<const std::uint8_t> datagram) = 0;
@@ -26,18 +27,18 @@ class Board {
   virtual bool receive(std::span<std::uint8_t> room, std::size_t& size) = 0;
   /// False where there is no battery, or none that can be measured.
   virtual bool read_battery(std::uint16_t& mv) = 0;
-  /// Called when they have changed.
+  /// Called when the lights have changed.
   virtual void show(const Lights& lights) = 0;
-  /// Between them the other task stands still: for some microseconds, never over a call of the
-  /// board's. Nothing to do where there is one task.
+  /// Keep the other task from running between lock() and unlock(): for some microseconds, and never
+  /// during a call of the board. They do nothing on a board with one task.
   virtual void lock() = 0;
   virtual void unlock() = 0;
 
  protected:
-  ~Board() = default;  // a board lives as long as its node: nobody deletes one
+  ~Board() = default;  // a board lives as long as its node: it is never deleted through this class
 };
 
-/// The board's lock, while this stands.
+/// Holds the board's lock while it exists.
 class Locked {
  public:
   explicit Locked(Board& board) : board_(board) { board_.lock(); }
@@ -49,7 +50,7 @@ class Locked {
   Board& board_;
 };
 
-/// Shows what has changed, and what there is at first.
+/// Shows the lights once at the start, and then each time they change.
 class LightSwitch {
  public:
   void show(Board& board, const Lights& lights) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node without a counter (section 3.2 of the HFUT-MMD paper): a request a period with the sample
-// of now, and each answer confirmed at once. The host takes the times. Datagrams:
+// A node without a counter (section 3.2 of the HFUT-MMD paper). It sends one request a period with
+// the newest sample, and confirms each answer at once. The host takes all times. Datagrams:
 // docs/formats/imu_node.md.
 #pragma once
 
@@ -12,8 +12,9 @@ namespace kinalign {
 
 struct ClocklessCounts {
   std::uint64_t requests = 0;
-  std::uint64_t request_fails = 0;  // its number and its sample are lost: later it has no time
-  std::uint64_t missed = 0;         // ticks that were over before they were seen
+  /// The request's number and sample are lost: without a counter it can't be sent later.
+  std::uint64_t request_fails = 0;
+  std::uint64_t missed = 0;  // ticks that passed before they were handled
   std::uint64_t sensor_fails = 0;
   std::uint64_t confirms = 0;
   std::uint64_t confirm_fails = 0;
@@ -24,9 +25,10 @@ class ClocklessNode {
  public:
   ClocklessNode(Board& board, const NodeSettings& settings);
 
-  /// On each tick of the frame timer. Nothing here asks the board for its counter.
+  /// To be called on each tick of the frame timer. Nothing here reads the board's counter.
   void tick(std::uint32_t due);
-  /// When a datagram arrives: from the answer to the confirm is a part of the paper's d.
+  /// To be called when a datagram arrives: the time from the answer to the confirm is a part of the
+  /// paper's d.
   void poll();
   void set_link(bool up) { lights_.link_up = up; }
   const ClocklessCounts& counts() const { return counts_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counts by their names, in one order for all who write them: use(name, number) for each.
+// The names of the counts, in one order for all writers: calls use(name, number) for each.
 #pragma once
 
 #include "firmware/node/clockless_node.h"
@@ -19,7 +19,7 @@ void each_answer_count(Answers& counts, Use use) {
   use("not_newer", counts.not_newer);
 }
 
-/// Of a NodeTally, const or not.
+/// Names all counts of a NodeTally, const or not.
 template <class Counts, class Use>
 void each_node_count(Counts& counts, Use use) {
   use("ticks", counts.samples.ticks);
@@ -35,7 +35,7 @@ void each_node_count(Counts& counts, Use use) {
   each_answer_count(counts.replies, use);
 }
 
-/// Of a ClocklessCounts, const or not.
+/// Names all counts of a ClocklessCounts, const or not.
 template <class Counts, class Use>
 void each_clockless_count(Counts& counts, Use use) {
   use("requests", counts.requests);

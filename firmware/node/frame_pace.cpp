@@ -5,7 +5,7 @@ namespace kinalign {
 
 namespace {
 
-/// Bits that look like chance: the last step of MurmurHash3 (A. Appleby, public domain).
+/// Bits that look random: the last step of MurmurHash3 (A. Appleby, public domain).
 std::uint32_t mixed(std::uint32_t bits) {
   bits = (bits ^ bits >> 16) * 0x85ebca6bU;
   bits = (bits ^ bits >> 13) * 0xc2b2ae35U;
@@ -29,7 +29,7 @@ bool FramePace::due(std::uint64_t now_us) {
 }
 
 bool FramePace::advance(std::uint64_t now_us) {
-  const std::uint64_t late = now_us - grid_us_;  // due: at least 0
+  const std::uint64_t late = now_us - grid_us_;  // the frame is due, so this is at least 0
   const std::uint64_t over = late / period_us_;
   plan(grid_us_ + (over + 1) * period_us_);
   return over == 0;

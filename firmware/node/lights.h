@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node shows, as data, and how that looks on a matrix of 5 x 5 LEDs.
+// The state that a node's lights show, and its picture on a matrix of 5 x 5 LEDs.
 #pragma once
 
 #include <array>

@@ -22,7 +22,8 @@ LinkAction LinkPolicy::step(std::uint64_t now_us, bool up, bool heard) {
   began_ = true;
   was_up_ = up;
   if (heard || wait_us_ == 0) {
-    wait_us_ = second_us;  // only who was heard begins with short waits again, not who flaps
+    // The short waits begin again only after a reply, not for a link that comes and goes.
+    wait_us_ = second_us;
     silence_us_ = first_silence_us;
   }
   if (changed) {

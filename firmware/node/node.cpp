@@ -23,7 +23,8 @@ Node::Node(Board& board, const NodeSettings& settings)
 
 void Node::poll() {
   for_arrivals(board_, [this](std::span<const std::uint8_t> datagram) {
-    const std::uint64_t n_rx_us = board_.counter_us();  // first of all
+    // Read before anything else, to be as early as possible.
+    const std::uint64_t n_rx_us = board_.counter_us();
     accept(datagram, n_rx_us);
   });
   const std::uint64_t now_us = board_.counter_us();
@@ -65,13 +66,15 @@ void Node::gather() {
   gathered_count_ += sampler_.take(std::span(gathered_).subspan(gathered_count_));
 }
 
-/// The counter is read here, after all but the copying, the MAC and the CRC, which need it.
+/// Stamps the frame. The counter is read here, as late as possible: only copying, MAC and CRC
+/// follow, and they need the stamp.
 void Node::stamp() {
   const std::uint64_t n_tx_us = board_.counter_us();
   frame_.n_tx_us = n_tx_us;
   frame_.sample_count = 0;
   for (std::size_t i = 0; i < gathered_count_; ++i) {
-    const std::uint64_t age_us = n_tx_us - gathered_[i].counter_us;  // huge where it is later
+    // A sample later than its frame gives a huge number.
+    const std::uint64_t age_us = n_tx_us - gathered_[i].counter_us;
     if (age_us > UINT32_MAX) continue;
     NodeSample& sample = frame_.samples[frame_.sample_count++];
     sample = gathered_[i].sample;
@@ -83,8 +86,9 @@ void Node::stamp() {
   }
 }
 
-/// What was not sent waits with its samples and its echo; its number does not come again. Where the
-/// ring overflows meanwhile, the samples here are the oldest, and go first.
+/// A frame that was not sent keeps its samples and its echo for the next frame; its number is not
+/// used again. If the ring is full meanwhile, the samples here are the oldest, and are dropped
+/// first.
 void Node::forget_or_keep(bool sent) {
   if (sent) {
     ++counts_.sent;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples that wait for a frame, first in, first out. Where there is no room the oldest go: a
-// node that comes back from a bad radio is to say what is, not what was.
+// The samples that wait for a frame, first in, first out. If there is no room the oldest are
+// dropped: after a time without radio the newest samples matter most.
 #pragma once
 
 #include "kinalign/wire/node_sample.h"
@@ -13,17 +13,17 @@
 namespace kinalign {
 
 struct TakenSample {
-  std::uint64_t counter_us = 0;  // when it was taken
-  NodeSample sample;             // without an age: that depends on the frame
+  std::uint64_t counter_us = 0;  // counter when it was taken
+  NodeSample sample;             // its age is not set: that depends on the frame
 };
 
 class SampleRing {
  public:
   static constexpr std::size_t capacity = 512;  // 2.5 s at 200 Hz: roaming takes up to 2 s
 
-  /// False where the oldest had to go for it.
+  /// False: the oldest sample was dropped to make room.
   bool push(const TakenSample& sample);
-  /// Moves the oldest ones to `out`, as many as there are and as it holds; how many.
+  /// Moves the oldest samples to `out`, as many as there are and as fit; gives their number.
   std::size_t pop(std::span<TakenSample> out);
   std::size_t size() const { return size_; }
 

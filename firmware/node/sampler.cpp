@@ -6,7 +6,8 @@ namespace kinalign {
 void Sampler::tick(std::uint32_t due) {
   if (due == 0) return;
   TakenSample taken;
-  taken.counter_us = board_.counter_us();  // before the reading: a stamp may be early by its time
+  // Before the reading, so a stamp may be early by the reading's length.
+  taken.counter_us = board_.counter_us();
   const bool answered = board_.read_imu(taken.sample);
   if (!answered) taken.sample = {};
   const Locked locked(board_);

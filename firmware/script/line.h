@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages over a line of bytes, each behind its length.
+// Messages over a line of bytes; each begins with its length.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,9 @@ class Line {
 
 inline constexpr std::size_t longest_message = 1500;
 
-/// u16 length of what follows, big-endian; a letter, the kind; its fields. False at the line's end
-/// and where a message is empty or too long: behind it nothing can be found again.
+/// Reads a message: u16 length of the rest, big-endian; a letter for the kind; its fields. False at
+/// the line's end, and if a message is empty or too long: after that the next message can't be
+/// found.
 bool read_message(Line& line, std::span<std::uint8_t, longest_message> room, std::size_t& size);
 void write_message(Line& line, char kind, std::span<const std::uint8_t> fields);
 

@@ -7,7 +7,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t reading_takes_us = 7;  // of the counter: so that their order shows
+// The counter moves by this in each reading, so that the order of readings shows.
+constexpr std::uint64_t reading_takes_us = 7;
 
 template <std::size_t n>
 void take_floats(ByteReader& message, std::array<float, n>& values) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A board that is nothing but a line of bytes: clock, sensor and radio come over it, and what the
-// node does goes back. The same on a microcontroller's serial port and in host_node, so that one
-// script shows whether both nodes are the same (script.h says what goes over the line).
+// A board that consists of a line of bytes: clock, sensor and radio come over it, and the node's
+// actions go back. It is the same on a microcontroller's serial port and in host_node, so one
+// script shows whether both nodes behave alike (script.h lists the messages).
 #pragma once
 
 #include "firmware/node/board.h"
@@ -17,11 +17,12 @@ class ScriptBoard : public Board {
  public:
   explicit ScriptBoard(Line& line) : line_(line) {}
 
-  /// Sets clock and sensor for a tick; the number of ticks that are due.
+  /// Sets clock and sensor for a tick; gives the number of ticks that are due.
   std::uint32_t begin_tick(ByteReader& message);
-  /// Sets clock, radio and battery for a poll; whether there is a link.
+  /// Sets clock, radio and battery for a poll; gives whether there is a link.
   bool begin_poll(ByteReader& message);
-  /// A datagram for the next poll; beyond eight they are lost, and cut at 80 bytes.
+  /// Adds a datagram for the next poll. Datagrams beyond eight are lost, and each is cut at 80
+  /// bytes.
   void arrive(std::span<const std::uint8_t> datagram);
 
   std::uint64_t counter_us() override;

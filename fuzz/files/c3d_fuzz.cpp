@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows do not depend on the pieces, and what was read can be written and read again with the same
-// states.
+// Rows do not depend on the pieces in which a file is read, and a file that was read can be written
+// and read again with the same states.
 #include "fuzz/pieces.h"
 
 #include "kinalign/formats/c3d/c3d.h"

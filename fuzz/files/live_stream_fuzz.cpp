@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is read of a live stream does not depend on how it is cut into pieces.
+// A live stream is read alike, however it is cut into pieces.
 #include "kinalign/recording/live/live_stream.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const Heard whole = heard(bytes, std::max<std::size_t>(size, 1));
   const Heard cut = heard(bytes, 3);
-  // Of a stream that fails, what came before the damage may or may not have been handed on.
+  // If a stream fails, the data before the damage may or may not have been passed on.
   if (whole.fails != cut.fails || (!whole.fails && !(whole == cut))) std::abort();
   return 0;
 }

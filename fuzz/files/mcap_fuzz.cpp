@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is read of a recording does not depend on how it is cut into pieces, and is read again when
-// it is written anew.
+// A recording is read alike, however it is cut into pieces, and is read again when it is written
+// anew.
 #include "kinalign/mcap/reader.h"
 #include "kinalign/mcap/writer.h"
 #include "kinalign/recording/format.h"

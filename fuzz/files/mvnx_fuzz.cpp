@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of segments and of sensors do not depend on the pieces. What fails must fail in any pieces,
-// but perhaps with another message: Expat puts off a token that is not whole, so that damage of the
-// archive behind it may be told first. Seeds: bvh/*.mvnx.gz
+// Rows of segments and of sensors do not depend on the pieces in which a file is read. A file that
+// fails must fail in any pieces, but its message may differ: Expat holds a token until it is whole,
+// so an error of the archive after it may be reported first. Seeds: bvh/*.mvnx.gz
 #include "fuzz/pieces.h"
 
 #include "kinalign/formats/mvnx/mvnx.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a recording's devices said, its rows are sound: arrays of one length, stamps and times
-// in their limits, rotations unit, the same by whatever pieces the file is read in.
-// Input: protocol, then messages: kind (1 an exchange), milliseconds since the one before, length
-// in two bytes, payload.
+// Any recording has sound rows: arrays of one length, stamps and times in their limits, unit
+// rotations, and the same rows whatever the pieces in which the file is read. Input: protocol, then
+// messages: kind (1 an exchange), milliseconds since the message before, length in two bytes,
+// payload.
 #include "kinalign/mcap/writer.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/wire/clockless.h"
@@ -32,7 +32,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// 59 joints in a chain, as a lab's file would have them.
+/// A skeleton of 59 joints in a chain, as text of a file of a lab.
 std::string skeleton() {
   const std::string turns = "Yrotation Xrotation Zrotation\n";
   std::string text =
@@ -46,7 +46,7 @@ std::string skeleton() {
          "}\nMOTION\nFrames: 0\nFrame Time: 0.008\n";
 }
 
-/// The bytes as numbers, zeros behind their end.
+/// Reads numbers from the bytes; after their end it reads zeros.
 struct Numbers {
   std::string_view bytes;
   template <class T>
@@ -59,8 +59,8 @@ struct Numbers {
   }
 };
 
-/// A checksum is nothing to be guessed: of a node the payload says what its frame and its exchange
-/// hold.
+/// The frame and the exchange of a node that the payload describes. They are built here because a
+/// fuzzer can't guess a checksum.
 struct SaidByNode {
   std::string exchange, frame;
 };
@@ -229,7 +229,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       RecordingSource::open(files, path, RecordingSource::Devices::heard, {options});
   if (source) {
     const auto stream = (*source)->stream(options, {path, ""});
-    // The stamps that the first pass foretells are those of the rows, in every pass.
+    // The stamps that the first pass finds are those of the rows, in every pass.
     for (int pass = 0; stream && pass < 2; ++pass) {
       const auto stamps = std::visit(
           [&](const auto& passes) { return read(passes(), stream->clock); }, stream->passes);

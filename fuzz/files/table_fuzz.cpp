@@ -23,7 +23,7 @@ const std::vector<TableLayout>& layouts() {
   return all;
 }
 
-/// What a user may say of any table, told by the input's size.
+/// Options that a user may give for any table; the input's size selects them.
 StreamOptions options_for(std::size_t size) {
   StreamOptions options;
   if (size % 3 == 1) options.rate_hz = 30.0;

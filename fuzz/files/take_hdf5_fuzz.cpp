@@ -67,7 +67,7 @@ std::string damaged(const std::string& whole, std::string_view damage) {
   return out;
 }
 
-/// What a take says of itself, and every array of every slab, as bytes.
+/// The metadata of a take and every array of every slab, as bytes.
 Result<std::string> contents(const std::string& path) {
   PosixFiles files;
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
@@ -95,12 +95,13 @@ Result<std::string> contents(const std::string& path) {
 
 }  // namespace
 
-/// HDF5 asks for what a file states; it has to hear no, as without a sanitizer.
+/// HDF5 allocates whatever size a file states. An allocation that is too large must return null, as
+/// it does without a sanitizer.
 extern "C" const char* __asan_default_options();
 extern "C" const char* __asan_default_options() { return "allocator_may_return_null=1"; }
 
-/// Its own faults, which the sanitizer sees where it calls memcpy and the like, are what the child
-/// is for: they are crashes at worst.
+/// The sanitizer also reports HDF5's own faults, where HDF5 calls memcpy and the like. They are
+/// suppressed: at worst they crash the child, which is there for that.
 extern "C" const char* __asan_default_suppressions();
 extern "C" const char* __asan_default_suppressions() { return "interceptor_via_lib:libhdf5"; }
 
@@ -119,7 +120,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!first && first.error().found == "one that ended the program that read it") std::abort();
   if (!first) return 0;
   const auto second = read();
-  // The fuzzer's own clock signals, which counts as Ctrl-C.
+  // The fuzzer's own timer sends a signal, which counts as Ctrl-C.
   if (!second && second.error().found == interruption().found) return 0;
   if (!second || *second != *first) std::abort();
   return 0;

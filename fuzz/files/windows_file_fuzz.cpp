@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of any two streams of a file that is accepted are whole.
+// In a file that is accepted, the pairs of any two streams are complete.
 #include "kinalign/models/pairs.h"
 #include "kinalign/models/windows_file.h"
 

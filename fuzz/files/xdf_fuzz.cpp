@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is read does not depend on where the file is cut, arrays are as long as they say, and clocks
-// fitted to any offsets give numbers.
-// Seeds: xdf/*.xdf
+// Reading does not depend on where the file is cut, arrays are as long as they state, and clocks
+// fitted to any offsets give numbers. Seeds: xdf/*.xdf
 #include "kinalign/formats/xdf/xdf.h"
 
 #include <algorithm>
@@ -32,7 +31,7 @@ Decoded decode(std::string_view text, std::size_t piece) {
   return all;
 }
 
-/// Bit for bit, so that NaN is itself.
+/// Compares bit for bit, so that NaN equals itself.
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), 8 * a.size()) == 0);
 }

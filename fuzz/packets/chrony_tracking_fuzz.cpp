@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever an answer says, the values are ones that NTP can say.
+// For any answer of chrony the values are in the range that NTP allows.
 #include "kinalign/capture/ntp/clock_state.h"
 
 #include <cstdlib>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exchange of nodes without a counter, all three of each input: see node_datagrams.h.
+// The three datagrams of a node without a counter; each input is tried as all three: see
+// node_datagrams.h.
 #include "fuzz/packets/node_datagrams.h"
 
 #include "kinalign/wire/clockless.h"

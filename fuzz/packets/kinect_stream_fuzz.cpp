@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Kinect's sender says: a datagram that is accepted encodes again to the same bytes, as a
-// line to the same content; a connection's messages do not depend on where it is cut, and joining
-// them ends. No fuzzer guesses a CRC, so an odd first byte has those of binary messages mended.
+// Messages of a Kinect's sender. An accepted datagram encodes again to the same bytes, and as a
+// line to the same content. A connection's messages do not depend on where it is cut, and joining
+// them ends. No fuzzer guesses a CRC, so with an odd first byte the CRCs of binary messages are
+// repaired.
 #include "kinalign/protocols/kinect/binary.h"
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/protocols/kinect/lines.h"

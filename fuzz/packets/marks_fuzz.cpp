@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls and broadcasts for marks: what is accepted is written and read again to the same, and an
-// answer is never longer than what it answers; so is a mark of a recording.
+// Calls and broadcasts for marks. An accepted one is written and read again to the same, and so is
+// a mark of a recording. An answer is never longer than the call that it answers.
 #include "fuzz/pieces.h"
 
 #include "kinalign/protocols/marks/mark_call.h"

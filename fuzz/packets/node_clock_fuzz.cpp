@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a node says, its clock answers with intervals that have their ends in order and the
-// likeliest between them, and the whole recording can be fitted. Each five bytes are a frame: how
-// the counter and the host went on, which life it is, what is echoed.
+// For any frames of a node its clock gives intervals whose ends are in order, with the likeliest
+// time between them, and the whole recording can be fitted. Each five bytes are a frame: the steps
+// of the counter and the host, the life, and the echo.
 #include "kinalign/clock/offline/offline_clock.h"
 #include "kinalign/wire/bytes.h"
 
@@ -14,7 +14,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Mostly steps of milliseconds, now and then any of 64 bits.
+/// Mostly steps of milliseconds, sometimes any number of 64 bits.
 std::int64_t step(std::uint8_t byte) {
   const auto value = static_cast<std::int64_t>(byte & 0x3FU) - 8;
   return byte < 0xC0 ? value * 1'000'000 : value << (byte & 0x3FU);
@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     clock.push(e);
     exchanges.push_back(e);
     const auto stamp = clock.host_from_node(e.boot, e.n_tx);
-    // No slope is known for sure: the next piece would divide by that.
+    // No slope may be known exactly: the next piece divides by its deviation.
     if (!(clock.piece()->estimate().slope().deviation > 0.0)) std::abort();
     if (!stamp || stamp->certainty != Certainty::certified) continue;
     if (*stamp->latest < *stamp->earliest || stamp->time < *stamp->earliest - Duration{1000} ||
@@ -50,13 +50,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::abort();
     }
   }
-  // A knot a second: of eleven days, which it takes, they cost a fuzzer ten seconds each time.
+  // The fit has a knot for each second. It takes recordings of up to eleven days, but those would
+  // cost the fuzzer ten seconds each, so longer ones than a day are left out.
   const auto [least, most] =
       std::minmax_element(exchanges.begin(), exchanges.end(),
                           [](const Exchange& a, const Exchange& b) { return a.n_tx < b.n_tx; });
   if (!exchanges.empty() && most->n_tx - least->n_tx > std::chrono::hours(24)) return 0;
   const OfflineClock offline = fit_offline_clock(exchanges);
-  // One exchange begins three pieces at most: a life, the host's clock that went back, a step.
+  // One exchange begins at most three pieces: for a new life, a host clock that went back, and a
+  // step.
   const bool many = offline.model.pieces.size() > 3 * exchanges.size();
   if (clock.take_events().size() > 64 || many) std::abort();
   return 0;

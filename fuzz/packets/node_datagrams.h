@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The law of the node's datagrams: what is accepted encodes again to the same bytes, and of what is
-// refused nothing is left. No fuzzer guesses a MAC, so the input's first byte says what is mended
-// in the rest: 0 nothing, 1 all but the fields, 2 the same with a MAC.
+// The rule for a node's datagrams: an accepted one encodes again to the same bytes, and a refused
+// one changes nothing. No fuzzer guesses a MAC, so the input's first byte says how the rest is
+// repaired: 0 not at all, 1 all but the fields, 2 the same with a MAC.
 #pragma once
 
 #include "kinalign/wire/node_datagram.h"
@@ -15,7 +15,7 @@ namespace kinalign {
 
 constexpr MacKey fuzz_key{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/// With magic, version, type, length, the MAC's flag, MAC and CRC as they have to be.
+/// Sets magic, version, type, length, the MAC's flag, MAC and CRC to correct values.
 inline void mend(std::vector<std::uint8_t>& datagram, DatagramType type, const MacKey* key) {
   if (datagram.size() < node_datagram_size(0, key != nullptr)) return;
   const auto flags = static_cast<std::uint8_t>(datagram[20] & ~mac_flag);
@@ -46,7 +46,7 @@ void check_again(const std::vector<std::uint8_t>& datagram, const MacKey* key) {
   }
 }
 
-/// `type` is what mending makes of the input.
+/// `type`: the type of datagram that the input is repaired to.
 template <class Datagram>
 void check_datagram(DatagramType type, const std::uint8_t* data, std::size_t size) {
   if (size == 0) return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two hosts, one authenticated node: what it brings is the same whether or not others send what
-// they like in between, with MACs that are right for other nodes or for none. Nobody gets more
-// bytes than were sent.
+// Two hosts, one authenticated node: its messages bring the same, whether or not others send
+// anything in between, with MACs that are right for other nodes or for none. No sender gets more
+// bytes than it sent.
 #include "fuzz/packets/node_datagrams.h"
 
 #include "kinalign/capture/nodes/node_desk.h"
@@ -35,10 +35,10 @@ NodeAddress own_address() {
   return address;
 }
 
-/// The node, and the desk of one of the hosts.
+/// The node, and the NodeDesk of one of the hosts.
 class Pair {
  public:
-  /// A frame, the reply to it, and what it brought.
+  /// Sends a frame to the host and its reply to the node; gives the exchange that resulted.
   std::optional<Exchange> exchange(HostTime now) {
     NodeFrame frame;
     frame.origin = {own_id, 1, sequence_++};
@@ -72,7 +72,7 @@ bool same(const std::optional<Exchange>& a, const std::optional<Exchange>& b) {
   return a->echo->n_rx == b->echo->n_rx && a->echo->h_tx == b->echo->h_tx;
 }
 
-/// Bytes of the input as a datagram: as they are, mended, or mended with the MAC of node 8.
+/// Bytes of the input as a datagram: unchanged, repaired, or repaired with the MAC of node 8.
 std::vector<std::uint8_t> datagram_of(std::span<const std::uint8_t> bytes, std::uint8_t how) {
   std::vector<std::uint8_t> datagram(bytes.begin(), bytes.end());
   const MacKey key = node_key(lab, 8);
@@ -95,7 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t length = std::min<std::size_t>(reader.take<std::uint8_t>(), reader.left());
     const auto bytes = datagram_of({data + size - reader.left(), length}, how);
     for (std::size_t i = 0; i < length; ++i) reader.take<std::uint8_t>();
-    NodeAddress from = noisy->from;  // its own too
+    NodeAddress from = noisy->from;  // sometimes the node's own address
     from.host[15] = last;
     const NodeNews news = noisy->desk.receive({bytes, from, now});
     if (news.exchange && (news.exchange->boot == 1 && how % 4 != 2)) std::abort();

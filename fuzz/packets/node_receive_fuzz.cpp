@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What arrives on a node's port, against a plain account of what should count: an answer that is
-// whole, for this node, this start and one of its last 64 frames, the first one to that frame or a
-// later one. All else is counted and changes nothing.
+// Datagrams on a node's port, compared with a plain count of those that must be accepted: an answer
+// that is whole, for this node, this start and one of its last 64 frames, the first answer to that
+// frame or a later one. All others are counted and change nothing.
 //
-// The input: a byte (1 a key, 2 clockless), then a byte a step: 0 to 63 ticks and polls, 64 to 127
-// so many bytes arrive, 128 to 191 they arrive mended (see node_datagrams.h), and from 192 on they
-// are an answer's fields behind the head of one to the frame so many before the last.
+// The input: a byte (1 a key, 2 clockless), then a byte for each step: 0 to 63 ticks and polls, 64
+// to 127 so many bytes arrive, 128 to 191 they arrive repaired (see node_datagrams.h), and from 192
+// on they are an answer's fields after the head of an answer to the frame so many before the last.
 #include "firmware/node/clockless_node.h"
 #include "firmware/node/count_names.h"
 #include "firmware/node/node.h"
@@ -54,7 +54,7 @@ class FuzzBoard : public Board {
   std::vector<Bytes> sent;
 };
 
-/// What should count, by the page.
+/// Counts the answers that a node must accept, by the rules of docs/formats/imu_node.md.
 template <class Answer>
 class Account {
  public:
@@ -99,7 +99,7 @@ void check_counts(const AnswerCounts& counts, std::uint64_t arrived, std::uint64
   require(sum == arrived && counts.accepted == accepted);
 }
 
-/// A node with a counter, and what it says after each poll.
+/// A node with a counter, and the frames that it sends after each poll.
 struct Frames {
   using Answer = NodeReply;
   static constexpr DatagramType type = DatagramType::reply;
@@ -126,7 +126,7 @@ struct Frames {
   std::size_t checked = 0;
 };
 
-/// A node without one.
+/// A node without a counter.
 struct Requests {
   using Answer = ClocklessAnswer;
   static constexpr DatagramType type = DatagramType::answer;

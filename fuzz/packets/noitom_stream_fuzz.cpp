@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames do not depend on where bytes are cut, little waits, every byte is accounted for, and what
-// was read is sent and read again as the same. In datagrams little waits, no byte is counted twice,
-// and frames are no more than there is room for.
+// Frames do not depend on where the bytes are cut, few bytes wait, every byte is accounted for, and
+// a frame that was read is sent and read again as the same. In datagrams few bytes wait, no byte is
+// counted twice, and there are no more frames than the bytes have room for.
 #include "kinalign/protocols/noitom/receiver.h"
 
 #include <cstdlib>
@@ -28,7 +28,7 @@ Read read(std::span<const std::uint8_t> bytes, std::size_t piece) {
   return all;
 }
 
-/// Datagrams whose sizes and arrivals hang on their bytes.
+/// Feeds the bytes as datagrams; their sizes and arrival times depend on the bytes.
 void read_datagrams(std::span<const std::uint8_t> bytes) {
   NoitomReceiver receiver;
   std::vector<NoitomArrival> arrivals;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is taken for a request has the size and first byte of one, and its 48 bytes are written
-// again as they stood; any stamp in it survives the way through Time with its own pivot.
+// A packet that is accepted as a request has the size and first byte of one, and its 48 bytes are
+// written again unchanged. Any stamp in it survives the way through Time with its own pivot.
 #include "kinalign/wire/ntp_packet.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream of datagrams, each from an address and at a time of its own: what is answered was a
-// request of 48 bytes at least, holds its stamp, and no address gets more than the limit lets pass.
+// A stream of datagrams, each from an address and at a time of its own. A datagram that is answered
+// was a request of at least 48 bytes, the answer holds its stamp, and no address gets more answers
+// than the limit allows.
 #include "kinalign/capture/ntp/ntp_responder.h"
 #include "kinalign/wire/bytes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two hosts, one tracker that is never silent: what becomes of it is the same whether or not others
-// send what they like in between, in its name too. No address gets more bytes than it sent.
+// Two hosts, one tracker that is never silent: both treat it alike, whether or not others send
+// anything in between, in its name too. No address gets more bytes than it sent.
 #include "kinalign/capture/recorder/slimevr_desk.h"
 #include "kinalign/wire/bytes.h"
 
@@ -23,7 +23,7 @@ NodeAddress address(std::uint8_t last) {
   return at;
 }
 
-/// With the head that types of packets have; its body is `rest`.
+/// A packet with the head of its type and number, and with the body `rest`.
 Bytes packet(std::uint8_t type, std::uint64_t number, std::span<const std::uint8_t> rest) {
   Bytes bytes(12 + rest.size());
   ByteWriter writer(bytes);
@@ -33,7 +33,7 @@ Bytes packet(std::uint8_t type, std::uint64_t number, std::span<const std::uint8
   return bytes;
 }
 
-/// As far as the MAC, whose last byte is `name`.
+/// A handshake that ends with the MAC address; the last byte of that is `name`.
 Bytes handshake(std::uint8_t name) {
   Bytes body(28 + 1 + 6);
   body[28 + 6] = name;

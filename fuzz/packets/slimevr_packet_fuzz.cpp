@@ -24,7 +24,8 @@ void add(const SlimeDatagram& datagram, Sum& sum) {
   sum.faults += datagram.unknown_type + datagram.too_short + datagram.nested;
 }
 
-/// Each packet of a bundle, with the head that it lacks there; nested ones are left out.
+/// Each packet of a bundle as a datagram of its own, with the head that it has not in the bundle;
+/// nested bundles are left out.
 Sum one_by_one(std::span<const std::uint8_t> body, std::size_t width) {
   const std::size_t type_size = width == 1 ? 1 : 4;
   Sum sum;

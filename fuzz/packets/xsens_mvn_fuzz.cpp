@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples do not depend on where bytes are cut, little waits, and what was read is sent and read
-// again as the same; poses and nodes made of them hold numbers alone.
+// Samples do not depend on where the bytes are cut, few bytes wait, and a sample that was read is
+// sent and read again as the same. Poses and nodes made of the samples hold only finite numbers.
 #include "fuzz/pieces.h"
 
 #include "kinalign/protocols/xsens/stream.h"
@@ -73,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto once = sent(whole.arrivals[k].sample);
     if (once != sent(cut.arrivals[k].sample)) std::abort();
     const Decoded second = decode(once, once.size());
-    // A marker among the numbers would tear it; none but a made one is.
+    // A header's marker among the numbers would tear the datagram; only a made-up datagram has one.
     if (second.counts[XsensRefusal::torn] != 0) continue;
     if (second.arrivals.size() != 1 || sent(second.arrivals[0].sample) != once) std::abort();
   }

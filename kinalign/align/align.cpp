@@ -19,7 +19,7 @@ namespace kinalign {
 
 namespace {
 
-/// The groups that fits need: their own and the ones they are fitted onto.
+/// Marks the groups that fits need: the fitted groups and those they are fitted onto.
 std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size_t groups) {
   std::vector<bool> out(groups, false);
   for (const SpacePlan& space : spaces) {
@@ -28,6 +28,7 @@ std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size
   return out;
 }
 
+/// Fits the rigid transform of a space to the pairs of joints that were collected in `moments`.
 Result<void> fit_space(const PairMoments& moments, const std::string& name, SpacePlan& space) {
   if (moments.count == 0) {
     return Failure(Error{name, 0, "rows in which joints of both are tracked, for a fit",
@@ -43,7 +44,7 @@ Result<void> fit_space(const PairMoments& moments, const std::string& name, Spac
   return {};
 }
 
-/// A pass over the streams concerned that finds the transforms to be fitted.
+/// Finds the fitted transforms in one pass over the streams concerned.
 Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
                         std::vector<SpacePlan>& spaces, const Progress& progress,
                         std::size_t jobs) {
@@ -65,7 +66,7 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
   return {};
 }
 
-/// Adds what the rows of a stream say.
+/// Adds the counts of a stream's rows in one slab.
 void add_marks(const TakeSlab& slab, const TakeHeader& header, const RecordedStream& s,
                const StreamPlan& stream, Marks& marks) {
   const auto& rows = slab.rows[stream.group];
@@ -80,12 +81,13 @@ void add_marks(const TakeSlab& slab, const TakeHeader& header, const RecordedStr
   }
 }
 
-/// A take shall not depend on where its inputs lay.
+/// Removes folders from file names, because a take must not depend on the place of its inputs.
 Findings without_folders(Findings findings) {
   for (Finding& finding : findings) finding.what.file = file_name(finding.what.file);
   return findings;
 }
 
+/// Begins the report with everything known before the rows: findings of files, stamps and the plan.
 AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) {
   AlignmentReport report;
   report.frames = plan.header.frames;
@@ -105,12 +107,12 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
   return report;
 }
 
-/// What is counted while the slabs go by.
+/// Counts over all slabs.
 struct Counts {
   std::uint64_t rows = 0;
   Time begin{}, end{};                  // first and last row
-  std::vector<ResidualSums> residuals;  // [spaces]
-  std::vector<Marks> marks;             // [streams]
+  std::vector<ResidualSums> residuals;  // per space
+  std::vector<Marks> marks;             // per stream
 };
 
 Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& spaces) {
@@ -121,21 +123,21 @@ Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& space
   return out;
 }
 
-/// The plan and what it became; all as long as one call of align.
+/// The plan and the spaces of one call of align().
 struct Job {
   const Recording& recording;
   const AlignPlan& plan;
   const std::vector<SpacePlan>& spaces;
 };
 
-/// The reference had another number of frames when it was first read.
+/// The error if the reference now has another number of frames than in the first pass.
 Error other_length(const Job& job, std::uint64_t rows) {
   return {job.recording.streams[job.plan.reference].name, 0,
           fmt::format("{} frames, as in the first reading", job.plan.header.frames),
           fmt::format("{}", rows)};
 }
 
-/// Turns, counts and hands on a slab.
+/// Moves the points of a slab into their spaces, counts its rows, and passes it to the sink.
 Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
                        const Progress& progress, Counts& counts) {
   if (counts.rows == 0) counts.begin = slab.stamps.front();
@@ -185,6 +187,7 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   return out;
 }
 
+/// Completes the report after the last row and sorts the findings by severity.
 void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
                    AlignmentReport& report) {
   report.begin = counts.begin;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a recording to a take (paper sections 3.1 and 3.2): one grid, one space, slab by slab.
+// Makes a take from a recording (paper sections 3.1 and 3.2): one grid and one space, in blocks of
+// rows (slabs).
 #pragma once
 
 #include "kinalign/core/progress.h"
@@ -9,23 +10,23 @@
 
 namespace kinalign {
 
-/// Where a take goes: the header first, then slabs in order.
+/// The receiver of a take: first the header, then slabs in order.
 struct TakeSink {
   std::function<Result<void>(const TakeHeader&)> begin;
   std::function<Result<void>(const TakeSlab&)> rows;
 };
 
-/// Aligns in one pass over each stream (after one more where a transform is fitted, and one over
-/// the stamps of a reference that the span cuts) and memory for some thousand rows. Returns the
-/// report, whose figures belong to what was handed to the sink. Fails where streams do not overlap
-/// in time or a stream can't be read again. With two `jobs` the reference is read ahead while the
-/// rows before are made; results are the same. `sink` and `progress` may be called on another
-/// thread, never on two at once.
+/// Aligns a recording in one pass over each stream, with memory for some thousand rows. A fitted
+/// transform needs one more pass; a reference that is cut by the common span needs one more pass
+/// over its stamps. Returns the report; its figures describe the rows given to the sink. Fails if
+/// streams do not overlap in time or a stream can't be read again. With two `jobs` the reference is
+/// read ahead while earlier rows are made; the results are the same. `sink` and `progress` may be
+/// called from another thread, but never from two at once.
 Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
                               const TakeSink& sink, const Progress& progress = {},
                               std::size_t jobs = 1);
 
-/// The same, into memory.
+/// The same, with the take in memory.
 Result<Take> align(const Recording& recording, const Manifest& manifest);
 
 }  // namespace kinalign

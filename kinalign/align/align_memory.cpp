@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alignment into memory: slabs put together.
+// Alignment into memory: collects the slabs in a Take.
 #include "kinalign/align/align.h"
 
 namespace kinalign {

@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-/// What start_ns added, of several files, to the stamps.
+/// The part of the clock offset that start_ns added, if the stream has several files.
 Duration own_offset(const RecordedStream& s, const StreamOptions& options) {
   return s.clock.pieces.front().offset - Duration{std::llround(options.offset_ms * 1e6)};
 }
@@ -20,11 +20,11 @@ std::string file_of(const RecordedStream& s) {
   return s.files.empty() ? s.name : s.files.front().name;
 }
 
-/// Steps between the samples kept of a device that stamps them, ns.
+/// The steps between kept samples of a device that stamps its samples, ns.
 struct Steps {
   double median = 0.0, mean = 0.0;
   std::uint64_t long_ones = 0;
-  double long_share = 0.0;  // of the stream's time
+  double long_share = 0.0;  // share of the stream's time in long steps
 };
 
 std::optional<Steps> steps_of(const RecordedStream& s) {
@@ -43,8 +43,9 @@ Findings warning(const std::string& file, std::string expected, std::string foun
            std::move(meaning), std::move(repair)}};
 }
 
-/// A unit taken for another is wrong by a thousand or more, .NET's ticks by a hundred: no device of
-/// the field is so quick or so slow. Cameras reach 1,000 frames a second, inertial sensors 2,000.
+/// Warns about the unit of stamps. A wrong unit changes the rate by at least a thousand, .NET ticks
+/// by a hundred, and no device in this field is so fast or slow. Cameras reach 1,000 frames per
+/// second, inertial sensors 2,000.
 Findings judge_unit(const Steps& steps, const RecordedStream& s) {
   const double fastest_hz = std::holds_alternative<ImuInput>(s.data) ? 2500.0 : 1200.0;
   constexpr double slowest_hz = 0.5;
@@ -57,7 +58,7 @@ Findings judge_unit(const Steps& steps, const RecordedStream& s) {
                  "ticks_100ns");
 }
 
-/// A stated rate that fits neither the usual step nor the mean.
+/// Warns if a stated rate fits neither the median step nor the mean step.
 Findings judge_stated(const Steps& steps, double nominal_hz, const std::string& file) {
   constexpr double alike = 1.5;
   const auto fits = [nominal_hz](double step) {
@@ -70,8 +71,9 @@ Findings judge_stated(const Steps& steps, double nominal_hz, const std::string& 
                  fmt::format("say rate_hz = {:.3g}, or nothing", 1e9 / steps.median));
 }
 
-/// A stream that stands still for more than half of its time has pauses, or samples that come in
-/// bursts and are stamped on arrival: stamps can't tell, a person can. Ten trials have nine pauses.
+/// Warns if a stream stands still for more than half of its time. Either the device paused, or
+/// samples came in bursts and were stamped on arrival. Stamps can't tell which; the user can. Ten
+/// trials have nine pauses.
 Findings judge_rate(const Steps& steps, const std::string& file) {
   constexpr double gap_steps = 3.0, burst = 5.0, alike = 1.5;
   constexpr std::uint64_t pauses = 10;
@@ -103,7 +105,7 @@ Findings judge_rate(const Steps& steps, const std::string& file) {
 Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   Findings out;
   const std::string file = file_of(s);
-  // A sample now and then is sent twice; of many, something else is the reason.
+  // Single samples are sometimes sent twice; many duplicates have another cause.
   const bool often = s.survey.duplicates > 10 && 20 * s.survey.duplicates > s.survey.samples;
   if (s.survey.duplicates > 0) {
     out.push_back({often ? Severity::warning : Severity::note,
@@ -119,7 +121,7 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
                    "these samples were left out", ""});
   }
   if (s.survey.backward > 0) {
-    // Behind a clock that was set back nothing is later than what came before.
+    // After a clock was set back, all further stamps are before earlier ones, so there are many.
     const bool many = 20 * s.survey.backward > s.survey.samples;
     out.push_back({many ? Severity::error : Severity::warning,
                    Error{file, 0, "stamps that rise",
@@ -187,7 +189,7 @@ Findings said_of(const RecordedStream& stream, const Recording& recording, Findi
 Findings judge_start(const RecordedStream& s, const StreamOptions& options,
                      const Arrivals& arrivals) {
   if (s.counted || !options.start_ns) return {};
-  const bool several = options.files.size() > 1;  // of those the earliest kept has it
+  const bool several = options.files.size() > 1;  // several files: the earliest kept sample has it
   const Time start = utc_time(*options.start_ns);
   if (several && s.survey.first + own_offset(s, options) != start) return {};
   const bool first_kept = several || s.survey.first == start;
@@ -199,9 +201,9 @@ Findings judge_start(const RecordedStream& s, const StreamOptions& options,
 }
 
 Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {
-  // Below these a stream's own noise looks like content. Chosen: Kinect v2 joints at rest wander by
-  // 0.1 to 0.9 mm, hand tips by 2.5 (measured on KinectMultiTrack); inertial sensors of phones and
-  // trackers by some 0.02 m/s2 and 0.005 rad/s.
+  // Below these limits a stream's noise looks like content. Chosen values: Kinect v2 joints at rest
+  // move by 0.1 to 0.9 mm, hand tips by 2.5 mm (measured on KinectMultiTrack). Inertial sensors of
+  // phones and trackers have about 0.02 m/s2 and 0.005 rad/s.
   constexpr double points_m = 0.002, acceleration_m_s2 = 0.05, angular_velocity_rad_s = 0.01;
   Findings out;
   const auto add = [&](const std::vector<CarriedContent>& contents, const std::string& quantity,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person should know of an alignment and could overlook: findings that say what is wrong and
-// what would mend it.
+// Findings that a user could overlook in an alignment. Each finding states the fault and its
+// repair.
 #pragma once
 
 #include "kinalign/align/plan.h"
@@ -9,34 +9,35 @@
 
 namespace kinalign {
 
-/// Stamps that repeat, step back, run ahead, come in bursts, in another unit than was thought, or
-/// at another rate than the one stated.
+/// Finds stamps that repeat, step back, jump ahead, come in bursts, have another unit than assumed,
+/// or have another rate than stated.
 Findings judge_stamps(const RecordedStream& stream, const StreamOptions& options);
 
-/// Samples that were held back on their way and stamped where they arrived.
+/// Finds samples that were delayed and stamped on arrival.
 Findings judge_arrivals(const RecordedStream& stream, const Arrivals& arrivals, Role role);
 
-/// A start_ns, which is the first sample's, where the first sample is none to go by.
+/// Warns if start_ns is given (the time of the first sample) but the first sample is not reliable.
 Findings judge_start(const RecordedStream& stream, const StreamOptions& options,
                      const Arrivals& arrivals);
 
-/// Findings of a stream; where another one reads the same file, they name the stream.
+/// The findings of a stream. If another stream reads the same file, the findings name the stream.
 Findings said_of(const RecordedStream& stream, const Recording& recording, Findings findings);
 
-/// What the grid of `grid_hz` can't carry of one stream.
+/// Warns if a stream has content too fast for a grid of `grid_hz`.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);
 
-/// Known before a sample is touched: streams that share little of their time, that stay in a space
-/// of their own though nobody said that they should, that read the same bytes.
+/// Findings that need no samples: streams that share little of their time, streams that stay in
+/// their own space without a request, streams that read the same bytes.
 Findings judge_plan(const Recording& recording, const AlignPlan& plan);
 
-/// A stream that has nothing in most of the take's `rows`.
+/// Warns if a stream has no valid sample in most of the take's `rows`.
 Findings judge_rows(const StreamReport& stream, std::uint64_t rows);
 
-/// Joints that lie too far from their counterparts to be the same ones.
+/// Warns if joints are too far from their counterparts to be the same ones.
 Findings judge_residual(const SpaceReport& space);
 
-/// A fit by joints so near to a line that the turn about it is a guess.
+/// Warns if the joints of a fit are so close to one line that the rotation about that line is
+/// uncertain.
 Findings judge_fit(const SpacePlan& plan, const SpaceReport& space);
 
 }  // namespace kinalign

@@ -9,6 +9,7 @@ namespace kinalign {
 
 namespace {
 
+/// A note on each stream of points or skeletons that keeps its own space, with its reason.
 Findings judge_spaces(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
@@ -30,6 +31,7 @@ Findings judge_spaces(const TakeHeader& header) {
   return out;
 }
 
+/// A warning for each file of nodes that has the same bytes as another one: it was named twice.
 Findings judge_nodes_alike(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
@@ -48,7 +50,7 @@ Findings judge_nodes_alike(const TakeHeader& header) {
   return out;
 }
 
-/// Two streams that read the same samples.
+/// Warns if two streams read the same samples.
 Findings judge_streams_alike(const TakeHeader& header) {
   Findings out;
   const auto bytes_of = [](const TakeGroup& group) {
@@ -74,8 +76,8 @@ Findings judge_streams_alike(const TakeHeader& header) {
   return out;
 }
 
-/// Streams that share little of their time are seldom meant to: a start taken for another, a device
-/// that fell silent. A body at rest hides it from every residual.
+/// Warns if streams share little of their time. This is rarely intended: a wrong start time, or a
+/// device that stopped sending. If the body is at rest, no residual shows it.
 Findings judge_span(const Recording& recording, const AlignPlan& plan) {
   const auto span = [](const RecordedStream& s) { return seconds(last_of(s) - first_of(s)); };
   const auto& streams = recording.streams;
@@ -130,8 +132,9 @@ Findings judge_rows(const StreamReport& stream, std::uint64_t rows) {
 }
 
 Findings judge_residual(const SpaceReport& space) {
-  // Chosen: after a fit Kinect v2 joints lie 6 to 9 cm from optical ones (Keraal: 7.5; Xu and
-  // McGorry, Applied Ergonomics 2015), the worst of another device 21. No body is this far off.
+  // Chosen: after a fit, Kinect v2 joints are 6 to 9 cm from optical ones (Keraal: 7.5; Xu and
+  // McGorry, Applied Ergonomics 2015); the worst other device has 21 cm. No correct fit is as bad
+  // as this limit.
   constexpr double too_far_m = 0.3;
   if (!(space.after_m > too_far_m)) return {};
   return {
@@ -143,7 +146,8 @@ Findings judge_residual(const SpaceReport& space) {
 }
 
 Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
-  // Chosen: a trunk's joints lie 3 to 6 cm beside their line, a whole body's 20 and more.
+  // Chosen: the joints of a trunk are 3 to 6 cm from their line, those of a whole body 20 cm and
+  // more.
   constexpr double near_m = 0.1;
   if (plan.options.method != "fit" || plan.beside_line_m >= near_m) return {};
   std::string names;

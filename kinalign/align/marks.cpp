@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-/// Of one sample: of a row of `distance`, and where it lies among what was marked over_loss.
+/// Adds one valid sample. `row`: its index in the distances. `cell`: its index in over_loss.
 void add_valid(const SampleDistance& distance, std::size_t row, std::size_t cell, Marks& marks) {
   if (!distance.over_loss.empty()) marks.bridged += distance.over_loss[cell];
   if (!distance.time_interval_ns.empty()) {

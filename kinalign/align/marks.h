@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a take's rows say of themselves in the end: a row without the root of its nodes, or of the
-// paper's method, has lost its samples by then.
+// Counts validity in the final rows of a take. A row without the root of its nodes, or without the
+// root of the paper's method, has lost its samples by then.
 #pragma once
 
 #include "kinalign/align/nodes.h"
@@ -11,17 +11,18 @@
 namespace kinalign {
 
 struct Marks {
-  std::uint64_t samples = 0;  // rows x joints (or nodes); of a skeleton rows
+  std::uint64_t samples = 0;  // rows x joints (or nodes); for a skeleton the rows
   std::uint64_t invalid = 0, inferred = 0, bridged = 0;
-  std::uint64_t empty_rows = 0;       // nothing in them is valid
-  std::uint64_t unsure = 0;           // valid, without an interval that others of the stream have
-  std::int64_t worst_nearest_ns = 0;  // over valid samples
+  std::uint64_t empty_rows = 0;  // rows without any valid sample
+  /// Valid samples without a time interval, in a stream that has intervals.
+  std::uint64_t unsure = 0;
+  std::int64_t worst_nearest_ns = 0;  // over valid samples; distance to the nearest raw sample
 };
 
-/// Adds those of a skeleton that was resampled; of the reference nothing is known but its rows.
+/// Adds the counts of a resampled skeleton. Of a reference skeleton only the rows are known.
 void add_marks(const ClipRows& rows, Marks& marks);
 void add_marks(const PointRows& rows, std::size_t joints, Marks& marks);
-/// Of `count` nodes' columns of a group.
+/// Adds the counts of `count` nodes, in their columns of a group.
 void add_marks(const ImuRows& rows, const NodeColumns& columns, std::size_t count, Marks& marks);
 
 }  // namespace kinalign

@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-/// Values of `width` a node: columns of the stream's rows into the group's.
+/// Copies columns of the stream's rows into the group's rows; `width` values per node.
 template <class T>
 void put_columns(const std::vector<T>& from, std::size_t width, std::size_t rows,
                  const NodeColumns& columns, std::vector<T>& to) {
@@ -30,7 +30,8 @@ void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns
   put_columns(from.angular_velocity, 3, rows, columns, to.angular_velocity);
   put_columns(from.valid, 1, rows, columns, to.valid);
   put_columns(from.distance.nearest_raw_ns, 1, rows, columns, to.distance.nearest_raw_ns);
-  auto& intervals = to.distance.time_interval_ns;  // of nodes that have none beside those that do
+  // Nodes without intervals get no_interval if others have them.
+  auto& intervals = to.distance.time_interval_ns;
   if (!from.distance.time_interval_ns.empty()) intervals.resize(rows * columns.all, no_interval);
   put_columns(from.distance.time_interval_ns, 1, rows, columns, intervals);
   put_columns(from.distance.over_loss, 1, rows, columns, to.distance.over_loss);
@@ -64,6 +65,7 @@ void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& ro
 
 namespace {
 
+// Sets all nodes of a row to zero and to not valid.
 void clear_row(const ImuGroup& group, std::size_t first, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
   const auto zero = [first, nodes](std::vector<double>& values, std::size_t width) {
@@ -78,13 +80,13 @@ void clear_row(const ImuGroup& group, std::size_t first, ImuRows& rows) {
   std::fill(valid, valid + static_cast<std::ptrdiff_t>(nodes), std::uint8_t{0});
 }
 
-/// The root node of a row, as it was in the world.
+/// The root node of one row, in the world.
 struct RootPose {
   Quat to_root;
   Vec3 acceleration;
 };
 
-/// One node of a row into the root's space.
+/// Brings one node of a row into the root's space.
 void turn_node(const RootPose& root, bool is_root, std::size_t i, ImuRows& rows) {
   if (!is_root) put_quat(rows.orientation, i, root.to_root * quat(rows.orientation, i));
   if (!rows.acceleration.empty()) {
@@ -121,7 +123,7 @@ void bring_to_root(const ImuGroup& group, ImuRows& rows) {
 
 namespace {
 
-/// One node of a row from the root's space into the world, its vectors into its own.
+/// Rotates the vectors of one node from the root's space into the node's own space.
 void turn_back(const Quat& from_root, const Vec3& root_acceleration, std::size_t i, ImuRows& rows) {
   const Quat to_node = quat(rows.orientation, i).conjugate();
   if (!rows.acceleration.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes of one group, brought from their streams into the group's columns and into one space.
+// Moves nodes from their streams into the columns of their group and into one space.
 #pragma once
 
 #include "kinalign/take/take.h"
@@ -12,28 +12,31 @@
 
 namespace kinalign {
 
-/// How nodes are worn: by node, sensor_from_bone. Nodes without one: the identity.
+/// Rotations sensor_from_bone by node name: how nodes are worn. A node without an entry has the
+/// identity.
 using Mounting = std::map<std::string, std::vector<double>>;
 
-/// Where a stream's nodes stand among all the nodes of a group.
+/// The columns of a stream's nodes among all nodes of a group.
 struct NodeColumns {
   std::size_t first = 0, all = 0;
 };
 
-/// Copies a stream's `rows` rows of some nodes into a group's rows of all.
+/// Copies `rows` rows of a stream's nodes into the rows of its group.
 void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns, ImuRows& to);
 
-/// Orientations become the bones'; vectors that are not in the world turn with them.
+/// Converts orientations of sensors to those of bones. Vectors that are not in the world are
+/// rotated into the bone's space.
 void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& rows);
 
-/// All nodes into the root node's space, as DIP does (Huang et al., SIGGRAPH Asia 2018, section
-/// 4.3): orientation root^-1 q, acceleration root^-1 (a - a_root), angular velocity root^-1 w;
-/// the root keeps its orientation in the world, its acceleration is root^-1 a. Vectors come in the
-/// world's space. Rows without the root are invalid.
+/// Brings all nodes into the space of the root node, as DIP does (Huang et al., SIGGRAPH Asia 2018,
+/// section 4.3): orientation root^-1 q, acceleration root^-1 (a - a_root), angular velocity root^-1
+/// w. The root keeps its orientation in the world; its acceleration becomes root^-1 a. Vectors must
+/// be in the world's space. Rows without the root become invalid.
 void bring_to_root(const ImuGroup& group, ImuRows& rows);
 
-/// The way back from bring_to_root(): orientations in the world, vectors in each node's own space.
-/// Rows without the root stay invalid. Where gravity stood in all accelerations it does so again.
+/// The inverse of bring_to_root(): orientations in the world, vectors in each node's own space.
+/// Rows without the root stay invalid. If all accelerations contained gravity, they contain it
+/// again.
 void bring_from_root(const ImuGroup& group, ImuRows& rows);
 
 }  // namespace kinalign

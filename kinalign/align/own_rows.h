@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream's own frames, not resampled, as the rows of a take.
+// Makes the rows of a take from a stream's own frames, without resampling.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -10,11 +10,12 @@
 
 namespace kinalign {
 
-/// Global positions of all `count` rows from their local ones; zeros where a row is not valid.
+/// Computes global positions of all `count` rows from the local ones; zeros for rows that are not
+/// valid.
 void fill_positions(const Skeleton& skeleton, ClipRows& rows, std::size_t count);
 
 ClipRows own_rows(const Skeleton& skeleton, ClipFrames frames);
-/// Valid is what was seen.
+/// A point is valid unless it is missing.
 PointRows own_rows(PointFrames frames);
 
 }  // namespace kinalign

@@ -35,7 +35,7 @@ std::string spans(const Recording& recording) {
   return text;
 }
 
-/// What the reader of a stream without samples found wrong, where it found anything.
+/// The error for a stream without samples: the error that its reader found, or else a general one.
 Error no_samples(const RecordedStream& s, const Recording& recording) {
   Findings all = all_findings(s);
   if (s.shared_file) append(all, recording.shared_files[*s.shared_file].findings);
@@ -46,6 +46,7 @@ Error no_samples(const RecordedStream& s, const Recording& recording) {
           "at least one sample for stream '" + s.name + "'", "none"};
 }
 
+/// Sets the plan's begin and end to the time that all streams share.
 Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   plan.begin = Time::min();
   plan.end = Time::max();
@@ -61,8 +62,8 @@ Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   return {};
 }
 
-/// First of the frames 0..count-1 of a fixed step whose take time does not lie before `bound`
-/// (after it, for `behind`).
+/// The first of the frames 0..count-1 at a fixed step whose take time is at or after `bound` (for
+/// `behind`: after it).
 std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, bool behind) {
   std::uint64_t low = 0, high = s.survey.samples;
   while (low < high) {
@@ -77,7 +78,7 @@ std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, b
   return low;
 }
 
-/// Rows of a pass over the reference that are kept and lie within the common span.
+/// Counts the rows of a pass over the reference that are kept and within the common span.
 template <class Frames>
 Result<std::uint64_t> count_in_span(Pass<Frames> pass, const RecordedStream& reference,
                                     const AlignPlan& plan) {
@@ -93,7 +94,7 @@ Result<std::uint64_t> count_in_span(Pass<Frames> pass, const RecordedStream& ref
   }
 }
 
-/// A pass of rows that have stamps and no values.
+/// A pass over rows that have stamps but no values.
 Pass<PointFrames> stamps_alone(std::shared_ptr<const std::vector<Time>> stamps) {
   return [stamps = std::move(stamps), is_done = false](PointFrames& block) mutable -> Result<bool> {
     block = {};
@@ -104,9 +105,10 @@ Pass<PointFrames> stamps_alone(std::shared_ptr<const std::vector<Time>> stamps) 
   };
 }
 
-/// Rows of the grid: by arithmetic for a fixed step, all that were kept where nothing is cut, else
-/// by the reference's stamps, for which it is read where they are not known. The survey judged the
-/// device's stamps: on the take's axis a drift, or a clock of several pieces, may keep other rows.
+/// The number of rows of the grid. With a fixed step it is computed. If nothing is cut, it is the
+/// number of kept samples. Otherwise it is counted from the reference's stamps, which are read
+/// again if they are not known. The survey judged the device's stamps; on the take's axis a drift
+/// or a clock of several pieces may keep other rows.
 Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPlan& plan) {
   if (reference.step_ns) {
     return first_frame(reference, *reference.step_ns, plan.end, true) -
@@ -131,7 +133,8 @@ ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
   ResampleRule rule;
   rule.step_ns = usual_step_ns(s, stream);
   rule.gap_ns = options.gap_ms > 0.0 ? std::llround(options.gap_ms * 1e6) : 3 * rule.step_ns;
-  // Stamps rounded to a milli- or microsecond make three steps a little longer than three medians.
+  // Stamps rounded to milli- or microseconds can make three steps slightly longer than three
+  // medians.
   if (options.gap_ms == 0.0) rule.gap_ns += rule.step_ns / 10;
   rule.curve = options.rotations == "slerp" ? RotationCurve::slerp : RotationCurve::spline;
   return rule;
@@ -145,7 +148,7 @@ std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
   return ImuGroup{imu.node_names, imu.content, options.root_node};
 }
 
-/// Where a stream's positions will be: in the reference's space, or in one that was not moved.
+/// The space of a stream's positions: that of the reference, or that of a stream that is not moved.
 std::string space_of(const std::string& stream, const std::string& reference,
                      const Manifest& manifest) {
   const auto found = manifest.spaces.find(stream);
@@ -154,13 +157,13 @@ std::string space_of(const std::string& stream, const std::string& reference,
   return in.empty() || in == reference ? "take" : in;
 }
 
-/// "kinect.csv (points)": a stream's file and kind.
+/// A stream's file and kind, for example "kinect.csv (points)".
 std::string file_and_kind(const std::vector<InputFacts>& files, std::size_t kind) {
   constexpr std::array<std::string_view, 3> kinds{"a skeleton", "points", "nodes"};
   return fmt::format("{} ({})", files.empty() ? "memory" : files.front().name, kinds[kind]);
 }
 
-/// A further stream of nodes joins the group of its name.
+/// Adds a further stream of nodes to the group of its name.
 Result<void> join(TakeGroup& group, const RecordedStream& s) {
   auto* nodes = std::get_if<ImuGroup>(&group.kind);
   const auto* imu = std::get_if<ImuInput>(&s.data);
@@ -191,6 +194,7 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
   return {};
 }
 
+/// Plans each stream and puts it into a group; streams of nodes with the same name share one.
 Result<void> make_groups(const Recording& recording, const Manifest& manifest, AlignPlan& plan) {
   auto& groups = plan.header.groups;
   const RecordedStream& reference = recording.streams[plan.reference];
@@ -225,7 +229,7 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
   return {};
 }
 
-/// A name under `key` of a group of nodes, which is none of theirs.
+/// The error for a name under `key` that is not a node of the group.
 Error unknown_node(const TakeGroup& group, const std::vector<std::string>& nodes,
                    const StreamOptions& options, const std::string& name, const std::string& key) {
   Error error = unknown_name(name, "a node of '" + group.name + "' for " + key, nodes);
@@ -234,6 +238,7 @@ Error unknown_node(const TakeGroup& group, const std::vector<std::string>& nodes
   return error;
 }
 
+/// Fails if a root_node is not a node of its stream, or has no orientations.
 Result<void> check_roots(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);
@@ -251,6 +256,7 @@ Result<void> check_roots(const TakeHeader& header, const Manifest& manifest) {
   return {};
 }
 
+/// Fails if a mounting is given for a node that its stream does not have.
 Result<void> check_mountings(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);

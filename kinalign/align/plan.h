@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What alignment will do, decided before any sample is touched: the reference, the common span,
-// the number of rows, how each stream is resampled and where it goes.
+// The plan of an alignment, made before any sample is read: the reference, the common span, the
+// number of rows, the resampling of each stream, and its group.
 #pragma once
 
 #include "kinalign/resample/resample.h"
@@ -12,23 +12,23 @@
 namespace kinalign {
 
 struct StreamPlan {
-  std::size_t group = 0;       // of the take's header
-  std::size_t first_node = 0;  // of a group of nodes, the stream's first column
+  std::size_t group = 0;       // index of the group in the take's header
+  std::size_t first_node = 0;  // first column of the stream in a group of nodes
   ResampleRule rule;
 };
 
 struct AlignPlan {
-  std::size_t reference = 0;        // stream whose stamps are the grid
+  std::size_t reference = 0;        // index of the stream whose stamps are the grid
   Time begin{}, end{};              // common span, both included, on the take's axis
-  std::vector<StreamPlan> streams;  // as in the recording
+  std::vector<StreamPlan> streams;  // in the order of the recording
   TakeHeader header;
 };
 
-/// Fails where streams do not overlap in time, names repeat or could be no group of a take, or the
-/// manifest names what is not there or says what has no effect (unused_options.h).
+/// Fails if streams do not overlap in time, if names repeat or are not allowed for a group, or if
+/// the manifest names something absent or sets an option without effect (unused_options.h).
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest);
 
-/// The stream whose stamps are the grid: the one that is said, else the first.
+/// The stream whose stamps are the grid: the one named in the manifest, else the first.
 std::string reference_name(const Recording& recording, const Manifest& manifest);
 
 }  // namespace kinalign

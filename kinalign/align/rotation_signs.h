@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// q and -q are one rotation. In a take each valid one has the sign that is nearer to the valid one
-// before it, over gaps and slabs too: plots of its parts do not jump, and what lies between two
-// rows may be interpolated part by part.
+// q and -q are the same rotation. In a take each valid rotation has the sign that is nearer to the
+// previous valid one, also across gaps and slabs. Plots of the components then do not jump, and
+// users may interpolate components between two rows.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +11,19 @@
 
 namespace kinalign {
 
-/// Of the rotations of one group, row after row.
+/// Chooses the signs of the rotations of one group, row after row.
 class RotationSigns {
  public:
-  /// `columns`: joints or nodes.
+  /// `columns`: number of joints or nodes.
   explicit RotationSigns(std::size_t columns) : last_(4 * columns, 0.0) {}
 
-  /// `rotations` [n,columns,4], behind those of the calls before; `valid` [n,columns] or [n], or
-  /// empty where all are.
+  /// `rotations` [n,columns,4] follow those of the last call. `valid`: [n,columns] or [n]; empty:
+  /// all are valid.
   void align(std::span<double> rotations, std::span<const std::uint8_t> valid);
 
  private:
-  std::vector<double> last_;  // [columns,4] the last valid one; zeros, which turn none, before it
+  /// [columns,4] the last valid rotation; zeros before the first one, which change no sign.
+  std::vector<double> last_;
 };
 
 }  // namespace kinalign

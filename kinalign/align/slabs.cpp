@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// Numbers in a row of a group.
+/// Number of values in a row of a group.
 std::size_t width(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return 10 * clip->skeleton.joints();
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
@@ -21,7 +21,7 @@ std::size_t width(const TakeGroup& group) {
   return 12 * std::get<ImuGroup>(group.kind).node_names.size();
 }
 
-/// Columns of rotations in a group.
+/// Number of rotations in a row of a group.
 std::size_t rotations_of(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton.joints();
   if (const auto* nodes = std::get_if<ImuGroup>(&group.kind)) return nodes->node_names.size();
@@ -34,7 +34,7 @@ std::size_t rows_at_once(const TakeHeader& header) {
   return std::clamp<std::size_t>(slab_bytes / (sizeof(double) * numbers), 16, slab_rows);
 }
 
-/// The rows of the reference within the common span, pulled from a window.
+/// Pulls the rows of the reference within the common span from a window.
 template <class Frames>
 class ReferenceRows {
  public:
@@ -45,7 +45,7 @@ class ReferenceRows {
         begin_(to_ns(plan.begin)),
         end_(to_ns(plan.end)) {}
 
-  /// Moves the next slab's frames into `out`, and their stamps into `grid`.
+  /// Moves the frames of the next slab into `out`, and their stamps into `grid`.
   Result<void> next(Frames& out, std::vector<std::int64_t>& grid) {
     out = {};
     grid.clear();
@@ -69,9 +69,10 @@ class ReferenceRows {
   std::int64_t begin_, end_;
 };
 
-/// The reference's rows of a slab.
+/// The rows of the reference in one slab.
 struct ReferenceSlab {
-  std::vector<std::int64_t> grid;  // their stamps, ns on the take's axis; empty behind the last
+  // Stamps of the rows, ns on the take's axis; empty after the last slab.
+  std::vector<std::int64_t> grid;
   std::variant<ClipFrames, PointFrames> rows;
 };
 
@@ -85,14 +86,15 @@ struct SlabMaker::State {
   const Recording* recording = nullptr;
   const AlignPlan* plan = nullptr;
   std::vector<StreamRows> streams;
-  ImuRows nodes;                     // of one stream, on the way into its group
-  std::vector<RotationSigns> signs;  // [groups]
-  std::vector<ReadNext> rests;       // of streams that are to be read to their ends
+  ImuRows nodes;                     // rows of one stream before they are copied into its group
+  std::vector<RotationSigns> signs;  // per group
+  std::vector<ReadNext> rests;       // for streams that must be read to their ends
   std::uint64_t rest_rows = 0;
   std::uint64_t done = 0;
 
   Result<void> open(std::size_t i);
-  /// Touches the reference's stream only; the others below touch all but it.
+  /// Uses only the reference's stream; the functions below use only the other streams, so both may
+  /// run in parallel.
   Result<void> pull(ReferenceSlab& next);
   Result<void> make(ReferenceSlab& reference, TakeSlab& slab);
   void put_reference(ReferenceSlab& reference, TakeSlab& slab) const;
@@ -101,6 +103,7 @@ struct SlabMaker::State {
   void align_signs(TakeSlab& slab);
 };
 
+// Opens a stream as reference rows or as a resampler.
 Result<void> SlabMaker::State::open(std::size_t i) {
   const RecordedStream& s = recording->streams[i];
   const ResampleRule& rule = plan->streams[i].rule;
@@ -150,6 +153,7 @@ void SlabMaker::State::put_reference(ReferenceSlab& reference, TakeSlab& slab) c
   }
 }
 
+// Resamples one stream to the stamps of the slab and stores the rows in its group.
 Result<void> SlabMaker::State::other_rows(std::size_t i, std::span<const std::int64_t> grid,
                                           TakeSlab& slab) {
   const std::size_t group = plan->streams[i].group;
@@ -242,7 +246,7 @@ Result<void> SlabMaker::for_each(std::size_t jobs,
         used = use(slab);
       }
     });
-    KA_TRY(std::move(used));  // what concerns earlier rows first
+    KA_TRY(std::move(used));  // errors of earlier rows first
     KA_TRY(std::move(pulled));
     std::swap(now, next);
   }

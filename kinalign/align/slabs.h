@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of a take, slab by slab: the reference as it is, every other stream resampled onto it.
+// Makes the rows of a take in slabs: the reference unchanged, every other stream resampled onto it.
 #pragma once
 
 #include "kinalign/align/plan.h"
@@ -11,19 +11,19 @@
 
 namespace kinalign {
 
-/// Rows of a slab at most: enough for the windows' overlap to cost little, few enough for the
-/// second cache.
+/// Most rows of a slab: enough that the overlap of windows costs little, and few enough for the
+/// second-level cache.
 constexpr std::size_t slab_rows = 2048;
-/// Fewer where the rows of a take are longer than usual: no more than these, and some.
+/// A slab has fewer rows if the rows of a take are long: about this many bytes at most.
 constexpr std::size_t slab_bytes = std::size_t{16} << 20;
-/// And no longer than this, whatever the reference's rate: the other streams' samples of a slab
-/// lie in memory.
+/// Longest slab, for any rate of the reference, because the other streams' samples of a slab are in
+/// memory.
 constexpr std::int64_t longest_slab_ns = 120'000'000'000;
 
 class SlabMaker {
  public:
-  /// Starts a pass over the streams of the groups in `groups` (by number of the header; the
-  /// reference is always in). Both arguments must outlive it.
+  /// Starts a pass over the streams of the groups marked in `groups` (in the order of the header;
+  /// the reference is always included). `recording` and `plan` must live longer.
   static Result<SlabMaker> start(const Recording& recording, const AlignPlan& plan,
                                  const std::vector<bool>& groups);
   SlabMaker(SlabMaker&&) noexcept;
@@ -32,16 +32,18 @@ class SlabMaker {
   SlabMaker& operator=(const SlabMaker&) = delete;
   ~SlabMaker();
 
-  /// Calls `use` with each slab of at most slab_rows in turn. Groups left out have empty rows.
-  /// Points are in their own space yet. With two jobs the reference is read one slab ahead.
+  /// Calls `use` with each slab of at most slab_rows rows, in order. Groups that are not included
+  /// have empty rows. Points are still in their own space. With two jobs the reference is read one
+  /// slab ahead.
   Result<void> for_each(std::size_t jobs, const std::function<Result<void>(TakeSlab&)>& use);
 
-  /// Reads on to the take's end; streams that have findings only after their last row, to their
-  /// end.
+  /// Continues reading to the end of the take. Streams that report findings only after their last
+  /// row are read to their end.
   Result<void> read_rest(const std::function<Result<void>()>& go);
 
-  /// Of a stream, as in the recording, so far: what the grid can't carry, and what was counted.
+  /// The content that the grid can't carry, for a stream (index in the recording), so far.
   ResampleCount content(std::size_t stream) const;
+  /// The counts of a stream so far.
   StreamCounts counts(std::size_t stream) const;
 
  private:

@@ -17,7 +17,7 @@ const std::vector<std::string>* joint_names(const TakeGroup& group) {
   return nullptr;
 }
 
-/// Index of a name, or the number of names.
+/// The index of a name, or the number of names if it is absent.
 std::size_t find_joint(const std::vector<std::string>& names, std::string_view name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
@@ -32,7 +32,7 @@ Result<std::size_t> find_group(const TakeHeader& header, const std::string& name
   return Failure(unknown_name(name, "a stream with joints in [space]", known));
 }
 
-/// `line` is where a manifest names it, or 0.
+/// `line`: the line of the manifest that names the joint, or 0.
 Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name,
                                 std::int64_t line) {
   const auto& names = *joint_names(group);
@@ -63,7 +63,7 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
     const JointPair pair{find_joint(ours, a), find_joint(theirs, b)};
     if (pair.from < ours.size() && pair.onto < theirs.size()) pairs.push_back(pair);
   };
-  // Kinect onto mocap first: both have a Neck and a Head, which are not the same places.
+  // Kinect to mocap pairs first: both have a Neck and a Head, but at different places.
   for (const auto& [a, b] : usual_pairs()) add(a, b);
   if (pairs.empty()) {
     for (const std::string& name : ours) add(name, name);
@@ -71,6 +71,7 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
   return pairs;
 }
 
+/// The transform that the options state; the identity if it has to be fitted.
 Result<RigidTransform> given_transform(const SpaceOptions& options) {
   RigidTransform out;
   if (options.method == "paper") out.rotation = turn_about_y(options.rotation_y_deg);
@@ -86,11 +87,11 @@ Result<RigidTransform> given_transform(const SpaceOptions& options) {
   return out;
 }
 
-/// Global positions and validity of one group's joint in a slab.
+/// Global positions and validity of one group's joints in a slab.
 struct JointColumn {
   std::span<const double> positions;
-  std::span<const std::uint8_t> valid;  // per row and joint, per row, or empty: all are
-  std::span<const Tracking> state;      // empty: all tracked
+  std::span<const std::uint8_t> valid;  // per row and joint, or per row; empty: all are valid
+  std::span<const Tracking> state;      // empty: all are tracked
   std::size_t joints = 0;
 
   bool usable(std::size_t row, std::size_t j) const {
@@ -113,7 +114,7 @@ JointColumn column(const TakeSlab& slab, std::size_t group) {
   return out;
 }
 
-/// Points onto a stream that stays where it is.
+/// Checks that points are moved onto another stream that is not moved itself.
 Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
                           const Manifest& manifest) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
@@ -128,6 +129,7 @@ Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
   return {};
 }
 
+/// Finds the pairs of joints for a space, and for the method "paper" its two root joints.
 Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
   plan.pairs = KA_TRY(find_pairs(from, onto, plan.options));
@@ -144,8 +146,8 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   return {};
 }
 
-/// Moves the points of a row. By the paper x' = m (A_rot x - A_offset), A_offset = A_rot x_k0 -
-/// x_d0 / m: the root lands on x_d0; a row in which it was not seen has no place.
+/// Moves the points of a row. In the paper x' = m (A_rot x - A_offset) with A_offset = A_rot x_k0 -
+/// x_d0 / m, which puts the root at x_d0. A row in which the root was not seen becomes missing.
 void move_row(const SpacePlan& plan, const JointColumn& onto, std::size_t row, std::size_t joints,
               PointRows& points) {
   RigidTransform transform = plan.transform;
@@ -178,8 +180,8 @@ Quat turn_about_y(double degrees) {
 }
 
 std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
-  // Joints that mean the same place on both skeletons (formats: Kinect v2; Perception Neuron; last
-  // the segments of Xsens MVN by other names, whose places are those of the joint they begin at).
+  // Joints at the same place in both skeletons (Kinect v2; Perception Neuron). The last lines are
+  // segments of Xsens MVN, whose places are those of the joints at which they begin.
   return {{"SpineBase", "Hips"},
           {"ShoulderLeft", "LeftArm"},
           {"ElbowLeft", "LeftForeArm"},

@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-/// Names of the options that differ between two structures of one kind.
+/// Names of the options that differ between two structures of the same type.
 std::vector<std::string> differing(const Fields& some, const Fields& others) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < some.size(); ++i) {
@@ -25,7 +25,7 @@ std::vector<std::string> differing(const Fields& some, const Fields& others) {
   return names;
 }
 
-/// And those that a file says, if only what holds without a word.
+/// Adds the options that a file sets explicitly, even to their defaults.
 void add_said(const KeyLines& lines, std::vector<std::string>& names) {
   for (const auto& [key, line] : lines) names.push_back(key);
 }
@@ -61,7 +61,7 @@ const Method& method_named(std::string_view name) {
        {"fit", {"onto", "joints"}},
        {"given", {"onto", "joints", "rotation", "translation"}},
        {"paper", {"onto", "joints", "rotation_y_deg", "magnification", "root", "onto_root"}}}};
-  // a manifest's methods are these four (take/manifest.cpp)
+  // The manifest allows only these four methods (take/manifest.cpp).
   return *std::find_if(methods.begin(), methods.end(),
                        [name](const Method& method) { return method.name == name; });
 }
@@ -70,6 +70,7 @@ bool contains(std::span<const std::string_view> names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Fails if an option of [space.STREAM] is set that its method does not use.
 Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
   const std::string at = "[space." + stream + "]";
   const Method& method = method_named(space.method);
@@ -89,7 +90,8 @@ Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
   return {};
 }
 
-/// An interval is of stamps that are another clock's, and leaves doubt.
+/// Refuses an interval for stamps that need none: those of a shared clock and those of the
+/// reference. Refuses clock = "unknown" together with an interval, or for the reference.
 Result<void> check_intervals(const Recording& recording, const Manifest& manifest) {
   const std::string reference = reference_name(recording, manifest);
   for (const StreamOptions& options : manifest.streams) {
@@ -123,7 +125,7 @@ std::span<const std::string_view> useless_options(const RecordedStream& stream) 
                                                           "mounting", "skeleton"};
   static constexpr std::array<std::string_view, 4> nodes{"end_ns", "click_latency_ms",
                                                          "metres_per_unit", "skeleton"};
-  // What a recording says of a device's clock is known better than by any option.
+  // A recording knows a device's clock better than any option.
   static constexpr std::array<std::string_view, 8> recorded_clip{
       "start_ns",  "end_ns",      "click_latency_ms", "clock",
       "drift_ppm", "interval_ms", "root_node",        "mounting"};

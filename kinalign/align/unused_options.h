@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a manifest says and nothing would come of: refused, since whoever wrote it expects that it
-// counts.
+// Refuses options of a manifest that would have no effect, because the user expects an effect.
 #pragma once
 
 #include "kinalign/take/manifest.h"
@@ -11,11 +10,11 @@
 
 namespace kinalign {
 
-/// Names of options that a stream of this kind has no use for.
+/// Names of the options that have no effect for this kind of stream.
 std::span<const std::string_view> useless_options(const RecordedStream& stream);
 
-/// Fails where a stream's options, or a space's beside its method, differ from the defaults and
-/// have no effect, and where method "given" is given nothing.
+/// Fails if options of a stream, or options of a space other than its method, differ from the
+/// defaults but have no effect. Fails, too, if method "given" has neither rotation nor translation.
 Result<void> check_options_used(const Recording& recording, const Manifest& manifest);
 
 }  // namespace kinalign

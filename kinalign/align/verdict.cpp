@@ -9,14 +9,15 @@ namespace kinalign {
 
 namespace {
 
-/// A figure above `usable` makes a stream usable at most, one above `bad` makes it bad.
+/// A figure above `usable` makes a stream at most usable; a figure above `bad` makes it bad.
 struct Limits {
   double usable = 0.0, bad = 0.0;
 };
 constexpr Limits invalid_share{0.05, 0.5};
 constexpr Limits inferred_share{0.10, 0.5};
 constexpr Limits bridged_share{0.10, 0.5};
-constexpr Limits longest_gap_s{1.0, 10.0};  // mean length of a gap: the report has their sum
+// Mean length of gaps, because the report has only their sum.
+constexpr Limits longest_gap_s{1.0, 10.0};
 constexpr Limits interval_s{0.010, 0.1};
 constexpr Limits residual_m{0.10, 0.30};
 constexpr double finding_weight = 1.0, error_weight = 10.0;
@@ -36,7 +37,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// "2.2 %"; a share that would read 0.0 is "less than 0.1 %".
+/// A share as text: "2.2 %"; "less than 0.1 %" for a share that would print as 0.0.
 std::string percent(double part) {
   return part < 0.0005 ? "less than 0.1 %" : fmt::format("{:.1f} %", 100.0 * part);
 }
@@ -56,6 +57,7 @@ void add_gaps(const StreamReport& s, std::vector<Concern>& out) {
               time / static_cast<double>(s.gaps), longest_gap_s));
 }
 
+/// Adds a concern about the accuracy of the stream's stamps.
 void add_time(const StreamReport& s, std::vector<Concern>& out) {
   if (!s.worst_interval_ns) {
     out.push_back(concern(s, "stamps of unknown accuracy", 1.01, {1.0, 2.0}));
@@ -93,8 +95,8 @@ void add_space(const SpaceReport& space, std::vector<Concern>& out) {
   out.push_back(std::move(whole));
 }
 
-/// Whether a finding is about the stream: it names the stream, or one of its files and no other
-/// stream.
+/// True if a finding concerns the stream: it names the stream, or it names one of its files and no
+/// other stream.
 bool is_about(const Finding& finding, const AlignmentReport& report, const std::string& stream,
               const std::vector<InputFacts>& files) {
   const auto names = [&finding](const std::string& name) {
@@ -111,6 +113,7 @@ bool is_about(const Finding& finding, const AlignmentReport& report, const std::
                      [&finding](const InputFacts& file) { return file.name == finding.what.file; });
 }
 
+/// Adds an error or a warning as a concern; notes are left out.
 void add_finding(const Finding& finding, const std::string& stream, std::vector<Concern>& out) {
   const bool error = finding.severity == Severity::error;
   if (finding.severity == Severity::note) return;
@@ -129,7 +132,7 @@ bool heavier(const Concern& a, const Concern& b) {
   return a.weight > b.weight;
 }
 
-/// The heaviest concern decides.
+/// Sorts the concerns; the worst one decides.
 void settle(Verdict& verdict) {
   std::stable_sort(verdict.concerns.begin(), verdict.concerns.end(), heavier);
   verdict.quality = verdict.concerns.front().quality;
@@ -191,7 +194,7 @@ std::vector<Concern> worst_of(const std::vector<Verdict>& verdicts, std::size_t 
   std::stable_sort(all.begin(), all.end(), heavier);
   std::vector<Concern> out;
   for (Concern& c : all) {
-    // Five nodes of one radio have one fault, not five.
+    // Several nodes with the same fault, for example of one radio, count as one concern.
     const bool known = std::any_of(out.begin(), out.end(), [&c](const Concern& other) {
       const auto kind = [](const std::string& what) { return what.substr(what.find(' ') + 1); };
       return other.stream == c.stream && kind(other.what) == kind(c.what);

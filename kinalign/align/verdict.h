@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a stream of a take is good, usable or bad, and why: from the report's findings and
-// figures, by fixed limits. docs/report.md lists the limits for users.
+// Decides whether a stream of a take is good, usable or bad, and why, from the report's findings
+// and figures, with fixed limits. docs/report.md lists the limits for users.
 #pragma once
 
 #include "kinalign/take/report.h"
@@ -13,40 +13,42 @@ namespace kinalign {
 
 enum class Quality { good, usable, bad };
 
-/// "good", "usable", "bad"
+/// The words "good", "usable", "bad".
 std::string_view to_string(Quality quality);
 
-/// Something measured of a stream, against the limit above which the stream is only usable.
+/// One measured property of a stream, compared with the limit above which the stream is only
+/// usable.
 struct Concern {
   std::string stream;
-  std::string part;  // "LeftForeArm", "waist": whose it is; empty: all of the stream
+  std::string part;  // joint or nodes concerned: "LeftForeArm", "waist"; empty: the whole stream
   std::string what;  // "2.2 % of samples invalid"
-  /// 1 at the limit of `usable`; what counts nothing has 0. For comparing concerns with each other.
+  /// 1 at the limit of `usable`; 0 if the property does not matter. For comparison between
+  /// concerns.
   double weight = 0.0;
   Quality quality = Quality::good;
 };
 
-/// "ankle_left: 4.9 % of samples invalid"
+/// The concern as text: "ankle_left: 4.9 % of samples invalid".
 std::string words_of(const Concern& concern);
 
 struct Verdict {
   std::string stream;
   Quality quality = Quality::good;
-  std::vector<Concern> concerns;  // worst first; also those that cost nothing
-  /// In a few words; of a good stream the largest of its small concerns.
+  std::vector<Concern> concerns;  // worst first; includes concerns below the limits
+  /// Short text: the worst concern; for a good stream the largest of its small concerns.
   std::string reason;
 };
 
-/// Judges one group of the take. `files`: the inputs of the group, by which findings name it. An
-/// error makes it bad, a warning usable. A finding of a file that several streams share counts for
-/// the stream that it names, or for all of them.
+/// Judges one group of the take. `files`: the input files of the group, by which findings refer to
+/// it. An error makes the stream bad, a warning makes it usable. A finding about a file that
+/// several streams share counts for the stream that it names, or else for all of them.
 Verdict verdict_of(const AlignmentReport& report, const std::string& stream,
                    const std::vector<InputFacts>& files);
 
-/// One more concern, of what the report does not know.
+/// Adds a concern that is not in the report.
 void add_concern(Concern concern, Verdict& verdict);
 
-/// The heaviest concerns of all, at most `most`, none that weighs nothing.
+/// The worst concerns of all verdicts, at most `most`, without those of weight 0.
 std::vector<Concern> worst_of(const std::vector<Verdict>& verdicts, std::size_t most);
 
 }  // namespace kinalign

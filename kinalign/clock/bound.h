@@ -1,34 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a packet says of the offset x(s) between two clocks: it is no more than this, or no less.
+// A packet's statement about the offset x(s) between two clocks: an upper or a lower bound.
 #pragma once
 
 #include "kinalign/wire/time.h"
 
 namespace kinalign {
 
-/// Of x(s): a packet up, from the node to the host, bounds it from above, one down from below.
+/// Kind of bound on x(s). A packet up, from the node to the host, bounds it from above; one down
+/// bounds it from below.
 enum class Side : bool { above, below };
 
-/// x(s) <= x, or >= x. Seconds from an origin near the data.
+/// States x(s) <= x or x(s) >= x. Both in seconds from an origin near the data.
 struct Bound {
   double s = 0.0, x = 0.0;
   Side side = Side::above;
 };
 
-/// Seconds are counted from this pair of readings.
+/// Origin of the seconds: readings of both clocks.
 struct ClockOrigin {
   NodeTime node{};
   HostTime host{};
 };
 
-/// A counter is cut to whole microseconds: a reading n stands for up to n + 1 us.
+/// A counter is truncated to whole microseconds: a reading n stands for times up to n + 1 us.
 inline constexpr Duration counter_resolution = std::chrono::microseconds(1);
 inline constexpr double counter_resolution_s = seconds(counter_resolution);
 
-/// Of so many whole ones: who calls has rounded.
+/// A duration of `ns` whole nanoseconds; the caller has rounded.
 inline Duration nanoseconds(double ns) { return Duration{static_cast<std::int64_t>(ns)}; }
 
-/// What it bounds that the counter read n and the host h.
+/// The bound that follows from readings n of the counter and h of the host.
 inline Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime h) {
   const Duration node = n - origin.node;
   const Duration offset = (h - origin.host) - node;
@@ -36,8 +37,8 @@ inline Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime
   return {seconds(node), seconds(offset) - early, side};
 }
 
-/// A bound from above, x(s) <= x; of those from below the mirror image, -x(s) <= -x: what is done
-/// with one kind is then done with both.
+/// An upper bound, x(s) <= x. A lower bound is stored mirrored, as -x(s) <= -x, so that one
+/// algorithm serves both kinds.
 struct OffsetBound {
   double s = 0.0;
   double x = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When something happened on the host's axis, and how sure that is.
+// A time on the host's axis, and how certain it is.
 #pragma once
 
 #include "kinalign/clock/assumptions.h"
@@ -11,25 +11,26 @@
 namespace kinalign {
 
 enum class Certainty : std::uint8_t {
-  certified,  // the truth lies in the interval while the assumptions hold
-  one_sided,  // too few exchanges: an end is open, or nothing may be claimed yet
-  doubtful    // the exchanges contradict the assumptions around here
+  certified,  // the truth lies in the interval, as long as the assumptions hold
+  one_sided,  // too few exchanges: one end is open, or the interval is not certified yet
+  doubtful    // the exchanges around this time contradict the assumptions
 };
 
-/// Whether a reading that can be as early as `earliest`, asked for when `heard` had arrived, is
-/// surely not of before the counter stepped: such readings lie before `from`, or until then as if
-/// they were still to come. A counter that stepped back by 20 ms at 30 s reads what it did then
-/// again at 30.02 s: `from`. After one of an hour such a reading is one of 59 minutes ahead.
-/// HostTime::min(): it has not stepped.
+/// True if a reading was surely taken after the counter stepped. `earliest`: earliest time that the
+/// model gives to the reading; `heard`: newest arrival when the reading was looked up. The model
+/// puts a reading from before the step either before `from` or, while `from` has not come yet, into
+/// the future. Example: a counter that stepped back by 20 ms at 30 s repeats its reading of that
+/// moment at 30.02 s, which is `from`. If it stepped back by an hour, such a reading seems to lie
+/// 59 minutes ahead. HostTime::min(): the counter has not stepped.
 constexpr bool is_behind_step(HostTime earliest, HostTime from, HostTime heard) {
   return from <= earliest && (earliest <= heard || from <= heard);
 }
 
 struct ClockStamp {
-  HostTime time{};                           // the likeliest
-  std::optional<HostTime> earliest, latest;  // the interval; absent: that end is open
+  HostTime time{};                           // the likeliest time
+  std::optional<HostTime> earliest, latest;  // ends of the interval; absent: that end is open
   Certainty certainty = Certainty::one_sided;
-  Assumptions assumptions;  // under which it is certified
+  Assumptions assumptions;  // of the certificate
 };
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One exchange of packets between a node and the host, in the terms of RFC 5905 (T1 to T4).
+// One exchange of packets between a node and the host, with the times T1 to T4 of RFC 5905.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -9,19 +9,19 @@
 
 namespace kinalign {
 
-/// Which life of a node a counter belongs to: its boot id, or a number of the caller's where a node
-/// restarted without drawing a new one.
+/// Names one boot of a node, within which its counter runs on. It is the boot id, or a number that
+/// the caller chose where a node restarted without drawing a new id.
 using BootKey = std::uint64_t;
 
-/// A frame that arrived, and the echo that it carried.
+/// A frame that arrived, with the echo in it.
 struct Exchange {
   struct Echo {
-    NodeTime n_rx{};  // T4 of RFC 5905: when the reply reached the node
-    HostTime h_tx{};  // T3: when it was sent
+    NodeTime n_rx{};  // T4 of RFC 5905: the reply reached the node
+    HostTime h_tx{};  // T3: the host sent the reply
   };
   BootKey boot = 0;
-  NodeTime n_tx{};  // T1
-  HostTime h_rx{};  // T2
+  NodeTime n_tx{};  // T1: the node sent the frame
+  HostTime h_rx{};  // T2: the frame reached the host
   std::optional<Echo> echo;
 };
 

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// In whole ns, each end rounded away from the others: an offset of more than 104 days is no
+/// In whole nanoseconds; each end is rounded outwards. An offset above 104 days does not fit into a
 /// double.
 struct Offset {
   Duration likeliest{}, least{}, greatest{};
@@ -20,7 +20,8 @@ double between(Duration a, Duration b, double share) {
   return static_cast<double>((b - a).count()) * share;
 }
 
-/// Straight between knots; outside, the interval opens as fast as the rate may be off.
+/// Interpolates linearly between knots. Outside of them, the interval widens at the greatest rate
+/// of the assumptions.
 Offset offset_at(const ClockPieceModel& piece, NodeTime n) {
   const auto behind =
       std::upper_bound(piece.knots.begin(), piece.knots.end(), n,
@@ -50,6 +51,7 @@ bool is_in(std::span<const DoubtfulStretch> doubtful, HostTime h) {
   return behind != doubtful.begin() && h <= (behind - 1)->end;
 }
 
+/// Looks up the piece by the arrival, since a reading may occur in several pieces.
 std::optional<ClockStamp> host_from_node(const HostFromNode& model, BootKey boot, NodeTime n,
                                          HostTime h_rx) {
   const auto piece = std::find_if(model.pieces.begin(), model.pieces.end(), [&](const auto& p) {

@@ -13,6 +13,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
+/// Adds a point at the right end and removes the corners that no longer are convex.
 void LiftedHull::append(double s, double lifted) {
   if (!corners_.empty() && corners_.back().s == s) {
     if (lifted >= corners_.back().lifted) return;
@@ -46,7 +47,7 @@ LiftedHull::Support LiftedHull::support(const Corner& corner, double t, double s
   return {corner.lifted - rho_ * t * (corner.s - t / 2.0) - slope * tau, tau};
 }
 
-/// The corner that a line of this slope in the lifted plane touches.
+/// The corner at which a line of this slope touches the hull in the lifted plane.
 std::vector<LiftedHull::Corner>::const_iterator LiftedHull::corner_for(double slope) const {
   return std::partition_point(corners_.begin(), corners_.end() - 1,
                               [slope](const Corner& c) { return c.slope < slope; });
@@ -62,7 +63,8 @@ void LiftedHull::bounds_at(double t, double first, double step, std::span<double
   auto corner = corner_for(first + rho_ * t);
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const double slope = first + step * static_cast<double>(i);
-    while (corner->slope < slope + rho_ * t) ++corner;  // the last one's is infinite
+    // Ends at the last corner, whose slope is infinite.
+    while (corner->slope < slope + rho_ * t) ++corner;
     bounds[i] = support(*corner, t, slope).bound;
   }
 }
@@ -71,7 +73,8 @@ LiftedHull::Peak LiftedHull::peak(double t) const {
   assert(!corners_.empty());
   const auto behind = std::partition_point(corners_.begin(), corners_.end() - 1,
                                            [t](const Corner& c) { return c.s < t; });
-  if (behind->s < t) return {infinite, infinite};  // behind the last: the bound grows on and on
+  // The time t lies after the last corner, where the bound grows without limit.
+  if (behind->s < t) return {infinite, infinite};
   if (behind == corners_.begin()) {
     return {behind->s > t ? infinite : support(*behind, t, 0.0).bound, -infinite};
   }

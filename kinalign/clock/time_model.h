@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a device's stamps to the axis of a take, in pieces of a constant drift. Readers give one
-// piece; what exchanges say of a node's clock is a HostFromNode, and no such model yet.
+// Maps a device's stamps to the axis of a take, in pieces of constant drift. Readers give a single
+// piece. The exchanges of a node give a HostFromNode first, which device_clock.h converts.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -11,34 +11,34 @@
 
 namespace kinalign {
 
-/// On stamps from `begin` on: take time = stamp + offset + drift * (stamp - begin).
+/// For stamps from `begin` on: take time = stamp + offset + drift * (stamp - begin).
 struct TimeModelPiece {
   Time begin = Time::min();
-  Duration offset{};       // take minus device at `begin`
-  double drift_ppm = 0.0;  // rate of the device's clock against the take's
-  /// Half-width of the interval that holds the true time: 0 where the clock is shared by
-  /// construction, absent where nothing is known.
+  Duration offset{};       // take minus device, at `begin`
+  double drift_ppm = 0.0;  // rate of the device's clock against that of the take
+  /// Half-width of the interval that holds the true time. 0: both clocks are the same by
+  /// construction; absent: unknown.
   std::optional<Duration> half_width;
 };
 
-/// Pieces in rising order of `begin`; the first one also serves what lies before it.
+/// Pieces in rising order of `begin`. The first one also applies to earlier stamps.
 struct TimeModel {
   std::vector<TimeModelPiece> pieces{TimeModelPiece{}};
 };
 
-/// One clock for both: no offset, no doubt.
+/// The model of a device that uses the take's clock: no offset, and a half-width of 0.
 TimeModel shared_clock();
 
-/// A stamp on the axis of the take.
+/// The stamp on the take's axis.
 Time take_time(const TimeModel& model, Time stamp);
 
-/// The half-width that belongs to a stamp.
+/// The half-width at a stamp.
 std::optional<Duration> half_width(const TimeModel& model, Time stamp);
 
-/// Of any stamp one is known.
+/// True if the half-width is known in at least one piece.
 bool any_known(const TimeModel& model);
 
-/// Half-widths as a take holds them, ns; this one where a stamp has none beside others that do.
+/// Half-width in ns as a take stores it; no_interval if it is unknown at this stamp.
 inline constexpr std::int64_t no_interval = -1;
 std::int64_t interval_ns(const TimeModel& model, Time stamp);
 

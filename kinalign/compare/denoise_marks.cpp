@@ -13,16 +13,17 @@ namespace kinalign {
 
 namespace {
 
-// Places in shared_joints.
+// Indices in shared_joints.
 constexpr std::array<std::size_t, 2> wrists{6, 9};
 constexpr std::array<std::size_t, 4> shared_feet{12, 13, 16, 17};
 constexpr OwnRootJoints shared_root{
     .root = 0, .hip_left = 10, .hip_right = 14, .shoulder_left = 4, .shoulder_right = 7};
 
-/// The group of each shared joint, by its place in radius_groups.
+/// The group of each shared joint, as an index in radius_groups.
 constexpr std::array<std::size_t, shared_joint_count> group_of{0, 0, 0, 0, 0, 1, 1, 0, 1,
                                                                1, 0, 2, 2, 2, 0, 2, 2, 2};
 
+/// The mean distance of both wrists from the truth, over the frames in which they are valid.
 std::optional<double> hand_error_cm(const Sequence& sequence, Prediction prediction) {
   Mean out;
   for (std::size_t t = 0; t < sequence.frames(); ++t) {
@@ -41,7 +42,7 @@ constexpr std::size_t least_marked_joints = 12;
 
 using Places = std::array<std::optional<std::size_t>, shared_joint_count>;
 
-/// The shared joints of [T,J,3], in their order; zeros for those that are missing.
+/// The shared joints of an array [T,J,3], in their order; zeros for missing ones.
 std::vector<double> shared_of(const Places& places, std::size_t joints,
                               const std::vector<float>& positions) {
   std::vector<double> out;
@@ -54,7 +55,7 @@ std::vector<double> shared_of(const Places& places, std::size_t joints,
   return out;
 }
 
-/// Cells of the shared joints that count; those of missing joints don't.
+/// The validity of the shared joints; missing joints are not valid.
 std::vector<std::uint8_t> shared_valid(const Places& places, std::size_t joints,
                                        const std::vector<std::uint8_t>& valid) {
   std::vector<std::uint8_t> out;
@@ -64,7 +65,7 @@ std::vector<std::uint8_t> shared_valid(const Places& places, std::size_t joints,
   return out;
 }
 
-/// These of the shared joints [T,18,3] m, in cm.
+/// Some of the shared joints [T,18,3] m, in cm.
 std::vector<double> in_centimetres(const std::vector<std::size_t>& places,
                                    const std::vector<double>& positions) {
   std::vector<double> out;
@@ -77,6 +78,7 @@ std::vector<double> in_centimetres(const std::vector<std::size_t>& places,
   return out;
 }
 
+/// The mean distance of each shared joint from the truth, over its valid frames.
 std::array<std::optional<double>, shared_joint_count> joint_errors_cm(const Sequence& sequence,
                                                                       Prediction prediction) {
   std::array<Mean, shared_joint_count> sums{};

@@ -21,33 +21,33 @@
 
 namespace kinalign {
 
-/// Parts of the body whose stated radii are judged apart. Shoulders and hips belong to the trunk.
+/// Parts of the body whose stated radii are judged separately. Shoulders and hips belong to the
+/// trunk.
 inline constexpr std::array<std::string_view, 3> radius_groups{"trunk", "arms", "legs"};
 
-/// Of one stretch of a take.
+/// The marks of one stretch of a take.
 struct DenoiseMarks {
   ProtocolMarks protocol;
-  TableNine table_nine;           // of positions in cm, in the answer's own space
+  TableNine table_nine;           // positions in cm, in the answer's own space
   std::optional<double> hand_cm;  // mean distance of both wrists
-  std::array<std::optional<double>, shared_joint_count> joint_cm{};  // of each joint
-  std::optional<double> lag_ms;     // by which the answer's speeds come later than the truth's
-  std::optional<double> amplitude;  // of its motion about the root, over the truth's
-  FeetMarks feet;                   // of ankles and toes; contacts are the truth's
-  /// The stated 90 % radius, by radius_groups; without cells where none is stated.
+  std::array<std::optional<double>, shared_joint_count> joint_cm{};  // one for each joint
+  std::optional<double> lag_ms;     // delay of the answer's speeds against the truth's
+  std::optional<double> amplitude;  // motion about the root, divided by the truth's
+  FeetMarks feet;                   // ankles and toes; contacts are the truth's
+  /// The stated 90 % radius, by radius_groups; without cells if none is stated.
   std::array<RadiusMarks, radius_groups.size()> radii{};
 };
 
-/// Where positions are told from.
+/// The origin of positions.
 enum class MarkedIn : std::uint8_t {
   space,     // the truth's space
-  own_root,  // each skeleton's own root and heading, as BRA's published marks are (own_root())
+  own_root,  // each skeleton's own root and heading, as in BRA's published marks (own_root())
 };
 
 /// Marks many answers of one layout.
 class DenoiseMarker {
  public:
-  /// Fails where the outputs have fewer than 12 of the 18 shared joints: a pose can't be fitted
-  /// then.
+  /// Fails if the outputs have fewer than 12 of the 18 shared joints: a pose can't be fitted then.
   static Result<DenoiseMarker> make(const DenoiseLayout& layout, const std::vector<Pair>& pairs,
                                     MarkedIn marked_in = MarkedIn::space);
 
@@ -56,13 +56,14 @@ class DenoiseMarker {
                         const std::vector<float>& spread) const;
 
  private:
-  std::array<std::optional<std::size_t>, shared_joint_count> places_;  // absent: not marked
+  /// Index in the outputs; absent: not marked.
+  std::array<std::optional<std::size_t>, shared_joint_count> places_;
   std::vector<std::size_t> there_;  // the shared joints that are marked
-  std::vector<Bone> bones_;         // limbs between them, by their place in there_
+  std::vector<Bone> bones_;         // limbs between them, by indices in there_
   MarkedIn marked_in_ = MarkedIn::space;
   std::size_t joints_ = 0;
   double rate_hz_ = 0.0;
-  /// Median true lengths of the limb bones, m, by person and action.
+  /// The median true lengths of the limb bones, m, by person and action.
   std::map<std::string, std::vector<std::optional<double>>> lengths_;
 };
 

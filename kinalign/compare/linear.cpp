@@ -27,7 +27,7 @@ std::vector<BodyFrame> headings(const DenoiseLayout& layout, const JointFrames& 
   return body_frames(*body_joints(layout.inputs), body);
 }
 
-/// Positions of nine frames less the root of the middle one, in its heading: [9 * 3J] m.
+/// The positions of nine frames minus the root of the middle one, in its heading: [9 * 3J] m.
 void put_features(const JointFrames& body, const std::vector<BodyFrame>& frames, std::size_t t,
                   double* out) {
   const std::size_t last = body.frames() - 1;
@@ -42,7 +42,7 @@ void put_features(const JointFrames& body, const std::vector<BodyFrame>& frames,
   }
 }
 
-/// Truth less base in the body's heading, m.
+/// Truth minus base in the body's heading, m.
 std::array<float, 3> offset_of(const BodyFrame& frame, const float* truth, const float* base) {
   const std::array<float, 3> moved{truth[0] - base[0], truth[1] - base[1], truth[2] - base[2]};
   return frame.turned(moved.data());
@@ -53,7 +53,7 @@ void add_turned(const BodyFrame& frame, const float* offset, float* at) {
   for (std::size_t k = 0; k < 3; ++k) at[k] += turned[k];
 }
 
-/// A body without gaps, its heading, and the input joints that stand for the outputs.
+/// A body without gaps, its headings, and the input joints that stand for the outputs.
 struct Prepared {
   JointFrames body;
   std::vector<BodyFrame> frames;
@@ -79,6 +79,7 @@ std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body) {
   return Prepared(layout, std::move(body)).base;
 }
 
+/// The mean offset of each joint over all valid cells.
 MeanOffset::MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt) {
   const std::size_t joints = layout.outputs.size();
   std::vector<double> sums(3 * joints, 0.0), counts(joints, 0.0);
@@ -108,13 +109,13 @@ std::vector<float> MeanOffset::clean(const DenoiseLayout& layout, const JointFra
 }
 
 struct Ridge::Fit {
-  Eigen::RowVectorXd mean;  // of the features
+  Eigen::RowVectorXd mean;  // mean of the features
   Matrix weights;           // [features + 1, 3 Jout]
 };
 
 namespace {
 
-/// Sums of one joint, or of all joints over frames in which all are valid.
+/// The sums of the normal equations over frames in which all joints are valid.
 struct Normal {
   Matrix gram, moment;
 
@@ -134,8 +135,8 @@ struct Normal {
   }
 };
 
-/// Features of the frames in which all joints are valid, less `mean` and scaled, and a 1 behind
-/// them; the targets beside them, m.
+/// The features of the frames in which all joints are valid, minus `mean` and scaled, followed by a
+/// 1; and the targets, m.
 void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVectorXd& mean,
                Matrix& features, Matrix& targets) {
   const Prepared seen(layout, pair.input);
@@ -167,6 +168,7 @@ void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVe
 
 }  // namespace
 
+/// Two passes: the first finds the mean of the features, the second sums up the normal equations.
 Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt, double penalty)
     : fit_(std::make_unique<Fit>()) {
   const auto width = whole((2 * half_window + 1) * 3 * layout.inputs.size());
@@ -218,10 +220,10 @@ namespace {
 
 constexpr std::size_t most_groups = 5;
 constexpr double ratio_of_one_person = 1.5;
-/// Chosen by 24 simulated people, of whom 0.95 held 96 %, and UI-PRMD's seven.
+/// Chosen from 24 simulated people, of whom a share of 0.95 held 96 %, and UI-PRMD's seven.
 constexpr double most_share = 0.93;
 
-/// Appends the distances of valid joints to the truth, m.
+/// Appends the distances of valid joints from the truth, m.
 void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pair,
                 std::vector<double>& out) {
   const std::vector<float> answer = ridge.clean(layout, pair.input);
@@ -233,7 +235,7 @@ void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pai
   }
 }
 
-/// The quantile of n people's errors that holds 90 % of the errors of one more.
+/// The quantile of n people's errors that contains 90 % of the errors of another person.
 double share_of_people(std::size_t people) {
   const auto n = static_cast<double>(people);
   return std::min(most_share, 0.9 * (n + 1.0) / n);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Methods that are fitted in closed form: the mean offset of each joint, and ridge regression over
-// nine frames. Both are those of UI-PRMD's protocol.
+// nine frames. Both follow UI-PRMD's protocol.
 #pragma once
 
 #include "kinalign/models/denoise_features.h"
@@ -16,15 +16,15 @@ namespace kinalign {
 class MeanOffset {
  public:
   MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt);
-  /// [T,Jout,3] m.
+  /// The cleaned joints [T,Jout,3] m.
   std::vector<float> clean(const DenoiseLayout& layout, const JointFrames& body) const;
 
  private:
   std::vector<float> mean_;  // [Jout,3] m
 };
 
-/// The offset as a linear function of the input's joints in nine frames, in the heading of the
-/// middle one.
+/// The offset is a linear function of the input's joints in nine frames, in the heading of the
+/// middle frame.
 class Ridge {
  public:
   Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt,
@@ -41,14 +41,14 @@ class Ridge {
   std::unique_ptr<Fit> fit_;
 };
 
-/// How much larger ridge's errors are on people it has not seen than on those it was fitted to,
-/// people left out one by one, or in at most five groups: a quantile of the first over the 90 %
-/// quantile of the second. Few people do not show how much people differ: for n of them the first
-/// is the one of 0.9 (n + 1) / n, at most 0.93 (Lee, Barber, Willett, «Distribution-free inference
-/// with hierarchical data», 2023). 1.5 where there is one person alone.
+/// The ratio of ridge's errors on unseen people to those on the people it was fitted to. People are
+/// left out one by one, or in at most five groups. The ratio is a quantile of the first errors over
+/// the 90 % quantile of the second. Few people do not show how much people differ: for n of them
+/// the first quantile is 0.9 (n + 1) / n, at most 0.93 (Lee, Barber, Willett, «Distribution-free
+/// inference with hierarchical data», 2023). 1.5 for a single person.
 double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs);
 
-/// The input joints that stand for the outputs [T,Jout,3] m, missing ones filled.
+/// The input joints that stand for the outputs, [T,Jout,3] m, with missing ones filled.
 std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body);
 
 }  // namespace kinalign

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t least_common_people = 2;
 
+/// The paired test over the people that have the mark of both methods. Absent with too few of them.
 std::optional<PairedTest> test_of(const MethodMarks& first, const MethodMarks& second,
                                   const std::string& mark) {
   const auto ours = first.marks.find(mark), theirs = second.marks.find(mark);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// CRC-32 of files' contents (the one of wire/crc32.h) by libdeflate, which is made for
-// megabytes: some ten times as fast as zlib where the processor multiplies without carry. Two of
-// them joined: by zlib, as libdeflate has no such call.
+// CRC-32 of file contents (the same as in wire/crc32.h) by libdeflate, which is fast for megabytes:
+// about ten times as fast as zlib on processors with carry-less multiplication. Checksums are
+// combined by zlib, because libdeflate has no such function.
 #pragma once
 
 #include <libdeflate.h>
@@ -13,13 +13,13 @@
 
 namespace kinalign {
 
-/// Of `bytes` behind those that `before` is of.
+/// The checksum of bytes with checksum `before`, followed by `bytes`.
 inline std::uint32_t crc_of(std::string_view bytes, std::uint32_t before = 0) {
-  if (bytes.empty()) return before;  // of nothing at no place it would begin anew
+  if (bytes.empty()) return before;  // libdeflate restarts the checksum at a null pointer
   return ::libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
-/// Of bytes whose checksum is `first` and, behind them, `size` bytes whose own is `second`.
+/// The checksum of bytes with checksum `first`, followed by `size` bytes with checksum `second`.
 inline std::uint32_t joined_crc(std::uint32_t first, std::uint32_t second, std::size_t size) {
   return static_cast<std::uint32_t>(crc32_combine(first, second, static_cast<z_off_t>(size)));
 }

@@ -7,8 +7,8 @@ namespace kinalign {
 
 namespace {
 
-/// What moves a terminal's cursor, and what turns the direction of writing. Terminals obey those of
-/// U+0080 to U+009F too.
+/// True for characters that move a terminal's cursor or change the writing direction. Terminals
+/// also obey U+0080 to U+009F.
 bool is_control(char32_t code) {
   const auto within = [code](char32_t first, char32_t last) {
     return code >= first && code <= last;
@@ -18,6 +18,8 @@ bool is_control(char32_t code) {
   return cursor || marks || within(0x202a, 0x202e) || within(0x2066, 0x2069);
 }
 
+/// The text with '?' for control characters and for bytes that are not UTF-8. Control characters in
+/// `but` are kept.
 std::string without_controls(std::string_view text, std::string_view but = "") {
   std::string out;
   while (!text.empty()) {
@@ -36,7 +38,7 @@ std::string without_controls(std::string_view text, std::string_view but = "") {
 }  // namespace
 
 std::string to_string(const Error& error) {
-  std::string text = without_controls(error.file);  // a file's name may hold any byte
+  std::string text = without_controls(error.file);  // a file name may contain any byte
   if (error.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(error.line);
   if (!text.empty()) text += ": ";
   text += "expected " + harmless(error.expected);
@@ -47,7 +49,7 @@ std::string to_string(const Error& error) {
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
   if (text.size() <= most) return without_controls(text);
-  std::size_t cut = most;  // never within a letter of UTF-8, which has four bytes at most
+  std::size_t cut = most;  // never within a UTF-8 character, which has at most four bytes
   while (cut > most - 3 && (static_cast<unsigned char>(text[cut]) & 0xc0U) == 0x80U) --cut;
   std::string out = without_controls(text.substr(0, cut)) + "...";
   return out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors are values with a place. A function that can fail returns Result<T>; a reader that can go
-// on in spite of a fault collects Findings.
+// Errors are values with a place. A function that can fail returns Result<T>. A reader that can
+// continue after a fault collects Findings.
 #pragma once
 
 #include <tl/expected.hpp>
@@ -36,35 +36,35 @@ enum class ErrorKind : std::uint8_t {
 };
 inline constexpr ErrorKind last_error_kind = ErrorKind::no_rows_in_recording;
 
-/// What went wrong, said for the person who has to mend the file.
+/// An error, worded for the person who has to repair the file.
 struct Error {
-  std::string file;       // as the user named it; empty where there is none
-  std::int64_t line = 0;  // from 1; 0 for binary files, whose byte offset stands in `found`
+  std::string file;       // name as given by the user; empty if there is no file
+  std::int64_t line = 0;  // counted from 1; 0 for binary files, whose byte offset is in `found`
   std::string expected;   // "three numbers after OFFSET"
-  std::string found;      // "two", or the text that stood there, see shown()
-  ErrorKind kind = ErrorKind::other;  // for advice; no part of the message
+  std::string found;      // "two", or the text of the file, see shown()
+  ErrorKind kind = ErrorKind::other;  // for advice; not part of the message
 };
 
-/// "walk.bvh:12: expected 2 frames, found 1"
+/// The message: "walk.bvh:12: expected 2 frames, found 1".
 std::string to_string(const Error& error);
 
-/// Text of a file, or from a network, as a message may show it: at most 40 bytes, harmless, and no
-/// line ends in it.
+/// Text from a file or from a network in a form that a message may show: at most 40 bytes, without
+/// control characters and without line ends.
 std::string shown(std::string_view text);
 
-/// Text that holds names of files or from files, for a terminal: UTF-8, with '?' for every byte
-/// that is none, and for every control character but line ends, those of U+0080 to U+009F and of
-/// the direction of writing among them.
+/// Makes text safe for a terminal. The result is UTF-8. Invalid bytes and all control characters
+/// except line ends become '?', including U+0080 to U+009F and the characters that change the
+/// writing direction.
 std::string harmless(std::string_view text);
 
 enum class Severity { note, warning, error };
 
-/// Something found in an input that was read all the same.
+/// A fault in an input that could be read nevertheless.
 struct Finding {
   Severity severity = Severity::warning;
   Error what;
-  std::string meaning;  // for the result: "the last frame was dropped"
-  std::string repair;   // what the user can do; empty where nothing need be done
+  std::string meaning;  // the consequence for the result: "the last frame was dropped"
+  std::string repair;   // advice for the user; empty if nothing needs to be done
 };
 
 using Findings = std::vector<Finding>;
@@ -73,11 +73,11 @@ inline void append(Findings& all, const Findings& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
-/// "warning" as people and JSON read it.
+/// The word for people and for JSON, for example "warning".
 std::string_view to_string(Severity severity);
 
 template <class T>
-using Result = tl::expected<T, Error>;  // std::expected one day: changed here
+using Result = tl::expected<T, Error>;  // replace by std::expected when it is available
 using Failure = tl::unexpected<Error>;
 
 template <class T>
@@ -87,8 +87,8 @@ T unwrap(Result<T>&& result) {
 
 }  // namespace kinalign
 
-/// The value of a Result, or the calling function ends with its error. May stand in another's
-/// argument: each use has a name of its own.
+/// Gives the value of a Result, or returns its error from the calling function. Uses may be nested,
+/// because each use has its own variable name.
 #define KA_TRY(expression) KA_TRY_AS(KA_TRY_JOIN(ka_result_, __COUNTER__), expression)
 #define KA_TRY_JOIN(a, b) KA_TRY_JOINED(a, b)
 #define KA_TRY_JOINED(a, b) a##b

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What files.cpp and growing_file.cpp make of single system calls: interrupted ones are repeated,
-// short ones go on.
+// Wrappers of single system calls for files.cpp and growing_file.cpp. Interrupted calls are
+// repeated, and short reads and writes continue.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,7 +16,7 @@ inline Failure failed(const std::string& path, std::string expected, int code) {
   return Failure(Error{path, 0, std::move(expected), std::strerror(code)});
 }
 
-/// A file could not be opened or read.
+/// The error for a file that could not be opened or read.
 inline Failure unreadable(const std::string& path, int code) {
   const ErrorKind kind = code == EIO ? ErrorKind::unreadable_disk : ErrorKind::other;
   return Failure(Error{path, 0, "a readable file", std::strerror(code), kind});
@@ -37,7 +37,7 @@ inline Result<std::size_t> fill(FileSystem& files, const std::string& path, int 
   return done;
 }
 
-/// Hands `bytes` to put(rest) -> ssize_t until all are taken; 0, or why not.
+/// Calls put(rest) -> ssize_t until all bytes are taken. Returns 0 or an errno.
 template <class Put>
 int put_all(std::string_view bytes, const Put& put) {
   while (!bytes.empty()) {
@@ -50,12 +50,12 @@ int put_all(std::string_view bytes, const Put& put) {
   return 0;
 }
 
-/// The folder of a path for open(2).
+/// The folder of a path in a form for open(2).
 inline std::string place_of(const std::string& path) {
   return folder(path).empty() ? "." : std::string(folder(path));
 }
 
-/// So that a name in it reaches the disk; whether it did.
+/// Syncs the folder of a path, so that the file's name reaches the disk; true if it succeeded.
 inline bool sync_folder(FileSystem& files, const std::string& path) {
   const int directory = files.open(place_of(path).c_str(), O_RDONLY | O_DIRECTORY, 0);
   if (directory < 0) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether two names mean one file, and whether a file has stayed as it was.
+// Tells whether two paths are the same file, and whether a file has changed.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,18 @@
 
 namespace kinalign {
 
-/// Changes whenever someone writes to the file or puts another one in its place.
+/// Changes whenever the file is written or replaced.
 struct FileVersion {
   std::uint64_t device = 0, number = 0, size = 0;
-  std::int64_t changed_ns = 0;  // when its contents last did
+  std::int64_t changed_ns = 0;  // time of the last change of its contents
 
   bool operator==(const FileVersion&) const = default;
 };
 
-/// Of the file that a path leads to now, links followed; empty where there is none.
+/// The version of the file at `path`, links followed; empty if there is none.
 std::optional<FileVersion> version_of(const std::string& path);
 
-/// Whether both paths lead to one file that is there.
+/// True if both paths lead to the same existing file.
 bool same_file(const std::string& a, const std::string& b);
 
 }  // namespace kinalign

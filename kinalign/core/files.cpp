@@ -25,7 +25,7 @@ std::string kind_of(mode_t mode) {
   return "a device";
 }
 
-/// Beside `path`, for this process alone, not shown by ls.
+/// A temporary name in the same folder, for this process only, hidden from ls.
 std::string hidden_name(const std::string& path) {
   return std::string(folder(path)) + "." + std::string(file_name(path)) + "." +
          std::to_string(::getpid()) + ".part";
@@ -57,7 +57,8 @@ int PosixFiles::remove(const char* path) { return ::unlink(path); }
 int PosixFiles::close(int fd) { return ::close(fd); }
 
 Result<InputFile> InputFile::open(FileSystem& files, std::string path, std::size_t piece) {
-  // O_NONBLOCK: opening a pipe without a writer would wait for ever; regular files ignore it.
+  // O_NONBLOCK: without it, opening a pipe without a writer would wait for ever. Regular files
+  // ignore it.
   const int fd = files.open(path.c_str(), O_RDONLY | O_NONBLOCK, 0);
   if (fd < 0) return unreadable(path, errno);
   struct stat status {};
@@ -111,11 +112,11 @@ Result<std::string_view> InputFile::next() {
 }
 
 Result<std::string_view> InputFile::next_or_zeros() {
-  constexpr std::uint64_t page = 4096;  // what the kernel reads at the least
+  constexpr std::uint64_t page = 4096;  // the kernel's smallest read
   for (std::size_t want = buffer_.size();;) {
     const ssize_t got = files_->read_at(fd_, buffer_.data(), want, static_cast<off_t>(at_));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0 && errno == EIO && want > page) {  // not all of it need be bad
+    if (got < 0 && errno == EIO && want > page) {  // some of the bytes may be readable
       want = page - at_ % page;
       continue;
     }
@@ -240,7 +241,7 @@ void OutputFile::discard() {
 }
 
 Result<void> OutputFile::spoiled(const std::string& expected, int code) {
-  discard();  // what has a hole is never committed
+  discard();  // an incomplete file is never committed
   return failed(path_, expected, code);
 }
 
@@ -272,7 +273,7 @@ Result<std::size_t> OutputFile::read_at(std::uint64_t at, std::span<char> to) co
 }
 
 Result<void> OutputFile::place() {
-  // link, not rename, to a free name: it refuses one that another program took in the meantime.
+  // link() to a free name, not rename(): it fails if another program has taken the name meanwhile.
   const std::string from = beside_.empty() ? unfinished_ : beside_;
   if (files_->link(from.c_str(), path_.c_str()) == 0) return {};
   if (errno != EEXIST) return failed(path_, "a folder that can be written", errno);
@@ -280,8 +281,9 @@ Result<void> OutputFile::place() {
     return Failure(Error{path_, 0, "no file of that name (--force overwrites)", "one"});
   }
   if (beside_.empty()) {
-    // A nameless file can only be linked to a free name: take one, then rename over the old file.
-    // Killed between the two, the whole new file is left beside the old one.
+    // A nameless file can only be linked to a free name. It is linked to a temporary name, which is
+    // then renamed over the old file. If the program is killed between both steps, the complete new
+    // file remains under the temporary name.
     beside_ = hidden_name(path_);
     if (files_->link(unfinished_.c_str(), beside_.c_str()) != 0) {
       const int code = errno;
@@ -299,7 +301,7 @@ Result<void> OutputFile::place() {
 Result<void> OutputFile::commit() {
   if (files_->sync(fd_) != 0) return failed(path_, "data that reach the disk", errno);
   KA_TRY(place());
-  sync_folder(*files_, path_);  // some file systems can't; the data are safe
+  sync_folder(*files_, path_);  // some file systems can't; the data are safe anyway
   discard();
   return {};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files: read in pieces, written beside and moved into place. Every call that opens, reads, writes,
-// syncs or places a file goes through FileSystem, so that a test can make any one of them fail;
-// questions about a file (fstat, lstat) do not.
+// Reads files in pieces. Writes files under a temporary name and moves them into place. Every call
+// that opens, reads, writes, syncs or moves a file goes through FileSystem, so that a test can make
+// each of them fail. Queries (fstat, lstat) do not.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -18,7 +18,8 @@
 
 namespace kinalign {
 
-/// The system calls on files; each behaves as its POSIX namesake, errno included.
+/// The system calls on files. Each behaves like the POSIX function of the same name, including
+/// errno.
 class FileSystem {
  public:
   virtual ~FileSystem() = default;
@@ -36,7 +37,8 @@ class FileSystem {
   virtual int close(int fd) = 0;
 };
 
-/// The machine's own. Has no state; the program's rim makes one and hands it down.
+/// The real file system. It has no state; the outermost part of a program makes one and passes it
+/// down.
 class PosixFiles : public FileSystem {
  public:
   int open(const char* path, int flags, mode_t mode) override;
@@ -53,14 +55,14 @@ class PosixFiles : public FileSystem {
   int close(int fd) override;
 };
 
-/// A regular file read from front to back in pieces of at most 256 KiB (which stay in the second
-/// cache, where hashing and parsing find them).
+/// A regular file, read from front to back in pieces of at most 256 KiB. Such a piece stays in the
+/// second-level cache while it is hashed and parsed.
 class InputFile {
  public:
   static constexpr std::size_t piece_size = std::size_t{256} << 10;
 
-  /// Refuses what is not a regular file: a pipe can't be read twice, a directory not at all.
-  /// `piece`: bytes at most of a piece, for a caller that needs the beginning alone.
+  /// Refuses files that are not regular: a pipe can't be read twice, a directory not at all.
+  /// `piece`: the size of a piece, for a caller that needs only the beginning.
   static Result<InputFile> open(FileSystem& files, std::string path,
                                 std::size_t piece = piece_size);
   InputFile(InputFile&& other) noexcept;
@@ -72,16 +74,17 @@ class InputFile {
   /// The next piece; empty at the end. Valid until the next call.
   Result<std::string_view> next();
 
-  /// The same of what a bad disk can still give (not to be mixed with next()): of a page where it
-  /// fails (EIO) the rest comes as zeros, a piece of its own.
+  /// Like next(), but for a damaged disk (do not mix both). If a page can't be read (EIO), its
+  /// remaining bytes are returned as zeros, in a piece of their own.
   Result<std::string_view> next_or_zeros();
-  std::uint64_t unread() const { return unread_; }  // bytes that are such zeros
+  std::uint64_t unread() const { return unread_; }  // number of bytes replaced by zeros
 
-  /// Fills `to` from byte `at` on, as far as the file reaches; returns how much that was. Does not
-  /// move what next() reads.
+  /// Fills `to` from byte `at` on and returns the number of bytes, fewer at the end of the file.
+  /// Does not change the position of next().
   Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
 
-  std::uint64_t size() const { return size_; }  // when it was opened: for progress, not for trust
+  /// At the time of opening: for progress only, it may have changed.
+  std::uint64_t size() const { return size_; }
   const std::string& path() const { return path_; }
 
  private:
@@ -92,27 +95,26 @@ class InputFile {
   int fd_;
   std::uint64_t size_;
   std::vector<char> buffer_;
-  std::uint64_t at_ = 0, unread_ = 0;  // of next_or_zeros()
+  std::uint64_t at_ = 0, unread_ = 0;  // at_: position of next_or_zeros(); unread_: see unread()
 };
 
-/// All of a file at once: for small ones (manifests, layouts). Fails above `most` bytes.
+/// Reads a whole file, for small ones (manifests, layouts). Fails above `most` bytes.
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most);
 
-/// The folder and those above it, where they are not there yet.
+/// Makes the folder and its parents if they do not exist.
 Result<void> make_folders(const std::string& path);
 
-/// A folder that was not there; the one above it is. Fails where anything has that name.
+/// Makes a folder in an existing folder. Fails if anything has that name.
 Result<void> make_new_folder(const std::string& path);
 
 enum class Overwrite { no, yes };
 
-/// A file that comes to be only when it is whole. Written without a name in the target's folder
-/// (with a name that begins with a dot where the file system can't), synced and moved into place by
-/// commit(); until then, and if the program is killed, nothing stands at `path` or what stood
-/// there.
+/// A file that appears only when it is complete. It is written without a name in the target's
+/// folder, or with a name that begins with a dot if the file system does not support this. commit()
+/// syncs it and moves it into place. Until then, and if the program is killed, `path` is unchanged.
 class OutputFile {
  public:
-  /// Fails at once where `path` exists and may not be overwritten.
+  /// Fails at once if `path` exists and may not be overwritten.
   static Result<OutputFile> create(FileSystem& files, std::string path, Overwrite overwrite);
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
@@ -121,12 +123,12 @@ class OutputFile {
   ~OutputFile();
 
   Result<void> write(std::string_view bytes);
-  /// At any place, also behind the end: what lies between reads as zeros.
+  /// Writes at any place, also after the end; bytes between read as zeros.
   Result<void> write_at(std::uint64_t at, std::string_view bytes);
-  /// Takes room on the disk for a file of that length, so that a full disk shows before the work;
-  /// the file then reads as zeros. Where the file system can't, nothing happens.
+  /// Allocates disk space for a file of that length, so that a full disk is reported before the
+  /// work. The file then reads as zeros. Does nothing if the file system can't allocate.
   Result<void> reserve(std::uint64_t size);
-  /// What was written there; returns how much of `to` the file filled.
+  /// Reads bytes written before; returns the number of bytes, fewer at the end of the file.
   Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
   Result<void> commit();
 
@@ -143,18 +145,18 @@ class OutputFile {
   Overwrite overwrite_;
   int fd_ = -1;
   std::string unfinished_;
-  std::string beside_;  // the name with a dot; empty where the file has none
+  std::string beside_;  // the name with a dot; empty if the file has no name
 };
 
-/// A file of these bytes.
+/// Writes a file with these bytes.
 Result<void> write_whole(FileSystem& files, const std::string& path, std::string_view bytes,
                          Overwrite overwrite);
-/// Fails where anything stands at `to`.
+/// Fails if anything exists at `to`.
 Result<void> copy_file(FileSystem& files, const std::string& from, const std::string& to);
 
-/// The part of a path behind its last '/'.
+/// The part of a path after its last '/'.
 std::string_view file_name(std::string_view path);
-/// The folder of a path: "" where it names none, else up to and with the last '/'.
+/// The folder of a path, up to and including the last '/'; "" if the path names none.
 std::string_view folder(std::string_view path);
 
 }  // namespace kinalign

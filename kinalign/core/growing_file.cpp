@@ -75,7 +75,7 @@ Result<void> GrowingFile::sync() const {
   while (files_->sync(fd_) != 0) {
     if (errno != EINTR) return failed(path_, "data that reach the disk", errno);
   }
-  // Some file systems can't; the file's own sync is what counts.
+  // Some file systems can't sync a folder; the sync of the file itself matters.
   if (!std::exchange(named_, true)) sync_folder(*files_, path_);
   struct stat status {};
   const bool removed =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that grows under its own name while it is used, so that a kill or a power cut leaves what
-// was appended before: for recordings. Results that are whole or not at all are OutputFile's.
+// A file that grows under its final name, for recordings: after a kill or a power cut it contains
+// all bytes appended before. For results that must be complete or absent use OutputFile.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -14,8 +14,8 @@ namespace kinalign {
 
 class GrowingFile {
  public:
-  /// An empty file of that name; it waits for no disk. Fails where anything stands there: nothing
-  /// is ever overwritten.
+  /// Creates an empty file of that name without waiting for the disk. Fails if the name exists;
+  /// nothing is ever overwritten.
   static Result<GrowingFile> create(FileSystem& files, std::string path);
   GrowingFile(GrowingFile&& other) noexcept;
   GrowingFile& operator=(GrowingFile&& other) noexcept;
@@ -23,16 +23,17 @@ class GrowingFile {
   GrowingFile& operator=(const GrowingFile&) = delete;
   ~GrowingFile();
 
-  /// All bytes or, where it fails, none: what was written of them is cut off again.
+  /// Appends all bytes, or none if it fails: partly written bytes are cut off again.
   Result<void> append(std::string_view bytes);
-  /// Back to an earlier size.
+  /// Cuts the file to an earlier size.
   Result<void> cut(std::uint64_t size);
-  /// Fills `to` with what was appended at `at`.
+  /// Fills `to` with the bytes appended at `at`.
   Result<void> read_at(std::uint64_t at, std::span<char> to) const;
-  /// What was appended before reaches the disk, and with the first sync the name. Fails, too, where
-  /// the file was removed. Another thread may call it meanwhile, one at a time.
+  /// Waits until all appended bytes are on the disk, and at the first call also the file's name.
+  /// Fails, too, if the file was removed. Another thread may call it during append(), one thread at
+  /// a time.
   Result<void> sync() const;
-  /// What was synced before can't be lost by it.
+  /// Closes the file. Synced bytes can't be lost by this.
   void close();
 
   std::uint64_t size() const { return size_; }
@@ -46,8 +47,8 @@ class GrowingFile {
   std::string path_;
   int fd_;
   std::uint64_t size_ = 0;
-  mutable bool named_ = false;  // on the disk
-  bool ragged_ = false;         // bytes of a failed append may stand behind it
+  mutable bool named_ = false;  // the name has been synced
+  bool ragged_ = false;         // bytes of a failed append may follow the end
 };
 
 }  // namespace kinalign

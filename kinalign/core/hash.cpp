@@ -14,7 +14,8 @@ struct Sha256::State {
   EVP_MD_CTX* context = EVP_MD_CTX_new();
 
   State() {
-    // Both fail only without memory or without SHA-256 in the library: no file can be trusted then.
+    // Both calls fail only without memory or if the library lacks SHA-256. No file could be
+    // verified then.
     if (context == nullptr || EVP_DigestInit_ex(context, EVP_sha256(), nullptr) != 1) std::abort();
   }
   State(const State&) = delete;

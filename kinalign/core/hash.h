@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256 (FIPS 180-4) of bytes that come in pieces.
+// SHA-256 (FIPS 180-4) of bytes that arrive in pieces.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class Sha256 {
   ~Sha256();
 
   void update(std::string_view bytes);
-  /// 64 lower-case hexadecimal digits; ends the hash.
+  /// Ends the hash and returns 64 lower-case hexadecimal digits.
   std::string hex();
 
  private:

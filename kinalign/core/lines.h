@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of a text that comes in pieces cut anywhere.
+// Splits a text into lines; the text arrives in pieces cut at any place.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,9 +14,11 @@ class LineSplitter {
  public:
   static constexpr std::size_t longest = std::size_t{1} << 20;
 
-  /// Calls `use(line)` -> Result<void> for each line that `piece` completes, without its "\n" or
-  /// "\r\n"; number() is then the line's number, from 1. The character behind the line can be read
-  /// and is no part of a number. Fails with the first failing use, and on a line above `longest`.
+  /// Calls `use(line)` -> Result<void> for each line completed by `piece`, without its "
+  /// " or "\r
+  /// ". number() is then the line's number, counted from 1. The character after the line is
+  /// readable and can't belong to a number. Fails if a call of `use` fails, and on a line longer
+  /// than `longest`.
   template <class Use>
   Result<void> feed(std::string_view piece, Use&& use) {
     while (!piece.empty()) {
@@ -37,7 +39,7 @@ class LineSplitter {
     return {};
   }
 
-  /// The text has ended: a last line without a line end is a line too.
+  /// Call at the end of the text: a last line without a line end is a line, too.
   template <class Use>
   Result<void> finish(Use&& use) {
     if (carry_.empty()) return {};
@@ -47,7 +49,7 @@ class LineSplitter {
   }
 
   std::int64_t number() const { return number_; }
-  /// The text so far ends within a line.
+  /// True if the text so far ends within a line.
   bool within_line() const { return !carry_.empty(); }
 
  private:

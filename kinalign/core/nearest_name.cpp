@@ -8,7 +8,8 @@ namespace kinalign {
 
 namespace {
 
-/// Optimal string alignment: three rows of the table of distances between beginnings.
+/// The distance by optimal string alignment. It keeps three rows of the table of distances between
+/// prefixes.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), two_before(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -26,7 +27,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// "a, b, c, ..."
+/// The first known names as text: "a, b, c, ...".
 std::string first_of(const std::vector<std::string>& known) {
   constexpr std::size_t most = 8;
   std::string list;
@@ -40,7 +41,8 @@ std::string first_of(const std::vector<std::string>& known) {
 }  // namespace
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
-  constexpr std::size_t longest = 64;  // of a name that a file may make as long as it likes
+  // A name in a file may have any length; only its beginning is compared.
+  constexpr std::size_t longest = 64;
   const std::string_view start = name.substr(0, longest);
   std::string best;
   std::size_t least = std::max<std::size_t>(1, start.size() / 3) + 1;

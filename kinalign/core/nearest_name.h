@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A word that nobody knows: which known one was meant.
+// Suggests the known name that was probably meant by an unknown one.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -10,13 +10,13 @@
 
 namespace kinalign {
 
-/// The known name nearest to `name`, by single letters put in, left out, changed or swapped, where
-/// no more than a third of its letters differ; else the first that it begins, by three letters or
-/// more; else empty.
+/// The known name nearest to `name`, counting inserted, missing, changed and swapped letters, if at
+/// most a third of its letters differ. Otherwise the first known name that begins with `name`, if
+/// that has at least three letters; otherwise empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// The error for a name that is not known, with the nearest known one, or the first few
-/// where none is near: "a key of [align] (nearest: gap_ms)".
+/// The error for an unknown name. The message suggests the nearest known name, or lists the first
+/// few: "a key of [align] (nearest: gap_ms)".
 Error unknown_name(std::string_view name, const std::string& what,
                    const std::vector<std::string>& known);
 

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-// Powers of ten that a double holds exactly.
+// The powers of ten that a double represents exactly.
 constexpr std::array<double, 16> ten{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                      1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
@@ -27,8 +27,8 @@ constexpr std::array<char, 200> digit_pairs = [] {
 
 bool is_digit(char c) { return static_cast<unsigned>(c - '0') < 10; }
 
-/// Of a number that no double holds, a digit other than 0 in it: 1e-999 (nothing, to a double), not
-/// 1e999. By the power of ten of its first such digit.
+/// True if a number that is out of the range of a double is too small (1e-999, which becomes 0) and
+/// not too large (1e999). Decided by the power of ten of its first digit other than 0.
 bool too_small(std::string_view number) {
   const auto exponent_at = std::min(number.find_first_of("eE"), number.size());
   const std::string_view digits = number.substr(0, exponent_at);
@@ -45,7 +45,7 @@ bool too_small(std::string_view number) {
 const char* parse_any(const char* at, const char* end, double& value) {
   const char* digits = at + (*at == '-' ? 1 : 0);
   if (digits == end || (!is_digit(*digits) && *digits != '.'))
-    return nullptr;  // no "inf", no "nan"
+    return nullptr;  // refuses "inf" and "nan"
   const auto [behind, fault] = std::from_chars(at, end, value);
   if (fault == std::errc::result_out_of_range) {
     const std::string_view text(at, static_cast<std::size_t>(behind - at));
@@ -64,13 +64,14 @@ char* put_whole(char* at, std::int64_t whole) {
   return at;
 }
 
-/// A whole number of 10^-decimals, below 2^52, and the double next to it: their whole parts agree,
-/// since an integer is 10^-decimals away and doubles lie nearer. Not part of put_number, which
-/// would save registers for it: 1 % of the time of any number.
+/// Writes a number below 2^52. `all` is a whole number of 10^-decimals, and `value` is the double
+/// next to it. Both have the same whole part, because the next integer is 10^-decimals away and
+/// doubles are closer. Not inlined: saving registers for it would cost put_number() 1 % of its
+/// time.
 __attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_t all,
                                              int decimals) {
   const auto power = static_cast<std::int64_t>(ten[static_cast<std::size_t>(decimals)]);
-  const auto whole = static_cast<std::int64_t>(value);  // quicker than all / power
+  const auto whole = static_cast<std::int64_t>(value);  // faster than all / power
   std::int64_t fraction = all - whole * power;
   at = put_whole(at, whole);
   if (decimals == 0) return at;
@@ -117,7 +118,7 @@ const char* parse_number(const char* at, const char* end, double& value) {
 
 bool parse_number(std::string_view text, double& value) {
   if (text.empty() || text.size() > 400) return false;
-  std::array<char, 401> copy{};  // ends in the character that can't belong to a number
+  std::array<char, 401> copy{};  // ends with a character that can't belong to a number
   std::memcpy(copy.data(), text.data(), text.size());
   const char* end = copy.data() + text.size();
   return parse_number(copy.data(), end, value) == end;
@@ -133,10 +134,12 @@ int decimals_of(std::string_view number) {
 char* put_number(char* at, double value, int decimals) {
   const double scale = ten[static_cast<std::size_t>(decimals)];
   const double magnitude = std::abs(value), scaled = magnitude * scale;
-  // Below 2^52 the nearest integer is exact, and if any with these decimals reads back, it does.
+  // Below 2^52 the nearest integer is exact. If any number with these decimals reads back as the
+  // value, this one does.
   if (!(scaled < 4e15)) return std::to_chars(at, at + number_room, value).ptr;
   auto all = static_cast<std::int64_t>(scaled);
-  all += static_cast<std::int64_t>(scaled - static_cast<double>(all) >= 0.5);  // no branch to guess
+  // Without a branch to predict.
+  all += static_cast<std::int64_t>(scaled - static_cast<double>(all) >= 0.5);
   if (static_cast<double>(all) / scale != magnitude) {
     return std::to_chars(at, at + number_room, value).ptr;
   }

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// What the threads of one call share.
+/// The state shared by the threads of one call.
 class Shared {
  public:
   Shared(std::size_t count, const std::function<void(std::size_t)>& body)
@@ -26,7 +26,7 @@ class Shared {
     }
   }
 
-  /// After all threads have ended.
+  /// Call after all threads have ended.
   void rethrow() const {
     if (fault_) std::rethrow_exception(fault_);
   }
@@ -50,7 +50,7 @@ void parallel_for(std::size_t count, std::size_t jobs,
     try {
       for (std::size_t i = 1; i < threads; ++i) others.emplace_back([&shared] { shared.work(); });
     } catch (const std::system_error&) {
-      // The machine has no more threads to give: those that began do it all.
+      // No more threads are available; the threads already started do all the work.
     }
     shared.work();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a long job is, told to whoever asked; and whether it should stop.
+// Reports the progress of a long job, and asks whether the job should stop.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,8 +11,8 @@
 
 namespace kinalign {
 
-/// Called now and then with what is being done, and how much of how much (bytes, frames).
-/// False: stop, the user wants no more. An empty Progress is silence.
+/// Called occasionally with a description of the work, the amount done and the total (bytes,
+/// frames). Returns false if the user wants to stop. An empty Progress reports nothing.
 using Progress =
     std::function<bool(std::string_view what, std::uint64_t done, std::uint64_t total)>;
 
@@ -21,7 +21,7 @@ inline bool go_on(const Progress& progress, std::string_view what, std::uint64_t
   return !progress || progress(what, done, total);
 }
 
-/// What a job fails with that was told to stop.
+/// The error of a job that was told to stop.
 inline Error interruption(std::string file = {}) {
   return {std::move(file), 0, "the end of the job", "an interruption", ErrorKind::interrupted};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of many numbers into a file, by the megabyte.
+// Writes text with many numbers into a file, in blocks of about a megabyte.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -23,12 +23,12 @@ class TextOut {
 
   void text(std::string_view piece) { held_ += piece; }
 
-  /// `before` (where it is no '\0'), then the value rounded to `decimals` (0 to 9).
+  /// Writes `before` (unless it is '\0') and then the value rounded to `decimals` (0 to 9).
   void number(char before, double value, int decimals) {
     constexpr std::array<double, 10> scales{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
     const double scale = scales[static_cast<std::size_t>(decimals)];
     std::array<char, number_room> room{};
-    // "+ 0.0": no "-0.0000"
+    // "+ 0.0" turns -0.0 into 0.0, so that "-0.0000" is never written.
     const double rounded = std::nearbyint(value * scale) / scale + 0.0;
     const char* end = put_number(room.data(), rounded, decimals);
     if (before != '\0') held_ += before;
@@ -41,7 +41,7 @@ class TextOut {
     held_.append(room.data(), static_cast<std::size_t>(end - room.data()));
   }
 
-  /// Ends a line; writes what is held now and then.
+  /// Ends a line. The buffer is written to the file when it is full.
   Result<void> end_line() {
     held_ += '\n';
     return held_.size() < most_held ? Result<void>{} : flush();

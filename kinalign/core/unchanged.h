@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take names its inputs' hashes: every pass has to see the bytes that were hashed.
+// A take contains the hashes of its inputs, so every pass must read the bytes that were hashed.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-/// Fails where the file at `path` is no more the one of `version`.
+/// Fails if the file at `path` no longer has the version `version`.
 inline Result<void> unchanged(const std::string& path, const std::optional<FileVersion>& version) {
   if (version_of(path) == version) return {};
   return Failure(Error{path, 0, "a file that stays as it is while it is read", "one that changed"});

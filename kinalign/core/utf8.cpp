@@ -13,7 +13,8 @@ Character first_character(std::string_view text) {
     good = (next & 0xc0U) == 0x80;
     code = code << 6U | (next & 0x3fU);
   }
-  constexpr char32_t least[] = {0, 0x80, 0x800, 0x10000};  // else a shorter form would do
+  // Smaller codes have a shorter form, which is the only valid one.
+  constexpr char32_t least[] = {0, 0x80, 0x800, 0x10000};
   good = good && code >= least[more] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
   return good ? Character{code, more + 1} : Character{};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Characters of UTF-8 (RFC 3629), as takes hold their texts and messages show them.
+// Characters of UTF-8 (RFC 3629), for the texts in takes and in messages.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 namespace kinalign {
 
 struct Character {
-  std::optional<char32_t> code;  // none: a byte that begins no character
+  std::optional<char32_t> code;  // empty: the byte begins no valid character
   std::size_t bytes = 1;
 };
 
-/// The first character of a text that is not empty.
+/// The first character of a text, which must not be empty.
 Character first_character(std::string_view text);
 
 bool is_utf8(std::string_view text);
 
-/// The text, a byte that begins no character read as one of Latin-1.
+/// Converts text to UTF-8: bytes that begin no valid character are read as Latin-1.
 std::string as_utf8(std::string_view text);
 
 }  // namespace kinalign

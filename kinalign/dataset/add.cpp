@@ -32,7 +32,7 @@ std::vector<std::string> ids_of(const std::vector<One>& all) {
   return ids;
 }
 
-/// Fails where dataset.toml does not know the subject or the action.
+/// Fails if dataset.toml does not have the subject or the action.
 Result<void> check_known(const Catalogue& catalogue, const AddRequest& request,
                          const std::string& subject, const std::string& action) {
   const auto fault = [&](const std::string& id, const std::string& what, const std::string& table,
@@ -55,7 +55,7 @@ Result<void> check_known(const Catalogue& catalogue, const AddRequest& request,
   return {};
 }
 
-/// A path without links, in one spelling.
+/// The one spelling of a path, without links.
 std::string one_spelling(const std::string& path) {
   std::error_code fault;
   const fs::path whole = fs::weakly_canonical(path, fault);
@@ -66,25 +66,26 @@ bool is_below(const std::string& path, const std::string& folder) {
   return one_spelling(path).starts_with(one_spelling(folder) + "/");
 }
 
-/// A file's path in a manifest: relative to `base` where the file lies below the data set.
+/// A file's path in a manifest: relative to `base` if the file lies below the data set's folder.
 std::string as_named(const std::string& path, const std::string& folder, const std::string& base) {
   std::string whole = one_spelling(path);
   if (!is_below(path, folder)) return whole;
   return fs::path(whole).lexically_relative(one_spelling(base)).string();
 }
 
-/// A raw file, and where its copy lies.
+/// A raw file, and the place of its copy.
 struct RawCopy {
   std::string from, to;
 };
 
-/// The places of copies of a manifest's files: in a folder of the take, which ends in '/'.
+/// Plans the copies of a manifest's files into a folder of the take, which ends in '/'.
 class CopyPlan {
  public:
   CopyPlan(FileSystem& files, const std::string& folder, std::string to)
       : files_(files), folder_(folder), to_(std::move(to)) {}
 
-  /// Paths become those of the copies. Files that lie in the data set already stay there.
+  /// Returns the manifest with the paths of the copies. Files that are in the data set already stay
+  /// there.
   Manifest plan(Manifest manifest) {
     for (StreamOptions& stream : manifest.streams) {
       const StreamOptions as_said = stream;
@@ -99,7 +100,7 @@ class CopyPlan {
   const std::vector<RawCopy>& copies() const { return copies_; }
 
  private:
-  /// A file with further files keeps its folder's name, since readers look for them by it.
+  /// A file with further files keeps the name of its folder, since readers find them by it.
   std::string place(const StreamOptions& stream, const StreamFile& file) {
     if (is_below(file.path, folder_)) return file.path;
     auto further = further_files_of(files_, stream, file);
@@ -120,7 +121,7 @@ class CopyPlan {
     return copies_.back().to;
   }
 
-  /// Files of one name, from several folders, are told apart by their streams.
+  /// Files of one name from several folders are kept apart by their streams.
   std::string place_alone(const std::string& stream, const std::string& path) {
     if (is_below(path, folder_)) return path;
     std::string to = to_ + std::string(file_name(path));
@@ -138,7 +139,7 @@ class CopyPlan {
   std::vector<RawCopy> copies_;
 };
 
-/// A manifest's text without its own run, so that the same raw files under two runs are found.
+/// A manifest's text without its own run, so that the same raw files under another run are found.
 std::string without_own_name(std::string text, const TakeName& name) {
   const std::string own = raw_folder(name);
   for (auto at = text.find(own); at != std::string::npos; at = text.find(own, at)) {
@@ -147,7 +148,7 @@ std::string without_own_name(std::string text, const TakeName& name) {
   return text;
 }
 
-/// The manifest as it stands in the folder of its subject.
+/// The manifest's text with paths relative to the folder of its subject.
 std::string placed_text(Manifest manifest, const std::string& folder, const TakeName& name) {
   const std::string own = folder + "/sub-" + name.subject;
   for (std::string* path : paths_in(manifest)) *path = as_named(*path, folder, own);
@@ -163,8 +164,8 @@ Result<bool> same_bytes(FileSystem& files, const RawCopy& copy) {
   return from.sha256 == KA_TRY(facts_of(files, copy.to, "hashing", {})).sha256;
 }
 
-/// A copy that was made before stays: a job that was stopped goes on. False: another file stands in
-/// the place of one, of a take that was removed or that another process adds.
+/// Makes the copies. A copy made before stays, so that a stopped job can go on. False: another file
+/// has the place of a copy, from a take that was removed or that another process adds.
 Result<bool> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) {
   for (const RawCopy& copy : copies) {
     KA_TRY(make_folders(fs::path(copy.to).parent_path().string()));
@@ -176,7 +177,7 @@ Result<bool> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) 
   return true;
 }
 
-/// The run that is asked for, where it is free, else the next behind all others.
+/// The wanted run if it is free, else the next one after all others.
 std::uint32_t free_run(const std::set<std::uint32_t>& runs, std::uint32_t wanted) {
   if (wanted > 0 && !runs.contains(wanted)) return wanted;
   return runs.empty() ? 1 : *runs.rbegin() + 1;
@@ -184,6 +185,7 @@ std::uint32_t free_run(const std::set<std::uint32_t>& runs, std::uint32_t wanted
 
 }  // namespace
 
+/// Reads the runs and manifests of a subject and an action.
 Result<TakeAdder::Known> TakeAdder::read_known(const std::string& subject,
                                                const std::string& action) const {
   KA_TRY(make_folders(folder_ + "/sub-" + subject));
@@ -207,7 +209,8 @@ Result<TakeAdder::Known*> TakeAdder::known(const std::string& subject, const std
   return &at->second;
 }
 
-/// The take that was added of the same manifest before. Of copies the bytes count.
+/// The take that was added from the same manifest before. With copies, their bytes must be the
+/// same, too.
 Result<std::optional<TakeName>> TakeAdder::find_same(const Known& known, const Manifest& manifest,
                                                      const std::string& text, bool copy) const {
   const auto [begin, end] = known.by_text.equal_range(text);
@@ -230,7 +233,7 @@ Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
   KA_TRY(check_known(catalogue_, request, name.subject, name.action));
   Manifest manifest = said;
   for (std::string* path : paths_in(manifest)) *path = path_in(base, *path);
-  for (;;) {  // until no other process takes the same run
+  for (;;) {  // repeat until no other process takes the same run
     Known& there = *KA_TRY(known(name.subject, name.action));
     name.run = free_run(there.runs, request.run);
     CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder(name));
@@ -241,7 +244,7 @@ Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
       return Added{*same, true};
     }
     if (!KA_TRY(make_copies(files_, plan.copies()))) {
-      there.runs.insert(name.run);  // its raw files are another take's
+      there.runs.insert(name.run);  // its raw files belong to another take
       continue;
     }
     const std::string path = folder_ + "/" + path_of(name, TakeFile::manifest);
@@ -256,6 +259,7 @@ Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
   }
 }
 
+/// Subject and action come from the recording, if it states them.
 Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress& progress) {
   const auto source = KA_TRY(
       RecordingSource::open(files_, request.path, RecordingSource::Devices::unheard, {}, progress));
@@ -268,6 +272,7 @@ Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress
   return add(manifest, std::string(kinalign::folder(request.path)), request);
 }
 
+/// A take states its subject and action in its own bytes, so the request can't change them.
 Result<Added> TakeAdder::add_take(const AddRequest& request) {
   const Error blame{request.path, 0, "a take that HDF5 can read", ""};
   const std::string said = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {

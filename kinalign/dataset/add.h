@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings, manifests and takes are added to a data set. Raw files stay where they are, or are
-// copied below sourcedata/.
+// Adds recordings, manifests and takes to a data set. Raw files stay in place or are copied below
+// sourcedata/.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -19,37 +19,38 @@ namespace kinalign {
 
 struct AddRequest {
   std::string path;             // a recording, a recording.toml or a take
-  std::string subject, action;  // empty: as the file says
-  bool copy = false;            // raw files, to sourcedata/sub-03/NAME/
-  std::uint32_t run = 0;        // of a manifest, where that run is free; 0: the next free one
+  std::string subject, action;  // empty: as the file states
+  bool copy = false;            // copy raw files to sourcedata/sub-03/NAME/
+  std::uint32_t run = 0;        // wanted run of a manifest, if free; 0: the next free one
 };
 
 struct Added {
   TakeName name;
-  bool was_there = false;  // the same manifest, or the same take, was added before
+  bool was_there = false;  // the same manifest or take was added before
 };
 
-/// Adds to one data set. What it has of a subject and an action is read once, so that adding many
-/// takes costs little more than writing their manifests.
+/// Adds takes to one data set. The existing takes of a subject and an action are read once, so
+/// adding many takes costs little more than writing their manifests.
 class TakeAdder {
  public:
-  /// All three must outlive it.
+  /// All three arguments must outlive it.
   TakeAdder(FileSystem& files, const std::string& folder, const Catalogue& catalogue)
       : files_(files), folder_(folder), catalogue_(catalogue) {}
 
-  /// Gives the take its run of its subject and action, and writes its manifest, or copies the take.
-  /// Fails where the file is of another kind, and where dataset.toml has no such subject or action.
-  /// Paths of files below the data set's folder become relative, others absolute.
+  /// Gives the take the next run of its subject and action and writes its manifest, or copies the
+  /// take. Fails if the file is of another kind, or if dataset.toml lacks the subject or the
+  /// action. Paths of files below the data set's folder become relative, others absolute.
   Result<Added> add(const AddRequest& request, const Progress& progress);
-  /// The same of a manifest that stands in no file; `base` ("" or ending in '/') is the folder of
-  /// its paths, and `request.path` names it in messages.
+  /// The same for a manifest that is in no file. `base` ("" or ending in '/') is the folder of its
+  /// paths; `request.path` names it in messages.
   Result<Added> add(const Manifest& manifest, const std::string& base, const AddRequest& request);
 
  private:
-  /// The takes of a subject and an action.
+  /// The existing takes of a subject and an action.
   struct Known {
     std::set<std::uint32_t> runs;
-    std::multimap<std::string, TakeName> by_text;  // the manifest, but for its own folder's name
+    /// The takes by their manifest's text without its own folder's name.
+    std::multimap<std::string, TakeName> by_text;
   };
   Result<Known> read_known(const std::string& subject, const std::string& action) const;
   Result<Known*> known(const std::string& subject, const std::string& action);

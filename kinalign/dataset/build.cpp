@@ -29,17 +29,17 @@ std::string folder_of(const std::string& folder, const TakeName& name) {
   return folder + "/sub-" + name.subject + "/";
 }
 
-/// A take of the data set, before it is known whether it has to be made.
+/// A take of the data set that may have to be made.
 struct Candidate {
   TakeName name;
   TakeFiles files;
-  Manifest manifest;  // empty where the take came without one
+  Manifest manifest;  // empty for a take without one
   std::vector<TakeInput> inputs;
   std::optional<TakeSummary> summary;
-  std::uint64_t bytes = 0;  // of the inputs, or of the take that has none
+  std::uint64_t bytes = 0;  // size of the inputs; the take's own size if it has none
 };
 
-/// Why a take has to be made, and of how many bytes.
+/// Finds the reason why a take has to be made, and the size of its inputs.
 class Planner {
  public:
   Planner(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
@@ -50,10 +50,10 @@ class Planner {
         options_(options),
         progress_(progress) {}
 
-  /// A take with the bytes of what it is made of.
+  /// A take with the size of its inputs.
   Result<Candidate> look(const TakeName& name, const TakeFiles& there) const {
     Candidate out{name, there, {}, {}, there.summary ? known(name) : std::nullopt, 0};
-    if (!there.manifest) {  // it came without raw files
+    if (!there.manifest) {  // it was added without raw files
       out.bytes = size_of(place(folder_, name, TakeFile::take));
       return out;
     }
@@ -99,7 +99,7 @@ class Planner {
   const Progress& progress_;
 };
 
-/// How far all jobs are together, in bytes of their inputs.
+/// Sums up the progress of all jobs in bytes of their inputs.
 class BuildProgress {
  public:
   BuildProgress(const Progress& progress, const std::vector<BuildJob>& jobs)
@@ -107,7 +107,7 @@ class BuildProgress {
     for (const BuildJob& job : jobs) all_ += job.input_bytes;
   }
 
-  /// For job i: the first half is reading, the second aligning.
+  /// The progress of job i: reading is the first half, aligning the second.
   Progress part(std::size_t i, std::uint64_t bytes) {
     return [this, i, bytes](std::string_view what, std::uint64_t done, std::uint64_t total) {
       const double share =
@@ -117,7 +117,7 @@ class BuildProgress {
     };
   }
 
-  /// False: the user wants no more.
+  /// False: the user stops the build.
   bool reach(std::size_t i, std::uint64_t bytes) {
     const std::lock_guard lock(mutex_);
     sum_ += bytes - std::min(bytes, done_[i]);
@@ -135,7 +135,8 @@ class BuildProgress {
   bool stopped_ = false;
 };
 
-/// A take that was added as a take. A child process opens it: before other threads begin.
+/// The summary of a take that was added as a take. A child process reads it, so this must run
+/// before other threads begin.
 Result<TakeSummary> summarised(FileSystem& files, const std::string& folder, const TakeName& name) {
   return keep_summary(files, folder, name, KA_TRY(summarise_takes(files, folder, {name}).front()));
 }
@@ -184,7 +185,7 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
   std::vector<Candidate> takes;
   for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
     auto looked = planner.look(name, there);
-    // A faulty manifest is reported when its take is made, so that it stops no other take.
+    // A faulty manifest is reported when its take is made, so that other takes are still made.
     takes.push_back(looked ? *std::move(looked) : Candidate{name, there, {}, {}, {}, 0});
   }
   std::stable_sort(takes.begin(), takes.end(),

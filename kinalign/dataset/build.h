@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes out of raw files: each manifest of a data set is aligned into the take beside it, unless
-// that take was made of the same bytes with the same parameters already.
+// Makes takes from raw files: each manifest of a data set is aligned into its take, unless the take
+// was made from the same bytes with the same parameters before.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -18,15 +18,15 @@
 
 namespace kinalign {
 
-/// A share of the work: this process is one of `size`, from 0.
+/// A share of the work: this process is number `rank` of `size`, from 0.
 struct BuildShare {
   std::size_t rank = 0, size = 1;
 };
 
 struct BuildOptions {
-  std::size_t jobs = 1;  // takes at once
+  std::size_t jobs = 1;  // takes made at once
   BuildShare share;
-  bool all = false;  // also those that are up to date
+  bool all = false;  // make takes that are up to date, too
 };
 
 enum class BuildReason { up_to_date, first, changed_parameters, changed_inputs, asked, no_summary };
@@ -49,33 +49,34 @@ struct Built {
   Result<TakeSummary> summary;
 };
 
-/// Callbacks of a build: its progress, and each finished take. Never called from two threads at
+/// The callbacks of a build: its progress, and each finished take. Never called from two threads at
 /// once.
 struct BuildWatch {
   Progress progress;
   std::function<void(const Built&)> done;
 };
 
-/// Divides all takes among the shares, longest first, each to the share that has the least so far:
-/// the same in every process. Those of the own share are compared with their manifests: by the
-/// parameters, and by the inputs, whose bytes are hashed only where one is newer than the summary.
+/// Divides all takes among the shares, longest first, each to the share with the least work so far;
+/// every process gets the same result. The takes of the own share are compared with their
+/// manifests: by the parameters, and by the inputs, which are hashed only if one is newer than the
+/// summary.
 Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
                              const Catalogue& catalogue, const BuildOptions& options,
                              const Progress& progress);
 
-/// Makes takes and their summaries; each file appears as a whole. A take that fails stops no other.
-/// Fails where the user stops it.
+/// Makes takes and their summaries; each file appears only when it is complete. A take that fails
+/// does not stop others. Fails if the user stops it.
 Result<void> build(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                    const BuildPlan& plan, const BuildWatch& watch);
 
 /// Aligns raw files into takes of one data set. Several threads may make takes at once.
 class TakeMaker {
  public:
-  /// Both must outlive it.
+  /// Both arguments must outlive it.
   TakeMaker(FileSystem& files, const std::string& folder) : files_(files), folder_(folder) {}
 
-  /// Writes the take and its summary; each file appears as a whole, in place of an older one.
-  /// `base` ("" or ending in '/') is the folder of the manifest's paths; subject and action are the
+  /// Writes the take and its summary; each file replaces an older one only when it is complete.
+  /// `base` ("" or ending in '/') is the folder of the manifest's paths. Subject and action are the
   /// manifest's.
   Result<TakeSummary> make(const TakeName& name, const Manifest& manifest, const std::string& base,
                            const Progress& progress);
@@ -83,11 +84,11 @@ class TakeMaker {
  private:
   FileSystem& files_;
   const std::string& folder_;
-  std::mutex hdf5_;  // the library is not safe to use from several threads
+  std::mutex hdf5_;  // HDF5 may be used by one thread at a time
 };
 
-/// The manifest of a take as it is aligned: with what dataset.toml says of [align], and with the
-/// subject and the action of the take's name.
+/// The manifest that a take is aligned with: the take's own, with the options [align] of
+/// dataset.toml, and the subject and action of the take's name.
 Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
                                const Catalogue& catalogue, const TakeName& name);
 

@@ -136,7 +136,7 @@ class CatalogueReader {
     return {};
   }
 
-  /// Classes may stand behind the actions that name them.
+  /// Classes are checked at the end, since they may be defined after the actions that name them.
   Result<void> check_classes(const toml::table& top, const Catalogue& catalogue) const {
     std::vector<std::string> known;
     for (const ActionClass& one : catalogue.classes) known.push_back(one.id);
@@ -188,7 +188,7 @@ struct Person {
   std::string_view id, sex;
   int height_cm;
 };
-/// Paper, table 6.
+/// From table 6 of the paper.
 constexpr Person people[] = {{"00", "m", 175}, {"01", "m", 180}, {"02", "m", 180},
                              {"03", "m", 175}, {"04", "m", 170}, {"05", "f", 165},
                              {"06", "m", 175}, {"07", "f", 170}, {"08", "m", 180},
@@ -197,7 +197,7 @@ struct ClassShare {
   std::string_view id, name;
   int actions;  // ours: Baduanjin has eight pieces, Wuqinxi five animals
 };
-/// Paper, table 7.
+/// From table 7 of the paper.
 constexpr ClassShare classes[] = {{"S1", "radio calisthenics", 8},
                                   {"S2", "Baduanjin", 8},
                                   {"S3", "sports", 5},
@@ -205,6 +205,7 @@ constexpr ClassShare classes[] = {{"S1", "radio calisthenics", 8},
                                   {"S5", "daily activities", 6},
                                   {"S6", "dance", 2}};
 
+/// The paper's people, classes and actions as TOML. The actions have no names in the paper.
 std::string hfut_template() {
   std::string text;
   for (const Person& person : people) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The content of dataset.toml: who was recorded, doing what, with which devices, and on what terms
-// others may use it. Documented for users in docs/formats/dataset.md.
+// The content of dataset.toml: the people, the actions, the devices, and the terms of use.
+// Documented for users in docs/formats/dataset.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -15,28 +15,28 @@
 
 namespace kinalign {
 
-/// A person who was recorded. The id is a pseudonym; who it is stands nowhere in the data set.
+/// A recorded person. The id is a pseudonym; the data set does not contain the person's name.
 struct Subject {
   std::string id;          // letters and digits: "07"
-  std::string sex;         // "f", "m" or "x"; empty: not said
-  std::string handedness;  // "right", "left" or "both"; empty: not said
-  std::string consent;     // to what, and where the paper lies: "released, form 12"
+  std::string sex;         // "f", "m" or "x"; empty: not stated
+  std::string handedness;  // "right", "left" or "both"; empty: not stated
+  std::string consent;     // its extent, and the place of the form: "released, form 12"
   std::optional<double> height_cm, weight_kg;
   std::map<std::string, double> segments_m;  // lengths: "upper_arm_left" -> 0.31
 };
 
-/// Actions of one kind (paper, table 7): "S2", Baduanjin.
+/// Actions of one kind (table 7 of the paper): "S2", Baduanjin.
 struct ActionClass {
   std::string id, name;
 };
 
 struct Action {
   std::string id;        // letters and digits: "S2A03"
-  std::string class_id;  // of one of the classes
+  std::string class_id;  // id of one of the classes
   std::string name;
 };
 
-/// A device or a rig, described by texts of the lab's choice: make, model, software.
+/// A device or a rig, described by texts that the lab chooses: make, model, software.
 struct Described {
   std::string id;
   std::map<std::string, std::string> texts;
@@ -48,26 +48,26 @@ struct Catalogue {
   std::vector<ActionClass> classes;
   std::vector<Action> actions;
   std::vector<Described> devices, rigs;
-  AlignOptions align;  // what manifests of takes leave open
+  AlignOptions align;  // defaults for the manifests of takes
 };
 
 Fields describe(Catalogue& catalogue);  // its texts
 Fields describe(Subject& subject);
 
-/// nullptr where there is none of that id.
+/// nullptr if there is none with that id.
 const Subject* find_subject(const Catalogue& catalogue, std::string_view id);
 const Action* find_action(const Catalogue& catalogue, std::string_view id);
 
-/// Reads dataset.toml. `name` appears in messages. An unknown key, a value out of range, an id that
-/// could stand in no file name, and an action of no known class are refused with their line.
+/// Reads dataset.toml. `name` appears in messages. Refused with their line: an unknown key, a value
+/// out of range, an id that a file name can't contain, and an action of an unknown class.
 Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name);
 
 /// The text of a new dataset.toml. `template_name`: "empty", or "hfut-mmd" with the paper's 12
-/// people, 6 classes and 34 actions. The paper names no action and does not say how many each class
-/// has: ids are neutral, and the shares are ours (8, 8, 5, 5, 6, 2).
+/// people, 6 classes and 34 actions. The paper neither names the actions nor states their number in
+/// each class, so ids are neutral and the numbers are ours (8, 8, 5, 5, 6, 2).
 Result<std::string> catalogue_template(std::string_view template_name, const std::string& name);
 std::vector<std::string> catalogue_template_names();
-/// The beginning of both: the texts, without people, classes and actions.
+/// The first part of both templates: the texts, without people, classes and actions.
 std::string catalogue_head(const std::string& name, const std::string& licence,
                            const std::string& citation);
 

@@ -17,8 +17,8 @@ namespace {
 constexpr double unit_slack = 1e-3;
 constexpr double bone_slack_m = 0.02, bone_slack = 0.05;
 constexpr double farthest_m = 100.0, fastest_m_s2 = 1000.0, fastest_rad_s = 100.0;
-constexpr double step_slack = 0.5;          // of a step
-constexpr std::uint64_t steps_share = 100;  // one in so many may be another
+constexpr double step_slack = 0.5;          // share of a step
+constexpr std::uint64_t steps_share = 100;  // one step in this number may differ
 
 double length_of(const double* v) { return std::hypot(v[0], v[1], v[2]); }
 
@@ -38,6 +38,7 @@ Finding finding(Severity severity, const std::string& file, std::string expected
 
 }  // namespace
 
+/// Prepares the groups; only bones of skeletons have limits of length.
 ContentCheck::ContentCheck(const TakeHeader& header, double rate_hz)
     : step_ns_(rate_hz > 0.0 ? 1e9 / rate_hz : 0.0) {
   for (const TakeGroup& of_take : header.groups) {
@@ -53,6 +54,7 @@ ContentCheck::ContentCheck(const TakeHeader& header, double rate_hz)
   }
 }
 
+/// Counts stamps that do not rise, and steps that differ from the rate's.
 void ContentCheck::add_stamps(const std::vector<Time>& stamps) {
   for (const Time stamp : stamps) {
     const std::int64_t t = to_ns(stamp);
@@ -76,6 +78,7 @@ void ContentCheck::add_bone(const ClipRows& rows, std::size_t cell, std::size_t 
   group.global_most[joint] = std::max(group.global_most[joint], between.norm());
 }
 
+/// Counts broken numbers of a skeleton, and measures its bones.
 void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& group) const {
   const std::size_t joints = group.parents.size();
   for (std::size_t r = 0; r < count; ++r) {
@@ -97,6 +100,7 @@ void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& grou
   }
 }
 
+/// Counts broken numbers of valid points.
 void ContentCheck::add_rows(const PointRows& rows, std::size_t, Group& group) const {
   for (std::size_t cell = 0; cell < rows.valid.size(); ++cell) {
     if (rows.valid[cell] == 0) continue;
@@ -120,6 +124,7 @@ void ContentCheck::add_vector(const std::vector<double>& all, std::size_t cell, 
   }
 }
 
+/// Counts broken numbers of valid samples.
 void ContentCheck::add_rows(const ImuRows& rows, std::size_t, Group& group) const {
   for (std::size_t cell = 0; cell < rows.valid.size(); ++cell) {
     if (rows.valid[cell] == 0) continue;

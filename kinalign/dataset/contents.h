@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules that the rows of every take must keep, whatever made them. They are checked slab by slab.
+// The rules that the rows of every take must keep, whatever program made it. They are checked slab
+// by slab.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,10 +12,10 @@
 
 namespace kinalign {
 
-/// Looks at a take's rows in their order. Findings say what is broken: stamps rise; one step in a
-/// hundred at most is not the rate's; numbers of valid cells are finite and rotations have the
-/// length 1; the bones of a skeleton change their length by 2 cm at most, or 5 %; positions lie
-/// within 100 m, accelerations within 1000 m/s2, angular velocities within 100 rad/s. The limits
+/// Checks a take's rows in their order. Findings: stamps that do not rise; more than one step in a
+/// hundred that differs from the rate's; numbers of valid cells that are not finite, and rotations
+/// whose length is not 1; bones of a skeleton that change by more than 2 cm and 5 %; positions
+/// beyond 100 m, accelerations beyond 1000 m/s2, angular velocities beyond 100 rad/s. The limits
 /// are chosen: a suit that keeps the feet on the floor stretches its legs by a centimetre.
 class ContentCheck {
  public:
@@ -25,17 +26,17 @@ class ContentCheck {
   Findings findings(const std::string& file) const;
 
  private:
-  /// Counts of one group.
+  /// The counts of one group.
   struct Group {
     std::string name;
-    std::vector<int> parents;         // of a skeleton
-    std::vector<double> least, most;  // [J] m, of each bone, by the joint's local place
-    std::vector<double> global_least, global_most;  // the same by both joints' places
-    std::uint64_t not_finite = 0, not_unit = 0, far = 0, fast = 0;  // cells
+    std::vector<int> parents;         // only for a skeleton
+    std::vector<double> least, most;  // [J] m, each bone, by the joint's local position
+    std::vector<double> global_least, global_most;  // the same by the positions of both joints
+    std::uint64_t not_finite = 0, not_unit = 0, far = 0, fast = 0;  // counts of cells
   };
   static void add_bone(const ClipRows& rows, std::size_t cell, std::size_t parent_cell,
                        std::size_t joint, Group& group);
-  /// One of an array that may be absent, of a valid cell.
+  /// Checks one vector of an array that may be empty; the cell is valid.
   static void add_vector(const std::vector<double>& all, std::size_t cell, double most,
                          Group& group);
   void add_stamps(const std::vector<Time>& stamps);

@@ -24,14 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_toml = std::size_t{16} << 20;
-/// A change that follows within this time may leave a folder's date as it was.
+/// A change within this time may leave a folder's date unchanged.
 constexpr std::int64_t racy_ns = 2'000'000'000;
 
-/// Raised with every change of the tables: an index of another number is made anew.
+/// Incremented with every change of the tables: an index with another number is made anew.
 constexpr std::int64_t layout = 2;
 
-/// Columns of other tables stand in the view as queries of their own: SQLite runs one only where a
-/// statement uses the column, while it goes through every join of a sum.
+/// In the view, columns of other tables are subqueries: SQLite runs a subquery only if a statement
+/// uses its column, while it would go through every join even for a sum.
 constexpr const char* make_tables = R"(
 create table catalogue(version text not null);
 create table folder(path text primary key, changed_ns integer not null, not_built integer not null);
@@ -80,14 +80,14 @@ std::int64_t whole(std::uint64_t value) { return static_cast<std::int64_t>(value
 
 Cell maybe(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
 
-/// When the entries of a folder last changed; -1 where it is not there.
+/// The time of the last change in a folder, ns; -1 if it does not exist.
 std::int64_t changed_ns(const std::string& folder) {
   struct stat facts {};
   if (::stat(folder.c_str(), &facts) != 0) return -1;
   return facts.st_mtim.tv_sec * 1'000'000'000 + facts.st_mtim.tv_nsec;
 }
 
-/// The streams of one modality together, for a column of `takes`.
+/// One value for all streams of a modality, for a column of `takes`.
 template <class Value, class Fold>
 std::optional<double> over(const TakeSummary& take, Modality modality, Value value, Fold fold) {
   std::optional<double> out;
@@ -115,6 +115,7 @@ std::optional<double> widest_ms(const TakeSummary& take, Modality modality) {
       [](double a, double b) { return std::max(a, b); });
 }
 
+/// The cells of a take's row, in the order of the table's columns.
 std::vector<Cell> take_cells(std::int64_t id, const TakeName& name, const TakeSummary& take,
                              const Catalogue& catalogue) {
   const Action* action = find_action(catalogue, name.action);
@@ -160,12 +161,12 @@ std::string places(std::size_t count) {
 
 constexpr std::size_t take_columns = 24;
 
-/// Statements that add a take, prepared once for many.
+/// The statements that add a take, prepared once for many.
 struct TakeInserts {
   sqlite::Statement next_id, take, detail, stream;
 };
 
-/// Statements that take one out.
+/// The statements that remove a take.
 struct TakeDrops {
   sqlite::Statement take, detail, streams;
 
@@ -176,7 +177,7 @@ struct TakeDrops {
   }
 };
 
-/// A summary's file as the index remembers it.
+/// The file of a summary as it was when the index read it.
 struct Known {
   std::int64_t id = 0, changed_ns = 0, size = 0;
 };
@@ -190,8 +191,8 @@ struct Found {
   std::int64_t changed_ns = 0, size = 0;
 };
 
-/// A summary's file; absent where it has just gone. Fails where only names in the folder can be
-/// read.
+/// The file of a summary; absent if it was just removed. Fails if only the names in the folder can
+/// be read.
 Result<std::optional<Found>> found_in(const std::string& folder, const TakeName& name) {
   const std::string file(file_name(path_of(name, TakeFile::summary)));
   if (const auto version = version_of(folder + "/" + file)) {
@@ -222,9 +223,9 @@ struct DatasetIndex::State {
   Catalogue catalogue;
   Findings findings;
   sqlite::Database database;
-  std::optional<Error> unreadable;  // a folder of takes: no index made anew would help
+  std::optional<Error> unreadable;  // a folder of takes; a new index would not help
 
-  /// What was read of a folder; a fault is kept in `unreadable`, too.
+  /// The result of reading a folder. A fault is also stored in `unreadable`.
   template <class Value>
   Result<Value> read(Result<Value> found) {
     if (!found) unreadable = found.error();
@@ -256,7 +257,7 @@ Result<bool> DatasetIndex::State::has_tables() const {
   return KA_TRY(version.step()) && std::get<std::int64_t>(version.at(0)) == layout;
 }
 
-/// Opens the index, and makes its tables where they are not those of this program.
+/// Opens the index, and makes its tables anew if they are of another layout.
 Result<void> DatasetIndex::State::make(bool in_memory) {
   const std::string path = in_memory ? ":memory:" : folder + "/" + std::string(index_file);
   std::error_code fault;
@@ -282,6 +283,7 @@ Result<void> DatasetIndex::State::make_tables_of(const std::string& path) {
   return database.run("commit");
 }
 
+/// The takes of a folder that the index has.
 Result<std::map<std::string, Known>> DatasetIndex::State::known_in(const std::string& name) const {
   auto rows =
       KA_TRY(database.prepare("select take.name, take.id, changed_ns, size from detail join take "
@@ -304,6 +306,7 @@ Result<TakeInserts> DatasetIndex::State::inserts() const {
       KA_TRY(database.prepare("insert into stream values(?,?,?,?,?,?,?,?,?,?)"))};
 }
 
+/// Adds a take with its streams.
 Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& take,
                                       TakeInserts& inserts) {
   KA_TRY(inserts.next_id.bind({}));
@@ -339,8 +342,8 @@ Result<TakeDrops> DatasetIndex::State::drops() const {
                    KA_TRY(database.prepare("delete from stream where take = ?"))};
 }
 
-/// Puts in a take that the index does not have as it is; a summary that can't be read is a finding.
-/// Takes it out of `known`.
+/// Adds a take that is new or changed, and removes it from `known`. A summary that can't be read is
+/// a finding.
 Result<void> DatasetIndex::State::refresh_take(const Found& found,
                                                std::map<std::string, Known>& known, TakeDrops& drop,
                                                TakeInserts& add) {
@@ -358,6 +361,7 @@ Result<void> DatasetIndex::State::refresh_take(const Found& found,
   return {};
 }
 
+/// Updates the takes of a folder; takes without a summary are removed.
 Result<void> DatasetIndex::State::refresh_takes(const std::string& name,
                                                 const std::set<TakeName>& summarised) {
   const std::string place = folder + "/" + name;
@@ -372,6 +376,8 @@ Result<void> DatasetIndex::State::refresh_takes(const std::string& name,
   return {};
 }
 
+/// Updates a folder. Its date is stored only if it is old enough that a later change must alter it,
+/// see racy_ns.
 Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   const std::string place = folder + "/" + name, below = name + "/";
   const std::int64_t began = now_ns();
@@ -388,14 +394,14 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   return remember_folder(name, settled ? changed : 0, whole(all.size() - summarised.size()));
 }
 
-/// `changed`: when the folder was as it was read; 0: it is read again next time.
+/// `changed`: the date of the folder when it was read; 0: it is read again next time.
 Result<void> DatasetIndex::State::remember_folder(const std::string& name, std::int64_t changed,
                                                   std::int64_t not_built) {
   return KA_TRY(database.prepare("insert or replace into folder values(?,?,?)"))
       .run({name, changed, not_built});
 }
 
-/// Which dataset.toml the index has.
+/// The version of dataset.toml that the index was made from.
 std::string DatasetIndex::State::catalogue_version() const {
   const auto version = version_of(folder + "/" + std::string(catalogue_file));
   if (!version) return "";
@@ -407,6 +413,7 @@ Result<bool> DatasetIndex::State::has_catalogue() const {
   return KA_TRY(known.step()) && std::get<std::string>(known.at(0)) == catalogue_version();
 }
 
+/// Replaces everything that comes from dataset.toml.
 Result<void> DatasetIndex::State::refresh_catalogue() {
   KA_TRY(database.run(
       "delete from catalogue; delete from subject; delete from class; delete from action;"));
@@ -432,7 +439,7 @@ Result<void> DatasetIndex::State::refresh_catalogue() {
   return KA_TRY(database.prepare("insert into catalogue values(?)")).run({catalogue_version()});
 }
 
-/// Folders whose entries have changed since they were read, and those that have gone.
+/// The folders that have changed since they were read, and those that were removed.
 Result<FolderChanges> DatasetIndex::State::folder_changes() {
   FolderChanges out;
   std::map<std::string, std::int64_t> known;
@@ -451,6 +458,7 @@ Result<FolderChanges> DatasetIndex::State::folder_changes() {
   return out;
 }
 
+/// Brings the index up to date in one transaction; without changes nothing is written.
 Result<void> DatasetIndex::State::refresh() {
   const FolderChanges folders = KA_TRY(folder_changes());
   const bool same_catalogue = KA_TRY(has_catalogue());
@@ -471,8 +479,8 @@ Result<DatasetIndex> DatasetIndex::open(FileSystem& files, const std::string& fo
   Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
   const std::string path = folder + "/" + std::string(index_file);
   Result<void> done;
-  // First the index that is there. It is only a cache: where it fails it is made anew, and where
-  // nothing can be written, in memory.
+  // The existing index is tried first. It is only a cache: if it fails it is made anew, and if it
+  // can't be written, in memory.
   for (const int attempt : {0, 1, 2}) {
     auto state = std::make_unique<State>();
     state->files = &files;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The index of a data set: an SQLite file that is only a cache. It is brought up to date when it is
-// opened, from dataset.toml and from the summaries beside the takes (take_summary.h); where it is
-// damaged, or can't be written, it is made anew, at need in memory.
+// The index of a data set: an SQLite file that is only a cache. Opening it updates it from
+// dataset.toml and the takes' summaries (take_summary.h). A damaged index is made anew; if it can't
+// be written, it is made in memory.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -15,12 +15,12 @@
 
 namespace kinalign {
 
-/// Reads dataset.toml of a folder; fails where it is none of a data set.
+/// Reads the dataset.toml of a folder. Fails if the folder is no data set.
 Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder);
 
 class DatasetIndex {
  public:
-  /// Folders of which nothing has changed are not read. `folder` ends without '/'.
+  /// Opens and updates the index. Unchanged folders are not read. `folder` does not end with '/'.
   static Result<DatasetIndex> open(FileSystem& files, const std::string& folder);
   DatasetIndex(DatasetIndex&&) noexcept;
   DatasetIndex& operator=(DatasetIndex&&) noexcept;
@@ -32,14 +32,14 @@ class DatasetIndex {
   /// Summaries that can't be read.
   const Findings& findings() const;
 
-  /// Runs one SELECT with values for its '?', of the views `takes` and `streams`. Nothing but
-  /// reading is allowed; fails with SQLite's words.
+  /// Runs one SELECT on the views `takes` and `streams`, with values for its '?'. Writing is
+  /// refused; errors have SQLite's words.
   Result<Table> select(const std::string& sql, const std::vector<Cell>& values = {}) const;
 
-  /// How many takes have a manifest or a take, but no summary yet: they are in no list.
+  /// The number of takes with a manifest or a take but without a summary; no list contains them.
   Result<std::uint64_t> not_built() const;
 
-  /// The columns of `takes`, in their order.
+  /// The columns of `takes`, in order.
   static const std::vector<TableColumn>& columns();
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files of which takes lie in a data set's folder. Nothing here throws: a folder that may not
-// be entered is an Error.
+// Lists the files of takes in a data set's folder. No function throws: a folder that can't be
+// entered is an Error.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -17,20 +17,20 @@ namespace kinalign {
 inline constexpr std::size_t longest_summary = std::size_t{1} << 20;
 inline constexpr std::size_t longest_manifest = std::size_t{4} << 20;
 
-/// Whether a file or a folder is there; false also where that can't be found out.
+/// True if a file or folder exists; false also if that can't be found out.
 bool is_there(const std::string& path);
-/// Names of all that lies in a folder, sorted. Fails where it can't be read.
+/// The names in a folder, sorted. Fails if it can't be read.
 Result<std::vector<std::string>> names_in_folder(const std::string& path);
-/// Names of people's folders, "sub-03". Fails where the data set's folder can't be read.
+/// The names of people's folders, "sub-03". Fails if the data set's folder can't be read.
 Result<std::vector<std::string>> people_in(const std::string& folder);
 
 struct TakeFiles {
   bool manifest = false, take = false, summary = false;
 };
 
-/// Fails where the folder, or one in it, can't be read.
+/// The files of all takes. Fails if the folder, or one in it, can't be read.
 Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder);
-/// The same of one person alone, whose folder is there.
+/// The same for one person, whose folder must exist.
 Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder,
                                                  const std::string& subject);
 

@@ -33,7 +33,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Takes that stay together: one, or all of a person.
+/// Takes that stay in one part: one take, or all of a person.
 struct Unit {
   std::vector<const SplitTake*> takes;
   std::uint64_t frames = 0;
@@ -41,6 +41,7 @@ struct Unit {
 
 using Units = std::vector<Unit>;
 
+/// Groups the takes into units.
 Units units_of(const std::vector<const SplitTake*>& takes, bool by_subject) {
   std::map<std::string, Unit> units;
   for (const SplitTake* take : takes) {
@@ -57,7 +58,7 @@ void shuffle(Units& units, Random& random) {
   for (std::size_t i = units.size(); i > 1; --i) std::swap(units[i - 1], units[random.below(i)]);
 }
 
-/// Moves units off the end of `from` until `to` has that many frames, as near as that goes.
+/// Moves units from the end of `from` until `to` has about that number of frames.
 void move_share(Units& from, std::uint64_t frames, std::vector<TakeName>& to) {
   std::uint64_t moved = 0;
   while (!from.empty() && moved + from.back().frames / 2 < frames) {
@@ -67,7 +68,7 @@ void move_share(Units& from, std::uint64_t frames, std::vector<TakeName>& to) {
   }
 }
 
-/// Divides the units at random.
+/// Divides the units at random into the parts.
 void divide(Units units, const SplitOptions& options, Random& random,
             std::vector<SplitPart>& parts) {
   std::uint64_t frames = 0;
@@ -98,7 +99,7 @@ std::vector<const SplitTake*> chosen(const std::vector<SplitTake>& takes, const 
   return out;
 }
 
-/// At random, each class by itself where that is asked for.
+/// Divides at random; if stratified, each class separately.
 std::vector<SplitPart> random_parts(const std::vector<const SplitTake*>& takes,
                                     const Catalogue& catalogue, const SplitOptions& options,
                                     bool by_subject) {
@@ -106,7 +107,7 @@ std::vector<SplitPart> random_parts(const std::vector<const SplitTake*>& takes,
   Random random(static_cast<std::uint64_t>(options.seed));
   std::map<std::string, std::vector<const SplitTake*>> strata;
   for (const SplitTake* take : takes) {
-    // People do many classes: they are divided as a whole.
+    // A person does many classes, so people are divided as a whole.
     const bool apart = options.stratified && !by_subject;
     strata[apart ? class_of(*take, catalogue) : ""].push_back(take);
   }
@@ -117,6 +118,7 @@ std::vector<SplitPart> random_parts(const std::vector<const SplitTake*>& takes,
   return parts;
 }
 
+/// A part for each person, with all takes of the person.
 std::vector<SplitPart> a_part_each(const std::vector<SplitTake>& takes) {
   std::map<std::string, SplitPart> parts;
   for (const SplitTake& take : takes) {
@@ -130,6 +132,7 @@ std::vector<SplitPart> a_part_each(const std::vector<SplitTake>& takes) {
   return out;
 }
 
+/// The stated people are the test part, all others the training.
 Result<std::vector<SplitPart>> parts_of_people(const std::vector<SplitTake>& takes,
                                                const std::vector<std::string>& test_people) {
   const std::set<std::string> tested(test_people.begin(), test_people.end());
@@ -169,15 +172,15 @@ TakesByName by_name(const std::vector<SplitTake>& takes) {
   return out;
 }
 
-/// The parts in which a take, a person or a file stands.
+/// The parts in which a take, a person or a file occurs.
 using Places = std::map<std::string, std::set<std::string>>;
 
 struct Seen {
   Places names, subjects;
-  /// By SHA-256 of a take or of a raw file: of each part a take that it stands in.
+  /// By SHA-256 of a take or a raw file: for each part, a take with that content.
   std::map<std::string, std::map<std::string, std::string>> contents;
-  std::set<std::string> unknown;  // takes that the data set does not have
-  std::set<std::string> changed;  // takes that were others when the split was made
+  std::set<std::string> unknown;  // takes that the data set lacks
+  std::set<std::string> changed;  // takes with other bytes when the split was made
 };
 
 Seen seen_in(const Split& split, const TakesByName& known) {
@@ -194,7 +197,7 @@ Seen seen_in(const Split& split, const TakesByName& known) {
       const TakeSummary& summary = found->second->summary;
       seen.contents[summary.sha256].emplace(part.name, to_string(name));
       for (const InputFacts& input : summary.inputs) {
-        // A layout or a list of channels may be the same for all.
+        // A layout or a list of channels may be the same for all takes.
         if (!summary.sample_files.contains(input.name)) continue;
         seen.contents[input.sha256].emplace(part.name, to_string(name));
       }
@@ -307,6 +310,7 @@ std::string split_json(const Split& split, const std::vector<SplitTake>& takes) 
   return out.dump(1) + "\n";
 }
 
+/// Reads a split; "test_people" replaces the share of the test.
 Result<Split> parse_split_json(std::string_view json, const std::string& file) {
   const auto wrong = [&](const std::string& found) {
     return Failure(Error{file, 0, "a split (" + std::string(split_schema) + ")", shown(found)});

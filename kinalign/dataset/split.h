@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes divided into parts for training and test, and whether the parts leak into each other.
+// Divides takes into parts for training and test, and checks whether the parts leak into each
+// other.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -15,7 +16,7 @@
 
 namespace kinalign {
 
-/// A take as a split knows it.
+/// A take, with the facts that a split needs.
 struct SplitTake {
   TakeName name;
   TakeSummary summary;
@@ -25,48 +26,49 @@ struct SplitOptions {
   std::string by = "subject";           // a name in split_methods()
   double test = 0.2, validation = 0.0;  // shares of the frames
   std::int64_t seed = 1;
-  bool stratified =
-      false;  // each class has the same shares, as near as whole takes or people allow
-  /// In place of shares and seed: who is tested; all others are trained on. By subject alone.
+  /// True: each class has the same shares, as far as whole takes or people allow.
+  bool stratified = false;
+  /// The tested people, in place of shares and seed; all others are trained on. Only with by =
+  /// "subject".
   std::vector<std::string> test_people{};
 };
 
-/// subject: nobody is in two parts. take: whole takes at random. leave-one-out: a part for each
-/// person, of which each in turn is the test. hfut-denoise (paper, 4.1): takes of the 175 cm men
-/// with a Kinect, at random. hfut-imu (paper, 4.2): takes with nodes, S2, S3 and S5 against the
-/// rest.
+/// subject: no person is in two parts. take: whole takes at random. leave-one-out: a part for each
+/// person; each in turn is the test. hfut-denoise (paper, 4.1): takes of the 175 cm men with a
+/// Kinect, at random. hfut-imu (paper, 4.2): takes with nodes, S2, S3 and S5 against the rest.
 std::vector<std::string> split_methods();
 
 struct SplitPart {
-  std::string name;  // "train", "validation", "test"; of leave-one-out the person's id
+  std::string name;  // "train", "validation", "test"; for leave-one-out the person's id
   std::vector<TakeName> takes;
 };
 
 struct Split {
   SplitOptions options;
   std::vector<SplitPart> parts;
-  std::map<TakeName, std::string> sha256;  // of takes, when the split was made; of a file alone
+  /// Hashes of the takes when the split was made; only in a split from a file.
+  std::map<TakeName, std::string> sha256;
 };
 
-/// The same takes, options and seed give the same split. Fails where a part would be empty,
-/// or where no take is of one of the test people.
+/// Makes a split. The same takes, options and seed give the same split. Fails if a part would be
+/// empty, or if a test person has no take.
 Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& catalogue,
                          const SplitOptions& options);
 
-/// Errors: a take in two parts, by its name, or by its bytes or those of a raw file that holds
-/// samples; where people shall not be in two parts, a person who is; a take that is not there. One
-/// warning says how many takes have other bytes than when the split was made, notes who else is in
-/// two parts. The worst come first.
+/// Checks a split. Errors: a take in two parts, by its name, its bytes, or the bytes of a raw file
+/// with samples; a person in two parts if that is forbidden; a take that does not exist. One
+/// warning states the number of takes with other bytes than when the split was made. Notes name
+/// other people in two parts. The most severe come first.
 Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
                      const std::string& file);
 
-/// Schema kinalign.split/1, with the SHA-256 of each take.
+/// The JSON of schema kinalign.split/1, with the SHA-256 of each take.
 std::string split_json(const Split& split, const std::vector<SplitTake>& takes);
 Result<Split> parse_split_json(std::string_view json, const std::string& file);
-/// Reads one from a file of at most 64 MiB.
+/// Reads a split from a file of at most 64 MiB.
 Result<Split> read_split(FileSystem& files, const std::string& path);
-/// The same of a split that is used: fails with the first error that check_split() finds, since a
-/// network would be tested on what it has seen.
+/// Reads a split to be used: fails with the first error of check_split(), since a network would be
+/// tested on data that it has seen.
 Result<Split> read_good_split(FileSystem& files, const std::string& path,
                               const std::vector<SplitTake>& takes);
 

@@ -16,7 +16,7 @@ Failure failure(sqlite3* database, const std::string& file, const std::string& e
       Error{file, 0, expected, database == nullptr ? "no memory" : sqlite3_errmsg(database)});
 }
 
-/// For sqlite3_set_authorizer: a statement may read, and nothing else.
+/// For sqlite3_set_authorizer: a statement may only read.
 // NOLINTNEXTLINE(readability-function-size): SQLite asks with six arguments
 int allow_reading(void*, int action, const char*, const char*, const char*, const char*) {
   const bool reads = action == SQLITE_SELECT || action == SQLITE_READ ||
@@ -75,6 +75,7 @@ std::string Statement::column_name(std::size_t column) const {
   return name == nullptr ? "" : name;
 }
 
+/// The value of a column, by SQLite's type of it.
 Cell Statement::at(std::size_t column) const {
   const int c = static_cast<int>(column);
   switch (sqlite3_column_type(statement_.get(), c)) {
@@ -110,6 +111,7 @@ Result<void> Database::run(const std::string& sql) {
   return failure(database_.get(), path_, "an index that can be used");
 }
 
+/// Prepares exactly one statement; text after it is an error.
 Result<Statement> Database::prepare(const std::string& sql) const {
   sqlite3_stmt* made = nullptr;
   const char* behind = nullptr;

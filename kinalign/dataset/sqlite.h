@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SQLite's C interface with owners and errors (sqlite.org/c3ref/intro.html).
+// SQLite's C interface with ownership and errors (sqlite.org/c3ref/intro.html).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,14 +16,14 @@ namespace kinalign::sqlite {
 
 class Database;
 
-/// One statement, run as often as wanted.
+/// One prepared statement, which can be run repeatedly.
 class Statement {
  public:
-  /// Values for its '?', in their order.
+  /// Sets the values for its '?', in order.
   Result<void> bind(const std::vector<Cell>& values);
-  /// The next row; false behind the last, and then it can be bound anew.
+  /// Goes to the next row. False after the last; then values can be bound again.
   Result<bool> step();
-  /// Steps once through a statement that gives no row.
+  /// Runs a statement that gives no rows.
   Result<void> run(const std::vector<Cell>& values);
 
   std::size_t columns() const;
@@ -43,7 +43,7 @@ enum class Access { read_write, in_memory };
 
 class Database {
  public:
-  /// Waits up to ten seconds where another process writes.
+  /// Opens a database. Waits at most ten seconds while another process writes.
   static Result<Database> open(const std::string& path, Access access);
 
   Result<void> run(const std::string& sql);  // any number of statements

@@ -32,7 +32,7 @@ Error error_from(const Json& json) {
           json.at("expected").get<std::string>(), json.at("found").get<std::string>()};
 }
 
-/// A line for each take: its answer, or what is wrong with it.
+/// A line for each take: its answer or its error.
 std::string line_of(const Result<std::string>& answer) {
   const Json line =
       answer ? Json{{"answer", *answer}} : Json{{"error", error_json(answer.error())}};
@@ -63,7 +63,7 @@ std::vector<Result<std::string>> ask_takes(
   };
   while (out.size() < names.size()) {
     const std::size_t first = out.size();
-    std::string text;  // of a line that has not ended
+    std::string text;  // the line that has not ended yet
     const auto work = [&](const GuardSend& send) -> Result<void> {
       for (std::size_t i = first; i < names.size(); ++i) KA_TRY(send(line_of(answer(names[i]))));
       return {};

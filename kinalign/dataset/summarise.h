@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Summaries out of the takes themselves, and what is wrong with their rows.
+// Makes summaries from the takes themselves, and checks their rows.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -14,18 +14,18 @@ namespace kinalign {
 
 class TakeReader;
 
-/// Calls `ask` with each take of a data set, in the order of `names`, and hands on its texts. HDF5
-/// can crash on a hostile file: takes are opened in a child process (formats/take/guarded.h), so no
-/// other thread may run. A take on which the child ends is a failure, the others are asked all the
-/// same. The texts are not to be trusted.
+/// Calls `ask` with each take of a data set, in the order of `names`, and returns its texts. HDF5
+/// can crash on a hostile file, so takes are opened in a child process (formats/take/guarded.h),
+/// and no other thread may run. If the child ends on a take, that take is a failure and the others
+/// are still asked. The texts must not be trusted.
 std::vector<Result<std::string>> ask_takes(
     FileSystem& files, const std::string& folder, const std::vector<TakeName>& names,
     const std::function<Result<std::string>(TakeReader&)>& ask);
 
-/// The summary of a take that is open, without hash and length.
+/// The summary of an open take, without hash and length.
 Result<TakeSummary> summary_of(TakeReader& reader);
 
-/// Puts hash and length of the take's file into its summary and writes it beside the take.
+/// Adds hash and length of the take's file to its summary and writes the summary's file.
 Result<TakeSummary> keep_summary(FileSystem& files, const std::string& folder, const TakeName& name,
                                  TakeSummary summary);
 
@@ -33,7 +33,8 @@ Result<TakeSummary> keep_summary(FileSystem& files, const std::string& folder, c
 std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
                                                  const std::vector<TakeName>& names);
 
-/// Findings of ContentCheck in all rows of a take at that rate; in a child process, too.
+/// The findings of ContentCheck about all rows of a take at that rate; runs in a child process,
+/// too.
 Result<Findings> check_rows(FileSystem& files, const std::string& folder, const TakeName& name,
                             double rate_hz);
 

@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-/// Appends the sums of the columns from `first` on, below `title`.
+/// Appends a row titled `title` with the sums of the columns from `first` on.
 void add_sums(Table& table, std::size_t first, const std::string& title) {
   std::vector<Cell> sums(table.columns.size());
   sums.front() = title;
@@ -23,10 +23,10 @@ void add_sums(Table& table, std::size_t first, const std::string& title) {
   table.has_sum = true;
 }
 
-/// A row of the paper's table 1. -1: not said.
+/// A row of table 1 in the paper. -1: not stated.
 struct Published {
   const char* name;
-  std::int64_t frames, clips, kinds, people;  // of frames and clips the paper gives one
+  std::int64_t frames, clips, kinds, people;  // the paper states either frames or clips
   const char* modalities;
 };
 constexpr Published published[] = {{"HDM05", 1'531'745, -1, 100, 5, "joints"},

@@ -36,8 +36,9 @@ void add_input(const TakeInput& input, std::vector<TakeInput>& out) {
   if (!has) out.push_back(input);
 }
 
-using Names = std::map<std::string, std::string>;  // by path, as the manifest says it
+using Names = std::map<std::string, std::string>;  // by path as in the manifest
 
+/// Adds the further files that the stream's reader opens.
 void add_further(FileSystem& files, StreamOptions stream, const std::string& base,
                  const Names& names, std::vector<TakeInput>& out) {
   if (stream.own_layout()) stream.layout = path_in(base, stream.layout);
@@ -50,7 +51,8 @@ void add_further(FileSystem& files, StreamOptions stream, const std::string& bas
   }
 }
 
-/// The files that a manifest names, and further ones where `expected` is more.
+/// The files that a manifest names; also their further files if `expected` files are more than
+/// these.
 std::vector<TakeInput> named_inputs(FileSystem& files, Manifest& manifest, const std::string& base,
                                     std::size_t expected) {
   std::vector<std::string> paths;
@@ -137,7 +139,7 @@ Result<std::vector<std::string>> files_in_sourcedata(const std::string& folder) 
   std::vector<std::string> out;
   std::error_code fault;
   if (!fs::is_directory(fs::symlink_status(top, fault))) return out;
-  // Filled by hand: a loop with `for` would throw where a folder below can't be read.
+  // Advanced by hand: a range-based `for` would throw at a folder that can't be read.
   fs::recursive_directory_iterator entry(top, fault);
   while (!fault && entry != fs::recursive_directory_iterator{}) {
     if (!fs::is_directory(entry->symlink_status(fault))) {

@@ -18,7 +18,7 @@ constexpr std::array<std::pair<TakeFile, std::string_view>, 3> endings{
      {TakeFile::take, "_take.h5"},
      {TakeFile::summary, "_take.json"}}};
 
-/// Takes `lead` and the label behind it off the front of `text`.
+/// Takes `lead` and the label after it off the front of `text`.
 std::optional<std::string> take_label(std::string_view& text, std::string_view lead) {
   if (!text.starts_with(lead)) return std::nullopt;
   text.remove_prefix(lead.size());

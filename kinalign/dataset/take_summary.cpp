@@ -38,12 +38,12 @@ struct StreamOf {
   }
 };
 
-/// Sums over the reports of a group: each stream of nodes has one of its own.
+/// Sums over the reports of a group: each node's stream has a report.
 struct Sums {
   std::uint64_t samples = 0, invalid = 0, inferred = 0;
 };
 
-/// Adds what a stream's report says to its group.
+/// Adds a stream's report to its group.
 void add_report(const StreamReport& report, StreamSummary& stream, Sums& sums) {
   sums.samples += report.samples;
   sums.invalid += report.invalid;
@@ -71,7 +71,7 @@ void add_streams(const AlignmentReport& report, TakeSummary& out) {
   }
 }
 
-/// Findings that are about no stream count, too.
+/// Counts findings, also those about no stream.
 void add_findings(const AlignmentReport& report, TakeSummary& out) {
   for (const Finding& finding : report.findings) {
     if (finding.severity == Severity::note) continue;
@@ -93,6 +93,7 @@ void add_verdicts(const TakeHeader& header, const AlignmentReport& report, TakeS
   }
 }
 
+/// The JSON of a stream's summary.
 Json stream_json(const StreamSummary& stream) {
   Json out = {{"name", stream.name},
               {"modality", modality_names[static_cast<std::size_t>(stream.modality)]},
@@ -106,6 +107,7 @@ Json stream_json(const StreamSummary& stream) {
   return out;
 }
 
+/// A stream's summary from JSON; a missing member throws.
 StreamSummary stream_from(const Json& json) {
   StreamSummary out;
   out.name = json.at("name").get<std::string>();
@@ -123,6 +125,7 @@ StreamSummary stream_from(const Json& json) {
   return out;
 }
 
+/// A summary from JSON; a missing member throws.
 TakeSummary summary_from(const Json& json) {
   TakeSummary out;
   out.subject = json.at("subject").get<std::string>();
@@ -191,7 +194,7 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
       }
     }
   }
-  // Inputs are called as the take remembers them, also while it is built from paths elsewhere.
+  // Inputs have the names in the take, even if it is built from paths elsewhere.
   const Manifest remembered = without_folders(header.parameters);
   for (const StreamOptions& stream : remembered.streams) {
     for (const StreamFile& file : stream.files) out.sample_files.insert(file.path);
@@ -205,6 +208,7 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
   return out;
 }
 
+/// Writes the summary; parse_summary_json() reads it.
 std::string summary_json(const TakeSummary& s) {
   Json out = {{"schema", schema},        {"subject", s.subject},   {"action", s.action},
               {"frames", s.frames},      {"rate_hz", s.rate_hz},   {"begin_ns", s.begin_ns},

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that may lie in the folder beside the takes.
+/// Names that may exist in the folder besides the takes.
 constexpr std::array<std::string_view, 11> known_names{
     "dataset.toml", "README.md", "LICENSE",     "LICENCE", "CHANGES", "sourcedata",
     "splits",       "windows",   "report.html", "report",  "truth"};
@@ -63,7 +63,7 @@ class Verifier {
         {severity, Error{file, 0, std::move(expected), std::move(found)}, "", std::move(repair)});
   }
 
-  /// Notes of what dataset.toml leaves open.
+  /// Notes about texts that dataset.toml does not state.
   void check_catalogue() {
     const std::string file(catalogue_file);
     const std::array<std::pair<const char*, const std::string*>, 3> texts{
@@ -80,7 +80,7 @@ class Verifier {
     }
   }
 
-  /// Each summary has to be what its take says.
+  /// Each summary must agree with its take.
   Result<void> check_summaries() {
     std::vector<TakeName> names;
     for (const auto& [name, there] : takes_) {
@@ -193,7 +193,7 @@ class Verifier {
     }
   }
 
-  /// Files that belong to nothing.
+  /// Notes about files that belong to nothing.
   Result<void> check_names() {
     const std::string root = folder_ + "/";
     for (const std::string& name : KA_TRY(names_in_folder(folder_))) {
@@ -224,7 +224,7 @@ class Verifier {
     return {};
   }
 
-  /// Raw files that no take is made of. Said only where every manifest can be read.
+  /// Reports raw files that no take is made from, if every manifest can be read.
   void check_sourcedata() {
     const auto there = files_in_sourcedata(folder_);
     if (!there) {

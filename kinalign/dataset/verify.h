@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a data set is whole and what it says it is.
+// Checks whether a data set is complete and consistent.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -13,22 +13,21 @@ namespace kinalign {
 
 struct VerifyOptions {
   std::size_t jobs = 1;
-  bool deep = false;  // also every row of the takes (contents.h) and every byte of the raw files
+  bool deep = false;  // also every row of the takes (contents.h) and every byte of raw files
 };
 
 struct Verified {
-  std::uint64_t takes = 0, bytes = 0;  // of takes and, deep, of raw files
-  Findings findings;                   // by severity, then by place; files below the folder
+  std::uint64_t takes = 0, bytes = 0;  // bytes of takes and, if deep, of raw files
+  Findings findings;                   // by severity, then by place; paths below the folder
 };
 
-/// By severity, then by place.
+/// Sorts by severity, then by place.
 void sort_findings(Findings& findings);
 
-/// Reads every byte of the takes. Errors: a take that can't be read, whose hash is another, or
-/// whose summary does not follow from it; a manifest without a take. Warnings: raw files that are
-/// gone or others, parameters that have changed since, people and actions that dataset.toml does
-/// not know. Notes: metadata that are not said, and files of which nobody knows. A
-/// sourcedata folder that can't be read is a warning.
+/// Reads every byte of the takes. Errors: a take that can't be read, has another hash, or does not
+/// agree with its summary; a manifest without a take. Warnings: raw files that are missing or
+/// changed, changed parameters, people and actions that dataset.toml lacks, a sourcedata folder
+/// that can't be read. Notes: missing metadata, and unknown files.
 Result<Verified> verify(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                         const VerifyOptions& options, const Progress& progress);
 

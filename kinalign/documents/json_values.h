@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Members of JSON that may come from outside: one that is missing or of another type reads as
-// nothing.
+// Members of JSON that may come from another program: a member that is missing or of another type
+// reads as a default.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,15 +10,15 @@
 
 namespace kinalign {
 
-/// Control characters in it become '?'.
+/// The text with control characters replaced by '?'; empty if there is none.
 std::string text_at(const nlohmann::ordered_json& json, const char* key);
-/// 0 where none stands.
+/// 0 if there is no number.
 double number_at(const nlohmann::ordered_json& json, const char* key);
-/// 0 where none stands; a negative number is none.
+/// 0 if there is no number, or a negative one.
 std::uint64_t count_at(const nlohmann::ordered_json& json, const char* key);
-/// 0 where none stands, or one further than `furthest` from 0.
+/// 0 if there is no number, or one whose absolute value is above `furthest`.
 std::int64_t whole_at(const nlohmann::ordered_json& json, const char* key, std::int64_t furthest);
-/// An empty array where none stands.
+/// An empty array if there is none.
 const nlohmann::ordered_json& list_at(const nlohmann::ordered_json& json, const char* key);
 
 }  // namespace kinalign

@@ -24,7 +24,8 @@ class LabReader {
     Lab lab;
     for (const TomlEntry& entry : in_file_order(KA_TRY(file_.table({"device", devices})))) {
       lab.devices.push_back(KA_TRY(read_device(entry)));
-      const auto good = validate(lab);  // all up to it: the line is this one's
+      const auto good = validate(lab);  // validates all devices so far, so a fault is in this
+                                        // line's device
       if (!good) return file_.at(*entry.value, good.error());
       if (lab.devices.size() > most_devices) {
         return file_.at(*entry.value,

@@ -11,8 +11,8 @@
 
 namespace kinalign {
 
-/// Of the tables [device.NAME], in the order of the file; none: the text has none. `name` appears
-/// in messages only. Paths that are relative become so to the folder that is in it.
+/// The devices of the tables [device.NAME], in the order of the file; empty if the text has none.
+/// `name` appears in messages, and relative paths become relative to its folder.
 Result<std::vector<DeviceOptions>> read_devices(std::string_view toml, std::string_view name);
 
 }  // namespace kinalign

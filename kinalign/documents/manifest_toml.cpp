@@ -42,7 +42,7 @@ class ManifestReader {
   }
 
  private:
-  /// A lab.toml is easily taken for a manifest: both name streams.
+  /// Refuses a lab.toml, which is easily confused with a manifest: both name streams.
   Result<void> check_purpose(const toml::table& top) const {
     const toml::node* devices = top.get("device");
     if (devices == nullptr) return {};
@@ -51,7 +51,7 @@ class ManifestReader {
                                     "--config"});
   }
 
-  /// Column = value, a text or a whole number.
+  /// Reads column = value; a value is a text or a whole number.
   Result<Texts> selection(const TomlEntry& entry) const {
     Texts out;
     for (const TomlEntry& one : in_file_order(KA_TRY(file_.table(entry)))) {
@@ -85,7 +85,7 @@ class ManifestReader {
     return out;
   }
 
-  /// Of nodes: { waist = [1, 0, 0, 0] }.
+  /// Reads rotations of nodes: { waist = [1, 0, 0, 0] }.
   Result<std::map<std::string, std::vector<double>>> rotations(const TomlEntry& entry) const {
     std::map<std::string, std::vector<double>> out;
     for (const TomlEntry& node : in_file_order(KA_TRY(file_.table(entry)))) {
@@ -102,7 +102,7 @@ class ManifestReader {
     return {};
   }
 
-  /// files = { waist = "w.csv" } or files = ["a.csv", "b.csv"].
+  /// Reads files = { waist = "w.csv" } or files = ["a.csv", "b.csv"].
   Result<void> read_files(const TomlEntry& entry, std::vector<StreamFile>& out) const {
     if (const auto* list = entry.value->as_array()) {
       for (const toml::node& one : *list) {
@@ -173,12 +173,12 @@ class ManifestReader {
     return {};
   }
 
-  /// Streams that are spoken of are there.
+  /// Fails if the file refers to a stream that does not exist.
   Result<void> check_names(const toml::table& top, const Manifest& manifest) const {
     std::vector<std::string> known;
     for (const StreamOptions& stream : manifest.streams) known.push_back(stream.name);
     const auto check = [&](const std::string& stream, const toml::node* where) -> Result<void> {
-      if (stream.empty() || where == nullptr) return {};  // not of this file
+      if (stream.empty() || where == nullptr) return {};  // not stated in this file
       if (std::find(known.begin(), known.end(), stream) != known.end()) return {};
       return file_.at(*where, unknown_name(stream, "a stream of this file", known));
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// recording.toml: what a user says of a recording. Every key: docs/formats/recording_toml.md.
+// recording.toml: the description of a recording. All keys: docs/formats/recording_toml.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,17 +12,17 @@
 
 namespace kinalign {
 
-/// Streams come in the order of the file. `name` appears in messages only; an unknown key, a wrong
-/// type or a value out of range is refused with its line and the nearest known key. `unsaid`: the
-/// values of what [align] does not state.
+/// Reads a manifest; streams keep the order of the file. `name` appears in messages only. An
+/// unknown key, a wrong type or a value out of range is refused with its line and the nearest known
+/// key. `unsaid`: the values of options that [align] does not state.
 Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
                                const AlignOptions& unsaid = {});
 
-/// The text that reads back as `manifest`: what differs from the defaults.
+/// The text that reads back as `manifest`, with all values that differ from the defaults.
 std::string manifest_toml(const Manifest& manifest);
 
-/// Lines of one [stream.NAME] of such a text, without their ends: `file = ...` or `files = ...`,
-/// and `select = ...`.
+/// Lines of one [stream.NAME], without line ends: `file = ...` or `files = ...`, and `select =
+/// ...`.
 std::string files_toml(const std::vector<StreamFile>& files);
 std::string select_toml(const std::map<std::string, std::string>& select);
 

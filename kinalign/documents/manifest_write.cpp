@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Written by hand, value by value: toml++ sorts tables by name, and the order of streams counts.
+// Written by hand, value by value: toml++ sorts tables by name, but the order of streams matters.
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/documents/toml_entries.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 std::string toml_text(bool value) { return value ? "true" : "false"; }
 std::string toml_text(std::int64_t value) { return std::to_string(value); }
-std::string toml_text(double value) {  // the shortest that reads back the same
+std::string toml_text(double value) {  // the shortest text that reads back exactly
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
@@ -26,7 +26,7 @@ std::string list_text(const std::vector<double>& numbers) {
   return "[" + text + "]";
 }
 
-/// { a = "b", c = "d" }
+/// Writes { a = "b", c = "d" }.
 class InlineTable {
  public:
   void add(const std::string& key, const std::string& value) {
@@ -60,7 +60,7 @@ struct ToToml {
   }
 };
 
-/// The options whose values are not the standard ones.
+/// The options whose values differ from the defaults.
 template <class Options>
 std::string fields_text(Options options) {
   Options standard;
@@ -74,6 +74,7 @@ std::string fields_text(Options options) {
   return text;
 }
 
+/// The tables of one stream.
 std::string stream_text(const StreamOptions& stream) {
   std::string text = fmt::format("\n[stream.{}]\n", toml_key(stream.name));
   if (!stream.files.empty()) text += files_toml(stream.files) + "\n";

@@ -20,7 +20,7 @@ std::string written(const OptionValue& value) {
   return "a list";
 }
 
-/// What may stand there, in words.
+/// The allowed values of an option, in words.
 std::string wanted(const Field& field, const char* kind) {
   if (!field.choices.empty()) {
     std::string list;
@@ -52,7 +52,7 @@ std::optional<Value> same_in(const OptionValue& value) {
   return std::nullopt;
 }
 
-/// One overload a kind of option: its name in messages, and the value where it is of that kind.
+/// For each kind of option: its name in messages, and whether the value is of that kind.
 struct Kind {
   const char* name;
   bool fits;

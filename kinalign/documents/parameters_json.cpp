@@ -36,6 +36,7 @@ Json fields_to_json(const Fields& fields) {
   return out;
 }
 
+/// A stream's files, selections and mountings, then its options.
 Json stream_to_json(StreamOptions stream) {
   Json out = {{"name", stream.name}, {"files", Json::array()}};
   for (const StreamFile& file : stream.files) {
@@ -62,13 +63,14 @@ Failure wrong(const std::string& at, const std::string& wanted, const Json& foun
       Error{"", 0, wanted + " at " + shown(at), std::string("a JSON ") + found.type_name()});
 }
 
-/// "spaces.kinect"
+/// The path of a member: "spaces.kinect".
 std::string below(std::string place, std::string_view key) {
   place += '.';
   place += key;
   return place;
 }
 
+/// The value as an option's value; absent for other types of JSON.
 std::optional<OptionValue> option_value(const Json& json) {
   if (json.is_boolean()) return json.get<bool>();
   if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return std::nullopt;
@@ -127,6 +129,7 @@ Result<void> mounting_from(const Json& json, const std::string& at, StreamOption
   return {};
 }
 
+/// Sets the option `name`. null is accepted only for an optional.
 Result<void> field_from(const Json& json, const std::string& at, const Fields& fields,
                         const std::string& name) {
   const Field* field = find_field(fields, name);
@@ -145,6 +148,7 @@ Result<void> field_from(const Json& json, const std::string& at, const Fields& f
   return assign(*field, *value);
 }
 
+/// Reads a list of files.
 Result<void> files_from(const Json& json, const std::string& at, std::vector<StreamFile>& to) {
   if (!json.is_array()) return wrong(at, "a list", json);
   for (const Json& one : json) {
@@ -160,6 +164,7 @@ Result<void> files_from(const Json& json, const std::string& at, std::vector<Str
   return {};
 }
 
+/// Reads a stream; an unknown key fails.
 Result<StreamOptions> stream_from(const Json& json, const std::string& at) {
   if (!json.is_object()) return wrong(at, "an object", json);
   StreamOptions out;
@@ -188,7 +193,7 @@ Result<SpaceOptions> space_from(const Json& json, const std::string& at) {
   for (const auto& [key, value] : json.items()) {
     const std::string here = below(at, key);
     const bool given = key == "rotation" || key == "translation";
-    if (given && value == Json::array()) continue;  // nothing is
+    if (given && value == Json::array()) continue;  // an empty list means none
     if (key == "rotation") {
       out.rotation = KA_TRY(rotation_from(value, here));
     } else if (key == "translation") {
@@ -228,6 +233,7 @@ Result<void> align_from(const Json& json, AlignOptions& out) {
   return {};
 }
 
+/// Reads the whole manifest; an unknown key or another schema fails.
 Result<Manifest> manifest_from(const Json& json) {
   if (!json.is_object()) return wrong("the top", "an object", json);
   if (json.value("schema", Json()) != schema) {
@@ -251,7 +257,8 @@ Result<Manifest> manifest_from(const Json& json) {
   return out;
 }
 
-/// How deep the brackets of a text stack, strings aside. The parser recurses; this does not.
+/// True if brackets outside of strings are nested deeper than `most`. The parser recurses; this
+/// check does not.
 bool deeper_than(std::string_view json, int most) {
   int depth = 0;
   bool in_text = false;
@@ -267,7 +274,7 @@ bool deeper_than(std::string_view json, int most) {
   return false;
 }
 
-/// A take from outside must not make us read what lies elsewhere.
+/// A take from another person must not make the program read files elsewhere.
 Result<void> check_path(const std::string& path) {
   if (remembered_path(path) == path) return {};
   return Failure(Error{"", 0, "a path below the folder of the inputs", "'" + shown(path) + "'"});

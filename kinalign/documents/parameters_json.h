@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manifest as JSON: what a take remembers of how it was made, and what `rebuild` reads. Keys
-// are those of recording.toml; options at their default are written too, so that a later version
-// with other defaults makes the same take.
+// The manifest as JSON, which a take stores and `rebuild` reads. Keys are those of recording.toml.
+// Options with default values are written too, so that a later version with other defaults makes
+// the same take.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,14 +12,15 @@
 
 namespace kinalign {
 
-/// Ordered keys, every number exact; ends in a line end.
+/// The keys in a fixed order, every number exact; ends with a line end.
 std::string parameters_json(const Manifest& manifest);
 
-/// Reads what parameters_json wrote. Unknown keys, wrong types and values out of range are refused
-/// with the path of the key: "streams[0].gap".
+/// Parses the text of parameters_json(). Unknown keys, wrong types and values out of range are
+/// refused with the path of the key: "streams[0].gap".
 Result<Manifest> parse_parameters_json(std::string_view json);
 
-/// Without what belongs to one machine: paths as a take remembers them (remembered_path.h).
+/// The manifest without paths of one machine: they become the names that a take stores
+/// (remembered_path.h).
 Manifest without_folders(Manifest manifest);
 
 }  // namespace kinalign

@@ -9,6 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The facts about a stream's stamps.
 Json survey_json(const StampSurvey& survey) {
   return {{"samples", survey.samples},
           {"duplicates", survey.duplicates},
@@ -22,6 +23,7 @@ Json survey_json(const StampSurvey& survey) {
           {"long_time_ns", survey.long_time_ns}};
 }
 
+/// The facts about a stream. Members of unknown value are left out.
 Json stream_json(const StreamReport& stream) {
   Json out = {{"stream", stream.stream}};
   if (!stream.nodes.empty()) out["nodes"] = stream.nodes;
@@ -46,6 +48,7 @@ Json stream_json(const StreamReport& stream) {
   return out;
 }
 
+/// The transform of a stream, with the residuals of its joints.
 Json space_json(const SpaceReport& space) {
   const Quat& q = space.transform.rotation;
   const Vec3& t = space.transform.translation;
@@ -91,13 +94,14 @@ Json findings_array(const Findings& findings) {
   return out;
 }
 
-/// Names may hold bytes that are no UTF-8; they are shown as U+FFFD.
+/// Names may contain bytes that are not UTF-8; they become U+FFFD.
 std::string written(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
+/// The whole report as JSON.
 std::string report_json(const AlignmentReport& report) {
   Json out = {{"schema", "kinalign.report/1"},   {"frames", report.frames},
               {"begin_ns", to_ns(report.begin)}, {"end_ns", to_ns(report.end)},

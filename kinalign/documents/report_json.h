@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as JSON, schema kinalign.report/1: units stand in the names.
+// The report as JSON, schema kinalign.report/1. The names of members state the units.
 #pragma once
 
 #include "kinalign/take/report.h"
@@ -11,11 +11,11 @@ namespace kinalign {
 
 std::string report_json(const AlignmentReport& report);
 
-/// The report back, as far as its JSON is one: what is missing or of another type keeps its
-/// default. Fails where the text is no JSON. `path` is the take's.
+/// Parses a report. A member that is missing or of another type keeps its default. Fails if the
+/// text is no JSON. `path`: the take's.
 Result<AlignmentReport> parse_report_json(std::string_view text, const std::string& path);
 
-/// An array of findings as it stands in reports and in `kinalign check --json`.
+/// An array of findings, the same in reports and in `kinalign check --json`.
 std::string findings_json(const Findings& findings);
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A report back from its JSON. It may come from outside: a member that is not of its type is left
-// out, and control characters in texts become '?'.
+// Parses a report from its JSON, which may come from another program: a member of a wrong type is
+// ignored, and control characters in texts become '?'.
 #include "kinalign/documents/json_values.h"
 #include "kinalign/documents/report_json.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// ns; 0 where none stands, or none that a take can have.
+/// A stamp or duration, ns. 0 if there is none, or one that a take can't have.
 std::int64_t ns_at(const Json& json, const char* key) {
   return whole_at(json, key, 4'000'000'000'000'000'000);
 }
@@ -44,11 +44,12 @@ StampSurvey survey_from(const Json& json) {
   out.long_time_ns = ns_at(json, "long_time_ns");
   if (out.duplicates > out.samples || out.backward > out.samples - out.duplicates ||
       out.ahead > out.samples - out.duplicates - out.backward) {
-    out.duplicates = out.backward = out.ahead = 0;  // kept() may not wrap around
+    out.duplicates = out.backward = out.ahead = 0;  // kept() must not wrap around
   }
   return out;
 }
 
+/// A stream of the report. Its invalid samples are limited to all samples, since shares follow.
 StreamReport stream_from(const Json& json) {
   StreamReport out;
   out.stream = text_at(json, "stream");
@@ -79,6 +80,7 @@ StreamReport stream_from(const Json& json) {
   return out;
 }
 
+/// A space of the report. A rotation that is no unit quaternion is ignored.
 SpaceReport space_from(const Json& json) {
   SpaceReport out;
   out.stream = text_at(json, "stream");
@@ -102,6 +104,7 @@ SpaceReport space_from(const Json& json) {
   return out;
 }
 
+/// A mark of the report.
 TakeMark mark_from(const Json& json) {
   TakeMark out;
   out.at = utc_time(ns_at(json, "time_ns"));
@@ -115,6 +118,7 @@ TakeMark mark_from(const Json& json) {
   return out;
 }
 
+/// A finding; an unknown severity counts as a warning.
 Finding finding_from(const Json& json) {
   const std::string severity = text_at(json, "severity");
   Finding out;

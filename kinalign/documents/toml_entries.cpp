@@ -14,6 +14,7 @@ namespace kinalign {
 
 namespace {
 
+/// The value of a TOML node for an option; absent for other types.
 std::optional<OptionValue> option_value(const toml::node& node) {
   if (const auto* truth = node.as_boolean()) return truth->get();
   if (const auto* whole = node.as_integer()) return whole->get();

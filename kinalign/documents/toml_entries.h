@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entries of a TOML file that a user wrote, in its order, each fault with its line and the nearest
-// known name: for the readers of manifests and labs.
+// Reads the entries of a TOML file that a user wrote, in its order. Each fault is reported with its
+// line and the nearest known name. Used for manifests and labs.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace toml {
-inline namespace v3 {  // toml++ is heavy to include
+inline namespace v3 {  // toml++ is expensive to include
 class node;
 class table;
 }  // namespace v3
@@ -31,29 +31,30 @@ struct TomlEntry {
   const toml::node* value;
 };
 
-/// In the order of the file; toml++ sorts by key.
+/// The entries in the order of the file; toml++ sorts them by key.
 std::vector<TomlEntry> in_file_order(const toml::table& table);
 
-/// "a table", "a number": what was found where something else was wanted.
+/// The type of a value in words, for the found part of an error: "a table", "a number".
 std::string type_of(const toml::node& node);
 
 std::int64_t line_of(const toml::node& node);
 
-/// As it stands in [device.KEY]: in quotes where it needs them.
+/// The key in the form for [device.KEY]: in quotes if it needs them.
 std::string toml_key(const std::string& key);
-/// A text in quotes, with what TOML wants escaped.
+/// The text in quotes, with escapes where TOML needs them.
 std::string toml_string(const std::string& text);
 
-/// Of a line in which toml++ found a fault, such as [device.my suit], whose name has to stand in
-/// quotes: how; else empty. For the end of what was expected.
+/// Advice for a line in which toml++ found a fault, such as [device.my suit], whose name needs
+/// quotes; else empty. It is appended to the expected part of an error.
 std::string quotes_advice(std::string_view text, std::int64_t line);
 
-/// Reads entries; its name stands in the errors.
+/// Reads entries; errors contain the file's name.
 class TomlFile {
  public:
   explicit TomlFile(std::string_view name) : name_(name) {}
 
-  /// `read` gets the whole table; fails where the text is no TOML, or as `read` does.
+  /// Parses the text and calls `read` with the whole table. Fails if the text is no TOML, or if
+  /// `read` fails.
   Result<void> parse(std::string_view text,
                      const std::function<Result<void>(const toml::table&)>& read) const;
 
@@ -66,7 +67,7 @@ class TomlFile {
   Result<std::reference_wrapper<const toml::table>> table(const TomlEntry& entry) const;
   /// Pairs of texts: { SpineBase = "Hips" }.
   Result<Texts> texts(const TomlEntry& entry) const;
-  /// A described option; `beside` are the keys of that table that are none.
+  /// Sets a described option. `beside`: the keys of that table that are no options.
   Result<void> option(const TomlEntry& entry, const Fields& fields, const std::string& table_name,
                       std::vector<std::string> beside) const;
 

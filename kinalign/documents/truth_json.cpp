@@ -40,6 +40,7 @@ Json json_of(const TrueKinect& kinect) {
           {"clock", json_of(kinect.clock)}};
 }
 
+/// A node with all its errors.
 Json json_of(const TrueNode& node) {
   return {{"stream", node.stream},
           {"node", node.node},
@@ -53,7 +54,8 @@ Json json_of(const TrueNode& node) {
           {"clock", json_of(node.clock)}};
 }
 
-// ---- from JSON: what is missing or of another type throws, and read_truth says where
+// ---- from JSON: a member that is missing or of another type throws, and read_truth() reports the
+// place
 
 Vec3 vec3_from(const Json& json) {
   const auto v = json.get<std::array<double, 3>>();
@@ -64,7 +66,7 @@ Quat quat_from(const Json& json) {
   return Quat(q[0], q[1], q[2], q[3]).normalized();
 }
 
-/// What it is whole: get() would cast 1e30.
+/// A whole number that fits the type; get() would silently cast 1e30.
 template <class Integer>
 Integer integer_from(const Json& json) {
   const bool fits =
@@ -100,6 +102,7 @@ TrueKinect kinect_from(const Json& json) {
           clock_from(json.at("clock"))};
 }
 
+/// A node; a missing member throws.
 TrueNode node_from(const Json& json) {
   return {json.at("stream"),
           json.at("node"),
@@ -113,6 +116,7 @@ TrueNode node_from(const Json& json) {
           clock_from(json.at("clock"))};
 }
 
+/// The whole truth; a missing member throws.
 TrueRecording truth_from(const Json& json) {
   TrueRecording truth;
   truth.seed = integer_from<std::uint64_t>(json.at("seed"));
@@ -131,14 +135,14 @@ TrueRecording truth_from(const Json& json) {
   return truth;
 }
 
-/// "[json.exception.out_of_range.403] key 'seed' not found" without what is in brackets.
+/// The message without its prefix in brackets, such as "[json.exception.out_of_range.403]".
 std::string reason(const Json::exception& fault) {
   const std::string_view what = fault.what();
   const std::size_t end = what.find("] ");
   return shown(end == std::string_view::npos ? what : what.substr(end + 2));
 }
 
-// ---- what types alone do not say
+// ---- checks beyond types
 
 bool rises(const std::vector<std::int64_t>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();

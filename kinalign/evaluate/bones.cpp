@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t least_cells = 5;
 
-/// The lengths of a bone in the frames in which both ends are valid.
+/// The lengths of a bone, m, in the frames in which both of its ends are valid.
 std::vector<double> lengths_of(const Sequence& sequence, std::span<const double> places,
                                const Bone& bone) {
   std::vector<double> out;

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// The true height that a foot is rarely below, m.
+/// The lowest percentile of a foot's true height, m.
 std::optional<double> floor_of(const Sequence& sequence, std::size_t foot) {
   std::vector<double> heights;
   for (std::size_t t = 0; t < sequence.frames(); ++t) {
@@ -21,7 +21,8 @@ std::optional<double> floor_of(const Sequence& sequence, std::size_t foot) {
   return quantile(std::move(heights), 0.01);
 }
 
-/// Frames of contact [T]: valid like the frame before, slow, near the floor, and in long runs.
+/// Marks the frames of contact [T]: valid in this and the previous frame, slow, near the floor, and
+/// in runs of at least least_frames.
 std::vector<std::uint8_t> contacts(const Sequence& sequence, std::size_t foot, double floor_m,
                                    const ContactOptions& options) {
   const std::size_t frames = sequence.frames();
@@ -41,7 +42,7 @@ std::vector<std::uint8_t> contacts(const Sequence& sequence, std::size_t foot, d
   return out;
 }
 
-/// Horizontal speed from the frame before, m/s.
+/// Horizontal speed since the previous frame, m/s.
 double skate(std::span<const double> places, std::size_t i, const Sequence& sequence) {
   Vec3 step = vec3(places, i) - vec3(places, i - sequence.joints);
   step.y() = 0.0;

@@ -15,7 +15,7 @@ Vec3 mean_place(std::span<const double> places, const std::vector<std::size_t>& 
   return sum / static_cast<double>(cells.size());
 }
 
-/// Appends the distances of one frame's cells after the fit of the prediction onto the truth.
+/// Fits the prediction of one frame onto the truth and appends the remaining distances.
 void append_fitted(const Sequence& sequence, Prediction prediction,
                    const std::vector<std::size_t>& cells, std::vector<double>& out) {
   const Vec3 from = mean_place(prediction, cells), to = mean_place(sequence.truth, cells);
@@ -28,7 +28,8 @@ void append_fitted(const Sequence& sequence, Prediction prediction,
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& sizes = svd.singularValues();
-  if (!(sizes[1] > 1e-9 * sizes[0])) return;  // on one line: a turn about it is free
+  // All on one line: the rotation about that line is undefined.
+  if (!(sizes[1] > 1e-9 * sizes[0])) return;
   const bool mirrored = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0;
   const Vec3 signs(1.0, 1.0, mirrored ? -1.0 : 1.0);
   const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors of position (models.md 8.1 to 8.3).
+// Position errors (models.md 8.1 to 8.3).
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
@@ -8,12 +8,12 @@
 
 namespace kinalign {
 
-/// Distances to the truth, m, of all valid cells, frame after frame.
+/// Distances to the truth, m, of all valid cells (frame, joint), frame after frame.
 std::vector<double> distances(const Sequence& sequence, Prediction prediction);
 
 /// The same after a similarity fit of each frame's valid joints onto the truth (Umeyama, PAMI
-/// 13(4), 1991). Frames with fewer than `least_joints` (at least 4) drop out, and frames whose
-/// joints lie on one line.
+/// 13(4), 1991). Frames with fewer than `least_joints` (at least 4) valid joints, or with all
+/// joints on one line, are left out.
 std::vector<double> fitted_distances(const Sequence& sequence, Prediction prediction,
                                      std::size_t least_joints = 4);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The marks of UI-PRMD's protocol (kinect-noise-and-marks.md section 10), in its units.
+// The measures of UI-PRMD's protocol (kinect-noise-and-marks.md section 10), in its units.
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
@@ -8,29 +8,30 @@
 
 namespace kinalign {
 
-/// The marks of one repetition. A mark is absent where no cell counts for it.
+/// The measures of one repetition. A measure is absent if no cell counts for it.
 struct ProtocolMarks {
-  std::optional<double> position_cm;   // MPJPE
-  std::optional<double> fitted_cm;     // PA: a similarity per frame of 12 valid joints or more
-  std::optional<double> bone_cm;       // BONE: against the take's median true lengths
+  std::optional<double> position_cm;  // MPJPE
+  /// PA: after a similarity fit of each frame with at least 12 valid joints.
+  std::optional<double> fitted_cm;
+  std::optional<double> bone_cm;       // BONE: compared with the take's median true lengths
   std::optional<double> constancy_cm;  // CONST
-  double acceleration_mm = 0.0;        // ACC, mm/frame^2; 0 where no cell counts
-  double jitter_mm = 0.0, true_jitter_mm = 0.0;  // mm/frame^3; 0 where no cell counts
+  double acceleration_mm = 0.0;        // ACC, mm/frame^2; 0 if no cell counts
+  double jitter_mm = 0.0, true_jitter_mm = 0.0;  // mm/frame^3; 0 if no cell counts
 };
 
-/// `sequence` has the 18 shared joints (motion/shared_joints.h); `lengths_m` of the 11 limb bones
-/// are the take's (limb_lengths), not the repetition's.
+/// `sequence` has the 18 shared joints (motion/shared_joints.h). `lengths_m` of the 11 limb bones
+/// are those of the whole take (limb_lengths), not of the repetition.
 ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
                              std::span<const std::optional<double>> lengths_m);
 
 /// The median true lengths of the limb bones over a take's repetitions, m.
 std::vector<std::optional<double>> limb_lengths(std::span<const Sequence> take);
 
-/// A fold's row: means over repetitions; JIT is the ratio of the means.
+/// One row of a table: means over repetitions. JIT is the ratio of two means.
 struct ProtocolMeans {
   std::optional<double> position_cm, fitted_cm, bone_cm, constancy_cm;
   double acceleration_mm = 0.0;
-  std::optional<double> jitter;  // times the truth's; absent where the truth is at rest
+  std::optional<double> jitter;  // ratio to the truth's jitter; absent if the truth does not move
 };
 ProtocolMeans protocol_row(std::span<const ProtocolMarks> repetitions);
 

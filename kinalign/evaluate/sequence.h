@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The input of all metrics: a truth with its validity, and a method's prediction. The metrics are
-// those of the reference (models.md section 8, UI-PRMD's protocol); lengths are metres.
+// The input of all metrics: a ground truth with its validity, and a method's prediction. The
+// metrics are those of the reference (models.md section 8, UI-PRMD's protocol). Lengths are metres.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -17,7 +17,7 @@ struct Sequence {
   std::size_t joints = 0;
   double rate_hz = 0.0;
   std::span<const double> truth;        // [T,J,3] m, y up
-  std::span<const std::uint8_t> valid;  // [T,J] cells that count
+  std::span<const std::uint8_t> valid;  // [T,J] 0: the cell does not count
 
   std::size_t frames() const { return joints == 0 ? 0 : valid.size() / joints; }
   bool has(std::size_t frame, std::size_t joint) const {
@@ -28,12 +28,12 @@ struct Sequence {
 /// A method's answer [T,J,3] m for every cell.
 using Prediction = std::span<const double>;
 
-/// Two joints.
+/// Indices of the two joints of a bone.
 struct Bone {
   std::size_t a = 0, b = 0;
 };
 
-/// A running mean; absent where nothing was added.
+/// A running mean; absent if nothing was added.
 class Mean {
  public:
   void add(double value) {

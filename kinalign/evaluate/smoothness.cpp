@@ -11,7 +11,8 @@ namespace kinalign {
 
 namespace {
 
-/// Whether cell i and those of the same joint in the next frames are valid: `frames` in all.
+/// True if cell i and the cells of the same joint in the next frames are valid, `frames` cells in
+/// all.
 bool valid_from(const Sequence& sequence, std::size_t i, std::size_t frames) {
   for (std::size_t k = 0; k < frames; ++k) {
     const std::size_t cell = i + k * sequence.joints;
@@ -28,7 +29,8 @@ Vec3 third_difference(std::span<const double> places, std::size_t i, std::size_t
   return second_difference(places, i + joints, joints) - second_difference(places, i, joints);
 }
 
-/// Distances from frame to frame [T-1,J], m, less each joint's mean over valid steps.
+/// Speeds as distances between successive frames [T-1,J], m, minus each joint's mean over valid
+/// steps.
 struct Speeds {
   std::vector<double> values;
   std::vector<std::uint8_t> valid;
@@ -53,7 +55,8 @@ Speeds centred_speeds(const Sequence& sequence, std::span<const double> places) 
   return out;
 }
 
-/// The correlation of speeds with the truth's of `lag` steps before; 0 where one is at rest.
+/// The correlation of the predicted speeds with the truth's, `lag` cells earlier; 0 if one does not
+/// move.
 double correlation(const Speeds& predicted, const Speeds& truth, std::ptrdiff_t lag) {
   const auto size = static_cast<std::ptrdiff_t>(truth.values.size());
   double both = 0.0, own = 0.0, true_square = 0.0;

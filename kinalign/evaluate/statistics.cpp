@@ -17,7 +17,7 @@ double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Differences that are not 0, by their size.
+/// The differences that are not 0, sorted by absolute value.
 std::vector<double> by_size(std::span<const double> differences) {
   std::vector<double> out;
   for (const double d : differences) {
@@ -32,7 +32,7 @@ struct RankSums {
   double ties = 0.0;  // sum of t^3 - t over groups of t equal sizes
 };
 
-/// Equal sizes share the mean of their ranks.
+/// Ranks the differences. Equal absolute values share the mean of their ranks.
 RankSums rank_sums(const std::vector<double>& sorted) {
   RankSums out;
   for (std::size_t begin = 0; begin < sorted.size();) {
@@ -50,8 +50,8 @@ RankSums rank_sums(const std::vector<double>& sorted) {
   return out;
 }
 
-/// Twice the chance that a sum of ranks is at most `statistic`, where each rank 1 … n counts or not
-/// with equal chance.
+/// Twice the probability that a sum of ranks is at most `statistic`, if each rank 1 … n is included
+/// or not with equal probability.
 double exact_p(std::size_t n, double statistic) {
   std::vector<double> chances(n * (n + 1) / 2 + 1);
   chances[0] = 1.0;
@@ -71,9 +71,10 @@ double normal_p(std::size_t pairs, double statistic, double ties) {
   return std::erfc(std::abs(statistic - mean) / std::sqrt(2.0 * square));
 }
 
-/// A whole number below n, the same with every library.
+/// A random number below n, the same with every standard library.
 std::size_t drawn(std::mt19937_64& random, std::size_t n) {
-  const std::uint64_t whole = UINT64_MAX - UINT64_MAX % n;  // so that all are equally likely
+  // Larger numbers are rejected, so that all results are equally likely.
+  const std::uint64_t whole = UINT64_MAX - UINT64_MAX % n;
   std::uint64_t number = random();
   while (number >= whole) number = random();
   return number % n;
@@ -115,7 +116,7 @@ std::vector<double> holm(std::span<const double> p) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [p](auto a, auto b) { return p[a] < p[b]; });
   std::vector<double> out(p.size());
-  double least = 0.0;  // no test has a smaller p than the one before
+  double least = 0.0;  // the corrected values never decrease in the order of p
   for (std::size_t k = 0; k < order.size(); ++k) {
     least = std::max(least, std::min(1.0, p[order[k]] * static_cast<double>(p.size() - k)));
     out[order[k]] = least;

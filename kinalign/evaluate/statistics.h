@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums over sequences and people (models.md 8.11): quantiles, paired tests, intervals.
+// Statistics over sequences and people (models.md 8.11): quantiles, paired tests, intervals.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace kinalign {
 
-/// The quantile q in [0, 1] on the line between the two values around it, as NumPy's default.
+/// The quantile q in [0, 1], interpolated linearly between two values, as NumPy's default.
 double quantile(std::vector<double> values, double q);
-/// The population's standard deviation.
+/// The population's standard deviation (divides by n).
 double deviation(std::span<const double> values);
 
 struct WilcoxonTest {
@@ -19,11 +19,11 @@ struct WilcoxonTest {
   double statistic = 0.0;  // the smaller sum of ranks
   double p = 1.0;          // two-sided
 };
-/// Wilcoxon's signed-rank test of paired differences. Differences of 0 drop out. Exact up to 50
-/// pairs without ties and zeros; else the normal approximation with correction for ties.
+/// Wilcoxon's signed-rank test of paired differences. Differences of 0 are left out. Exact for up
+/// to 50 pairs without ties and zeros; otherwise the normal approximation with correction for ties.
 WilcoxonTest wilcoxon_signed_rank(std::span<const double> differences);
 
-/// Holm's correction (Scand. J. Stat. 6, 1979) of several tests' p, in their order.
+/// Holm's correction (Scand. J. Stat. 6, 1979) of the p values of several tests; the order is kept.
 std::vector<double> holm(std::span<const double> p);
 
 struct MeanInterval {
@@ -34,8 +34,9 @@ struct BootstrapOptions {
   std::size_t draws = 10'000;
   double level = 0.95;
 };
-/// The percentile interval of the mean over people, a value each, drawn with replacement. The same
-/// seed gives the same interval. With fewer than 8 people print their values instead.
+/// The percentile interval of the mean over people, one value each, drawn with replacement. The
+/// same seed gives the same interval. With fewer than 8 people their values should be printed
+/// instead.
 MeanInterval bootstrap_mean(std::span<const double> people, const BootstrapOptions& options = {});
 
 }  // namespace kinalign

@@ -9,12 +9,14 @@ namespace kinalign {
 
 namespace {
 
-/// |Y O| / (T + 2) of a window whose first and last frame were repeated once: Frobenius' norm of
-/// second differences, and of first differences in the corners of O, which are 0.
+/// |Y O| / (T + 2) of a window whose first and last frames are repeated once. It is the Frobenius
+/// norm of second differences; the first differences in the corners of O are 0 because of the
+/// repetition.
 double roughness(std::span<const double> places, std::size_t joints) {
   const std::size_t width = 3 * joints, frames = places.size() / width;
   const auto at = [&](std::size_t t, std::size_t c) {
-    const std::size_t frame = t == 0 ? 0 : std::min(t - 1, frames - 1);  // of T + 2
+    // `t` counts the T + 2 frames.
+    const std::size_t frame = t == 0 ? 0 : std::min(t - 1, frames - 1);
     return places[frame * width + c];
   };
   double square = 0.0;

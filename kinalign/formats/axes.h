@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turning a file's axes into ours (right-handed, y up) where each of ours is one of the file's,
-// perhaps with the other sign.
+// Turns a file's axes into ours (right-handed, y up). Each of our axes must be one of the file's
+// axes, perhaps with the other sign.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -12,12 +12,14 @@
 
 namespace kinalign {
 
-/// Ours from the file's: our k-th coordinate is the file's |axes[k]|-th, from 1, with its sign.
+/// Our axes in terms of the file's. Our coordinate k is the file's coordinate |axes[k]|,
+/// counted from 1, times the sign of axes[k].
 using Axes = std::array<int, 3>;
 
 constexpr Axes y_up{1, 2, 3};
 constexpr Axes z_up{1, 3, -2};  // x, z, -y: a quarter turn about x
 
+/// Point `file` [3], in the file's axes, in ours.
 inline Vec3 turned(const Axes& axes, const double* file) {
   Vec3 ours;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -27,10 +29,11 @@ inline Vec3 turned(const Axes& axes, const double* file) {
   return ours;
 }
 
-/// +1: right-handed stays right-handed; -1: a mirror image; 0: an axis stands twice.
+/// Determinant of the turn. +1: right-handed stays right-handed; -1: a mirror image; 0: an axis
+/// stands twice.
 int determinant(const Axes& axes);
 
-/// What the user says is up, else the format's own axes.
+/// The axes for the upward axis that the user states; without such an option the format's own axes.
 Axes axes_of(const Axes& of_format, const StreamOptions& options);
 
 /// The same turn as a rotation; the determinant must be +1.

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double largest = 1e15;  // above it no length, angle or rate of ours can be meant
+constexpr double largest = 1e15;  // no length, angle or rate in a file can be meant above it
 
 std::string_view unquoted(std::string_view cell) {
   if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
@@ -55,6 +55,7 @@ inline bool RowParser::delimits(char c) const {
 
 inline bool RowParser::pads(char c) const { return (c == ' ' || c == '\t') && c != delimiter_; }
 
+/// The delimiter that ends the cell at `at`. A delimiter between double quotes does not count.
 const char* RowParser::cell_end(const char* at, const char* end) const {
   if (at != end && *at == '"') {
     const char* closing = std::find(at + 1, end, '"');
@@ -63,6 +64,8 @@ const char* RowParser::cell_end(const char* at, const char* end) const {
   return std::find_if(at, end, [this](char c) { return delimits(c); });
 }
 
+/// The slow path of number(): a cell in quotes, a missing value, or a fault. Returns the cell's
+/// end; nullptr if the cell is neither a number below `largest` nor missing.
 const char* RowParser::odd_number(const char* at, const char* end, int slot) {
   const auto i = static_cast<std::size_t>(slot);
   const char* behind = cell_end(at, end);
@@ -77,6 +80,8 @@ const char* RowParser::odd_number(const char* at, const char* end, int slot) {
   return behind;
 }
 
+/// The fast path: a plain number directly in front of a delimiter. All else goes to odd_number().
+/// Returns the cell's end, or nullptr on a fault.
 inline const char* RowParser::number(const char* at, const char* end, int slot) {
   double& value = values[static_cast<std::size_t>(slot)];
   const char* behind = parse_number(at, end, value);
@@ -94,6 +99,8 @@ inline const char* RowParser::read_cell(ColumnUse use, const char* at, const cha
   return behind;
 }
 
+/// Reads all columns of a row. `runs`: any run of blanks delimits. The template keeps that test out
+/// of the loop over the cells.
 template <bool runs>
 Result<void> RowParser::read_cells(const char* at, const char* end) {
   const std::size_t last = columns_.size() - 1;
@@ -103,7 +110,7 @@ Result<void> RowParser::read_cells(const char* at, const char* end) {
     const char* behind = read_cell(columns_[i], at, end);
     if (behind == nullptr) return no_number(i, between(at, cell_end(at, end)));
     if (!runs && behind == end && i < last) return wrong_count(i + 1);
-    at = !runs && behind != end ? behind + 1 : behind;  // behind the delimiter
+    at = !runs && behind != end ? behind + 1 : behind;  // skips the delimiter
   }
   return nothing_behind(at, end);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One line of a table into numbers, without an allocation.
+// Splits one line of a table into numbers, without an allocation.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,32 +12,35 @@
 
 namespace kinalign {
 
-/// Stands for a delimiter: any run of blanks and tabs, also in front of the first cell.
+/// Value of `delimiter` under which any run of blanks and tabs delimits, also in front of the first
+/// cell.
 constexpr char runs_of_blanks = '\0';
 
-/// What is wanted of a column; a column of which nothing is wanted may hold anything.
+/// Tells the parser where to put the content of a column. A column with neither number may hold
+/// anything.
 struct ColumnUse {
-  int slot = -1;  // its number goes to values[slot]
-  int text = -1;  // its text goes to texts[text]
+  int slot = -1;  // the column's number goes to values[slot]; -1: nowhere
+  int text = -1;  // the column's text goes to texts[text]; -1: nowhere
 };
 
-/// Reads rows of one shape. Blanks around a cell are no part of it (where the blank does not
-/// delimit), a cell in double quotes is what stands between them, and delimiters behind the last
-/// column are tolerated.
+/// Reads rows that all have the same columns. Blanks around a cell are dropped, unless the blank is
+/// the delimiter. A cell in double quotes is the text between the quotes. Delimiters behind the
+/// last column are tolerated.
 class RowParser {
  public:
   RowParser() = default;
   RowParser(char delimiter, std::vector<ColumnUse> columns);
 
-  /// Fills `values`, `missing` and `texts`. Fails, without a place, where the number of cells is
-  /// another or a wanted cell holds no number below 1e15; an empty cell and "nan" are missing.
+  /// Fills `values`, `missing` and `texts`. An empty cell and "nan" are missing. Fails, without a
+  /// place, if the number of cells differs from the number of columns, or if a wanted cell holds no
+  /// number below 1e15.
   Result<void> read(std::string_view line);
 
   std::size_t columns() const { return columns_.size(); }
 
   std::vector<double> values;           // [slots] 0 where missing
   std::vector<std::uint8_t> missing;    // [slots] 1: the cell was empty or "nan"
-  std::vector<std::string_view> texts;  // of the line read last
+  std::vector<std::string_view> texts;  // views into the line read last
   bool any_missing = false;
 
  private:
@@ -57,16 +60,16 @@ class RowParser {
   std::vector<ColumnUse> columns_;
 };
 
-/// The cells of a line, trimmed and without quotes: for heads.
+/// The cells of a line, trimmed and without quotes. Meant for header lines: it allocates.
 std::vector<std::string> split_cells(std::string_view line, char delimiter);
 
-/// Without blanks, tabs and carriage returns at both ends.
+/// `text` without blanks, tabs and carriage returns at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// A cell that says that there is no value: empty, "nan" in any letters.
+/// True if the cell says that there is no value: empty, or "nan" in any case.
 bool says_missing(std::string_view cell);
 
-/// A name that can stand in a cell of tab-separated text: not empty, no tab, no line end.
+/// True if the name can stand in a cell of tab-separated text: not empty, no tab, no line end.
 bool fits_a_cell(std::string_view name);
 
 }  // namespace kinalign

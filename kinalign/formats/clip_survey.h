@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the first pass over a skeleton's file of a fixed step found.
+// Results of the first pass over a file of a skeleton whose frames have a fixed time step.
 #pragma once
 
 #include "kinalign/take/recording.h"
@@ -9,7 +9,7 @@ namespace kinalign {
 struct ClipSurvey {
   Skeleton skeleton;
   StampSurvey survey;
-  double step_ns = 0.0;
+  double step_ns = 0.0;  // from one frame to the next
   InputFacts facts;
   Findings findings;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where writers of formats put the bytes of a file, in its order.
+// Target to which a format's writer hands the bytes of a file, in the file's order.
 #pragma once
 
 #include "kinalign/core/error.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows that wait until their stamps are settled (formats/row_stamps.h).
+// Keeps rows until their stamps are settled (formats/row_stamps.h).
 #pragma once
 
 #include "kinalign/formats/row_stamps.h"
@@ -10,10 +10,10 @@ namespace kinalign {
 template <class Frames>
 class HeldRows {
  public:
-  /// Where the next row goes.
+  /// The place for the next row: `out` once the stamps are settled, before that the rows kept here.
   Frames& target(const RowStamps& stamps, Frames& out) { return stamps.settled() ? out : held_; }
 
-  /// After each row, and at the end: lets the rows go once their stamps are final.
+  /// Call after each row and at the end. Moves the kept rows to `out` once their stamps are final.
   void release(const RowStamps& stamps, Frames& out) {
     if (held_.stamps.empty() || !stamps.settled()) return;
     stamps.restamp(held_.stamps);

@@ -15,6 +15,8 @@ constexpr double zeros[4] = {};
 
 }  // namespace
 
+/// The orientation `q` in our world, from the file's quaternion `raw` w,x,y,z. Counts odd lengths;
+/// false if the length is zero, so that no direction is left.
 bool ImuConverter::turn(const double* raw, Quat& q) {
   constexpr double smallest = 1e-6;
   constexpr double unit_within = 0.02;

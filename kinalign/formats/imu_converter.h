@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what a file says of inertial nodes to our units, world and validity.
+// Converts a file's samples of inertial nodes to our units, world axes and validity.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,30 +11,31 @@
 
 namespace kinalign {
 
-/// How a file's samples become ours.
+/// Factors and axes that turn a file's samples into ours.
 struct ImuUnits {
-  Axes world = y_up;              // ours from the file's world; sensor spaces stay as they are
-  double acceleration = 1.0;      // m/s2
-  double angular_velocity = 1.0;  // rad/s
+  Axes world = y_up;          // ours from the file's world; the sensors' own axes stay as they are
+  double acceleration = 1.0;  // m/s2 per unit of the file
+  double angular_velocity = 1.0;  // rad/s per unit of the file
 };
 
-/// One node's sample as read; nullptr: the quantity is absent from the stream.
+/// One sample of a node as read from the file. nullptr: the stream has no such quantity.
 struct RawImuSample {
   const double* orientation = nullptr;  // [4] w,x,y,z, of any length
+  /// [3] in the file's unit and in sensor space, as is angular_velocity.
   const double* acceleration = nullptr;
   const double* angular_velocity = nullptr;
   bool valid = true;  // all present quantities were read
 };
 
-/// Appends nodes' samples one after the other, node after node within a row.
+/// Appends samples in the order of the file: row after row, and node after node within a row.
 class ImuConverter {
  public:
   explicit ImuConverter(const ImuUnits& units) : units_(units), turn_(rotation_of(units.world)) {}
 
-  /// A quaternion that is zero makes the sample invalid.
+  /// Appends one sample. A quaternion of length zero makes the sample invalid.
   void append(const RawImuSample& sample, ImuSamples& out);
 
-  /// What was odd about the quaternions, if anything was.
+  /// Adds findings about quaternions of length zero and of lengths other than 1, if there were any.
   void report(const std::string& file, Findings& findings) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of a text file whose name the messages know.
+// Splits a text file into lines and puts its name and the line number into error messages.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// The file ends in the middle of a line that could be read.
+/// Finding: the file ends in the middle of its last line, and that line could be read.
 inline Finding unended_finding(const std::string& file, std::int64_t line) {
   return {Severity::note,
           Error{file, line, "a line end behind the last value", "the end of the file"},
@@ -22,16 +22,16 @@ class NamedLines {
  public:
   explicit NamedLines(std::string_view file) : file_(file) {}
 
-  /// Calls `use(line)` -> Result<void> for each completed line; an error without a place gets this
-  /// file and line. A byte order mark in front of the first line is dropped.
+  /// Calls `use(line)`, which returns Result<void>, for each completed line. An error without a
+  /// place gets this file and line. A byte order mark in front of the first line is dropped.
   template <class Use>
   Result<void> feed(std::string_view piece, Use&& use) {
     return placed(lines_.feed(piece, [&](std::string_view line) { return use(unmarked(line)); }));
   }
 
-  /// The file has ended. Where its last line has no line end and can't be used, `incomplete` says
-  /// so and the result is good: the writer was cut off. Where it can be used, a note says that its
-  /// last value may be half a value.
+  /// Call at the end of the file. A last line without a line end may be cut off. If that line can't
+  /// be used, `incomplete` gets a warning and the result is still good. If it can be used, a note
+  /// says that its last value may be incomplete.
   template <class Use>
   Result<void> finish(Use&& use, Findings& incomplete) {
     auto last = finish_head(std::forward<Use>(use), incomplete);
@@ -42,8 +42,8 @@ class NamedLines {
     return {};
   }
 
-  /// The same where the file ended in its head, without which there is nothing: an incomplete last
-  /// line is a failure.
+  /// Like finish(), but for a file that ended within its header, without which nothing can be read:
+  /// an incomplete last line is a failure.
   template <class Use>
   Result<void> finish_head(Use&& use, Findings& incomplete) {
     const bool unended = lines_.within_line();
@@ -52,7 +52,7 @@ class NamedLines {
     return {};
   }
 
-  /// An error of the line that was read last.
+  /// An error at the line that was read last.
   Error error(std::string expected, std::string found) const {
     if (found.empty()) found = "nothing";
     return {file_, lines_.number(), std::move(expected), std::move(found)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what a file says of joints or markers to our units, axes and states.
+// Converts a file's joints or markers to our units, axes and tracking states.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -15,25 +15,27 @@
 namespace kinalign {
 
 struct PointUnits {
-  Axes axes = y_up;  // ours from the file's
-  double metres = 1.0;
+  Axes axes = y_up;     // ours from the file's
+  double metres = 1.0;  // per unit of the file
 };
 
-/// What the user says of unit and axes, else the format's own.
+/// Unit and axes that the user states; the format's own where the user states none.
 PointUnits point_units(const PointUnits& of_format, const StreamOptions& options);
 
-/// Appends a row of joints, [J,3] as in the file and [J]; a missing one gets zeros.
+/// Appends one row of joints: `file` [J,3] in the file's units and axes, `states` [J]. A missing
+/// joint gets zeros.
 void append_points(const PointUnits& units, const double* file, std::span<const Tracking> states,
                    PointFrames& out);
 
-/// Notices a Kinect file that was mirrored: facing the sensor, the person's left shoulder is at
+/// Detects a Kinect file that was mirrored. When a person faces the sensor, the left shoulder is at
 /// smaller x (in 74,392 of 74,404 rows of a public set).
 class MirrorWatch {
  public:
   explicit MirrorWatch(const std::vector<std::string>& joint_names);
 
-  /// One row's joints, [J,3] and [J].
+  /// Counts one row of joints: `positions` [J,3], `states` [J].
   void watch(const double* positions, const Tracking* states);
+  /// Adds a warning if the shoulders were mirrored in most rows.
   void report(const std::string& file, Findings& findings) const;
 
  private:

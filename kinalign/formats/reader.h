@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every format's reader is: fed a file in pieces cut anywhere, it yields rows.
+// The interface of every format's reader: it takes a file in pieces, cut anywhere, and yields rows.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -23,9 +23,9 @@ struct ImuHeader {
   ImuContent content;
 };
 
-/// One pass over one file. Memory goes by what was fed, never by numbers that the file states.
-/// Rows come out in our units and axes: metres, radians, m/s2, right-handed, y up; stamps inside
-/// +-4e18 ns, so that differences can't overflow.
+/// One pass over one file. The memory used depends on the bytes fed, never on numbers that the file
+/// states. Rows come out in our units and axes: metres, radians, m/s2, right-handed, y up. Stamps
+/// lie inside +-4e18 ns, so that differences can't overflow.
 template <class HeaderType, class FramesType>
 class Reader {
  public:
@@ -38,17 +38,19 @@ class Reader {
   /// reader may not be used again.
   virtual Result<void> feed(std::string_view piece, Frames& out) = 0;
 
-  /// The file has ended: appends what is left. Fails where the file stops in its head.
+  /// Call at the end of the file: appends the remaining rows. Fails if the file ends within its
+  /// header.
   virtual Result<void> finish(Frames& out) = 0;
 
-  /// What the file says of itself before its first row; nullptr until that has been read.
+  /// The header before the first row; nullptr until it has been read.
   virtual const Header* header() const = 0;
 
-  /// Stamps are counted by a rate, for want of any that move; known after finish().
+  /// True: stamps come from a rate, because the file has no time column or one that never moves.
+  /// Known after finish().
   bool counted = false;
 
-  /// What was wrong and could be read all the same; complete after finish(). A fault that repeats
-  /// is one finding with a count.
+  /// Faults that did not stop the reading; complete after finish(). A repeated fault is one finding
+  /// with a count.
   Findings findings;
 };
 

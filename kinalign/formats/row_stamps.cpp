@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr int most_digits = 18;           // an int64 holds them
-constexpr int most_fraction_digits = 10;  // of seconds: a tenth of a nanosecond
+constexpr int most_fraction_digits = 10;  // a tenth of a nanosecond, where the unit is a second
 
 /// "12.50" as whole 12, fraction 5, scale 10.
 struct Decimal {
@@ -24,7 +24,7 @@ struct Decimal {
 
 bool is_digit(char c) { return static_cast<unsigned>(c - '0') < 10; }
 
-/// Plain decimals only; false where an exponent or anything else stands.
+/// Reads plain decimals only; false if the text has an exponent or is no number.
 bool parse_decimal(std::string_view text, Decimal& out) {
   std::size_t i = 0;
   if (i < text.size() && (text[i] == '-' || text[i] == '+')) out.minus = text[i++] == '-';
@@ -45,6 +45,7 @@ bool parse_decimal(std::string_view text, Decimal& out) {
   return digits > 0 && i == text.size();
 }
 
+/// Reads a stamp that is no plain decimal: one with an exponent, or with a decimal comma.
 std::optional<std::int64_t> through_double(std::string_view text, TimeScale scale) {
   std::string point(text.substr(0, 64));
   std::replace(point.begin(), point.end(), ',', '.');  // a French locale's 1,594038E+12
@@ -68,7 +69,7 @@ std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) 
   const bool overflow = __builtin_mul_overflow(scale.epoch_s, second_ns / scale.unit_ns, &epoch) ||
                         __builtin_sub_overflow(whole, epoch, &units);
   if (overflow || units > furthest || units < -furthest) return std::nullopt;
-  // below 1e10 * 1e9 + 5e9: fits into 64 bits without a sign
+  // The product is below 1e10 * 1e9 + 5e9 and fits into an unsigned 64-bit integer.
   const std::uint64_t part =
       (decimal.fraction * static_cast<std::uint64_t>(scale.unit_ns) + decimal.scale / 2) /
       decimal.scale;
@@ -90,7 +91,7 @@ std::string seconds_text(std::int64_t ns) {
 
 std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz) {
   constexpr double furthest =
-      4.5e18;  // refused as a stamp, and still added to one without overflow
+      4.5e18;  // a stamp this large is refused, but can be added to another without overflow
   return std::llround(std::min(static_cast<double>(index) * 1e9 / rate_hz, furthest));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of points and of a node as tables in our own layouts: docs/formats/kinect.md, imu.md.
+// Writes streams of points and of a node as tables in our own layouts: docs/formats/kinect.md,
+// imu.md.
 #pragma once
 
 #include "kinalign/core/text_out.h"
@@ -7,11 +8,12 @@
 
 namespace kinalign {
 
-/// The layout `kinect`, whatever the joints are called; micrometres. The caller commits.
+/// Writes the layout `kinect`, with any joint names, to six decimals of a metre. The caller
+/// commits.
 Result<void> write_points(const PointStream& stream, TextOut& out);
 
-/// The layout `imu`, of a stream of one node; its quantities to a millionth of their unit. Samples
-/// that are not valid are left out. The caller commits.
+/// Writes the layout `imu`, for a stream of one node, to six decimals of each quantity's unit.
+/// Invalid samples are left out. The caller commits.
 Result<void> write_node(const ImuStream& stream, TextOut& out);
 
 }  // namespace kinalign

@@ -31,7 +31,8 @@ bool is_text(std::string_view line) {
 bool looks_like_hdf5(std::string_view head) { return head.starts_with(hdf5_signature); }
 
 bool looks_like_model(std::string_view head) {
-  // The header's length as a u64, at most 16 MB: five of its bytes are 0, or four and a 1.
+  // The header's length comes first, as a little-endian u64 of at most 16 MB. Bytes 4 to 7 are then
+  // 0, and byte 3 is 0 or 1.
   if (head.size() < 10 || head.substr(8, 2) != "{\"") return false;
   return (head[3] == 0 || head[3] == 1) && head.substr(4, 4) == "\0\0\0\0"sv;
 }

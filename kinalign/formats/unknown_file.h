@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to say of a file that no reader of ours knows.
+// Error messages for a file that none of our readers knows.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -9,17 +9,19 @@
 
 namespace kinalign {
 
-/// A take begins as every HDF5 file does.
+/// True if the file begins with the HDF5 signature; takes are HDF5 files.
 bool looks_like_hdf5(std::string_view head);
 
-/// A model begins as every SafeTensors file does (docs/formats/model.md).
+/// True if the file begins as a SafeTensors file does; models are such files
+/// (docs/formats/model.md).
 bool looks_like_model(std::string_view head);
 
-/// How a file begins, for messages: "an empty file", "a gzip archive", "'unix_ms,acc_x'" or, where
-/// the bytes are no text, that alone.
+/// Short description of a file's beginning for messages: "an empty file", "a gzip archive",
+/// "'unix_ms,acc_x'", or that the bytes are no text.
 std::string beginning_of(std::string_view head);
 
-/// A file of which `head` are the first bytes; says what to do with a table.
+/// The error for an unknown file whose first bytes are `head`. It tells the user how to read a
+/// table.
 Error unknown_file(const std::string& path, std::string_view head);
 
 }  // namespace kinalign

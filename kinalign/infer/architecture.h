@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A network as a list of layers: plain data that a model's file holds as JSON, that `infer` runs
-// and that `learn` trains. Values between layers are [T,C]: T frames of C channels.
+// A network as a list of layers. This plain data is stored as JSON in a model's file, run by
+// `infer` and trained by `learn`. Values between layers are [T,C]: T frames of C channels.
 #pragma once
 
 #include <cstddef>
@@ -17,50 +17,52 @@ enum class LayerKind : std::uint8_t {
   gru,         // gates r, z, n
   layer_norm,  // over the channels of a frame, epsilon 1e-5
   relu,
-  leaky_relu,  // `slope` below 0
-  gelu,        // the exact one, with erf
+  leaky_relu,  // `slope` for negative values
+  gelu,        // exact form, with erf
   tanh,
   sigmoid,
-  dropout,     // does something in training only
-  slice,       // channels begin ... begin + out - 1
-  max_pool,    // of each two frames the greater value; an odd last frame stays as it is
-  unpool,      // each frame twice, at half its value; as many frames as the max_pool had
-  sum,         // of all branches
-  product,     // of all branches
-  concat,      // channels of all branches, one behind the other
-  along_time,  // each channel alone: the branch gets `window` frames of it as channels and answers
-               // with as many; a frame's result is the mean over all windows that it lies in
+  dropout,   // acts in training only
+  slice,     // channels begin ... begin + out - 1
+  max_pool,  // greater value of each two frames; an odd last frame is kept
+  unpool,    // each frame twice, at half its value; as many frames as before the matching max_pool
+  sum,       // sum of all branches
+  product,   // product of all branches
+  concat,    // channels of all branches, one after another
+  /// On each channel alone: the branch gets `window` frames as channels and returns as many; a
+  /// frame's result is the mean over all windows that contain it.
+  along_time,
 };
 
-/// One layer. Members that its kind does not name are as they stand here.
+/// One layer. Members that its kind does not use keep the defaults below.
 ///
 /// Tensors of the layer at `path` ("3", or "3.1.0": layer 3, branch 1, its layer 0), float32,
-/// row-major, as PyTorch's modules have them:
+/// row-major, as in PyTorch's modules:
 ///   linear      path.weight [out,in], path.bias [out]
 ///   conv        path.weight [out,in,kernel], path.bias [out]
 ///   lstm, gru   path.weight_ih_l0 [G out,in], path.weight_hh_l0 [G out,out], path.bias_ih_l0,
-///               path.bias_hh_l0 [G out]; G 4, 3; and with _reverse behind the names if
+///               path.bias_hh_l0 [G out]; G 4, 3; and the same with _reverse appended if
 ///               bidirectional
 ///   layer_norm  path.weight [in], path.bias [in]
 struct Layer {
   LayerKind kind = LayerKind::linear;
-  std::size_t out = 0;         // linear, conv, slice: channels; lstm, gru: units of a direction
+  std::size_t out = 0;         // linear, conv, slice: channels; lstm, gru: units per direction
   std::size_t kernel = 1;      // conv: taps; odd unless causal
   std::size_t dilation = 1;    // conv: frames between taps
-  bool causal = false;         // conv: sees this frame and earlier ones; else centred
-  bool bidirectional = false;  // lstm, gru: 2 x out channels come out, forward first
-  double slope = 0.01;         // leaky_relu
+  bool causal = false;         // conv: uses this frame and earlier ones; false: centred
+  bool bidirectional = false;  // lstm, gru: 2 x out output channels, forward first
+  double slope = 0.01;         // leaky_relu: factor of negative values
   double rate = 0.0;           // dropout: share of values set to 0
-  std::size_t begin = 0;       // slice
-  std::size_t window = 1;      // along_time: frames; fewer are filled up with the last one
-  std::vector<std::vector<Layer>> branches =
-      {};  // sum, product, concat; an empty one is the identity. along_time: one
+  std::size_t begin = 0;       // slice: first channel
+  std::size_t window = 1;      // along_time: frames; shorter input is padded with its last frame
+  /// The branches of sum, product, concat; an empty branch is the identity. An along_time has
+  /// exactly one.
+  std::vector<std::vector<Layer>> branches = {};
 
   bool operator==(const Layer&) const = default;
 };
 
 struct Architecture {
-  std::size_t inputs = 0;  // channels
+  std::size_t inputs = 0;  // input channels
   std::vector<Layer> layers;
 
   bool operator==(const Architecture&) const = default;

@@ -19,6 +19,7 @@ using Json = nlohmann::json;
 
 nlohmann::ordered_json layers_to_json(const std::vector<Layer>& layers);
 
+/// A layer as JSON, with only the members that its kind uses.
 nlohmann::ordered_json layer_to_json(const Layer& layer) {
   nlohmann::ordered_json out;
   out["kind"] = row_of(layer.kind).name;
@@ -54,7 +55,7 @@ Failure wrong_type(const std::string& at, const std::string& expected, const Jso
   return wrong(at, expected, std::string("a JSON ") + found.type_name());
 }
 
-/// A member of Layer that is no list, by its name in JSON.
+/// A member of Layer that is not a list, with its name in JSON.
 template <class Value>
 struct Named {
   const char* name;
@@ -72,7 +73,7 @@ constexpr Named<bool> truth_members[] = {
 constexpr Named<double> number_members[] = {{"slope", member_slope, &Layer::slope},
                                             {"rate", member_rate, &Layer::rate}};
 
-/// The row of `key`, where the kind of `layer` uses it.
+/// The row of `key` if the kind of `layer` uses it, else null.
 template <class Value, std::size_t n>
 const Named<Value>* used(const Named<Value> (&rows)[n], const Layer& layer,
                          const std::string& key) {
@@ -87,9 +88,10 @@ Result<std::size_t> count_of(const Json& json, const std::string& key, const std
   return wrong_type(at, "a whole number as " + key, json);
 }
 
-/// Reads layers and counts them, so that a hostile text ends early.
+/// Reads layers and counts them, so that a hostile text is refused early.
 class Reader {
  public:
+  /// Reads a list of layers. `path` names the layer that holds the list in messages.
   Result<std::vector<Layer>> layers(const Json& json, const std::string& path) {
     const std::string at = path.empty() ? "the network" : "layer " + path;
     if (!json.is_array()) return wrong_type(at, "an array of layers", json);
@@ -104,6 +106,7 @@ class Reader {
   }
 
  private:
+  /// Reads one layer, and fails if a member that its kind needs is missing.
   Result<Layer> layer(const Json& json, const std::string& path) {
     const std::string at = "layer " + path;
     if (!json.is_object()) return wrong_type(at, "a JSON object", json);
@@ -146,6 +149,7 @@ class Reader {
     return {};
   }
 
+  /// Reads the branches of a layer, each a list of layers.
   Result<std::vector<std::vector<Layer>>> branches(const Json& json, const std::string& path) {
     const std::string at = "layer " + path;
     if (!json.is_array()) return wrong_type(at, "an array of branches", json);

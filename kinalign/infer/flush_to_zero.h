@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers below 1e-38 cost a processor a hundred times the time of others. A network that decays to
-// rest meets many of them.
+// Subnormal numbers (below 1e-38) make a processor a hundred times slower. A network that decays to
+// rest produces many of them.
 #pragma once
 
 #ifdef __SSE__
@@ -9,8 +9,8 @@
 
 namespace kinalign {
 
-/// While an object of this class lives, the processor of this thread takes such numbers for 0. The
-/// class does nothing on processors other than x86.
+/// While an object of this class exists, the processor treats subnormal numbers in this thread as
+/// 0. The class does nothing on processors other than x86.
 class FlushToZero {
  public:
   FlushToZero(const FlushToZero&) = delete;

@@ -14,23 +14,23 @@ using std::size_t;
 
 #ifdef __AVX2__
 constexpr size_t lanes = 8;
-constexpr size_t tile_rows = 6;    // 6 x 2 sums stay in 12 of 16 registers
-constexpr size_t tile_panels = 4;  // of one frame alone: 4 x 2 sums
+constexpr size_t tile_rows = 6;    // 6 x 2 sums fit into 12 of 16 registers
+constexpr size_t tile_panels = 4;  // for a single frame: 4 x 2 sums
 #else
 constexpr size_t lanes = 4;
 constexpr size_t tile_rows = 2;
 constexpr size_t tile_panels = 2;
 #endif
-constexpr size_t row_block = 96;  // frames that stay in the cache while all panels pass
+constexpr size_t row_block = 96;  // frames that stay in the cache while all panels are processed
 
 constexpr size_t panel_vectors = panel_width / lanes;
 
-// A vector of GCC and Clang.
+// A vector type of GCC and Clang.
 using Vector [[gnu::vector_size(lanes * sizeof(float))]] = float;
 
 #define KA_INLINE inline __attribute__((always_inline))
 
-/// Loads and stores at any address.
+/// Loads and stores at any address, aligned or not.
 KA_INLINE Vector vector_at(const float* values) {
   Vector out;
   __builtin_memcpy(&out, values, sizeof out);
@@ -67,8 +67,8 @@ KA_INLINE void store(const Vector (&sums)[Rows][Vectors], float* to) {
   for (size_t i = 0; i < Rows * Vectors; ++i) put(sums[i / Vectors][i % Vectors], to + i * lanes);
 }
 
-/// Adds to `values` [Rows, Panels, panel_width] the products of the frames from t on with the
-/// panels from `first` on. The sums stay in registers.
+/// Adds the products of the frames from t on with the panels from `first` on to `values`
+/// [Rows, Panels, panel_width]. The sums stay in registers.
 template <size_t Rows, size_t Panels>
 KA_INLINE void sum_tile(const Product& p, size_t t, size_t first, float* values) {
   constexpr size_t vectors = Panels * panel_vectors;
@@ -91,7 +91,8 @@ KA_INLINE void sum_tile(const Product& p, size_t t, size_t first, float* values)
   store(sums, values);
 }
 
-/// The same with the start values and with outputs that end within the last panel.
+/// Like sum_tile(), but starts from the bias (or from `out`) and handles outputs that end within
+/// the last panel.
 template <size_t Rows, size_t Panels>
 void tile(const Product& p, size_t t, size_t first) {
   constexpr size_t width = Panels * panel_width;
@@ -110,7 +111,7 @@ void tile(const Product& p, size_t t, size_t first) {
   }
 }
 
-/// `rows` frames, fewer than a full tile, of one panel.
+/// Processes `rows` frames (fewer than a full tile) of one panel.
 template <size_t Rows>
 void last_rows(const Product& p, size_t t, size_t panel, size_t rows) {
   if constexpr (Rows > 0) {
@@ -145,13 +146,13 @@ void multiply(const Product& p) {
   }
 }
 
-// ---- functions of one value, written so that the compiler makes vectors of their loops
+// ---- functions of one value, written so that the compiler can vectorise loops over them
 
 /// e^x, relative error below 2e-7. Method and coefficients: Cephes, expf.
 KA_INLINE float exp_of(float x) {
   x = x < -87.0F ? -87.0F : x;  // NaN stays NaN
   x = x > 88.0F ? 88.0F : x;
-  // Adding 1.5 2^23 leaves the nearest whole number in the lowest bits.
+  // Adding 1.5 * 2^23 puts the nearest whole number into the lowest bits.
   const float shifted = x * 1.44269504F + 12582912.0F;
   const float whole = shifted - 12582912.0F;
   const float r = (x - whole * 0.693359375F) + whole * 2.12194440e-4F;
@@ -170,7 +171,7 @@ KA_INLINE float magnitude(float x) { return x < 0.0F ? -x : x; }
 
 KA_INLINE float sigmoid_of(float x) { return 1.0F / (1.0F + exp_of(-x)); }
 
-/// Cephes, tanhf: a polynomial near 0, where the difference of two near numbers would lose digits.
+/// Cephes, tanhf: a polynomial near 0, where the difference of two close numbers would lose digits.
 KA_INLINE float tanh_of(float x) {
   const float z = x * x;
   float p = -5.70498872745e-3F;
@@ -183,7 +184,7 @@ KA_INLINE float tanh_of(float x) {
   return magnitude(x) < 0.625F ? near : far;
 }
 
-/// x/2 (1 + erf(x/sqrt 2)). Abramowitz and Stegun 7.1.26 gives erfc to 1.5e-7.
+/// x/2 (1 + erf(x/sqrt 2)). Abramowitz and Stegun 7.1.26 gives erfc with an error of 1.5e-7.
 KA_INLINE float gelu_of(float x) {
   const float z = magnitude(x) * 0.70710678F;
   const float t = 1.0F / (1.0F + 0.3275911F * z);
@@ -224,9 +225,9 @@ void scale_by(float* __restrict values, const float* __restrict factors, size_t 
   for (size_t i = 0; i < n; ++i) values[i] *= factors[i];
 }
 
-// ---- a frame's sums
+// ---- sums over a frame
 
-/// Sum of (value - mean)^Power, in `lanes` partial sums and their rest.
+/// Sum of (value - mean)^Power, in `lanes` partial sums plus the remainder.
 template <int Power>
 KA_INLINE float sum_of(const float* values, size_t n, float mean) {
   Vector sums = {};
@@ -266,7 +267,7 @@ void lstm_gates(const float* __restrict gates, float* __restrict cell, float* __
   }
 }
 
-/// `previous` and `out` are the same or apart, so no iteration depends on another.
+/// `previous` and `out` are either the same or do not overlap, so no iteration depends on another.
 void gru_gates(const float* from_input, const float* from_state, const float* previous, float* out,
                size_t units) {
 #pragma GCC ivdep

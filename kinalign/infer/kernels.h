@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loops in which a network spends its time. kernels.cpp is compiled once for every processor
-// and once for x86-64-v3 (AVX2 and FMA); the program chooses when it starts. Each result is summed
-// in one fixed order, whatever the number of frames. The two builds round differently, by about
-// 1e-6, since the second one fuses multiplication and addition.
+// and once for x86-64-v3 (AVX2 and FMA); the program chooses at its start. Each result is summed in
+// one fixed order for any number of frames. Results of the two builds differ by about 1e-6, because
+// the second one fuses multiplication and addition.
 #pragma once
 
 #include <cstddef>
 
 namespace kinalign {
 
-/// Weights are stored in panels of this many outputs: [panels, taps, channels, panel_width], where
-/// the last panel is filled up with zeros.
+/// Weights are stored in panels of this many outputs: [panels, taps, channels, panel_width]. The
+/// last panel is padded with zeros.
 inline constexpr std::size_t panel_width = 16;
 
-/// out[t,n] = bias[n] + sum over taps k and channels c of in[t,k,c] weights[k,c,n]. Frame t, tap k
-/// begins at in + t in_stride + k tap_stride.
+/// The sum out[t,n] = bias[n] + sum over taps k and channels c of in[t,k,c] weights[k,c,n]. Frame
+/// t, tap k begins at in + t in_stride + k tap_stride.
 struct Product {
   const float* in = nullptr;
   std::size_t in_stride = 0, tap_stride = 0;
@@ -25,7 +25,7 @@ struct Product {
   std::size_t out_stride = 0, outputs = 0, frames = 0;
 };
 
-/// Functions of one build. Values are changed in place where there is only one pointer.
+/// The functions of one build. A function with a single pointer changes the values in place.
 struct Kernels {
   const char* name;
   void (*multiply)(const Product& product);
@@ -36,10 +36,10 @@ struct Kernels {
   void (*sigmoid)(float* values, std::size_t n);
   void (*add)(float* values, const float* more, std::size_t n);
   void (*scale_by)(float* values, const float* factors, std::size_t n);
-  /// One frame. `in` and `out` may be the same.
+  /// Normalises one frame. `in` and `out` may be the same.
   void (*layer_norm)(const float* in, float* out, const float* weight, const float* bias,
                      std::size_t channels);
-  /// One step from the sums of all four gates, i f g o, to the new cell and output.
+  /// One step: from the sums of all four gates, i f g o, to the new cell and output.
   void (*lstm_gates)(const float* gates, float* cell, float* out, std::size_t units);
   /// One step from the sums of the input and of the state, r z n each. `previous` and `out` may be
   /// the same.
@@ -48,7 +48,7 @@ struct Kernels {
 };
 
 const Kernels& baseline_kernels();
-/// The fastest that this processor runs.
+/// The fastest build that this processor can run.
 const Kernels& best_kernels();
 
 }  // namespace kinalign

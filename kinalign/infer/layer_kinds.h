@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of layer in a table: the name of each in a file, and the members of Layer that it uses.
+// A table of the kinds of layers: the name of each kind in a file, and the members of Layer that it
+// uses.
 #pragma once
 
 #include "kinalign/infer/architecture.h"

@@ -21,10 +21,10 @@ struct Sequence {
   std::size_t size() const { return frames * channels; }
 };
 
-constexpr std::size_t window_block = 256;  // rows of along_time that are computed together
+constexpr std::size_t window_block = 256;  // rows of along_time that are processed together
 
-/// One run. A function of a layer owns its input: it returns the block to the workspace or hands it
-/// on.
+/// One run. Each layer's function owns its input: it returns the block to the workspace or passes
+/// it on.
 class Run {
  public:
   Run(const Kernels& kernels, Workspace& workspace) : kernels_(kernels), workspace_(workspace) {}
@@ -35,6 +35,7 @@ class Run {
   }
 
  private:
+  /// Runs one layer on a whole sequence.
   Sequence one(const PreparedLayer& layer, Sequence in) {
     switch (layer.layer.kind) {
       case LayerKind::linear:
@@ -64,6 +65,7 @@ class Run {
     }
   }
 
+  // A new block of the workspace.
   Sequence fresh(std::size_t frames, std::size_t channels) {
     const std::size_t block = workspace_.take(frames * channels);
     return {workspace_.values(block), frames, channels, block};
@@ -75,7 +77,7 @@ class Run {
     if (sequence.block) workspace_.give_back(*sequence.block);
   }
 
-  /// The same values in a block that may be changed.
+  /// The same values in a block that may be changed; a copy if `in` is the caller's input.
   Sequence owned(Sequence in) {
     if (in.block) return in;
     const Sequence out = fresh(in.frames, in.channels);
@@ -83,7 +85,7 @@ class Run {
     return out;
   }
 
-  /// The same values with zeros before and after, so that every tap of a convolution finds a frame.
+  /// The values with zeros before and after, so that every tap of a convolution has a frame.
   Sequence padded(const Layer& layer, Sequence in) {
     const std::size_t reach = (layer.kernel - 1) * layer.dilation;
     if (reach == 0) return in;
@@ -97,6 +99,7 @@ class Run {
     return out;
   }
 
+  /// Runs a linear layer or a convolution as one product over all frames.
   Sequence conv(const PreparedLayer& layer, Sequence in) {
     const Sequence out = fresh(in.frames, layer.outputs);
     in = padded(layer.layer, in);
@@ -122,6 +125,8 @@ class Run {
     return out;
   }
 
+  /// Runs one direction of a recurrent layer. The products with the input are computed for all
+  /// frames at once.
   void direction(const PreparedLayer& layer, const DirectionWeights& weights, const Sequence& in,
                  float* out, bool reverse) {
     const std::size_t units = layer.layer.out;
@@ -133,7 +138,7 @@ class Run {
     input.out_stride = gates.channels;
     input.frames = in.frames;
     kernels_.multiply(input);
-    const Sequence state = fresh(1, 2 * units);  // output before the first frame, and cell
+    const Sequence state = fresh(1, 2 * units);  // output before the first frame; cell
     float* const cell = writable(state) + units;
     std::fill_n(writable(state), 2 * units, 0.0F);
     const Sequence scratch = fresh(1, gates.channels);
@@ -172,7 +177,7 @@ class Run {
 
   Sequence activation(const Layer& layer, Sequence in) {
     const Sequence out = owned(in);
-    for (std::size_t t = 0; t < out.frames; ++t) {  // frame by frame, as online
+    for (std::size_t t = 0; t < out.frames; ++t) {  // frame by frame, as in OnlineNetwork
       apply_activation(kernels_, layer, writable(out) + t * out.channels, out.channels);
     }
     return out;
@@ -188,6 +193,7 @@ class Run {
     return out;
   }
 
+  /// The larger of each two frames. The number of frames is kept for the unpooling.
   Sequence max_pool(Sequence in) {
     workspace_.frames_before_pools.push_back(in.frames);
     const Sequence out = fresh((in.frames + 1) / 2, in.channels);
@@ -213,6 +219,7 @@ class Run {
     return out;
   }
 
+  /// Runs all branches on the same input, and joins, adds or multiplies their outputs.
   Sequence branches(const PreparedLayer& layer, Sequence in) {
     const Sequence out = fresh(in.frames, layer.outputs);
     const Sequence shared{in.data, in.frames, in.channels, std::nullopt};
@@ -235,7 +242,7 @@ class Run {
     return out;
   }
 
-  /// At least as many frames: the last one is repeated.
+  /// The values, extended to at least `frames` frames by repeating the last one.
   Sequence lengthened(Sequence in, std::size_t frames) {
     if (in.frames >= frames) return in;
     const Sequence out = fresh(frames, in.channels);
@@ -246,7 +253,8 @@ class Run {
     return out;
   }
 
-  /// A window of a channel is a row of the branch, which gets a block of them at a time.
+  /// Each window of a channel is one row of the branch's input. The branch runs on `window_block`
+  /// rows at a time.
   Sequence along_time(const PreparedLayer& layer, Sequence in) {
     const std::size_t frames = in.frames, channels = in.channels, window = layer.layer.window;
     if (frames == 0) return in;
@@ -292,6 +300,7 @@ class Run {
 
 }  // namespace
 
+/// Applies the layer's activation to n values in place.
 void apply_activation(const Kernels& kernels, const Layer& layer, float* values, std::size_t n) {
   switch (layer.kind) {
     case LayerKind::relu:

@@ -18,17 +18,18 @@ namespace kinalign {
 
 struct PreparedNetwork;
 
-/// Memory for values between layers. The caller keeps one for each thread and hands it to every
-/// run: a run over as many frames as an earlier one allocates nothing.
+/// Memory for values between layers. The caller keeps one workspace per thread and passes it to
+/// every run. A run with no more frames than an earlier one allocates nothing.
 class Workspace {
  public:
-  /// The index of a free block of at least `values` values.
+  /// The index of a free block with at least `values` values.
   std::size_t take(std::size_t values);
   void give_back(std::size_t block) { blocks_[block].taken = false; }
   float* values(std::size_t block) { return blocks_[block].values.data(); }
   void give_all_back();
 
-  std::vector<std::size_t> frames_before_pools;  // of max_pools whose unpool is still to come
+  /// Lengths before max_pools whose unpool has not run yet.
+  std::vector<std::size_t> frames_before_pools;
 
  private:
   struct Block {
@@ -40,8 +41,8 @@ class Workspace {
 
 class Network {
  public:
-  /// Fails where the architecture is not valid (shapes.h), where a tensor `prefix` + name is
-  /// missing, has another shape or a value that is not finite. Further tensors are ignored.
+  /// Fails if the architecture is not valid (shapes.h), or if a tensor `prefix` + name is missing,
+  /// has another shape or contains a value that is not finite. Further tensors are ignored.
   static Result<Network> make(const Architecture& architecture,
                               const std::map<std::string, Tensor>& tensors,
                               const std::string& prefix = "",
@@ -58,8 +59,8 @@ class Network {
   std::size_t outputs() const;
 
   /// Computes `out` [T,outputs] from `in` [T,inputs], T = `frames`, any number. Each max_pool
-  /// without an unpool halves the frames of `out`, rounded up. Results do not depend
-  /// on `workspace`.
+  /// without an unpool halves the frames of `out`, rounded up. Results do not depend on
+  /// `workspace`.
   void run(std::span<const float> in, std::size_t frames, Workspace& workspace,
            std::vector<float>& out) const;
 

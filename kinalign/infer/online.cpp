@@ -16,8 +16,8 @@ namespace {
 struct LayerState {
   const PreparedLayer* layer = nullptr;
   Values out;           // [outputs]
-  Values ring;          // conv: each of the last `rows` frames twice, `rows` frames apart
-  std::size_t row = 0;  // in 0 ... rows - 1, where the next frame is written
+  Values ring;          // conv: each of the last `rows` frames is stored twice, `rows` frames apart
+  std::size_t row = 0;  // 0 ... rows - 1, place of the next frame
   std::size_t rows = 0;
   Values memory;      // lstm: output and cell; gru: output
   Values from_input;  // sums of the gates
@@ -25,6 +25,7 @@ struct LayerState {
   std::vector<std::vector<LayerState>> branches;
 };
 
+/// The reason why a layer needs later frames; empty if it does not.
 std::string_view why_not_online(const Layer& layer) {
   if (layer.bidirectional) return "a bidirectional layer";
   if (layer.kind == LayerKind::max_pool) return "max_pool";
@@ -35,6 +36,8 @@ std::string_view why_not_online(const Layer& layer) {
   return "";
 }
 
+/// Room for a layer's state between frames: earlier inputs of a convolution, memory of a recurrent
+/// layer.
 LayerState state_of(const PreparedLayer& layer) {
   const std::size_t units = layer.layer.out;
   LayerState out;
@@ -53,6 +56,7 @@ LayerState state_of(const PreparedLayer& layer) {
   return out;
 }
 
+/// States for all layers; fails if one of them needs later frames.
 Result<std::vector<LayerState>> states_of(const std::vector<PreparedLayer>& layers) {
   std::vector<LayerState> out;
   for (const PreparedLayer& layer : layers) {
@@ -68,7 +72,7 @@ Result<std::vector<LayerState>> states_of(const std::vector<PreparedLayer>& laye
   return out;
 }
 
-/// The path of one frame through the layers. Each result is stored in the state of its layer.
+/// Passes one frame through the layers. Each result is stored in the state of its layer.
 class Step {
  public:
   explicit Step(const Kernels& kernels) : kernels_(kernels) {}
@@ -79,6 +83,7 @@ class Step {
   }
 
  private:
+  /// Runs one layer on one frame; gives the place of its output.
   const float* one(LayerState& state, const float* in) const {
     const PreparedLayer& layer = *state.layer;
     float* const out = state.out.data();
@@ -120,7 +125,7 @@ class Step {
     kernels_.multiply(product);
   }
 
-  /// Each frame is written twice, so that the last `rows` frames always lie one behind the other.
+  /// Each frame is written twice, so that the last `rows` frames are always contiguous.
   const float* conv(LayerState& state, const float* in) const {
     const PreparedLayer& layer = *state.layer;
     float* const first = state.ring.data() + state.row * layer.inputs;
@@ -133,6 +138,7 @@ class Step {
     return state.out.data();
   }
 
+  /// One frame of an LSTM or a GRU; updates its memory.
   const float* recurrent(LayerState& state, const float* in) const {
     const PreparedLayer& layer = *state.layer;
     const DirectionWeights& weights = layer.directions[0];
@@ -150,6 +156,7 @@ class Step {
     return memory;
   }
 
+  /// Runs all branches on a frame, and joins, adds or multiplies their outputs.
   const float* branches(LayerState& state, const float* in) const {
     const PreparedLayer& layer = *state.layer;
     float* out = state.out.data();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A network that runs frame by frame: convolutions remember earlier frames in ring buffers, lstm
-// and gru their state.
+// Runs a network frame by frame. Convolutions keep earlier frames in ring buffers, lstm and gru
+// keep their state.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,10 +14,9 @@ namespace kinalign {
 
 class OnlineNetwork {
  public:
-  /// All memory is allocated here. The weights stay in `network`, which must live longer and may be
-  /// moved.
-  /// Fails where a layer needs later frames: a bidirectional layer, a centred convolution,
-  /// max_pool, along_time. The error names the layer. Centred convolutions of one tap are accepted.
+  /// Allocates all memory. The weights stay in `network`, which must live longer and may be moved.
+  /// Fails if a layer needs later frames: a bidirectional layer, a centred convolution, max_pool,
+  /// along_time. The error names the layer. Centred convolutions with one tap are accepted.
   static Result<OnlineNetwork> make(const Network& network);
 
   OnlineNetwork(OnlineNetwork&&) noexcept;
@@ -27,8 +26,8 @@ class OnlineNetwork {
   ~OnlineNetwork();
 
   /// Takes the next frame [inputs] and computes its result [outputs]. The result is valid until the
-  /// next step and while `frame` is.
-  /// The results are those of Network::run over all frames since the start, bit by bit.
+  /// next step and only as long as `frame` exists. The results equal those of Network::run over all
+  /// frames since the start, bit by bit.
   std::span<const float> step(std::span<const float> frame);
 
   /// Forgets all earlier frames.
@@ -37,7 +36,7 @@ class OnlineNetwork {
   /// Number of values in the state of all lstm and gru layers.
   std::size_t state_size() const;
   /// The state, layer by layer: an lstm's output and cell, a gru's output. Buffers of convolutions
-  /// are no part of it.
+  /// are not included.
   void get_state(std::span<float> state) const;  // [state_size]
   void set_state(std::span<const float> state);
 

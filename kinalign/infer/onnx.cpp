@@ -69,15 +69,15 @@ ProtobufMessage value_info(const std::string& name, const std::string& frames,
   return ProtobufMessage().add(1, name).add(2, ProtobufMessage().add(1, tensor));
 }
 
-/// The nodes and constants of a GraphProto. A function of a layer adds its nodes and returns the
-/// name of the result [1,T,C].
+/// Builds the nodes and constants of a GraphProto. Each layer's function adds its nodes and returns
+/// the name of the result [1,T,C].
 class Graph {
  public:
   Graph(const Tensors& tensors, const std::string& prefix) : tensors_(tensors), prefix_(prefix) {}
 
   std::string list(const std::vector<Layer>& layers, std::string value, std::size_t channels,
                    const std::string& path) {
-    Names pools;  // inputs of the open max_pools
+    Names pools;  // inputs of max_pools whose unpool comes later
     for (std::size_t i = 0; i < layers.size(); ++i) {
       path_ = path_below(path, i);
       if (layers[i].kind == LayerKind::max_pool) pools.push_back(value);
@@ -104,7 +104,7 @@ class Graph {
     return result;
   }
 
-  /// GraphProto: node 1, name 2, initializer 5; `constants_` hold the last.
+  /// GraphProto: node 1, name 2, initializer 5 (in `constants_`), input 11, output 12.
   std::string finish(const ProtobufMessage& input, const ProtobufMessage& output) {
     graph_.add(2, "kinalign");
     std::string out = graph_.bytes() + constants_.bytes();
@@ -145,7 +145,7 @@ class Graph {
       case LayerKind::along_time:
         return along_time(layer, in);
       case LayerKind::dropout:
-      case LayerKind::unpool:  // list() has its length
+      case LayerKind::unpool:  // handled in list(), which knows the length
         break;
     }
     return in;
@@ -191,6 +191,7 @@ class Graph {
     return node("Slice", {in, begin, end, integer(axis)});
   }
 
+  /// A linear layer as MatMul and Add, because ONNX wants the transposed weights.
   std::string linear(const std::string& in) {
     const Tensor& weight = tensor("weight");
     const std::size_t rows = weight.shape[0], columns = weight.shape[1];
@@ -216,7 +217,8 @@ class Graph {
     return transposed(out, {0, 2, 1});
   }
 
-  /// PyTorch orders the gates of an lstm i f g o, ONNX i o f g; those of a gru r z n, ONNX z r n.
+  /// Reorders the gates: PyTorch's order is i f g o for lstm and r z n for gru; ONNX has i o f g
+  /// and z r n.
   std::string recurrent(const Layer& layer, const std::string& in, std::size_t channels) {
     const bool lstm = layer.kind == LayerKind::lstm;
     const std::vector<std::size_t> order =
@@ -277,7 +279,7 @@ class Graph {
     return transposed(out, {0, 2, 1});
   }
 
-  /// Each frame twice, then as many frames as `like` has.
+  /// Repeats each frame, then cuts the result to the number of frames of `like`.
   std::string unpool(const std::string& in, const std::string& like, std::size_t channels) {
     const auto half = node("Mul", {in, number(0.5F)});
     const auto pairs = node("Concat", {half, half}, {attribute("axis", std::int64_t{2})});
@@ -287,6 +289,7 @@ class Graph {
     return slice(twice, integer(0), frames, 1);
   }
 
+  /// All branches on the same input, followed by Concat, Add or Mul.
   std::string branches(const Layer& layer, const std::string& in, std::size_t channels) {
     const std::string path = path_;
     Names results;
@@ -304,8 +307,9 @@ class Graph {
     return out;
   }
 
-  /// Convolutions cut the windows out and lay the results over each other: tap k is 1 in channel k
-  /// and 0 in the others. Channels are a batch, since each is alone.
+  /// A convolution cuts the windows out: its tap k is 1 in channel k and 0 in all others. The
+  /// transposed convolution adds the results at their places. The channels are the batch, because
+  /// each channel is processed alone.
   std::string along_time(const Layer& layer, const std::string& in) {
     const auto window = static_cast<std::int64_t>(layer.window);
     std::vector<float> taps(layer.window * layer.window, 0.0F);
@@ -330,12 +334,12 @@ class Graph {
 
   const Tensors& tensors_;
   std::string prefix_;
-  std::string path_;  // of the layer that adds nodes
+  std::string path_;  // path of the layer that adds nodes
   std::size_t values_ = 0;
   ProtobufMessage graph_, constants_;
 };
 
-/// Frames of the result by name: those of the input unless a max_pool stays open.
+/// Name of the result's frame dimension: that of the input, unless a max_pool has no unpool.
 std::string frames_behind(const Architecture& architecture) {
   const auto& layers = architecture.layers;
   const auto count = [&layers](LayerKind kind) {

@@ -22,7 +22,7 @@ std::size_t padded(std::size_t outputs) {
   return (outputs + panel_width - 1) / panel_width * panel_width;
 }
 
-/// From [outputs,channels,taps] to panels.
+/// Packs [outputs,channels,taps] into panels.
 PackedWeights pack(const Tensor& tensor, const Tensor* bias) {
   PackedWeights out;
   out.outputs = tensor.shape[0];
@@ -46,7 +46,7 @@ PackedWeights pack(const Tensor& tensor, const Tensor* bias) {
   return out;
 }
 
-/// Packs one layer after the other. All tensors are there.
+/// Packs one layer after another. check_tensors() must have succeeded.
 class Packer {
  public:
   Packer(const Tensors& tensors, std::string prefix)
@@ -63,6 +63,7 @@ class Packer {
   }
 
  private:
+  /// Packs the tensors of one layer, and of its branches, for the kernels.
   PreparedLayer one(const Layer& layer, std::size_t inputs, const std::string& path) const {
     PreparedLayer out;
     out.layer = layer;

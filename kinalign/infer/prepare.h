@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the tensors of a file to weights that the kernels read.
+// Converts the tensors of a file to weights in the order in which the kernels read them.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,12 +11,12 @@
 
 namespace kinalign {
 
-/// Fails where a tensor `prefix` + name of a valid architecture is missing, has another shape or a
-/// value that is not finite.
+/// Fails if a tensor `prefix` + name of a valid architecture is missing, has another shape or
+/// contains a value that is not finite.
 Result<void> check_tensors(const Architecture& architecture,
                            const std::map<std::string, Tensor>& tensors, const std::string& prefix);
 
-/// Checks the tensors and packs them. The rules are those of Network::make.
+/// Checks the tensors and packs them. Fails in the cases in which Network::make fails.
 Result<PreparedNetwork> prepare(const Architecture& architecture,
                                 const std::map<std::string, Tensor>& tensors,
                                 const std::string& prefix);

@@ -13,7 +13,7 @@
 
 namespace kinalign {
 
-/// Memory that begins at a cache line: an aligned panel row never spans two.
+/// Allocates memory that begins at a cache line, so that no row of a panel spans two lines.
 template <class T>
 struct CacheAligned {
   using value_type = T;
@@ -32,16 +32,16 @@ using Values = std::vector<float, CacheAligned<float>>;
 /// One matrix, or one for each tap, with its bias.
 struct PackedWeights {
   std::size_t taps = 1, channels = 0, outputs = 0;
-  Values weights;  // as Product::weights
-  Values bias;     // empty: none
+  Values weights;  // in the order of Product::weights
+  Values bias;     // empty: no bias
 
-  /// A product of these weights, without its frames.
+  /// A product with these weights; the caller sets the frames.
   Product product() const;
 };
 
 struct DirectionWeights {
-  PackedWeights from_input;  // lstm: with the sum of both biases
-  PackedWeights from_state;  // gru: with a bias of its own
+  PackedWeights from_input;  // lstm: the bias is the sum of both biases
+  PackedWeights from_state;  // gru: has its own bias; lstm: none
 };
 
 struct PreparedLayer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Protocol Buffers, written field by field (protobuf.dev/programming-guides/encoding).
+// Writes Protocol Buffers field by field (protobuf.dev/programming-guides/encoding).
 #pragma once
 
 #include <bit>

@@ -36,7 +36,7 @@ Failure wrong(const std::string& file, const std::string& expected, const std::s
 
 std::string quoted(const std::string& name) { return "\"" + shown(name) + "\""; }
 
-/// Bytes of a value; 0 for a type that is not read.
+/// Bytes per value; 0 for a type that is not supported.
 std::size_t value_bytes(const std::string& type) {
   if (type == "F32") return 4;
   if (type == "F16" || type == "BF16") return 2;
@@ -53,7 +53,7 @@ std::optional<std::vector<std::size_t>> counts(const Json& json) {
   return out;
 }
 
-/// Nothing where the number is above 2^64.
+/// The size of a tensor in bytes; empty if it exceeds 2^64.
 std::optional<std::size_t> bytes_of(const std::vector<std::size_t>& shape, std::size_t each) {
   std::size_t bytes = each;
   for (const std::size_t n : shape) {
@@ -62,6 +62,7 @@ std::optional<std::size_t> bytes_of(const std::vector<std::size_t>& shape, std::
   return bytes;
 }
 
+/// Reads the entry of a tensor in the header: type, shape and place of its bytes.
 Result<Entry> read_entry(const std::string& name, const Json& json, const std::string& file) {
   const auto has = [&json](const char* key) { return json.contains(key); };
   if (!json.is_object() || json.size() != 3 || !has("dtype") || !has("shape") ||
@@ -92,7 +93,7 @@ Result<Entry> read_entry(const std::string& name, const Json& json, const std::s
   return entry;
 }
 
-/// Sorts the entries. Fails where they do not cover `bytes` bytes exactly, one behind the other.
+/// Sorts the entries. Fails if they do not cover `bytes` bytes exactly, without gaps and overlaps.
 Result<void> check_places(std::vector<Entry>& entries, std::size_t bytes, const std::string& file) {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
@@ -120,7 +121,7 @@ Result<void> check_places(std::vector<Entry>& entries, std::size_t bytes, const 
 float from_half(std::uint16_t half) {
   const std::uint32_t sign = (half & 0x8000U) << 16U;
   const std::uint32_t exponent = (half >> 10U) & 0x1fU, fraction = half & 0x3ffU;
-  if (exponent == 0) {  // zero and subnormal numbers: the fraction counts steps of 2^-24
+  if (exponent == 0) {  // zero and subnormal numbers: the fraction is a multiple of 2^-24
     const float value = static_cast<float>(fraction) * 0x1p-24F;
     return sign != 0 ? -value : value;
   }
@@ -128,6 +129,7 @@ float from_half(std::uint16_t half) {
   return std::bit_cast<float>(sign | wide << 23U | fraction << 13U);
 }
 
+/// The numbers of a tensor as float, converted from its type.
 std::vector<float> read_values(std::string_view bytes, const std::string& type) {
   if (type == "F32") {
     std::vector<float> out(bytes.size() / 4);
@@ -158,6 +160,7 @@ Result<std::map<std::string, std::string>> read_metadata(const Json& json,
   return out;
 }
 
+/// The JSON header, which follows its length of 8 bytes.
 Result<std::string_view> header_of(std::string_view bytes, const std::string& file) {
   std::uint64_t length = 0;
   if (bytes.size() < sizeof length) {

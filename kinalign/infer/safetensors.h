@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SafeTensors: named arrays of numbers behind a JSON header. Layout: docs/formats/model.md.
+// Reads and writes SafeTensors: named arrays of numbers after a JSON header. Layout:
+// docs/formats/model.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -13,7 +14,7 @@
 namespace kinalign {
 
 struct Tensor {
-  std::vector<std::size_t> shape;  // empty: one number
+  std::vector<std::size_t> shape;  // empty: a single number
   std::vector<float> values;       // row-major
 
   bool operator==(const Tensor&) const = default;
@@ -26,13 +27,13 @@ struct TensorFile {
 
 inline constexpr std::size_t most_header_bytes = std::size_t{16} << 20U;
 
-/// Reads a whole file. F16 and BF16 are widened to float; other types are refused. `name` appears
-/// in messages only. Fails where the header is no JSON of the expected form, where a name occurs
-/// twice, or where the tensors leave gaps, overlap or do not end with the file.
+/// Reads a whole file. F16 and BF16 are converted to float; other types are refused. `name` appears
+/// in messages only. Fails if the header is not JSON of the expected form, if a name occurs twice,
+/// or if the tensors leave gaps, overlap or do not end at the end of the file.
 Result<TensorFile> read_safetensors(std::string_view bytes, const std::string& name);
 
-/// The same tensors give the same bytes: names in order, all values F32, the header padded with
-/// blanks to a multiple of 8 bytes. Each tensor must have as many values as its shape says.
+/// The same tensors give the same bytes: names sorted, all values F32, the header padded with
+/// blanks to a multiple of 8 bytes. Each tensor must have as many values as its shape states.
 std::string write_safetensors(const TensorFile& file);
 
 }  // namespace kinalign

@@ -18,7 +18,7 @@ std::string counted(std::size_t number, std::string_view noun) {
   return std::to_string(number) + " " + std::string(noun);
 }
 
-/// "at most 1023 taps"
+/// Checks 1 <= found <= most; the message says, for example, "1 to 1023 taps".
 Result<void> within(const std::string& path, std::size_t found, std::size_t most,
                     std::string_view noun) {
   if (found >= 1 && found <= most) return {};
@@ -42,7 +42,8 @@ Layer only_used_members(const Layer& layer) {
   return out;
 }
 
-/// Parameters of one layer without its branches. At most 2^43: no overflow within the limits.
+/// Number of parameters of one layer without its branches. At most 2^43, so it can't overflow
+/// within the limits.
 std::size_t own_parameters(const Layer& layer, std::size_t inputs) {
   const std::size_t directions = layer.bidirectional ? 2 : 1;
   switch (layer.kind) {
@@ -60,7 +61,7 @@ std::size_t own_parameters(const Layer& layer, std::size_t inputs) {
   }
 }
 
-/// Whether a layer takes each row by itself.
+/// True if a layer processes each row (frame) alone.
 bool is_row_by_row(const Layer& layer) {
   switch (layer.kind) {
     case LayerKind::conv:
@@ -77,10 +78,10 @@ bool is_row_by_row(const Layer& layer) {
   }
 }
 
-/// Walks through all layers, counts and checks.
+/// Visits all layers, counts them and checks the limits.
 class Check {
  public:
-  /// The channels behind `layers`.
+  /// Checks `layers`; returns the output channels of the last one.
   Result<std::size_t> list(const std::vector<Layer>& layers, std::size_t inputs,
                            const std::string& path, std::size_t depth) {
     std::size_t channels = inputs;
@@ -127,6 +128,7 @@ class Check {
     return outputs(layer, inputs);
   }
 
+  /// Checks that each number of a layer is within its limits.
   static Result<void> members(const Layer& layer, std::size_t inputs, const std::string& path) {
     if (uses(layer.kind, member_out)) {
       const std::size_t directions = layer.bidirectional ? 2 : 1;
@@ -249,6 +251,7 @@ enum class Side { before, after };
 
 std::optional<std::size_t> reach(const std::vector<Layer>& layers, Side side);
 
+/// The number of frames before or after a frame that its output depends on; nullopt: all.
 std::optional<std::size_t> reach(const Layer& layer, Side side) {
   const std::size_t taps = (layer.kernel - 1) * layer.dilation;
   std::size_t most = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts that follow from an architecture alone: its tensors, its channels, the frames it sees.
+// Facts that follow from an architecture alone: its tensors, its channels, the frames that it uses.
 // `infer` loads the tensors listed here and `learn` trains them.
 #pragma once
 
@@ -14,13 +14,13 @@
 
 namespace kinalign {
 
-inline constexpr std::size_t most_layers = 1000;  // of all branches together
-inline constexpr std::size_t most_depth = 8;      // branches within branches
+inline constexpr std::size_t most_layers = 1000;  // in all branches together
+inline constexpr std::size_t most_depth = 8;      // depth of nested branches
 inline constexpr std::size_t most_channels = 16384;
 inline constexpr std::size_t most_kernel = 1023;
 inline constexpr std::size_t most_dilation = 4096;
 inline constexpr std::size_t most_parameters = 200'000'000;
-/// Values that all convolutions together keep of earlier frames.
+/// Number of values of other frames that all convolutions together keep.
 inline constexpr std::size_t most_kept = std::size_t{1} << 26U;
 
 /// A tensor that an architecture needs. Values are row-major.
@@ -31,29 +31,31 @@ struct Parameter {
   bool operator==(const Parameter&) const = default;
 };
 
-/// Fails where a layer does not fit the one before it, or where a limit above is exceeded. The
-/// error names the layer. Each unpool belongs to the last open max_pool of its own list of layers;
-/// within a branch every max_pool needs its unpool. Layers within an along_time take each row by
-/// itself: linear, layer_norm, slice, value by value. The functions below need a valid
+/// Fails if a layer does not fit the one before it, or if a limit above is exceeded. The error
+/// names the layer. Each unpool belongs to the last open max_pool in its own list of layers. Within
+/// a branch every max_pool needs an unpool. Layers within an along_time must process each row alone
+/// (linear, layer_norm, slice, or a function of single values). The functions below need a valid
 /// architecture.
 Result<void> validate(const Architecture& architecture);
 
 /// All tensors, in the order of the layers.
 std::vector<Parameter> parameters(const Architecture& architecture);
 
-/// Channels behind the last layer, and behind one layer or a list of layers that gets `inputs`.
+/// Output channels of the last layer, of one layer, or of a list of layers with `inputs` channels.
 std::size_t outputs(const Architecture& architecture);
 std::size_t outputs(const Layer& layer, std::size_t inputs);
 std::size_t outputs(const std::vector<Layer>& layers, std::size_t inputs);
-/// Channels that each branch of a layer gets.
+/// Input channels of each branch of a layer.
 std::size_t branch_inputs(const Layer& layer, std::size_t inputs);
 
-/// Frames after (before) frame t on which frame t of the result depends. Nothing where that is the
-/// whole sequence: bidirectional and pooled networks, and for look_back all recurrent ones.
+/// Number of frames after (before) frame t on which frame t of the result depends. Empty if it
+/// depends on the whole sequence: in bidirectional and pooled networks, and for look_back in all
+/// recurrent ones.
 std::optional<std::size_t> look_ahead(const Architecture& architecture);
 std::optional<std::size_t> look_back(const Architecture& architecture);
 
-/// "3.1.0" is layer 0 of branch 1 of layer 3. An empty `path` means the architecture itself.
+/// The path of layer or branch `index` below `path`: "3.1.0" is layer 0 of branch 1 of layer 3. An
+/// empty `path` means the architecture itself.
 std::string path_below(std::string_view path, std::size_t index);
 
 }  // namespace kinalign

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Follows the parser and notes the first fault that the parser itself accepts.
+/// Observes the parser and records the first fault that the parser itself accepts.
 class Watch {
  public:
   bool see(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -23,13 +23,13 @@ class Watch {
       duplicate_ = "\"" + shown(parsed.get<std::string>()) + "\" twice";
     }
     if (depth > most_json_depth) deep_ = true;
-    return !deep_;  // what is deeper is not kept
+    return !deep_;  // false: deeper values are not stored
   }
   bool deep() const { return deep_; }
   const std::string& duplicate() const { return duplicate_; }
 
  private:
-  std::vector<std::set<std::string>> keys_;  // of the objects that are open
+  std::vector<std::set<std::string>> keys_;  // keys of the open objects
   std::string duplicate_;
   bool deep_ = false;
 };

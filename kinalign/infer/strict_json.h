@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON that a file of ours holds: no duplicate keys, no deep nesting.
+// Parses the JSON of our own files: no duplicate keys, no deep nesting.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -13,7 +13,7 @@ namespace kinalign {
 
 inline constexpr int most_json_depth = 64;
 
-/// Fails where `text` is no JSON, nests too deeply or gives a key of an object twice. `name`
+/// Fails if `text` is not JSON, nests too deeply or contains a key of an object twice. `name`
 /// appears in messages only.
 Result<nlohmann::json> parse_strict_json(std::string_view text, const std::string& name);
 

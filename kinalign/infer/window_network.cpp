@@ -16,20 +16,20 @@ namespace {
 struct Rows {
   const float* data = nullptr;
   std::size_t stride = 0;
-  std::size_t changed = 0;  // from this row on they are new
+  std::size_t changed = 0;  // rows from this one on are new
 
   const float* at(std::size_t row) const { return data + row * stride; }
 };
 
-/// What one layer has computed of the window.
+/// One layer's results for the window.
 struct LayerWindow {
   const PreparedLayer* layer = nullptr;
-  std::size_t before = 0, after = 0;  // frames that a result sees on each side
+  std::size_t before = 0, after = 0;  // number of frames before and after that a result depends on
   std::size_t channels = 0;
   Values out;                // [rows, channels]
-  std::size_t computed = 0;  // rows of `out` that hold
+  std::size_t computed = 0;  // number of valid rows of `out`
   std::vector<std::vector<LayerWindow>> branches;
-  std::vector<Rows> found;  // the branches' results in a run
+  std::vector<Rows> found;  // the branches' results in the current run
 };
 
 std::size_t after_all(const std::vector<LayerWindow>& layers) {
@@ -38,6 +38,7 @@ std::size_t after_all(const std::vector<LayerWindow>& layers) {
   return out;
 }
 
+/// Room for each layer's rows, and the frames before and after that each layer needs.
 std::vector<LayerWindow> windows_of(const std::vector<PreparedLayer>& layers) {
   std::vector<LayerWindow> out;
   for (const PreparedLayer& layer : layers) {
@@ -75,7 +76,8 @@ class WindowRun {
   WindowRun(const Kernels& kernels, std::size_t frames, Values& scratch)
       : kernels_(kernels), frames_(frames), scratch_(scratch) {}
 
-  /// Rows before `end` of the last layer.
+  /// The rows before `end` of the last layer's result. Earlier layers compute as many more rows as
+  /// later layers need.
   Rows list(std::vector<LayerWindow>& layers, Rows in, std::size_t end) {
     std::size_t after = after_all(layers);
     for (LayerWindow& layer : layers) {
@@ -86,6 +88,7 @@ class WindowRun {
   }
 
  private:
+  /// Computes the rows of one layer that have changed or are not yet valid.
   Rows one(LayerWindow& layer, Rows in, std::size_t end) {
     const LayerKind kind = layer.layer->layer.kind;
     if (kind == LayerKind::dropout) return in;
@@ -103,6 +106,7 @@ class WindowRun {
     return {layer.out.data(), layer.channels, from};
   }
 
+  /// Computes the layer's rows from `from` to `end`.
   void compute(LayerWindow& layer, const Rows& in, std::size_t from, std::size_t end) {
     const PreparedLayer& prepared = *layer.layer;
     switch (prepared.layer.kind) {
@@ -128,13 +132,14 @@ class WindowRun {
     }
   }
 
-  /// Zeros stand before the window and behind it.
+  /// Computes rows `from` ... `end` - 1 of a linear or conv layer. Frames outside the window are
+  /// zeros.
   void multiply(LayerWindow& layer, const Rows& in, std::size_t from, std::size_t end) {
     const std::size_t channels = layer.layer->inputs;
     const std::size_t rows = end - from + layer.before + layer.after;
     scratch_.assign(rows * channels, 0.0F);
     for (std::size_t i = 0; i < rows; ++i) {
-      const std::size_t row = from + i;  // further on by `before`
+      const std::size_t row = from + i;  // row of the window, plus `before`
       if (row < layer.before || row - layer.before >= frames_) continue;
       std::copy_n(in.at(row - layer.before), channels, &scratch_[i * channels]);
     }
@@ -148,6 +153,7 @@ class WindowRun {
     kernels_.multiply(product);
   }
 
+  /// Joins, adds or multiplies the branches' rows from `from` to `end`.
   void join(LayerWindow& layer, std::size_t from, std::size_t end) {
     const LayerKind kind = layer.layer->layer.kind;
     for (std::size_t t = from; t < end; ++t) {
@@ -174,6 +180,7 @@ class WindowRun {
   Values& scratch_;
 };
 
+/// Whether each output depends on a bounded number of frames.
 bool are_bounded(const std::vector<Layer>& layers) {
   return std::all_of(layers.begin(), layers.end(), [](const Layer& layer) {
     switch (layer.kind) {
@@ -194,7 +201,7 @@ bool are_bounded(const std::vector<Layer>& layers) {
 
 struct WindowNetwork::State {
   const Network* network = nullptr;
-  std::vector<LayerWindow> layers;  // empty: it runs over the whole window
+  std::vector<LayerWindow> layers;  // empty: the network runs over the whole window each time
   Values scratch;
   Workspace workspace;
   std::vector<float> all;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data parallel training: each process computes a part of every batch. The parts' losses and
-// gradients add up to those of the whole batch, so that the number of processes changes rounding
-// alone. The processes are joined by whoever starts the training (apps/kinalign-learn/processes.h).
+// Data-parallel training: each process computes a part of every batch. Losses and gradients of the
+// parts add up to those of the whole batch, so the number of processes changes only rounding. The
+// program that starts the training connects the processes (apps/kinalign-learn/processes.h).
 #pragma once
 
 #include <torch/torch.h>
@@ -14,11 +14,11 @@
 
 namespace kinalign {
 
-/// Examples begin ... begin + count of a batch of `whole`.
+/// Examples begin ... begin + count - 1 of a batch of `whole` examples.
 struct BatchPart {
   std::int64_t begin = 0, count = 0, whole = 0;
 
-  /// The part's share of a mean over the batch.
+  /// The part's contribution to the mean over the whole batch.
   torch::Tensor mean(const torch::Tensor& values) const {
     return values.mean() * (static_cast<double>(count) / static_cast<double>(whole));
   }
@@ -26,23 +26,25 @@ struct BatchPart {
 
 class BatchShare {
  public:
-  /// Adds the tensors of all processes, in place and on the CPU. False: a process has ended; the
-  /// values count for nothing then.
+  /// Adds the tensors of all processes, in place and on the CPU. Returns false if a process has
+  /// ended; the values are then invalid.
   using Sum = std::function<bool(torch::Tensor& values)>;
 
-  /// One process, which computes the whole batch.
+  /// A single process, which computes the whole batch.
   BatchShare() = default;
-  /// The process `rank` of `size`. All processes call sum() equally often, in the same order.
+  /// The process `rank` of `size`. All processes must call `sum` equally often and in the same
+  /// order.
   BatchShare(std::int64_t rank, std::int64_t size, Sum sum)
       : rank_(rank), size_(size), sum_(std::move(sum)) {}
 
   bool is_alone() const { return size_ == 1; }
-  /// Judges, keeps and writes for all.
+  /// True for the process that judges the network, keeps checkpoints and writes files for all.
   bool is_first() const { return rank_ == 0; }
-  /// A process has ended before the others.
+  /// True if another process has ended too early.
   bool is_broken() const { return broken_; }
 
-  /// Processes beyond the examples of a batch have none.
+  /// This process's part of a batch. If there are more processes than examples, some parts are
+  /// empty.
   BatchPart part(std::int64_t batch) const {
     const std::int64_t begin = batch * rank_ / size_;
     return {begin, batch * (rank_ + 1) / size_ - begin, batch};
@@ -50,7 +52,7 @@ class BatchShare {
 
   /// The sum over all processes, without gradient.
   torch::Tensor total(const torch::Tensor& part) const;
-  /// The value of the first process.
+  /// The value of the first process, sent to all.
   std::optional<double> of_first(const std::optional<double>& value) const;
 
  private:

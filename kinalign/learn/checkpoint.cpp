@@ -49,7 +49,7 @@ void read_numbers(const Json& json, TrainingState& out) {
   for (const Json& point : json.at("points")) out.points.push_back(point_of(point));
 }
 
-// --- TensorBoard: records of protobuf, each with masked CRC-32C before and behind.
+// --- TensorBoard: protobuf records, each with a masked CRC-32C of its length and of its data.
 
 std::uint32_t crc32c(std::string_view bytes) {
   std::uint32_t crc = 0xffffffffU;
@@ -64,6 +64,7 @@ void put_little(std::string& out, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i) & 0xffU);
 }
 
+/// Appends a record of TensorBoard: its length, its data, and a masked CRC-32C of each.
 void put_record(std::string& out, const std::string& data) {
   const auto masked = [](std::string_view bytes) {
     const std::uint32_t crc = crc32c(bytes);
@@ -88,7 +89,7 @@ void put_bytes(std::string& out, int field, const std::string& bytes) {
   out += bytes;
 }
 
-/// Event { wall_time = 0, step, summary { value { tag, simple_value } } }
+/// The message Event { wall_time = 0, step, summary { value { tag, simple_value } } }.
 std::string event_of(std::int64_t step, const std::string& tag, double value) {
   std::string one;
   put_bytes(one, 1, tag);

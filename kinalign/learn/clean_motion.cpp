@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t clean_units = 256, latent_layers = 5;
 constexpr std::int64_t batch = 32, crop = 61;
-constexpr double noise = 0.01, dropped = 0.1;  // m; share of joints
+constexpr double noise = 0.01, dropped = 0.1;  // m; share of dropped joints
 
+/// Training task: removes noise from clean motion.
 class CleanMotionTask : public TrainingTask {
  public:
   CleanMotionTask(const DenoiseLayout& layout, const std::vector<Pair>& pairs, torch::Device device)
@@ -35,6 +36,7 @@ class CleanMotionTask : public TrainingTask {
 
   bool empty() const { return motions_.empty(); }
 
+  /// The loss of one batch of random crops, with fresh noise.
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override {
     const RandomStream random(seed, step);
     std::vector<torch::Tensor> pieces;
@@ -66,8 +68,8 @@ class CleanMotionTask : public TrainingTask {
 
  private:
   torch::Device device_;
-  std::vector<torch::Tensor> motions_;  // [T,3 Jout]
-  torch::Tensor weights_;               // [3 Jout], of mean 1
+  std::vector<torch::Tensor> motions_;  // [T,3 Jout] m, in the body's frame
+  torch::Tensor weights_;               // [3 Jout], mean 1
 };
 
 }  // namespace
@@ -99,7 +101,8 @@ Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::ve
   own.seed = options.seed + 1;
   own.judge_every = 0;
   own.patience = 0;
-  // A kill in this part begins it anew: what is kept belongs to the network that comes after it.
+  // No checkpoints here: an interrupted run starts this part again, because checkpoints belong to
+  // the first network, which is trained afterwards.
   if (auto done = train(network, task, own, {}, {.progress = hooks.progress, .share = hooks.share});
       !done) {
     return Failure(done.error());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BRA-P's second network: an autoencoder of clean motion. Its features judge an answer while the
-// first network is trained, and it stands behind the first at use.
+// BRA-P's second network: an autoencoder of clean motion. During training its features judge the
+// answer of the first network. At use it refines the first network's answer.
 #pragma once
 
 #include "kinalign/learn/trainer.h"
@@ -9,15 +9,16 @@
 
 namespace kinalign {
 
-/// From answers [B,T,3 Jout] m, in the body's frame, to the same, cleaner.
+/// A network from answers [B,T,3 Jout] m, in the body's frame, to cleaner ones of the same shape.
 Architecture clean_motion_architecture(std::size_t answers);
 
-/// Trains it on the truth of `pairs`, whose joints are moved by 1 cm and dropped out at random.
+/// Trains the network on the truth of `pairs`, with noise of 1 cm on the joints and random dropout
+/// of joints.
 Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::vector<Pair>& pairs,
                                       const TrainingOptions& options, torch::Device device,
                                       const TrainingHooks& hooks);
 
-/// The features [B,T,C] of its narrow middle.
+/// The features [B,T,C] of the network's narrow middle layer.
 torch::Tensor motion_features(const TorchNetwork& network, const torch::Tensor& answers);
 
 }  // namespace kinalign

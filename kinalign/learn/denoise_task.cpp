@@ -16,9 +16,10 @@ namespace {
 
 constexpr double centimetres = 100.0;
 constexpr double least_position_scale = 0.01, least_step_scale = 0.001;  // m
+/// Random numbers reserved for each example of a batch.
 constexpr std::uint64_t lanes_per_example = 8;
-/// Of Student's t distribution in three dimensions, which a stated spread is learnt by (Lange,
-/// Little and Taylor 1989 use 4 where it is not estimated).
+/// Degrees of freedom of Student's t distribution in three dimensions, by which the stated spread
+/// is learnt (Lange, Little and Taylor 1989 use 4 if they are not estimated).
 constexpr double student_freedom = 4.0;
 constexpr std::int64_t linear_kernel = 9;  // 0.3 s at 30 Hz
 constexpr double linear_penalty = 300.0;
@@ -31,7 +32,7 @@ bool is_hand(const std::string& name) {
   return false;
 }
 
-/// Rows begin ... begin + count of `x`, the last of them repeated where it ends sooner.
+/// Rows begin ... begin + count - 1 of `x`. If `x` is shorter, its last row is repeated.
 torch::Tensor rows(const torch::Tensor& x, std::int64_t begin, std::int64_t count) {
   const auto piece = x.slice(0, begin, begin + count);
   const std::int64_t missing = count - piece.size(0);
@@ -56,6 +57,7 @@ std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands)
   return out;
 }
 
+/// Computes the features of all pairs, the scales, and the weights of joints and bones.
 DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
                          const std::vector<Pair>& learnt, const std::vector<Pair>& judged,
                          torch::Device device)
@@ -146,8 +148,9 @@ void DenoiseTask::set_scales() {
   use_scales({values_of(all.mean(0)), values_of(scale), values_of(sum / count.clamp_min(1.0))});
 }
 
-/// The input's mean plus what the truth is off its own mean. A joint that several outputs could
-/// stand for has its own name's truth, which comes first among them.
+/// Replaces input joints by the input's mean plus the deviation of the truth from its own mean. If
+/// several outputs stand for one input joint, the first one is used, which has the joint's own
+/// name.
 void DenoiseTask::put_truth_in(Example& one) const {
   const auto inputs = inputs_of_outputs(layout_);
   const auto mean = to_torch(scales_.input_mean, {whole(scales_.input_mean.size())});
@@ -161,6 +164,8 @@ void DenoiseTask::put_truth_in(Example& one) const {
   }
 }
 
+/// Draws random crops, each a function of seed, step and number, so that any process can draw any
+/// part.
 DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step,
                                      const BatchPart& part) const {
   const RandomStream random(seed, step);
@@ -228,8 +233,8 @@ torch::Tensor DenoiseTask::weigh(const Batch& batch, const BatchPart& part,
            weights.bone * mean_of((bones(answer) - bones(batch.truth)).abs(), both * bone_weights_);
   }
   if (spread.defined()) {
-    // Three axes of one spread (cm); the error is not moved by it. Of a normal distribution, a
-    // joint that the Kinect puts a metre off would outweigh all else.
+    // One spread (cm) for three axes; the gradient does not flow into the error. A normal
+    // distribution would let a joint that the Kinect puts a metre off outweigh everything else.
     const auto square = error.detach().pow(2).sum(-1) * torch::exp(-2.0 * spread);
     const auto likelihood =
         3.0 * spread + 0.5 * (student_freedom + 3.0) * torch::log1p(square / student_freedom);
@@ -309,6 +314,8 @@ double DenoiseTask::spread_factor(const TorchNetwork& network) const {
   return sorted[sorted.size(0) * 9 / 10].item<double>() / radius_90;
 }
 
+/// The mean error of position plus half that of the second difference, cm, over the validation
+/// pairs.
 std::optional<double> DenoiseTask::judge(const TorchNetwork& network) {
   if (judged_.empty()) return std::nullopt;
   torch::NoGradGuard guard;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cleaning skeletons as a task: pairs of an input and its truth, batches of them, their loss.
+// Cleaning skeletons as a training task: pairs of input and truth, their batches, and their loss.
 #pragma once
 
 #include "kinalign/learn/linear_answer.h"
@@ -14,74 +14,79 @@
 
 namespace kinalign {
 
-/// What the answers are held against, each in centimetres and with its weight.
+/// Weights of the terms of the loss. Lengths are in centimetres.
 struct DenoiseLoss {
   double distance = 1.0;      // mean distance of joints
-  double square = 0.0;        // mean square, in dm^2: BRA's and CNN's
-  double acceleration = 0.5;  // distance of second differences
-  double bone = 0.2;          // difference of bone lengths
-  double smooth = 0.0;        // length of the answer's own second differences
-  double spread = 0.1;        // negative log likelihood of the stated spread, if it is stated
-  double hands = 1.0;         // weight of wrists, hands and their bones beside the others'
-  double hidden = 0.0;        // BRA-P: difference of the features of a network that knows motion
+  double square = 0.0;        // mean square in dm^2, used by BRA and CNN
+  double acceleration = 0.5;  // mean distance of second differences
+  double bone = 0.2;          // mean difference of bone lengths
+  double smooth = 0.0;        // mean length of the answer's second differences
+  double spread = 0.1;  // negative log likelihood of the stated spread, if the network states one
+  double hands = 1.0;   // factor for wrists, hands and their bones
+  double hidden = 0.0;  // BRA-P: squared difference of the features of the network of clean motion
 };
 
 struct DenoiseTraining {
   DenoiseLoss loss{};
   std::int64_t batch = 32, crop = 61;
-  bool mirror = true;
-  bool states_spread = false;  // the last Jout channels are the logarithm of each joint's spread
-  double answer_scale = 0.05;  // m of a network's 1
-  bool one_scale = false;      // of the input's positions too; else each channel has its own
-  bool from_truth = false;     // the truth is the input as well, where the Kinect sees its joints
+  bool mirror = true;  // add the mirror image of each pair
+  /// The last Jout channels are the logarithm of each joint's spread, cm.
+  bool states_spread = false;
+  double answer_scale = 0.05;  // metres per unit of the network's output
+  /// `answer_scale` is also the scale of all input positions; else each channel has its own.
+  bool one_scale = false;
+  bool from_truth = false;  // replace the input's joints by the truth where the truth is valid
 };
 
-/// Numbers of the training people's features, which the model keeps.
+/// Statistics of the training features, stored in the model.
 struct DenoiseScales {
   std::vector<float> input_mean, input_scale;  // [C]
-  std::vector<float> answer_mean;              // [3 Jout] m, of truth minus base
+  std::vector<float> answer_mean;              // [3 Jout] m, mean of truth minus base
 };
 
-/// [Jout] of joints in a loss. Outputs of the Kinect's own joints count 1. The others that one
-/// input joint stands for count 1 together: a suit's forty joints of fingers would be two thirds of
-/// the loss, and no Kinect sees them. `hands`: a factor of wrists and hands.
+/// Weights [Jout] of the joints in a loss. An output that is a joint of the Kinect counts 1. Other
+/// outputs that share one input joint count 1 together: otherwise the forty finger joints of a suit
+/// would be two thirds of the loss, and no Kinect sees them. `hands`: factor for wrists and hands.
 std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands);
 
 class DenoiseTask : public TrainingTask {
  public:
-  /// `judged`: of people who are not trained on; may be empty. `known`: for the loss `hidden`, a
-  /// network from [B,T,3 Jout] answers in the body's frame, m, to features.
+  /// `learnt`: pairs to train on. `judged`: pairs of other people for validation; may be empty.
   DenoiseTask(DenoiseLayout layout, DenoiseTraining training, const std::vector<Pair>& learnt,
               const std::vector<Pair>& judged, torch::Device device);
 
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override;
   std::optional<double> judge(const TorchNetwork& network) override;
 
-  /// The answers [B,T,Jout,3] m, in the body's frame, to features as denoise_features() gives them.
+  /// The answers [B,T,Jout,3] m in the body's frame, for features from denoise_features().
   torch::Tensor answers(const TorchNetwork& network, const torch::Tensor& input,
                         const torch::Tensor& base, bool training) const;
 
-  /// What a network says that answers with the base: zeros, and the logarithm of each joint's own
-  /// spread about it. With another spread the likelihood outweighs all other losses at first.
+  /// The output of a network whose answer is the base: zeros, and the logarithm of each joint's
+  /// actual spread about the base. With another initial spread the likelihood would outweigh all
+  /// other losses at first.
   torch::Tensor first_answer() const;
 
-  /// The answers by ridge regression on the positions of nine frames, over all that is learnt; with
-  /// the logarithm of each joint's spread about them, where a spread is stated.
+  /// Ridge regression from the positions of nine frames to the answers, over all training pairs. If
+  /// a spread is stated, the bias contains the logarithm of each joint's spread about the
+  /// regression.
   LinearAnswer linear_answer() const;
 
-  /// By what the stated spread must be multiplied so that 90 % of the pairs that were learnt lie
-  /// within the 90 % radius; 1 where none is stated.
+  /// The factor for the stated spread that puts 90 % of the training pairs within the 90 % radius;
+  /// 1 if no spread is stated.
   double spread_factor(const TorchNetwork& network) const;
 
   const DenoiseScales& scales() const { return scales_; }
-  /// In place of those of the pairs: a model's, to go on from it.
+  /// Replaces the scales found from the pairs by those of a model, to continue its training.
   void use_scales(DenoiseScales scales);
+  /// Sets the features for the loss `hidden`: a function of answers [B,T,3 Jout] m in the body's
+  /// frame.
   void compare_features(std::function<torch::Tensor(const torch::Tensor&)> features) {
     features_ = std::move(features);
   }
 
  private:
-  /// A sequence as the network sees it, once as it is and once mirrored.
+  /// The features of one sequence.
   struct Example {
     torch::Tensor input, base, truth, valid;  // [T,C], [T,Jout,3], [T,Jout,3], [T,Jout]
   };
@@ -90,17 +95,20 @@ class DenoiseTask : public TrainingTask {
   };
   Example example_of(const Pair& pair) const;
   Example mirrored(const Pair& pair) const;
+  /// Finds the mean and the deviation of each input channel, and the answers' mean offset from the
+  /// base, over all examples.
   void set_scales();
   void put_truth_in(Example& one) const;
   Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
-  /// `part`: of the batch, whose share of the loss it is.
+  /// The loss of one part of a batch, weighted by its share of the batch.
   torch::Tensor weigh(const Batch& batch, const BatchPart& part, const torch::Tensor& answer,
                       const torch::Tensor& spread) const;
 
   DenoiseLayout layout_;
   DenoiseTraining training_;
   std::vector<std::size_t> input_partners_, output_partners_;
-  std::vector<std::vector<Example>> examples_;  // one or two of each pair
+  /// Per pair: the example, and its mirror image if used.
+  std::vector<std::vector<Example>> examples_;
   std::vector<Example> judged_;
   DenoiseScales scales_;
   torch::Tensor input_mean_, input_scale_, answer_mean_, joint_weights_, bone_weights_, bone_ends_,

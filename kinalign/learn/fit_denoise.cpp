@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// The part of the model that the task has learnt without its network.
+/// The parts of the model that the task knows before the network is trained.
 DenoiseModel begun_model(const DenoiseMethod& method, const DenoiseLayout& layout,
                          const DenoiseTask& task) {
   DenoiseModel out;

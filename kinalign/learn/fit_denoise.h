@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From pairs and a method to a model.
+// Trains a model that cleans skeletons, from pairs and a method.
 #pragma once
 
 #include "kinalign/learn/method.h"
@@ -9,7 +9,7 @@
 namespace kinalign {
 
 struct DenoiseFit {
-  DenoiseModel model;  // without facts of its data
+  DenoiseModel model;  // in `facts` only task and method are set
   std::vector<TrainingPoint> points;
 };
 
@@ -18,25 +18,26 @@ struct FitOptions {
   torch::Device device = torch::kCPU;
 };
 
-/// What of the pairs is trained on, and what judges the network while it is.
+/// Pairs to train on, and pairs to judge the network during training.
 struct DividedPairs {
   std::vector<Pair> learnt, judged;
 };
 
-/// `pairs`: the joints and the rate; those in `divided` are used.
-/// `from`: a model of that method to go on from; `pairs` are of its joints (pairs_for()).
+/// Trains a model. `pairs` gives only the joints and the rate; the data are those of `divided`.
+/// `from`: a model of the same method to continue from; then `pairs` must have its joints
+/// (pairs_for()).
 Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
                                const DividedPairs& divided, const FitOptions& options,
                                TrainingState state, const TrainingHooks& hooks,
                                const DenoiseModel* from = nullptr);
 
-/// Lets the method's network begin as the method says.
+/// Initialises the network as the method demands.
 void begin_network(const DenoiseMethod& method, const DenoiseTask& task, TorchNetwork& network);
 
-/// The network's weights as a model's file holds them, `prefix` before each name.
+/// Copies the network's weights to `out`, with `prefix` before each name.
 void put_tensors(const TorchNetwork& network, const std::string& prefix,
                  std::map<std::string, Tensor>& out);
-/// The way back. Fails where a tensor is missing or has another shape.
+/// The inverse of put_tensors(). Fails if a tensor is missing or has another shape.
 Result<void> take_tensors(const std::map<std::string, Tensor>& tensors, const std::string& prefix,
                           TorchNetwork& network);
 

@@ -30,7 +30,8 @@ void LinearFit::add(const torch::Tensor& input, const torch::Tensor& target,
 LinearAnswer LinearFit::solved(double penalty) const {
   const std::int64_t width = kernel_ * channels_, answers = moment_.size(1);
   auto penalties = torch::full({width + 1}, penalty, torch::kFloat64);
-  penalties[width] = 1e-6;  // the bias is free; without rows it is 0
+  // The bias is not penalised; this keeps the system solvable without rows.
+  penalties[width] = 1e-6;
   const auto weights = torch::linalg_solve(gram_ + torch::diag(penalties), moment_);
   const auto left =
       squares_ - 2.0 * (weights * moment_).sum(0) + (weights * torch::mm(gram_, weights)).sum(0);

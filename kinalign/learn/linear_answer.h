@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The linear answer that a correcting network begins with: ridge regression on a few frames (Hoerl
+// The linear map with which a correcting network begins: ridge regression on a few frames (Hoerl
 // and Kennard, 1970), in closed form.
 #pragma once
 
@@ -7,22 +7,23 @@
 
 namespace kinalign {
 
-/// A convolution over time, as torch::conv1d with zeros beyond both ends takes it.
+/// A convolution over time in the form of torch::conv1d, with zeros beyond both ends.
 struct LinearAnswer {
   torch::Tensor weight;  // [N,C,kernel] float32
   torch::Tensor bias;    // [N]
-  torch::Tensor left;    // [N] mean square of what it leaves over of the rows
+  torch::Tensor left;    // [N] mean square error over the rows
 };
 
 class LinearFit {
  public:
-  /// `kernel`: frames, odd.
+  /// `kernel`: number of frames, odd.
   LinearFit(std::int64_t channels, std::int64_t answers, std::int64_t kernel);
 
-  /// `input` [T,C], `target` [T,N]; `counts` [T] bool: the frames that count.
+  /// Adds a sequence: `input` [T,C], `target` [T,N]; `counts` [T] bool selects the frames.
   void add(const torch::Tensor& input, const torch::Tensor& target, const torch::Tensor& counts);
 
-  /// `penalty`: of squared weights beside the sum of squared errors. All zeros where no row counts.
+  /// `penalty`: factor of the squared weights, added to the sum of squared errors. All zeros if no
+  /// row was added.
   LinearAnswer solved(double penalty) const;
 
  private:

@@ -18,7 +18,7 @@ std::string number(double value) {
   return text;
 }
 
-/// A text of anyone's within XML.
+/// Escapes any text for XML.
 std::string within_xml(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -33,7 +33,7 @@ std::string within_xml(const std::string& text) {
   return out;
 }
 
-/// From values to the picture's height.
+/// Maps values to the picture's height.
 struct Axis {
   double least = 0.0, most = 1.0;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pieces of losses that several tasks use.
+// Parts of losses that several tasks use.
 #pragma once
 
 #include "kinalign/learn/batch_share.h"
@@ -13,8 +13,8 @@ inline torch::Tensor lengths_of(const torch::Tensor& vectors) {
   return (vectors.pow(2).sum(-1) + 1e-4).sqrt();
 }
 
-/// The mean of `values` with these weights; 0 where all are 0. Of a part of a batch: its share of
-/// the mean over the batch.
+/// The weighted mean of `values`; 0 if all weights are 0. For a part of a batch: the part's
+/// contribution to the mean over the batch.
 inline torch::Tensor weighted_mean(const torch::Tensor& values, const torch::Tensor& weights,
                                    const BatchShare& share = {}) {
   return (values * weights).sum() / share.total(weights.sum()).clamp_min(1e-6);

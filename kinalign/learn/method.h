@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A method: a network, what it is trained on, how it is trained.
+// A method: a network, its training data, and its training.
 #pragma once
 
 #include "kinalign/learn/denoise_task.h"
@@ -10,24 +10,26 @@
 
 namespace kinalign {
 
-/// What a network answers before its training.
+/// The output of a network before its training.
 enum class Begins : std::uint8_t {
-  as_drawn,  // anything
-  as_base,   // the base and the mean offset
-  linear,    // DenoiseTask::linear_answer(): a sum of a slice with a conv, and of a correction
+  as_drawn,  // random weights
+  as_base,   // the base plus the mean offset
+  linear,    // DenoiseTask::linear_answer(); the network is a sum of (slice, conv) and a correction
 };
 
 /// A network that cleans skeletons.
 struct DenoiseMethod {
   std::string_view name, summary, source;
-  /// From the layout's channels to its answers (and, if it states a spread, one more a joint).
+  /// The network from the layout's channels to its answers, plus one channel per joint if it states
+  /// a spread.
   Architecture (*architecture)(const DenoiseLayout& layout);
   DenoiseTraining training;
   TrainingOptions options;
-  bool from_base = true;  // answers what the smoothed input joint is off by; else where a joint is
+  /// The network outputs corrections of the smoothed input joint; false: positions.
+  bool from_base = true;
   Begins begins = Begins::as_drawn;
-  bool perceptual = false;  // BRA-P: trains a network of clean motion first
-  bool has_second = false;  // and that network stands behind it
+  bool perceptual = false;  // BRA-P: trains a network of clean motion first, for the loss
+  bool has_second = false;  // that network also refines the answers at use
 };
 
 }  // namespace kinalign

@@ -18,7 +18,8 @@ namespace kinalign {
 
 namespace {
 
-// On UI-PRMD these find 86 % of the truth's contacts, and 99 % of what they find are contacts.
+// With these limits 86 % of the true contacts in UI-PRMD are found, and 99 % of the found ones are
+// true.
 constexpr double fastest_m_s = 0.3, highest_m = 0.1, usual_lowest = 0.05;
 constexpr std::ptrdiff_t least_standing = 4;  // frames
 constexpr float cm_per_m = 100.0F;
@@ -32,7 +33,7 @@ std::size_t unpool_of(const std::vector<Layer>& layers) {
   return static_cast<std::size_t>(found - layers.begin());
 }
 
-/// The body's frames as tensors: [T,1,3] m, [T,1], [T,1].
+/// The body's frames as tensors: root [T,1,3] m, cosine and sine [T,1].
 struct FrameTensors {
   torch::Tensor root, cosine, sine;
 };
@@ -48,7 +49,7 @@ FrameTensors tensors_of(const std::vector<BodyFrame>& frames) {
   return {to_torch(root, {n, 1, 3}), to_torch(cosine, {n, 1}), to_torch(sine, {n, 1})};
 }
 
-/// [T,J,3] m from the body's frame to the world's space.
+/// Moves positions [T,J,3] m from the body's frame to the world's space.
 torch::Tensor in_world(const FrameTensors& frames, const torch::Tensor& body) {
   const auto x = body.select(2, 0), z = body.select(2, 2);
   const auto turned = torch::stack(
@@ -57,17 +58,17 @@ torch::Tensor in_world(const FrameTensors& frames, const torch::Tensor& body) {
   return turned + frames.root;
 }
 
-/// The mean of `values` where `weights` are 1; 0 where none is.
+/// The mean of `values` where `weights` is 1; 0 if it is 1 nowhere.
 torch::Tensor mean_where(const torch::Tensor& values, const torch::Tensor& weights) {
   return (values * weights).sum() / weights.sum().clamp_min(1.0);
 }
 
-/// The mean; 0 of nothing.
+/// The mean; 0 if there are no values.
 torch::Tensor mean_of(const torch::Tensor& values) {
   return values.sum() / std::max<std::int64_t>(values.numel(), 1);
 }
 
-/// A model's network in two halves: from the input to its code, from the code to the motion.
+/// A model's network in two halves: from the input to its code, and from the code to the motion.
 class Autoencoder {
  public:
   Autoencoder(const DenoiseModel& model, const DenoiseFeatures& features)
@@ -75,7 +76,9 @@ class Autoencoder {
     const auto& layers = model.architecture.layers;
     const std::size_t middle = unpool_of(layers);
     encoder_.assign(layers.begin(), layers.begin() + static_cast<std::ptrdiff_t>(middle));
-    decoder_ = layers;  // layers keep their numbers: those of the encoder become the identity
+    // The decoder keeps the numbers of the layers, because tensors are named by them; the encoder's
+    // layers become the identity.
+    decoder_ = layers;
     for (std::size_t i = 0; i <= middle; ++i) decoder_[i] = {.kind = LayerKind::dropout};
     for (const Parameter& parameter : parameters(model.architecture)) {
       tensors_[parameter.name] = to_torch(model.tensors.at("net." + parameter.name));
@@ -92,7 +95,7 @@ class Autoencoder {
 
   torch::Tensor code() const { return run_layers(encoder_, tensors_, input_); }
 
-  /// [T,Jout,3] m in the body's frame.
+  /// The decoded motion [T,Jout,3] m in the body's frame.
   torch::Tensor motion(const torch::Tensor& code) const {
     const auto unpooled = 0.5 * code.repeat_interleave(2, 1).slice(1, 0, frames_);
     const auto out = run_layers(decoder_, tensors_, unpooled);
@@ -108,7 +111,7 @@ class Autoencoder {
   torch::Tensor input_, base_;
 };
 
-/// What a motion must meet, found before it is changed.
+/// The constraints of a motion, found from the input and the answer.
 class Constraints {
  public:
   Constraints(const DenoiseLayout& layout, const JointFrames& body, const DenoiseFeatures& features,
@@ -135,7 +138,7 @@ class Constraints {
     find_standing(layout, body);
   }
 
-  /// The mean squares, cm^2: feet, path, bones.
+  /// The mean squares of the three deviations, cm^2: feet, path, bones.
   std::array<torch::Tensor, 3> squares(const torch::Tensor& motion) const {
     const auto body = motion * cm_per_m;
     const auto feet = in_world(frames_, motion).index_select(1, feet_) * cm_per_m;
@@ -147,7 +150,8 @@ class Constraints {
   }
 
  private:
-  /// A move from a frame to the next one counts where the input's foot stands in both.
+  /// Finds standing feet in the input. The motion between two frames counts if the foot stands in
+  /// both.
   void find_standing(const DenoiseLayout& layout, const JointFrames& body) {
     JointFrames smoothed = body;
     fill_missing(smoothed, layout.smoothing.causal);
@@ -175,7 +179,7 @@ class Constraints {
 
   FrameTensors frames_;
   torch::Tensor roots_, ends_, begins_, lengths_, path_, feet_;
-  torch::Tensor standing_;  // [T-1,F]
+  torch::Tensor standing_;  // [T-1,F] 1 if foot f stands in both frames
 };
 
 ConstraintErrors errors_of(const std::array<torch::Tensor, 3>& squares) {

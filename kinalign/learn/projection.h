@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constraint projection: Holden, Saito, Komura, SIGGRAPH 2016, section 6. Gradient steps in the
-// hidden space of a convolutional autoencoder, until the motion that it decodes to meets
-// constraints: feet that stand do not slide, bones keep their lengths, the root keeps its path. All
-// three come from the input and the model's answer to it, so that no truth is needed.
+// Constraint projection (Holden, Saito, Komura, SIGGRAPH 2016, section 6): gradient steps in the
+// hidden space of a convolutional autoencoder until the decoded motion meets constraints. Standing
+// feet do not slide, bones keep their lengths, the root keeps its path. All constraints come from
+// the input and the model's answer, so no ground truth is needed.
 #pragma once
 
 #include "kinalign/models/denoise_model.h"
@@ -14,34 +14,35 @@
 namespace kinalign {
 
 struct ProjectionOptions {
-  std::int64_t steps = 50;  // of Adam
-  double rate = 0.01;
-  // Weights of mean squares, in cm^2: moves of standing feet from frame to frame, moves of roots
-  // away from the answer, bones that are longer or shorter than their usual length.
+  std::int64_t steps = 50;  // number of steps of Adam
+  double rate = 0.01;       // learning rate of Adam
+  // Weights of mean squares in cm^2: motion of standing feet between frames, distance of roots from
+  // the answer, deviation of bones from their median length.
   double feet = 10.0, path = 10.0, bones = 1.0;
 };
 
-/// How far a motion is from its constraints: roots of the mean squares.
+/// Deviations of a motion from its constraints: roots of the mean squares.
 struct ConstraintErrors {
-  double feet_cm = 0.0;  // from frame to frame; 0 where no foot ever stands
+  double feet_cm = 0.0;  // motion between frames; 0 if no foot ever stands
   double path_cm = 0.0, bone_cm = 0.0;
 };
 
 struct Projected {
-  Denoised answer;                 // in the body's space, without the steadying
-  ConstraintErrors before, after;  // of the answer as it was, and as it is
+  Denoised answer;                 // in the space of the body, without the steadying
+  ConstraintErrors before, after;  // the model's answer; the projected answer
 };
 
-/// Whether the model's network has a hidden space: an unpool in its list of layers, alone, and no
-/// network behind it.
+/// True if the model's network has a hidden space: exactly one unpool in its list of layers, and no
+/// second network.
 bool has_hidden_space(const DenoiseModel& model);
 
-/// `body`: frames of the layout's inputs at its rate. Fails where the network has no hidden space.
+/// `body`: frames of the layout's input joints at its rate. Fails if the network has no hidden
+/// space.
 Result<Projected> project(const DenoiseModel& model, const JointFrames& body,
                           const ProjectionOptions& options = {});
 
-/// Frames [T] in which a foot [T,3] m stands: slow, near the lowest place where it comes, for four
-/// frames or more.
+/// Frames [T] in which a foot [T,3] m stands: it is slow and near its lowest height for at least
+/// four frames.
 std::vector<std::uint8_t> standing_frames(std::span<const float> foot, double rate_hz);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between our arrays and LibTorch's tensors.
+// Conversions between our arrays and LibTorch's tensors.
 #pragma once
 
 #include "kinalign/infer/safetensors.h"
@@ -14,7 +14,7 @@ namespace kinalign {
 
 inline std::int64_t whole(std::size_t value) { return static_cast<std::int64_t>(value); }
 
-/// A copy of the values, in that shape.
+/// Copies the values into a tensor of that shape.
 inline torch::Tensor to_torch(const std::vector<float>& values,
                               const std::vector<std::int64_t>& shape) {
   auto out = torch::empty(shape, torch::kFloat32);

@@ -25,7 +25,7 @@ torch::Tensor uniform(std::vector<std::int64_t> shape, double bound) {
   return torch::empty(shape).uniform_(-bound, bound);
 }
 
-/// Makes the tensors of layers and says how many channels come out.
+/// Makes the tensors of layers; returns the number of output channels.
 class Maker {
  public:
   explicit Maker(Tensors& tensors) : tensors_(tensors) {}
@@ -38,6 +38,7 @@ class Maker {
   }
 
  private:
+  /// Makes the tensors of a layer with `in` channels; gives the number of its output channels.
   std::size_t make(const Layer& layer, const std::string& path, std::size_t in) {
     switch (layer.kind) {
       case LayerKind::linear:
@@ -115,11 +116,11 @@ class Maker {
 /// Runs layers on values [B,T,C].
 class Runner {
  public:
-  /// `part`: of the batch that is trained on; nothing outside training.
+  /// `part`: the part of the batch in training; absent outside training.
   Runner(const Tensors& tensors, std::optional<BatchPart> part) : tensors_(tensors), part_(part) {}
 
   torch::Tensor run(const Layers& layers, const std::string& path, torch::Tensor x) const {
-    // Pools are undone to the lengths they began with, the last one first.
+    // An unpool restores the length before the matching max_pool; the last pool is undone first.
     std::vector<std::int64_t> lengths;
     for (std::size_t i = 0; i < layers.size(); ++i) {
       const Layer& layer = layers[i];
@@ -168,7 +169,7 @@ class Runner {
       case LayerKind::max_pool:
         return torch::max_pool1d(x.transpose(1, 2), 2, 2, 0, 1, true).transpose(1, 2);
       case LayerKind::unpool:
-        return x;  // run() does it
+        return x;  // done in run() above, which knows the length
       case LayerKind::sum:
       case LayerKind::product:
       case LayerKind::concat:
@@ -189,9 +190,9 @@ class Runner {
         .transpose(1, 2);
   }
 
-  /// Random numbers in the shape of `x`: the part's rows of those that `draw` fills the whole batch
-  /// with, in the order of its indices, however `x` lies in memory. An example has several rows
-  /// within along_time.
+  /// Random numbers in the shape of `x`: `draw` fills the numbers of the whole batch, and the
+  /// part's rows are returned. The order is that of the indices, independent of the memory layout
+  /// of `x`. Within along_time an example has several rows.
   torch::Tensor drawn_like(const torch::Tensor& x,
                            const std::function<void(torch::Tensor&)>& draw) const {
     const std::int64_t rows = x.size(0) / std::max<std::int64_t>(part_->count, 1);
@@ -207,7 +208,7 @@ class Runner {
     return x * kept;
   }
 
-  /// In training each value goes to a random one of its two frames; at use half of it to both.
+  /// In training each value goes to a random one of its two frames; at use half of it goes to both.
   torch::Tensor unpool(const torch::Tensor& x, std::int64_t length) const {
     const auto twice = x.repeat_interleave(2, 1).slice(1, 0, length);
     if (!part_) return twice * 0.5;
@@ -233,7 +234,7 @@ class Runner {
     return out;
   }
 
-  /// Each channel of the batch is a sequence of its own.
+  /// Applies the branch to each channel as a sequence of its own. Overlapping windows are averaged.
   torch::Tensor along_time(const Layer& layer, const std::string& path,
                            const torch::Tensor& x) const {
     const std::int64_t frames = x.size(1), window = whole(layer.window);
@@ -251,8 +252,8 @@ class Runner {
     return mean.reshape({x.size(0), x.size(2), -1}).slice(2, 0, frames).transpose(1, 2);
   }
 
-  /// cuDNN's recurrent layers go backward only from their training form, which differs by the
-  /// dropout between layers; ours have one layer each.
+  /// cuDNN can't run recurrent layers backward from its inference form. Its training form differs
+  /// only by the dropout between layers, and each of our layers is a single one.
   static bool has_gradients() { return torch::GradMode::is_enabled(); }
 
   static torch::Tensor state(const Layer& layer, const torch::Tensor& x) {
@@ -276,7 +277,7 @@ class Runner {
   std::optional<BatchPart> part_;
 };
 
-/// Path of the last layer with weights, found from the end.
+/// The path of the last layer with weights; empty if there is none.
 std::string last_weighted(const Layers& layers, const std::string& path) {
   for (std::size_t i = layers.size(); i-- > 0;) {
     const LayerKind kind = layers[i].kind;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A network of the same layers as `infer` runs, with gradients. Tensors have the names that
-// infer/architecture.h states.
+// A network with the layers of `infer`, with gradients. Tensors have the names stated in
+// infer/architecture.h.
 #pragma once
 
 #include "kinalign/infer/architecture.h"
@@ -16,17 +16,18 @@ namespace kinalign {
 
 class TorchNetwork {
  public:
-  /// Weights drawn from torch's generator (seed it before): uniform within 1/sqrt(fan in), as
-  /// PyTorch's modules have them; recurrent matrices orthogonal, the forget gate's bias 1.
+  /// Draws the weights from torch's generator, which must be seeded before: uniform within
+  /// 1/sqrt(fan in) as in PyTorch's modules, recurrent matrices orthogonal, the forget gate's bias
+  /// 1.
   explicit TorchNetwork(Architecture architecture);
 
-  /// [B,T,inputs] to [B,T,outputs]. `training`: with dropout.
+  /// From [B,T,inputs] to [B,T,outputs]. `training`: with dropout.
   torch::Tensor forward(const torch::Tensor& input, bool training) const;
-  /// In training, of a part of a batch: what is dropped is that of the whole batch.
+  /// In training, for a part of a batch. The random dropout is that of the whole batch.
   torch::Tensor forward(const torch::Tensor& input, const BatchPart& part) const;
 
-  /// Weights of the last linear or conv layer become 0, so that it answers with `bias` [outputs],
-  /// or 0.
+  /// Sets the weights of the last linear or conv layer to 0, so that the network outputs `bias`
+  /// [outputs], or 0 if it is undefined.
   void zero_last(const torch::Tensor& bias = {});
   void to(torch::Device device);
 
@@ -39,7 +40,7 @@ class TorchNetwork {
   std::map<std::string, torch::Tensor> tensors_;
 };
 
-/// The values behind `layers`, of a network's tensors, without dropout.
+/// Runs `layers` with the tensors of a network, without dropout; returns the output.
 torch::Tensor run_layers(const std::vector<Layer>& layers,
                          const std::map<std::string, torch::Tensor>& tensors,
                          const torch::Tensor& input);

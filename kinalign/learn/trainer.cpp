@@ -14,12 +14,13 @@ namespace {
 
 using WeightMap = std::map<std::string, torch::Tensor>;
 
+/// Adam's decay of the first and the second moment.
 constexpr double first_decay = 0.9, second_decay = 0.98, epsilon = 1e-8;
 constexpr double average_decay = 0.999;
 constexpr int most_failures = 5;
 constexpr std::int64_t point_every = 50;
 
-/// A share of the way from `from` to `to` along half a cosine.
+/// Moves from `from` to `to` along half a cosine; `share` goes from 0 to 1.
 double eased(double from, double to, double share) {
   return to + (from - to) * 0.5 * (1.0 + std::cos(std::numbers::pi * share));
 }
@@ -41,7 +42,7 @@ void put_weights(const WeightMap& from, TorchNetwork& network) {
   for (auto& [name, tensor] : network.tensors()) tensor.copy_(from.at(name));
 }
 
-/// The state of a new run, or that of a checkpoint on the network's device.
+/// Initialises the state of a new run, or moves that of a checkpoint to the network's device.
 void begin(const TorchNetwork& network, TrainingState& state) {
   if (!state.weights.empty()) {
     for (WeightMap* one :
@@ -87,7 +88,7 @@ void step_weights(TorchNetwork& network, const TrainingOptions& options, double 
   }
 }
 
-/// Judges the network with the weights that would be kept, and keeps the best.
+/// Judges the network with the weights that would be kept, and stores the best ones.
 std::optional<double> judge(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState& state) {
   const WeightMap now = copy_of(network.tensors());
@@ -105,7 +106,7 @@ std::optional<double> judge(TorchNetwork& network, TrainingTask& task,
   return judgement;
 }
 
-/// Sums between two points of the log.
+/// Sums since the last point of the log.
 struct Sums {
   double loss = 0.0, gradient = 0.0;
   std::int64_t count = 0;
@@ -120,7 +121,7 @@ void add_point(const TrainingOptions& options, std::optional<double> judgement, 
   sums = {};
 }
 
-/// Adds the loss and the gradients of all processes' parts. Returns the loss.
+/// Adds the losses and gradients of all processes' parts. Returns the total loss.
 double joined(double loss, WeightMap& tensors, const BatchShare& share) {
   if (share.is_alone()) return loss;
   std::vector<torch::Tensor> pieces{torch::tensor({loss}, torch::kFloat32)};
@@ -138,7 +139,7 @@ double joined(double loss, WeightMap& tensors, const BatchShare& share) {
   return all[0].item<double>();
 }
 
-/// Loss and gradients of the next batch; how long the gradient is, or nothing where a number is
+/// Computes loss and gradients of the next batch. Returns the gradient's norm; empty if a number is
 /// not finite.
 std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
                                 const TrainingOptions& options, const TrainingState& state,
@@ -147,7 +148,7 @@ std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
     if (tensor.grad().defined()) tensor.mutable_grad().reset();
   }
   const auto step = static_cast<std::uint64_t>(state.step);
-  torch::manual_seed(mix64(mix64(options.seed) ^ step));  // dropout
+  torch::manual_seed(mix64(mix64(options.seed) ^ step));  // for dropout
   const torch::Tensor loss = task.loss(network, options.seed, step);
   loss.backward();
   const double value = joined(loss.item<double>(), network.tensors(), task.share());

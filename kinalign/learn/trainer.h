@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop that fits a network to a task: AdamW, a learning rate that rises and falls, gradients
-// cut at a norm, an average of the weights, early stopping. Everything random is a function of the
-// seed and the step's number, so that a run goes on after a kill as if nothing had happened.
+// The loop that trains a network for a task: AdamW, a learning rate that rises and falls, clipped
+// gradients, a moving average of the weights, early stopping. All random numbers are functions of
+// the seed and the step's number, so that an interrupted run continues with the same result.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,17 +17,18 @@
 
 namespace kinalign {
 
-/// What is learnt: batches with their loss, and a judgement of the network.
+/// A training task: batches with their loss, and a judgement of the network.
 class TrainingTask {
  public:
   TrainingTask() = default;
   TrainingTask(const TrainingTask&) = delete;
   TrainingTask& operator=(const TrainingTask&) = delete;
   virtual ~TrainingTask() = default;
-  /// The loss of batch `step`, drawn from `seed`; of several processes, this one's share of it.
+  /// The loss of batch `step`, drawn from `seed`. With several processes: this process's
+  /// contribution.
   virtual torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed,
                              std::uint64_t step) = 0;
-  /// Less is better; empty where no validation part was given.
+  /// The validation error; smaller is better. Empty if there is no validation part.
   virtual std::optional<double> judge(const TorchNetwork& network) = 0;
 
   void share_with(const BatchShare& share) { share_ = share; }
@@ -41,11 +42,11 @@ struct TrainingOptions {
   std::int64_t steps = 1200;
   double rate = 2e-3;            // the highest learning rate
   double rise = 0.3;             // share of the steps in which the rate rises
-  double weight_decay = 1e-2;    // of matrices alone
-  double longest_gradient = 1;   // norm; longer ones are cut
-  bool average = true;           // the weights' moving average is what is judged and kept
-  std::int64_t judge_every = 0;  // steps; 0: at the end alone
-  std::int64_t patience = 0;     // judgements without a better one, then it stops; 0: never
+  double weight_decay = 1e-2;    // applies to matrices only
+  double longest_gradient = 1;   // norm of the gradient; longer gradients are scaled down to it
+  bool average = true;           // judge and keep the moving average of the weights
+  std::int64_t judge_every = 0;  // steps between judgements; 0: only at the end
+  std::int64_t patience = 0;     // stop after so many judgements without improvement; 0: never
   std::uint64_t seed = 1;
 };
 
@@ -53,11 +54,11 @@ struct TrainingPoint {
   std::int64_t step = 0;
   double loss = 0.0;  // mean since the last point
   double rate = 0.0;
-  double gradient = 0.0;  // norm before it is cut
+  double gradient = 0.0;  // norm before clipping, mean since the last point
   std::optional<double> judgement;
 };
 
-/// Where a run can go on: all that the next step depends on.
+/// The state of a run: everything that the next step depends on.
 struct TrainingState {
   std::int64_t step = 0;
   std::map<std::string, torch::Tensor> weights, first, second, average, best;
@@ -68,22 +69,23 @@ struct TrainingState {
 
 struct TrainingHooks {
   Progress progress{};
-  /// Called every `every` steps with the state, to keep it; nothing where empty.
+  /// Called every `every` steps to store the state; may be empty.
   std::function<Result<void>(const TrainingState&)> keep{};
   std::int64_t every = 500;
-  /// This process's part where several train together. All have the same options, data and state.
+  /// This process's share if several processes train together. All of them need the same options,
+  /// data and state.
   BatchShare share{};
 };
 
-/// Fits `network` from `state` on (a new one: from the network's own weights). At the end the
-/// network has the best weights. Fails where the loss is not finite five times in a row, and where
+/// Trains `network`, starting from `state` (empty: from the network's own weights). At the end the
+/// network has the best weights. Fails if the loss is not finite in five successive steps, or if
 /// another process ends.
 Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState state,
                             const TrainingHooks& hooks);
 
-/// The learning rate of a step: a cosine up to `rate` and one down to a 10,000th (Smith's one
-/// cycle, as PyTorch's OneCycleLR).
+/// The learning rate of a step: half a cosine from `rate` / 25 up to `rate`, then one down to
+/// `rate` / 250,000 (Smith's one cycle, as in PyTorch's OneCycleLR).
 double rate_at(const TrainingOptions& options, std::int64_t step);
 
 }  // namespace kinalign

@@ -13,17 +13,17 @@ namespace kinalign {
 namespace {
 
 constexpr int zstd_level = 1;
-constexpr std::uint64_t most_reserved = 16 << 20;  // before the bytes are there
+constexpr std::uint64_t most_reserved = 16 << 20;  // bytes reserved before decompression
 
 std::string compressed(std::string_view bytes) {
   std::string out(ZSTD_compressBound(bytes.size()), '\0');
   const std::size_t size =
       ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), zstd_level);
-  out.resize(ZSTD_isError(size) != 0 ? 0 : size);  // an error: no memory is left
+  out.resize(ZSTD_isError(size) != 0 ? 0 : size);  // the only possible error is a lack of memory
   return out;
 }
 
-/// What `stored` holds, up to where it breaks off; of more than `most` bytes somewhat more.
+/// Decompresses `stored` as far as it is complete. Stops soon after `most` bytes.
 std::string decompressed(std::string_view stored, std::uint64_t most) {
   std::string records;
   const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
@@ -31,7 +31,8 @@ std::string decompressed(std::string_view stored, std::uint64_t most) {
   if (stream == nullptr) return records;
   ZSTD_inBuffer in{stored.data(), stored.size(), 0};
   std::string block(ZSTD_DStreamOutSize(), '\0');
-  records.reserve(std::min<std::uint64_t>(most, most_reserved));  // `most` is what the file claims
+  // the file claims `most`, so it may be wrong
+  records.reserve(std::min<std::uint64_t>(most, most_reserved));
   for (std::size_t more = 1; more != 0 && records.size() <= most;) {
     const std::size_t had = in.pos;
     ZSTD_outBuffer out{block.data(), block.size(), 0};
@@ -73,9 +74,9 @@ void McapChunkContent::add(const McapMessage& message) {
 
 namespace {
 
-/// Bytes that a chunk and its indexes need, at most.
+/// An upper limit on the bytes of a chunk and its indexes.
 std::size_t room_for(std::string_view stored, const McapChunkContent& content) {
-  constexpr std::size_t heads = 128;  // of the chunk, and of an index
+  constexpr std::size_t heads = 128;  // bytes of the head of a chunk or of an index
   std::size_t room = stored.size() + heads;
   for (const auto& [channel, entries] : content.messages()) {
     room += heads + entries.size() * sizeof(entries.front());
@@ -83,7 +84,7 @@ std::size_t room_for(std::string_view stored, const McapChunkContent& content) {
   return room;
 }
 
-/// Of a chunk and its indexes: what it stores is summed up already.
+/// The checksum of a chunk and its indexes. That of the stored part is known already.
 std::uint32_t crc_of_chunk(std::string_view bytes, std::size_t chunk_bytes, std::string_view stored,
                            std::uint32_t of_stored) {
   const std::string_view front = bytes.substr(0, chunk_bytes - stored.size());
@@ -92,6 +93,7 @@ std::uint32_t crc_of_chunk(std::string_view bytes, std::size_t chunk_bytes, std:
 
 }  // namespace
 
+// Compressed records that cannot be made, for lack of memory, are stored uncompressed.
 McapStoredChunk store(const McapChunkContent& content, McapCompression compression) {
   const std::string_view records = content.records();
   const std::string packed =
@@ -130,7 +132,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
     return unfit("a chunk that is not compressed or by zstd", shown(head.compression));
   }
   if (head.compression.empty() && chunk.stored_size != head.uncompressed_size) {
-    return misfit(head, chunk.stored_size);  // before it is copied
+    return misfit(head, chunk.stored_size);  // checked before the records are copied
   }
   std::string records = unpack_torn(chunk, most);
   if (records.size() != head.uncompressed_size) return misfit(head, records.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chunk of an MCAP file while it is filled, and as it is stored. Filling copies a message once;
-// compressing and summing are for another thread than the one that receives.
+// A chunk of an MCAP file, while it is filled and as it is stored. Filling copies each message
+// once. Compressing and checksumming can be done in another thread than receiving.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,16 +16,16 @@ namespace kinalign {
 
 enum class McapCompression : std::uint8_t { none, zstd };
 
-/// By id.
+/// Schemas and channels by id.
 struct McapDefinitions {
   std::map<std::uint16_t, McapSchema> schemas;
   std::map<std::uint16_t, McapChannel> channels;
 };
 
-/// Messages and the definitions that they need, so that a chunk can be read by itself.
+/// Messages with the definitions that they need, so that the chunk can be read alone.
 class McapChunkContent {
  public:
-  /// A channel stands before its first message here, its schema before it.
+  /// A channel must be added before its first message, and its schema before the channel.
   void add(const McapSchema& schema);
   void add(const McapChannel& channel);
   void add(const McapMessage& message);
@@ -35,11 +35,11 @@ class McapChunkContent {
 
   const std::string& records() const { return records_; }
   const McapDefinitions& definitions() const { return definitions_; }
-  /// By channel, in the order in which they were added.
+  /// Messages by channel, in the order in which they were added.
   const std::map<std::uint16_t, std::vector<McapMessageEntry>>& messages() const {
     return messages_;
   }
-  std::uint64_t start() const { return start_; }  // the least and the greatest log time, ns
+  std::uint64_t start() const { return start_; }  // lowest and highest log time, ns
   std::uint64_t end() const { return end_; }
 
  private:
@@ -49,22 +49,22 @@ class McapChunkContent {
   std::uint64_t start_ = 0, end_ = 0;
 };
 
-/// The chunk's record and, behind it, its message indexes.
+/// The chunk's record, followed by its message indexes.
 struct McapStoredChunk {
   std::string bytes;
-  std::uint32_t crc = 0;                                    // of these
-  McapChunkIndex index;                                     // offsets count from the first byte
-  std::map<std::uint16_t, std::uint64_t> channel_messages;  // how many
+  std::uint32_t crc = 0;  // CRC-32 of `bytes`
+  McapChunkIndex index;   // offsets count from the first byte of `bytes`
+  std::map<std::uint16_t, std::uint64_t> channel_messages;  // number of messages
   McapDefinitions definitions;
 };
-/// zstd's level 1: higher ones gain nothing on motion, and are slower (performance.md, recording).
+/// Packs a chunk. zstd uses level 1: higher levels are slower and gain nothing on motion data
+/// (performance.md, recording).
 McapStoredChunk store(const McapChunkContent& content, McapCompression compression);
 
-/// A chunk's records as they were before they were compressed. `most`: bytes that they may have.
-/// Fails where it is not whole, its sizes or checksum do not fit, or the compression is none of
-/// ours.
+/// Unpacks the records of a chunk. `most`: limit on their bytes. Fails if the chunk is incomplete,
+/// if a size or checksum is wrong, or if the compression is neither none nor zstd.
 Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most);
-/// As many of them as a torn end leaves, from the front: nothing has checked them.
+/// Unpacks the beginning of a truncated chunk, as far as it is present. Nothing is checked.
 std::string unpack_torn(const McapChunkView& chunk, std::uint64_t most);
 
 }  // namespace kinalign

@@ -41,7 +41,7 @@ void McapReader::say(Severity severity, std::string expected, std::string found,
       {severity, {"", 0, std::move(expected), std::move(found)}, std::move(meaning), ""});
 }
 
-/// What stands here is no record: reading goes on at the next chunk.
+/// Reports that no record is at this position. Reading continues at the next chunk.
 void McapReader::lose(std::string expected, std::string found) {
   say(Severity::error, std::move(expected), std::move(found),
       "what stands there is left out, up to the next whole chunk");
@@ -63,7 +63,7 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
     if (!whole && in_torn_chunk_) break;
     std::optional<McapRecord> record;
     const bool fits = whole && take(head->op, bytes.substr(mcap_record_head, head->length), record);
-    const bool ends = !whole || head->op == McapOp{};  // as zeros of a power cut have it
+    const bool ends = !whole || head->op == McapOp{};  // a power failure may leave zeros
     if (!fits) {
       say(Severity::error, "records in the chunk", "something else",
           ends ? "the chunk's rest is left out" : "it is left out");
@@ -77,20 +77,23 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
   return std::nullopt;
 }
 
-/// Whether the content fits its record. `record` stays empty where it is of no use here.
+/// Decodes a record. Returns whether the content is valid. `record` stays empty if readers do not
+/// need the record.
 bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRecord>& record) {
   if (op == McapOp::message_index) {
-    constexpr std::size_t padding = 64;  // bytes that a reader is to skip, ever seen: 3
+    // bytes to skip after the known fields; files seen so far have 3 at most
+    constexpr std::size_t padding = 64;
     LittleEndianReader from(octets(content));
     from.take<std::uint16_t>();
     from.take_bytes(from.take<std::uint32_t>());
     return from.complete() && from.left() <= padding;
   }
-  if (op > McapOp::data_end) return true;  // unknown
+  if (op > McapOp::data_end) return true;  // unknown opcode
   record = decode_mcap_record(op, content);
   return record.has_value();
 }
 
+/// Checks the magic bytes at the beginning of the file.
 void McapReader::start() {
   const std::string_view bytes = rest();
   const std::size_t some = std::min(bytes.size(), mcap_magic.size());
@@ -105,6 +108,8 @@ void McapReader::start() {
   state_ = State::records;
 }
 
+/// Reads the file's records until one can be returned. Every branch either makes progress or needs
+/// more bytes.
 std::optional<McapRecord> McapReader::next_in_file() {
   for (;;) {
     if (state_ == State::start) start();
@@ -125,7 +130,7 @@ std::optional<McapRecord> McapReader::next_in_file() {
   }
 }
 
-/// What stands here. Says what is damaged, and goes behind it.
+/// Examines the bytes at this position. Damage is reported and skipped.
 McapReader::Stand McapReader::look() {
   const std::string_view bytes = rest();
   const auto head = decode_mcap_head(bytes);
@@ -144,7 +149,8 @@ McapReader::Stand McapReader::look() {
   return state_ == State::records ? Stand::damaged : Stand::torn;
 }
 
-/// The whole record that stands here; absent where it is of no use, or damaged.
+/// Reads the complete record at this position. Absent if readers do not need it, or if it is
+/// damaged.
 std::optional<McapRecord> McapReader::read_record() {
   record_at_ = offset_;
   const McapRecordHead head = *decode_mcap_head(rest());
@@ -163,14 +169,15 @@ std::optional<McapRecord> McapReader::read_record() {
   crc_ = crc_of(whole, crc_);
   if (head.op == McapOp::data_end) {
     crc_ = 0;
-    crc_counts_ = true;  // of the summary, whatever was skipped before it
+    crc_counts_ = true;  // valid for the summary, whatever was skipped before it
   }
   if (head.op == McapOp::footer) state_ = State::behind_footer;
   consume(whole.size());
   return record;
 }
 
-/// `bytes`: of the whole record, behind those that crc_ covers.
+/// Checks the checksum in a data end or footer. `bytes`: the whole record, which follows the bytes
+/// covered by crc_.
 void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
   if (!crc_counts_) {
     if (std::holds_alternative<McapFooter>(record)) summary_spoilt_ = true;
@@ -192,7 +199,8 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
   }
 }
 
-/// Whether what stands here is a chunk, be it a spoilt one, that ends where it says.
+/// Returns whether a chunk with consistent sizes is at this position. Its records may still be
+/// damaged.
 bool McapReader::open_chunk(std::string_view content) {
   const auto chunk = decode_mcap_chunk(content);
   if (!chunk || content.size() != chunk->size()) return false;
@@ -208,8 +216,8 @@ bool McapReader::open_chunk(std::string_view content) {
   return true;
 }
 
-/// The file has ended within a record: because that is damaged, if chunks stand behind its head;
-/// else the file was cut off.
+/// The file ends within a record. If a valid chunk follows later, the record's head is damaged.
+/// Otherwise the file is truncated.
 void McapReader::end_in_record() {
   const std::size_t taken = taken_;
   const std::uint64_t offset = offset_, skipped_before = skipped_;
@@ -241,14 +249,16 @@ void McapReader::end_in_record() {
   consume(bytes.size());
 }
 
-/// A chunk tells itself by its sizes, and proves it by its checksum.
+/// Returns whether the bytes are a chunk. Its sizes make it likely, and its checksum proves it.
 bool McapReader::is_chunk(const McapChunkView& chunk) {
-  constexpr std::uint64_t beginning = std::uint64_t{128} << 10;  // the room that zstd is given
+  constexpr std::uint64_t beginning = std::uint64_t{128} << 10;  // memory for zstd, counted as work
   const bool is = unpack(chunk, longest_).has_value();
   if (!is) tried_ += beginning + chunk.stored_size + chunk.head.uncompressed_size;
   return is;
 }
 
+// A damaged file may contain many false candidates. The work on them is limited to most_tried
+// bytes.
 void McapReader::find_chunk() {
   constexpr std::uint64_t most_tried = std::uint64_t{1} << 30;
   while (!rest().empty()) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// An MCAP file from front to end, whole or torn: fed pieces, it yields records, those of chunks in
-// their place. What is damaged is left out and said; reading goes on behind it where a chunk can be
-// recognised again. Memory: the record or chunk that is read, at most `most_record` each.
+// Reads an MCAP file from beginning to end. The file may be truncated. The caller feeds pieces, and
+// the reader returns records, with those of a chunk in place of the chunk. Damaged parts are
+// skipped and reported, and reading continues at the next recognisable chunk. Memory: the present
+// record and chunk, at most `most_record` bytes each.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -19,39 +20,41 @@ class McapReader {
  public:
   static constexpr std::uint64_t most_record = std::uint64_t{256} << 20;
 
-  /// A longer record or chunk is damage. Memory goes by it.
+  /// A record or chunk longer than `longest_record` is treated as damage. This limits the memory.
   explicit McapReader(std::uint64_t longest_record = most_record) : longest_(longest_record) {}
 
-  /// The next bytes of the file.
+  /// Adds the next bytes of the file.
   void feed(std::string_view piece);
-  /// There are no more.
+  /// Call when the file has no more bytes.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
 
-  /// The next record; absent: more bytes are needed, or, after end(), there is none. A message's
-  /// data is good until the next call of anything.
+  /// Returns the next record. Absent: more bytes are needed or, after end(), there is no more
+  /// record. The data of a message is valid until the next call of any function.
   std::optional<McapRecord> next();
 
-  /// Of the record that next() gave, or of its chunk.
+  /// Position in the file of the last record, or of its chunk.
   std::uint64_t at() const { return record_at_; }
-  /// Bytes of that record or chunk; of one at which the file breaks off as many as there are.
+  /// Bytes of that record or chunk. For a truncated one, the bytes that are present.
   std::uint64_t size() const { return record_size_; }
-  /// Ends as a file does that was closed. Else it is torn, however much of it was read.
+  /// Returns whether the file ends as a properly closed file. Otherwise it is truncated, even if
+  /// much of it was read.
   bool closed() const { return state_ == State::closed; }
   bool is_mcap() const { return state_ != State::foreign; }
-  /// No checksum of a chunk covers the last record: it stands in the chunk at which the file breaks
-  /// off, in one without a checksum, or in none.
+  /// Returns whether no chunk's checksum covers the last record: it is in a truncated chunk, in a
+  /// chunk without a checksum, or outside of chunks.
   bool unchecked() const { return in_torn_chunk_ || uncovered_; }
-  /// The last record stands in the chunk at which the file breaks off.
+  /// Returns whether the last record is in the chunk in which the file ends.
   bool in_torn_chunk() const { return in_torn_chunk_; }
-  /// The data section's checksum, read at its end, covers every message of the file.
+  /// Returns whether the checksum of the data section covers every message. Known at the end of the
+  /// section.
   bool all_checked() const { return all_checked_; }
-  /// The summary's checksum, read at the file's end, does not fit.
+  /// Returns whether the summary's checksum is wrong. Known at the end of the file.
   bool summary_spoilt() const { return summary_spoilt_; }
-  /// Bytes of the file that were left out: no record, or one whose checksum does not fit. What a
-  /// torn file lacks is not among them.
+  /// Bytes of the file that were skipped: not a record, or with a wrong checksum. Bytes that a
+  /// truncated file lacks are not counted.
   std::uint64_t skipped() const { return skipped_; }
-  /// What was wrong, each with its place in `found`; no more than some hundred.
+  /// Findings, each with its position in `found`; 200 at most.
   const Findings& findings() const { return findings_; }
 
  private:
@@ -79,22 +82,23 @@ class McapReader {
   State state_ = State::start;
   bool ended_ = false;
   std::string buffer_;
-  std::size_t taken_ = 0;     // bytes of it that were read
-  std::uint64_t offset_ = 0;  // of what comes then, in the file
+  std::size_t taken_ = 0;     // bytes of buffer_ that were read
+  std::uint64_t offset_ = 0;  // position in the file of the next byte
   std::uint64_t record_at_ = 0, record_size_ = 0;
-  std::uint32_t crc_ = 0;   // of the data section, then of the summary
-  bool crc_counts_ = true;  // nothing of that was skipped
-  std::string chunk_;       // its records
+  std::uint32_t crc_ = 0;   // checksum of the data section, later of the summary
+  bool crc_counts_ = true;  // no byte covered by crc_ was skipped
+  std::string chunk_;       // records of the present chunk
   std::size_t chunk_taken_ = 0;
   bool in_torn_chunk_ = false, uncovered_ = false;
   bool all_checked_ = false, summary_spoilt_ = false;
   std::uint64_t skipped_ = 0;
-  std::uint64_t tried_ = 0;  // bytes that were gone through in vain, looking for a chunk
+  std::uint64_t tried_ = 0;  // bytes tried as a chunk without success
   Findings findings_;
 };
 
-/// The reader's next record, fed with pieces as it needs them: an empty one is the file's end.
-/// Absent behind the last one, and once it is no MCAP file. Fails as `next_piece` does.
+/// Returns the reader's next record and feeds pieces as needed. An empty piece is the end of the
+/// file. Absent after the last record, or if the file is not an MCAP file. Fails if `next_piece`
+/// fails.
 template <class NextPiece>
 Result<std::optional<McapRecord>> pull(McapReader& reader, const NextPiece& next_piece) {
   for (;;) {

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-// ---- taking
+// Reading.
 
 std::string text(LittleEndianReader& from) {
   return std::string(text_of(from.take_bytes(from.take<std::uint32_t>())));
@@ -25,12 +25,13 @@ void take(LittleEndianReader& from, std::string_view& value) {
   value = text_of(from.take_bytes(from.take<std::uint32_t>()));
 }
 
-/// Entries of a map or an array, as many as its length in bytes holds.
+/// Reads the entries of a map or an array, whose length is given in bytes.
 template <class Take>
 void entries(LittleEndianReader& from, Take one) {
   LittleEndianReader inner(from.take_bytes(from.take<std::uint32_t>()));
   while (inner.complete() && inner.left() > 0) one(inner);
-  if (!inner.complete()) from.take_bytes(UINT64_MAX);  // an entry that is cut spoils the record
+  // a truncated entry makes the whole record invalid
+  if (!inner.complete()) from.take_bytes(UINT64_MAX);
 }
 void take(LittleEndianReader& from, McapTexts& texts) {
   entries(from, [&](LittleEndianReader& one) {
@@ -48,7 +49,7 @@ void take(LittleEndianReader& from, McapOp& op) {
   op = static_cast<McapOp>(from.take<std::uint8_t>());
 }
 
-// ---- putting
+// Writing.
 
 void put(std::string& out, std::string_view text) {
   append_little(static_cast<std::uint32_t>(text.size()), out);
@@ -70,7 +71,7 @@ void put(std::string& out, const std::map<Key, Value>& entries) {
 }
 void put(std::string& out, McapOp op) { out += static_cast<char>(op); }
 
-/// The fields of each record in the order of its bytes: reading and writing follow one list.
+/// The fields of each record, in the order of their bytes. Reading and writing share this list.
 template <class Record, class Visit>
 void fields(Record& r, Visit visit) {
   using T = std::remove_const_t<Record>;
@@ -125,7 +126,7 @@ std::optional<McapRecord> message(std::string_view content) {
   return message;
 }
 
-/// Absent also where its checksum does not fit.
+/// Absent also if the checksum is wrong.
 std::optional<McapRecord> attachment(std::string_view content) {
   LittleEndianReader from(octets(content));
   McapAttachment attachment;
@@ -140,7 +141,7 @@ std::optional<McapRecord> attachment(std::string_view content) {
   return attachment;
 }
 
-/// Opcode and length around what `content` appends.
+/// Writes opcode and length before the bytes that `content` appends.
 template <class Content>
 void record(std::string& out, McapOp op, Content content) {
   const std::size_t at = out.size();
@@ -247,7 +248,7 @@ void append_mcap(std::string& out, const McapFooter& footer) {
 void append_mcap(std::string& out, const McapMessage& message) {
   constexpr std::size_t head = mcap_record_head + 2 + 4 + 8 + 8;
   const std::size_t at = out.size();
-  out.resize(at + head);  // once, as this is what a recorder does most
+  out.resize(at + head);  // one resize, since recorders call this function most
   char* to = out.data() + at;
   to[0] = static_cast<char>(McapOp::message);
   put_little(static_cast<std::uint64_t>(head - mcap_record_head + message.data.size()), to + 1);

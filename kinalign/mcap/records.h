@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of MCAP, bytes to structures and back: https://mcap.dev/spec, of which
-// docs/formats/recording.md repeats what a recording uses. A record is an opcode, a length of 64
-// bits and that much content; unknown opcodes are skipped, and so are bytes behind the fields that
-// are known.
+// The records of MCAP, converted from bytes to structures and back: https://mcap.dev/spec.
+// docs/formats/recording.md repeats the part that recordings use. A record is an opcode, a length
+// of 64 bits, and its content. Unknown opcodes are skipped, and so are bytes after the known
+// fields.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,8 @@ enum class McapOp : std::uint8_t {
   metadata_index = 0x0D,
   summary_offset = 0x0E,
   data_end = 0x0F,
-  index_page = 0x81  // ours: chunk index records, kept in the file until its summary is written
+  // private: chunk index records, stored in the file until the summary is written
+  index_page = 0x81
 };
 
 using McapTexts = std::map<std::string, std::string>;
@@ -43,7 +44,7 @@ struct McapHeader {
   std::string profile, library;
 };
 
-/// What the messages of a channel hold. Id 0 is none.
+/// The description of the messages of a channel. Id 0 means no schema.
 struct McapSchema {
   std::uint16_t id = 0;
   std::string name, encoding, data;
@@ -63,7 +64,7 @@ struct McapMessage {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0, publish_time = 0;  // ns
-  std::string_view data;                         // somebody else's
+  std::string_view data;                         // bytes of the reader or of the caller
 };
 
 struct McapAttachment {
@@ -76,12 +77,12 @@ struct McapMetadata {
   McapTexts texts;
 };
 
-/// A chunk before its records.
+/// The fields of a chunk before its records.
 struct McapChunkHead {
-  std::uint64_t start = 0, end = 0;  // log times
+  std::uint64_t start = 0, end = 0;  // lowest and highest log time, ns
   std::uint64_t uncompressed_size = 0;
   std::uint32_t uncompressed_crc = 0;  // 0: not checked
-  std::string_view compression;        // "", "zstd", "lz4"; of a chunk that was read in its bytes
+  std::string_view compression;  // "", "zstd", "lz4"; for a chunk that was read, part of its bytes
 };
 
 struct McapChunkIndex {
@@ -106,7 +107,7 @@ struct McapStatistics {
   std::uint64_t messages = 0;
   std::uint16_t schemas = 0;
   std::uint32_t channels = 0, attachments = 0, metadata = 0, chunks = 0;
-  std::uint64_t start = 0, end = 0;  // log times
+  std::uint64_t start = 0, end = 0;  // lowest and highest log time, ns
   std::map<std::uint16_t, std::uint64_t> channel_messages;
 };
 
@@ -124,41 +125,41 @@ struct McapFooter {
   std::uint32_t summary_crc = 0;                              // 0: not checked
 };
 
-/// What a reader hands on; of chunks their content.
+/// The records that a reader returns. Chunks are replaced by their content.
 using McapRecord =
     std::variant<McapHeader, McapSchema, McapChannel, McapMessage, McapAttachment, McapMetadata,
                  McapChunkIndex, McapAttachmentIndex, McapMetadataIndex, McapStatistics,
                  McapSummaryOffset, McapDataEnd, McapFooter>;
 
-/// The content of a record that is no chunk, message index or page of ours: absent where its fields
-/// do not fit into it, or the opcode is none of the variant's.
+/// Decodes the content of a record. Absent if the fields do not fit, or if the opcode is not in the
+/// variant (chunk, message index, index page, or unknown).
 std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content);
 
-/// A chunk's head and, behind it, its records as they are stored, or as many of them as there are.
+/// The head of a chunk and its stored records. Of a truncated chunk, those that are present.
 struct McapChunkView {
   McapChunkHead head;
   std::uint64_t stored_size = 0;
   std::string_view stored;
 
-  /// Of the content but for what is stored and the compression's name.
+  /// Bytes of the content without the stored records and the compression's name.
   static constexpr std::size_t fields = 8 + 8 + 8 + 4 + 4 + 8;
 
   bool whole() const { return stored.size() == stored_size; }
-  /// Of the content, as it should be.
+  /// Bytes of the complete content.
   std::uint64_t size() const { return fields + head.compression.size() + stored_size; }
 };
-/// What a record begins with.
+/// The beginning of a record.
 struct McapRecordHead {
   McapOp op{};
-  std::uint64_t length = 0;  // of the content, bytes
+  std::uint64_t length = 0;  // bytes of the content
 };
-/// Absent where `bytes` are fewer than a head has.
+/// Absent if `bytes` is shorter than a head.
 std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes);
 
-/// Absent where the head does not fit into `content`.
+/// Absent if the head is longer than `content`.
 std::optional<McapChunkView> decode_mcap_chunk(std::string_view content);
 
-/// Appends the whole record.
+/// Appends the complete record.
 void append_mcap(std::string& out, const McapHeader& header);
 void append_mcap(std::string& out, const McapSchema& schema);
 void append_mcap(std::string& out, const McapChannel& channel);
@@ -174,13 +175,13 @@ void append_mcap(std::string& out, const McapSummaryOffset& offset);
 void append_mcap(std::string& out, const McapDataEnd& end);
 void append_mcap(std::string& out, const McapFooter& footer);
 
-/// A message's log time, and its record's place among a chunk's records.
+/// The log time of a message, ns, and the offset of its record among the chunk's records.
 struct McapMessageEntry {
   std::uint64_t log_time = 0, offset = 0;
 };
 void append_mcap_message_index(std::string& out, std::uint16_t channel,
                                const std::vector<McapMessageEntry>& entries);
-/// A record of any opcode around `content`.
+/// Appends a record with any opcode and this content.
 void append_mcap_record(std::string& out, McapOp op, std::string_view content);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An MCAP file that is whole or not there at all.
+// Stores an MCAP file in an OutputFile, which gets its name only when it is complete.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -7,7 +7,7 @@
 
 namespace kinalign {
 
-/// Writes to `out`, which has to stay.
+/// A store that writes to `out`, which must outlive it.
 inline McapStore mcap_store(OutputFile& out) {
   return {[&out](std::string_view bytes) { return out.write(bytes); },
           [&out](std::uint64_t at, std::span<char> to) -> Result<void> {

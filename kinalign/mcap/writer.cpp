@@ -14,7 +14,8 @@ constexpr std::size_t page_size = std::size_t{64} << 10;
 
 }  // namespace
 
-/// The summary while it is written: groups of records, where each stands, and the checksum.
+/// The state of the summary while it is written: the groups of records, their positions, and the
+/// checksum.
 struct McapWriter::Summary {
   std::uint64_t start = 0;
   std::uint32_t crc = 0;
@@ -61,7 +62,7 @@ Result<void> McapWriter::write(const McapStoredChunk& chunk) {
   for (const auto& [id, channel] : chunk.definitions.channels) {
     definitions_.channels.insert_or_assign(id, channel);
   }
-  // The chunk is there: a page that can't be written waits in memory for the next one.
+  // The chunk is written. If the page cannot be written, it waits in memory for the next one.
   if (chunk_indexes_.size() >= page_size) (void)write_index_page();
   return {};
 }
@@ -96,6 +97,7 @@ Result<void> McapWriter::write(const McapMetadata& metadata) {
   return {};
 }
 
+// Writes all groups of the summary except the chunk indexes, and remembers the position of each.
 Result<void> McapWriter::write_definitions(Summary& summary) {
   const auto group = [&](McapOp op, const auto& put) -> Result<void> {
     std::string bytes;
@@ -122,6 +124,7 @@ Result<void> McapWriter::write_definitions(Summary& summary) {
   });
 }
 
+// The pages are read back from the file, so that the index need not fit into memory.
 Result<void> McapWriter::write_chunk_indexes(Summary& summary) {
   const std::uint64_t at = size_;
   std::string bytes;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// An MCAP file from front to end, in appends that each leave a file that can be read up to there.
-// What it keeps in memory grows with the channels, not with the length: the index of chunks is put
-// into the file by the page (a private record, which readers skip) and copied to the summary.
+// Writes an MCAP file from beginning to end. After each append the file can be read up to there.
+// The memory grows with the number of channels, not with the length: the index of the chunks is
+// written into the file in pages (private records, which readers skip), and copied to the summary
+// at the end.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -18,10 +19,10 @@
 
 namespace kinalign {
 
-/// Where the bytes go. `append` takes all or, where it fails, nothing.
+/// The destination of the bytes. `append` writes all bytes or, if it fails, none.
 struct McapStore {
   std::function<Result<void>(std::string_view bytes)> append;
-  /// Fills `to` with what was appended at `at`.
+  /// Fills `to` with the bytes at position `at`.
   std::function<Result<void>(std::uint64_t at, std::span<char> to)> read;
 };
 
@@ -29,13 +30,13 @@ class McapWriter {
  public:
   explicit McapWriter(McapStore store) : store_(std::move(store)) {}
 
-  /// First.
+  /// Call first.
   Result<void> begin(const McapHeader& header);
   Result<void> write(const McapStoredChunk& chunk);
   Result<void> write(const McapAttachment& attachment);
   Result<void> write(const McapMetadata& metadata);
-  /// Summary and end. Where it fails the writer is of no more use, and the file is to be cut back
-  /// to the size before.
+  /// Writes the summary and the end. If it fails, the writer must not be used again, and the file
+  /// must be cut back to its size before the call.
   Result<void> finish();
 
   std::uint64_t size() const { return size_; }
@@ -54,10 +55,10 @@ class McapWriter {
   McapDefinitions definitions_;
   McapStatistics statistics_;
   struct Page {
-    std::uint64_t at = 0, size = 0;  // of its content
+    std::uint64_t at = 0, size = 0;  // of the page's content
   };
   std::vector<Page> pages_;
-  std::string chunk_indexes_;  // records that are in no page yet
+  std::string chunk_indexes_;  // records that are not in a page yet
   std::vector<McapAttachmentIndex> attachments_;
   std::vector<McapMetadataIndex> metadata_;
 };

@@ -9,8 +9,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr double least_width = 0.15;  // m
+constexpr double least_width = 0.15;  // m, summed over the left/right pairs
 
+/// The index of the first of `words` that is among `names`.
 std::optional<std::size_t> find(const std::vector<std::string>& names,
                                 std::initializer_list<std::string_view> words) {
   for (const std::string_view word : words) {
@@ -34,7 +35,7 @@ void copy_joint(JointFrames& body, std::size_t from, std::size_t to, std::size_t
   std::copy(source, source + 3, &body.positions[(to * body.joints + joint) * 3]);
 }
 
-/// Between frames `before` and `after`, in which the joint was seen.
+/// Interpolates linearly between frames `before` and `after`, in which the joint was seen.
 void fill_between(JointFrames& body, std::size_t joint, std::size_t before, std::size_t after) {
   for (std::size_t t = before + 1; t < after; ++t) {
     const float share = static_cast<float>(t - before) / static_cast<float>(after - before);
@@ -46,6 +47,7 @@ void fill_between(JointFrames& body, std::size_t joint, std::size_t before, std:
   }
 }
 
+/// Fills the gaps of one joint; see fill_missing().
 void fill_joint(JointFrames& body, std::size_t joint, bool causal) {
   std::optional<std::size_t> last;
   for (std::size_t t = 0; t < body.frames(); ++t) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Root and heading of a body, from what the input device saw alone: at use there is no truth.
-// Source: Holden's heading from hips and shoulders, applied to the input.
+// Root and heading of a body, found from the input device alone, because no ground truth exists
+// when a model is used. Source: Holden's heading from hips and shoulders, applied to the input.
 #pragma once
 
 #include "kinalign/models/joint_frames.h"
@@ -13,32 +13,35 @@
 
 namespace kinalign {
 
-/// Which joints the frame is found from. Positions of several are averaged.
+/// The joints that define the body's frame. If the root has several joints, their positions are
+/// averaged.
 struct BodyJoints {
   std::vector<std::size_t> root;                       // SpineBase, or both hips
   std::vector<std::array<std::size_t, 2>> left_right;  // hips, shoulders
 };
 
-/// By the names of a Kinect, of usual mocap skeletons, of CMU; none where no pair of sides or no
-/// root is there.
+/// Finds these joints by the names of a Kinect, of usual mocap skeletons or of CMU. Empty if the
+/// names contain no root or no left/right pair.
 std::optional<BodyJoints> body_joints(const std::vector<std::string>& names);
 
 /// A space that goes along with the body: origin at its root, y up, x to its left.
 struct BodyFrame {
   std::array<float, 3> root{};       // m
-  float cosine = 1.0F, sine = 0.0F;  // of the heading: (cosine, 0, sine) is the body's left
+  float cosine = 1.0F, sine = 0.0F;  // the heading; (cosine, 0, sine) points to the body's left
 
-  std::array<float, 3> turned(const float* vector) const;       // from the world's
-  std::array<float, 3> turned_back(const float* vector) const;  // to the world's
+  std::array<float, 3> turned(const float* vector) const;       // from the world's space
+  std::array<float, 3> turned_back(const float* vector) const;  // to the world's space
 };
 
-/// A frame for each of T rows of smoothed joints. Where hips and shoulders lie within 15 cm of a
-/// line (a body seen from the side), the heading stays what it was.
+/// One frame for each of T rows of smoothed joints. If the summed left-right distance of hips and
+/// shoulders in the floor plane is below 15 cm (a body seen from the side), the last heading is
+/// kept.
 std::vector<BodyFrame> body_frames(const BodyJoints& joints, const JointFrames& smoothed);
 
-/// Missing joints from the frames around: on the line between the last and the next seen, held at
-/// the ends and, if `causal`, until it is seen again. One never seen lies at the mean of the
-/// others.
+/// Fills missing joints from neighbouring frames: linear interpolation between the last and the
+/// next frame in which the joint was seen, constant at both ends. If `causal`, the last seen
+/// position is repeated until the joint is seen again. A joint that was never seen gets the mean of
+/// the seen joints.
 void fill_missing(JointFrames& body, bool causal);
 
 }  // namespace kinalign

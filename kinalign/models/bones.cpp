@@ -10,7 +10,8 @@ namespace kinalign {
 namespace {
 
 constexpr int sweeps = 40;
-constexpr float beyond = 1.2F;  // of the mean move of a joint: sweeps end sooner
+/// Over-relaxation of a joint's mean move; the sweeps converge sooner.
+constexpr float beyond = 1.2F;
 
 /// Joints in an order in which every parent stands before its children.
 std::vector<std::size_t> outward(const std::vector<int>& parents) {
@@ -23,7 +24,7 @@ std::vector<std::size_t> outward(const std::vector<int>& parents) {
       taken[j] = true;
       order.push_back(j);
     }
-    if (order.size() == before) break;  // a circle: no skeleton has one
+    if (order.size() == before) break;  // a cycle; no valid skeleton has one
   }
   return order;
 }
@@ -32,11 +33,14 @@ float distance(const float* a, const float* b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
+/// The joints of one frame, changed in place.
 class Frame {
  public:
   Frame(const std::vector<int>& parents, const std::vector<float>& lengths, float* joints)
       : parents_(parents), lengths_(lengths), joints_(joints), moves_(3 * parents.size()) {}
 
+  /// Moves both ends of each bone by half the error of its length. The moves of a joint are
+  /// averaged.
   void sweep() {
     std::fill(moves_.begin(), moves_.end(), 0.0F);
     std::vector<int>& counts = counts_;
@@ -63,6 +67,8 @@ class Frame {
     }
   }
 
+  /// Sets the exact lengths from the roots outward and keeps each bone's direction. A bone of
+  /// length 0 points up.
   void set_lengths(const std::vector<std::size_t>& order) {
     const std::vector<float> before(joints_, joints_ + 3 * parents_.size());
     for (const std::size_t j : order) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bones of constant length, imposed on joints that a method answered with.
+// Gives the joints of a method's answer bones of constant length.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,15 @@
 
 namespace kinalign {
 
-/// The median length of each joint's bone to its parent over T frames, m; 0 for roots. Left and
-/// right get their mean.
+/// The median length over T frames of the bone from each joint to its parent, m; 0 for roots. A
+/// left bone and its right partner both get the mean of the two medians.
 std::vector<float> typical_lengths(const std::vector<int>& parents,
                                    const std::vector<std::size_t>& partners,
                                    std::span<const float> positions);
 
-/// Moves the joints [T,J,3] as little as brings every bone to its length, frame by frame: sweeps
-/// that move both ends of each bone (position-based dynamics), then one pass outward from the
-/// roots, after which the lengths are exact.
+/// Changes the joints [T,J,3] so that every bone has its length, with small moves. Each frame is
+/// processed alone: sweeps first move both ends of each bone (position-based dynamics); then one
+/// pass from the roots outward makes the lengths exact.
 void impose_lengths(const std::vector<int>& parents, const std::vector<float>& lengths,
                     std::span<float> positions);
 

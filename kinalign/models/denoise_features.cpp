@@ -12,6 +12,7 @@ namespace kinalign {
 
 namespace {
 
+/// Applies `turn(frame, position)` to every position; each frame has the same number of positions.
 template <class Turn>
 void move(const std::vector<BodyFrame>& frames, std::span<float> positions, const Turn& turn) {
   if (frames.empty() || positions.size() < frames.size()) return;
@@ -19,7 +20,7 @@ void move(const std::vector<BodyFrame>& frames, std::span<float> positions, cons
   for (std::size_t i = 0; i < row * frames.size(); i += 3) turn(frames[i / row], &positions[i]);
 }
 
-/// For each output the input joint of its name, else that of the next joint above it; -1: none.
+/// For each output the input joint of the same name, else that of its nearest ancestor; -1: none.
 std::vector<int> inputs_standing_for(const DenoiseLayout& layout) {
   const auto seen = kinect_names(layout.inputs), answered = kinect_names(layout.outputs);
   std::vector<int> out;

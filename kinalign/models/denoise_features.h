@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a network that cleans a skeleton sees and says, the same in training and at use. Every
-// number is in the body's frame of the input (body_frame.h), so that no truth is needed.
+// Input and output channels of a network that cleans a skeleton, the same in training and at use.
+// Every number is in the body's frame of the input (body_frame.h), so no ground truth is needed.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -13,12 +13,13 @@
 
 namespace kinalign {
 
-/// Joints of both sides, and how the input is brought into the body's frame.
+/// The joints of the input and of the output, and the settings for the body's frame.
 struct DenoiseLayout {
-  std::vector<std::string> inputs;   // joints
-  std::vector<std::string> outputs;  // joints
-  std::vector<int> parents;          // of the outputs: the bones that stay constant; -1: a root
-  /// For each output the input joint that the answer begins at; -1: the body's root.
+  std::vector<std::string> inputs;   // joint names
+  std::vector<std::string> outputs;  // joint names
+  /// Parent of each output joint; -1: a root. These bones get a constant length.
+  std::vector<int> parents;
+  /// For each output: the input joint to which the network's answer is added; -1: the body's root.
   std::vector<int> bases;
   double rate_hz = 30.0;
   Smoothing smoothing;
@@ -27,30 +28,29 @@ struct DenoiseLayout {
   std::size_t answers() const { return 3 * outputs.size(); }
 };
 
-/// The layout for joints by these names. `parents`: of the outputs' skeleton; empty: a Kinect's, by
-/// name. The base of an output is the input joint of its name, else that of the next joint above
-/// it. Fails where the input has no root or no pair of sides.
+/// The layout for joints with these names. `parents`: the skeleton of the outputs; empty: the
+/// Kinect's skeleton, by name. The base of an output is the input joint of the same name, else that
+/// of its nearest ancestor. Fails if the input has no root or no left/right pair.
 Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
                                      std::vector<std::string> outputs, double rate_hz,
                                      std::vector<int> parents = {});
 
-/// For each output the input joint that stands for it, as the base does; where there is none, the
-/// root's.
+/// For each output the input joint that stands for it: its base, or the root if the base is -1.
 std::vector<std::size_t> inputs_of_outputs(const DenoiseLayout& layout);
 
-/// T frames as a network sees them.
+/// The features of T frames.
 struct DenoiseFeatures {
-  /// [T,7J]: positions in the body's frame (3J, m), their differences to the frame before (3J, m),
-  /// and whether each joint was seen (J): 1 tracked, 0.5 inferred, 0 missing.
+  /// [T,7J]: positions in the body's frame (3J, m), their differences from the previous frame (3J,
+  /// m), and the state of each joint (J): 1 tracked, 0.5 inferred, 0 missing.
   std::vector<float> input;
   std::vector<float> base;  // [T,Jout,3] m, in the body's frame: the smoothed base joints
   std::vector<BodyFrame> frames;
 };
 
-/// `body`: the layout's inputs at its rate.
+/// `body`: frames of the layout's input joints at the layout's rate.
 DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body);
 
-/// The features of the mirrored body, in its mirrored frames. Partners: of inputs and outputs
+/// Turns the features into those of the mirrored body. `inputs`, `outputs`: each joint's partner
 /// (mirror_partners()).
 void mirror(DenoiseFeatures& features, const std::vector<std::size_t>& inputs,
             const std::vector<std::size_t>& outputs);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model that cleans skeletons: its networks, and everything needed to use them. Layout of its
-// file: docs/formats/model.md.
+// A model that cleans skeletons: its networks and all settings needed to use them. The file's
+// layout: docs/formats/model.md.
 #pragma once
 
 #include "kinalign/infer/network.h"
@@ -15,11 +15,11 @@
 
 namespace kinalign {
 
-/// What is done to an answer, the same for every method.
+/// Post-processing of an answer, the same for every method.
 struct Steadying {
-  bool mirror = true;                 // the mean of the answers to the body and to its mirror image
-  Smoothing smoothing{.window = 11};  // of the answer
-  bool bones = true;                  // each bone has one length over the take
+  bool mirror = true;                 // average the answers to the body and to its mirror image
+  Smoothing smoothing{.window = 11};  // smoothing of the answer over time
+  bool bones = true;                  // give each bone one length over the whole take
 
   bool operator==(const Steadying&) const = default;
 };
@@ -27,24 +27,25 @@ struct Steadying {
 struct DenoiseModel {
   ModelFacts facts;
   DenoiseLayout layout;
-  double answer_scale = 0.05;  // m of a network's 1
-  bool states_spread = false;
-  double spread_factor = 1.0;  // calibrates the stated spread
+  double answer_scale = 0.05;  // metres per unit of the network's output
+  bool states_spread = false;  // the network also outputs the spread of each joint
+  double spread_factor = 1.0;  // calibrates the spread that the network states
   Steadying steadying;
   std::vector<float> input_mean, input_scale;  // [C]
   std::vector<float> answer_mean;              // [3 Jout] m
-  Architecture architecture;                   // of the network
-  std::optional<Architecture> second;          // of one behind it, from answers to answers
-  std::map<std::string, Tensor> tensors;       // "net.", "second." before the names of each
+  Architecture architecture;                   // the first network ("net")
+  std::optional<Architecture> second;     // optional network that refines the first one's answers
+  std::map<std::string, Tensor> tensors;  // names begin with "net." or "second."
 };
 
 /// The bytes of a model's file. The same model gives the same bytes.
 std::string write_denoise_model(const DenoiseModel& model);
 
-/// Fails where the file is no model of this kind or its parts do not fit together.
+/// Fails if the file is not a model of this task or its parts do not fit together.
 Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::string& name);
 
-/// The radius that holds 90 % of a Gaussian in space, in standard deviations of an axis.
+/// The radius of the sphere that holds 90 % of a Gaussian in three dimensions, in standard
+/// deviations per axis.
 inline constexpr double radius_90 = 2.5003;
 
 /// A method's answer.
@@ -53,7 +54,7 @@ struct Denoised {
   std::vector<float> spread;     // [T,Jout] m per axis (1 sigma); empty where none is stated
 };
 
-/// A method as a function: from a body to its answer, in the body's space.
+/// A method as a function: from a body to its answer, in the space of the body.
 using Answer = std::function<Denoised(const JointFrames& body)>;
 
 /// Steadies answers, the same way for every method: the mean of the answers to a body and to its
@@ -62,12 +63,13 @@ class Steadier {
  public:
   Steadier(const Steadying& how, const DenoiseLayout& layout);
 
-  /// `plain`: the answer to `body`. Its spread stays.
+  /// Returns `plain`, the answer to `body`, with steadied positions. `answer` is called again for
+  /// the mirror image. The spread is not changed.
   Denoised steadied(const Answer& answer, const JointFrames& body, Denoised plain) const;
 
  private:
   Steadying how_;
-  std::vector<int> parents_;                   // of the outputs
+  std::vector<int> parents_;                   // parent of each output joint
   std::vector<std::size_t> inputs_, outputs_;  // each joint's partner on the other side
 };
 
@@ -78,16 +80,17 @@ class Denoiser {
 
   const DenoiseModel& model() const { return model_; }
 
-  /// `body`: frames of the layout's inputs at its rate.
+  /// `body`: frames of the layout's input joints at the layout's rate. Returns the steadied answer.
   Denoised clean(const JointFrames& body);
-  /// The same without the steadying, for comparisons.
+  /// The network's answer without the steadying, for comparisons.
   Denoised answer(const JointFrames& body);
 
   const Network& network() const { return network_; }
-  /// Brings features to the scales that the network sees.
+  /// Scales the features as in training: subtracts the mean, divides by the scale.
   void standardise(DenoiseFeatures& features) const;
-  /// What the network's answers [T, outputs] mean, rows `first` ... `end` - 1, in the body's frames
-  /// (to_world()). The second network has still to see it, where there is one.
+  /// Converts the network's output [T, outputs], rows `first` ... `end` - 1, to joints in the
+  /// body's frames (to_world() brings them to the world). The second network, if the model has one,
+  /// is not applied here.
   Denoised answer_of(const DenoiseFeatures& features, std::span<const float> answers,
                      std::size_t first, std::size_t end) const;
 

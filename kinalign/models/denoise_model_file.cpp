@@ -22,6 +22,7 @@ Json smoothing_json(const Smoothing& how) {
   return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
 }
 
+/// The model's own part of the file's JSON header.
 Json header_of(const DenoiseModel& model) {
   const DenoiseLayout& layout = model.layout;
   return {{"rate_hz", layout.rate_hz},
@@ -39,12 +40,14 @@ Json header_of(const DenoiseModel& model) {
             {"bones", model.steadying.bones}}}};
 }
 
-/// Reads members of the header; a member of another type throws, and read_denoise_model() says so.
+/// Reads members of the header. A member of another type throws; read_denoise_model() turns that
+/// into an Error.
 Smoothing smoothing_of(const Json& json) {
   return {json.at("window").get<std::size_t>(), json.at("order").get<std::size_t>(),
           json.at("causal").get<bool>()};
 }
 
+/// Reads the header into the model. Throws where a member is missing or of another type.
 void read_header(const Json& header, DenoiseModel& out) {
   out.facts = facts_of(header);
   DenoiseLayout& layout = out.layout;
@@ -81,13 +84,13 @@ bool all_finite(const std::vector<float>& values) {
                      [](float value) { return std::isfinite(value); });
 }
 
-/// Names stand once each: joints are found by them.
+/// Joints are found by name, so each name must be unique.
 bool are_unique(std::vector<std::string> names) {
   std::sort(names.begin(), names.end());
   return std::adjacent_find(names.begin(), names.end()) == names.end();
 }
 
-/// Every way up ends at a root.
+/// True if the parents contain no cycle.
 bool is_forest(const std::vector<int>& parents) {
   for (std::size_t j = 0; j < parents.size(); ++j) {
     int at = parents[j];
@@ -98,7 +101,7 @@ bool is_forest(const std::vector<int>& parents) {
   return true;
 }
 
-/// Which part of the layout does not fit; empty where all do.
+/// Names the first part of the layout that is not valid; empty if all are valid.
 std::string misfit(const DenoiseLayout& layout) {
   const std::size_t in = layout.inputs.size(), out = layout.outputs.size();
   if (in == 0 || out == 0 || in > most_joints || out > most_joints) return "number of joints";
@@ -111,7 +114,7 @@ std::string misfit(const DenoiseLayout& layout) {
   return is_sound(layout.smoothing) ? "" : "smoothing";
 }
 
-/// The same of the whole model.
+/// The same for the whole model.
 std::string misfit(const DenoiseModel& model) {
   const DenoiseLayout& layout = model.layout;
   std::string fault = misfit(layout);

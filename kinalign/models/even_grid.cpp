@@ -14,9 +14,10 @@ namespace kinalign {
 namespace {
 
 constexpr double most_frames = 1e7;
-constexpr float least_below = 0.2F;                  // m; a person who lies has both at one height
-constexpr float most_reach = 1.6F;                   // m, of a joint from the root
-constexpr double most_speed = 8.0;                   // m/s, of a root
+/// M, of the head below the root; a person lying down has both at one height.
+constexpr float least_below = 0.2F;
+constexpr float most_reach = 1.6F;                   // m, from the root to a joint
+constexpr double most_speed = 8.0;                   // m/s, of the root
 constexpr double least_size = 0.4, most_size = 2.6;  // m, from the lowest to the highest joint
 
 std::string text_of(double value, const char* unit) {
@@ -36,6 +37,7 @@ double usual_step(const std::vector<Time>& stamps) {
   return *middle;
 }
 
+/// Fails if the stamps can't be brought onto a grid of that rate.
 Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
   if (stamps.size() < 2) {
     return Failure(Error{"", 0, "two frames at least", std::to_string(stamps.size())});
@@ -54,7 +56,8 @@ Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
   return {};
 }
 
-/// Where each wanted joint stands; fails without the joints that a body's frame needs.
+/// The index of each wanted joint among `names`. Fails if a joint that the body's frame needs is
+/// absent.
 Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std::string>& wanted,
                                                           const std::vector<std::string>& names) {
   std::vector<std::optional<std::size_t>> out;
@@ -74,7 +77,7 @@ Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std:
   return out;
 }
 
-/// The median height of the body over frames that see most of it.
+/// The median height of the body, m, over frames in which more than half of the joints are seen.
 double body_size(const JointFrames& body) {
   std::vector<double> sizes;
   for (std::size_t t = 0; t < body.frames(); ++t) {
@@ -106,7 +109,7 @@ std::optional<Upright> upright_of(const std::vector<std::string>& joints) {
   return Upright{*head, *root};
 }
 
-/// Fails where the head lies well below the root in nine frames of ten.
+/// Fails if the head lies more than 0.2 m below the root in more than nine of ten frames.
 Result<void> check_upright(const Upright& joints, const JointFrames& body) {
   std::size_t frames = 0, below = 0;
   for (std::size_t t = 0; t < body.frames(); ++t) {
@@ -125,7 +128,7 @@ float gap_between(const float* a, const float* b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Joints too far from the root become missing; how many.
+/// Sets joints too far from the root to missing; returns their number.
 std::size_t leave_out_far(std::size_t root_joint, JointFrames& body) {
   std::size_t out = 0;
   for (std::size_t i = 0; i < body.seen.size(); ++i) {
@@ -139,7 +142,7 @@ std::size_t leave_out_far(std::size_t root_joint, JointFrames& body) {
   return out;
 }
 
-/// The first frame to which the root comes faster than a person moves.
+/// The first frame in which the root has moved faster than a person can since the frame before.
 std::optional<std::size_t> first_jump(std::size_t root_joint, const JointFrames& body,
                                       double rate_hz) {
   const auto most = static_cast<float>(most_speed / rate_hz);
@@ -151,13 +154,13 @@ std::optional<std::size_t> first_jump(std::size_t root_joint, const JointFrames&
   return std::nullopt;
 }
 
-/// A joint between sample `before` and the next one.
+/// A joint at a time between sample `before` and the next one.
 struct Between {
   std::size_t before, joint;
-  double share;  // of the way to the next
+  double share;  // 0 at sample `before`, 1 at the next one
 };
 
-/// Puts it at place `at` of the body's joints, where it is seen.
+/// Writes the interpolated joint to place `at` of the body's joints, unless it is missing.
 void put_joint(const PointFrames& points, const Between& where, std::size_t at, JointFrames& body) {
   const std::size_t names = points.state.size() / points.size();
   const std::size_t a = where.before * names + where.joint, b = a + names;
@@ -176,7 +179,7 @@ void put_joint(const PointFrames& points, const Between& where, std::size_t at, 
 }  // namespace
 
 EvenSpan span_of(Time first, Time last, double rate_hz) {
-  // Half a step of room: stamps of 33.3 ms with jitter still give a row for each frame.
+  // The extra half step: stamps of 33.3 ms with jitter still give a row for each frame.
   const double steps = static_cast<double>(to_ns(last) - to_ns(first)) * 1e-9 * rate_hz + 0.5;
   return {first, static_cast<std::size_t>(std::clamp(steps, 0.0, most_frames)) + 1};
 }

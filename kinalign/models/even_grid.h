@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints of a device, with its stamps, on the even grid that a model works on.
+// Resamples the joints of a device, with irregular stamps, to the even grid that a model needs.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -18,35 +18,40 @@ struct EvenSpan {
   std::size_t frames = 0;
 };
 
-/// From the first stamp to the last one, of the device that has them.
+/// The span from a device's first stamp to its last stamp.
 EvenSpan span_of(Time first, Time last, double rate_hz);
 
 struct EvenGrid {
   double rate_hz = 30.0;
-  double gap_s = 0.2;              // between samples that are joined by a line
-  std::optional<EvenSpan> span{};  // the frames; else those from the first sample to the last one
+  double gap_s = 0.2;  // longest gap between two samples that is interpolated
+  /// The frames to fill; if absent, from the first to the last sample.
+  std::optional<EvenSpan> span{};
 };
 
 struct EvenFrames {
   JointFrames body;
   Time start{};  // stamp of the first frame
   double rate_hz = 0.0;
-  std::size_t far = 0;  // joints that are missing, since they lie too far from the root
-  std::optional<double>
-      jump_s{};  // from the start: where the root first moves faster than a person
+  /// Number of joint positions set to missing because they lie too far from the root.
+  std::size_t far = 0;
+  std::optional<double> jump_s{};  // s after the start: the first frame at which the root is faster
+                                   // than a person can be
 };
 
-/// The joints `places` [J] of points, absent: none, on the frames of the grid's span, as
-/// even_frames() puts them there. Two samples at least; nothing is checked.
+/// Resamples the joints `places` [J] of `points` to the frames of grid.span, with the rules of
+/// even_frames(). An absent place gives a joint that is missing in every frame. Needs at least two
+/// samples; the input is not checked.
 JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places,
                            const PointFrames& points, const EvenGrid& grid);
 
-/// `wanted`: the model's input joints, by name among `names` (kinect_names()); one that is not
-/// there is missing in every frame. Between two samples a joint lies on the line between both, and
-/// is seen as well as the worse of them; farther than the gap from a sample it is missing. Fails
-/// where there are no samples, where stamps fall, where root or hips are not there, where the usual
-/// step is more than twice or less than a quarter of the grid's, where the body is no person's
-/// size, and where its head is below its root. A joint more than 1.6 m from the root is missing.
+/// Resamples the joints `wanted`, the model's inputs, found by name among `names` (kinect_names()).
+/// A wanted joint without that name is missing in every frame. Positions are interpolated linearly;
+/// the state is the worse one of the two samples. A frame farther than the gap from both samples is
+/// missing, and so is a joint more than 1.6 m from the root.
+///
+/// Fails if there are fewer than two samples, if stamps fall, if root or hips are absent, if the
+/// median period is more than 2 times or less than 1/4 of the grid's period, if the body is smaller
+/// than 0.4 m or larger than 2.6 m, or if the head is below the root in most frames.
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
                                const EvenGrid& grid);

@@ -25,7 +25,7 @@ float* place(JointFrames& body, std::size_t frame, std::size_t joint) {
   return &body.positions[(frame * body.joints + joint) * 3];
 }
 
-/// The share of a new value in a low-pass of that cut-off.
+/// The weight of a new value in a first-order low-pass with that cut-off.
 double share_of(double cut_hz, double rate_hz) {
   const double r = 2.0 * std::numbers::pi * cut_hz / rate_hz;
   return r / (r + 1.0);
@@ -36,7 +36,7 @@ struct Step {
   Matrix predicted_spread, filtered_spread;
 };
 
-/// One axis of one joint.
+/// The Kalman filter and smoother of one axis of one joint.
 class AxisSmoother {
  public:
   AxisSmoother(const Kalman& how, double rate_hz) {
@@ -52,7 +52,7 @@ class AxisSmoother {
     spread_ = Eigen::Vector3d(0.01, 1.0, 100.0).asDiagonal();
   }
 
-  /// `variance`: of the measurement; absent: there is none.
+  /// `variance`: of the measurement; absent: the value is not a measurement.
   void add(double value, std::optional<double> variance) {
     Step step;
     step.predicted = steps_.empty() ? state_ : State(turn_ * state_);
@@ -63,7 +63,8 @@ class AxisSmoother {
     if (variance) {
       const double innovation = value - step.predicted(0);
       double total = step.predicted_spread(0, 0) + *variance;
-      // A value far off is trusted less: the spread of the measurement grows with it.
+      // An outlier gets less weight: beyond 3 sigma the measurement's variance grows with its
+      // error.
       total *= std::max(1.0, innovation * innovation / (9.0 * total));
       const State gain = step.predicted_spread.col(0) / total;
       step.filtered += gain * innovation;
@@ -75,7 +76,7 @@ class AxisSmoother {
     steps_.push_back(step);
   }
 
-  /// The places of all steps, seen from the end.
+  /// The positions of all steps after the backward pass of the smoother.
   std::vector<double> smoothed() const {
     std::vector<double> out(steps_.size());
     State after = steps_.back().filtered;

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// The name of the joint on the other side; the name itself where it names no side.
+/// The joint's name on the other side of the body; `name` itself if it contains no side.
 std::string other_side(const std::string& name) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 4> words{
       {{"Left", "Right"}, {"Right", "Left"}, {"left", "right"}, {"right", "left"}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A skeleton of points on an even grid: what methods clean, and what they answer with.
+// A skeleton of points on an even grid: the input and the output of methods that clean skeletons.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-/// T frames of J joints. Metres, y up; array row-major. A joint that is not seen holds zeros.
+/// T frames of J joints. Metres, y up; arrays row-major. A joint that is not seen holds zeros.
 struct JointFrames {
   std::size_t joints = 0;
   std::vector<float> positions;    // [T,J,3] m
@@ -19,14 +19,15 @@ struct JointFrames {
   std::size_t frames() const { return joints == 0 ? 0 : seen.size() / joints; }
 };
 
-/// For each joint the one on the other side of the body: "KneeLeft" and "KneeRight", "LeftKnee" and
-/// "RightKnee", "lwrist" and "rwrist"; itself where there is none.
+/// For each joint the index of its counterpart on the other side of the body: "KneeLeft" and
+/// "KneeRight", "LeftKnee" and "RightKnee", "lwrist" and "rwrist". A joint without a counterpart
+/// gets its own index.
 std::vector<std::size_t> mirror_partners(const std::vector<std::string>& names);
 
-/// Positions [T,J,3] as a mirror shows them: x negated, left and right exchanged.
+/// Mirrors positions [T,J,3]: negates x, exchanges left and right.
 void mirror_positions(std::span<float> positions, const std::vector<std::size_t>& partners);
 
-/// The body as a mirror shows it: x negated, left and right exchanged.
+/// Mirrors a body: negates x, exchanges left and right, and exchanges their states.
 void mirror(JointFrames& body, const std::vector<std::size_t>& partners);
 
 }  // namespace kinalign

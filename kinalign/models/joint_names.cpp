@@ -15,7 +15,7 @@ struct Word {
   std::string_view name, kinect;
 };
 
-/// UI-PRMD's hierarchy names a joint after the bone that begins there, but for the head and the
+/// UI-PRMD's hierarchy names a joint after the bone that begins there, except at the head and the
 /// toes: "FootLeft" is the ankle.
 constexpr std::array<Word, 20> prmd_words{{{"Waist", "SpineBase"},
                                            {"Spine", "SpineMid"},
@@ -92,8 +92,8 @@ std::vector<int> kinect_parents_of(const std::vector<std::string>& names) {
   for (std::size_t j = 0; j < names.size(); ++j) {
     const auto known = std::find(kinect_joints.begin(), kinect_joints.end(), names[j]);
     if (known == kinect_joints.end()) continue;
-    // Up the Kinect's own tree to the first joint that is there: without a neck the head hangs on
-    // the shoulders.
+    // Walks up the Kinect's own tree to the first joint among `names`: without a neck, the head's
+    // parent is the shoulders' joint.
     auto at = static_cast<std::size_t>(known - kinect_joints.begin());
     while (out[j] < 0 && kinect_parents[at] != at) {
       at = kinect_parents[at];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts that a model's file states beside the numbers.
+// Facts that a model's file states in addition to the weights.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* header_key = "kinalign";
 constexpr const char* model_schema = "kinalign.model/1";
 
-/// A text of JSON as a value; an empty object where it is none.
+/// Parses a JSON text; gives an empty object if the text is not valid.
 ModelHeader object_of(const std::string& text) {
   ModelHeader out = ModelHeader::parse(text.empty() ? "{}" : text, nullptr, false);
   return out.is_discarded() ? ModelHeader::object() : out;
@@ -43,7 +43,8 @@ Result<ModelHeader> read_model_header(const TensorFile& file, const std::string&
   const auto text = file.metadata.find(header_key);
   ModelHeader header;
   if (text != file.metadata.end()) {
-    KA_TRY(parse_strict_json(text->second, name));  // which forgets the order of members
+    // Only checks; its result loses the order of members.
+    KA_TRY(parse_strict_json(text->second, name));
     header = ModelHeader::parse(text->second, nullptr, false);
   }
   const bool is_ours =

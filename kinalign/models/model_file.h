@@ -19,19 +19,21 @@ namespace kinalign {
 
 using ModelHeader = nlohmann::ordered_json;
 
-/// Members of the header that every model has stand around `own`, the task's.
+/// The bytes of a model's file. `own`: header members of the task, written between those that every
+/// model has.
 std::string write_model_file(const ModelFacts& facts, const ModelHeader& own,
                              const std::map<std::string, Architecture>& networks,
                              std::map<std::string, Tensor> tensors);
 
-/// The whole header. Fails where the file is no model of kinalign.
+/// The whole header. Fails if the file is not a model of kinalign.
 Result<ModelHeader> read_model_header(const TensorFile& file, const std::string& name);
 
-/// The task of a model, "denoise" or "pose": which reader it needs. Fails as read_model_header().
+/// The task of a model, for example "denoise" or "pose"; it decides which reader is needed. Fails
+/// like read_model_header().
 Result<std::string> task_of_model(std::string_view bytes, const std::string& name);
 
-/// Throws the JSON library's exception where a member is missing or of another type; the reader of
-/// each task catches it and calls broken_header().
+/// Reads the facts. Throws the JSON library's exception if a member is missing or of another type;
+/// the reader of each task catches it and calls broken_header().
 ModelFacts facts_of(const ModelHeader& header);
 Failure broken_header(const std::string& name, const std::exception& fault);
 
@@ -39,12 +41,12 @@ Failure broken_header(const std::string& name, const std::exception& fault);
 Result<Architecture> network_of(const ModelHeader& header, const std::string& key,
                                 const std::string& name);
 
-/// Takes the tensor `key` out of `tensors`, as a row of numbers.
+/// Removes the tensor `key` from `tensors` and returns its values.
 Result<std::vector<float>> take_row(std::map<std::string, Tensor>& tensors, const std::string& key,
                                     const std::string& name);
 Tensor row_of(const std::vector<float>& values);
 
-/// Tensors whose names begin with `prefix`, without it.
+/// Tensors whose names begin with `prefix`; the prefix is removed from their names.
 std::map<std::string, Tensor> tensors_below(const std::map<std::string, Tensor>& tensors,
                                             const std::string& prefix);
 

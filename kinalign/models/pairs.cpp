@@ -12,8 +12,11 @@ namespace kinalign {
 
 namespace {
 
+/// Joints; a stream with fewer Kinect joints is not a Kinect's.
 constexpr std::size_t least_known = 10;
 
+/// The joint names of a stream. Fails if there is no such stream or it has no names; the message
+/// lists the known streams.
 Result<std::vector<std::string>> joints_of(const Windows& windows, const std::string& stream) {
   const WindowsFacts::Stream* found = windows.facts.find(stream);
   if (found != nullptr && !found->names.empty()) return found->names;
@@ -25,7 +28,7 @@ Result<std::vector<std::string>> joints_of(const Windows& windows, const std::st
   return Failure(Error{"", 0, "a stream \"" + stream + "\" with names", known});
 }
 
-/// 0, 1, 2 of each joint: from its state where it has one, else from its validity.
+/// The state of each joint (0, 1, 2), from the array "state" if there is one, else from "valid".
 std::vector<std::uint8_t> seen_of(const StretchStream& stream, std::size_t rows,
                                   std::size_t joints) {
   std::vector<std::uint8_t> out(rows * joints, 2);
@@ -35,20 +38,20 @@ std::vector<std::uint8_t> seen_of(const StretchStream& stream, std::size_t rows,
       out[i] = static_cast<std::uint8_t>(std::clamp(state->second[i], 0.0F, 2.0F));
     }
     if (valid == stream.arrays.end()) continue;
-    const bool one_flag = valid->second.size() == rows;  // of a skeleton
+    const bool one_flag = valid->second.size() == rows;  // one flag for the whole skeleton
     if (!one_flag && valid->second.size() != out.size()) continue;
     if (valid->second[one_flag ? i / joints : i] == 0.0F) out[i] = 0;
   }
   return out;
 }
 
-/// The input's joints that a Kinect has too, by its names, and where they stand; all joints where
-/// the stream is no Kinect's.
+/// The chosen input joints: their Kinect names and their places in the stream.
 struct Chosen {
   std::vector<std::string> names;
   std::vector<std::size_t> places;
 };
 
+/// The joints that a Kinect has, under its names; all joints if these are too few.
 Chosen choose(const std::vector<std::string>& joints) {
   const auto names = kinect_names(joints);
   Chosen known, all;
@@ -64,7 +67,7 @@ Chosen choose(const std::vector<std::string>& joints) {
   return known.names.size() < least_known ? all : known;
 }
 
-/// The positions [T,J,3] of a stream in a stretch; nothing where it has none, or not of all joints.
+/// The positions [T,J,3] of a stream in a stretch; null if absent or of another number of joints.
 const std::vector<float>* positions_of(const Stretch& stretch, const std::string& stream,
                                        std::size_t joints) {
   const auto found = stretch.streams.find(stream);
@@ -74,7 +77,7 @@ const std::vector<float>* positions_of(const Stretch& stretch, const std::string
   return positions->second.size() == stretch.rows * joints * 3 ? &positions->second : nullptr;
 }
 
-/// The chosen joints of rows of all of them, `values` numbers each.
+/// Copies the chosen joints out of rows of all joints, `values` numbers per joint.
 template <class Value>
 std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen,
                              std::size_t joints, std::size_t values) {
@@ -88,8 +91,7 @@ std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen
   return out;
 }
 
-/// Numbers of joints that are not there become 0. Fails where a joint that is there has one that is
-/// not finite.
+/// Sets non-finite numbers of missing joints to 0. Fails if a joint that is not missing has one.
 Result<void> check_numbers(const std::vector<std::uint8_t>& there, const std::string& stream,
                            std::vector<float>& positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -103,7 +105,7 @@ Result<void> check_numbers(const std::vector<std::uint8_t>& there, const std::st
   return {};
 }
 
-/// Whose it is, and of which part of the split.
+/// Fills the names of take, person, action and part.
 void name_pair(const Windows& windows, const Stretch& stretch, Pair& pair) {
   if (stretch.take < windows.facts.takes.size()) {
     const WindowsFacts::Take& take = windows.facts.takes[stretch.take];
@@ -120,7 +122,7 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
                        std::size_t least) {
   const auto joints = KA_TRY(joints_of(windows, input));
   const Chosen chosen = choose(joints);
-  // An aggregate whose later member fails leaks the earlier ones.
+  // Not built in one braced list: GCC leaks the earlier members if a later one returns early.
   auto outputs = KA_TRY(joints_of(windows, truth));
   Pairs out{
       .inputs = chosen.names, .outputs = std::move(outputs), .rate_hz = windows.facts.rate_hz};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of a rough and a precise stream out of a file of windows.
+// Reads pairs of a rough stream (the input) and a precise stream (the ground truth) from a file of
+// windows.
 #pragma once
 
 #include "kinalign/models/joint_frames.h"
@@ -11,36 +12,37 @@
 
 namespace kinalign {
 
-/// What both devices saw of one motion, between two gaps of a take. The truth is in the input's
-/// space.
+/// The data of both devices for one motion, between two gaps of a take. The truth is in the space
+/// of the input.
 struct Pair {
   JointFrames input;
   std::vector<float> truth;         // [T,Jout,3] m
   std::vector<std::uint8_t> valid;  // [T,Jout]
   std::string take, subject, action;
-  std::string part;  // of the file's split
+  std::string part;  // name of the split's part, for example "train"
 };
 
 struct Pairs {
-  std::vector<std::string> inputs, outputs;  // joints
+  std::vector<std::string> inputs, outputs;  // joint names
   double rate_hz = 0.0;
-  std::vector<int> parents{};  // of the outputs, where their stream is a skeleton; else empty
+  std::vector<int> parents{};  // [Jout] if the outputs are a skeleton; else empty
   std::vector<Pair> all{};
 };
 
-/// Of the input the joints that a Kinect has too, by its names (joint_names.h); all joints where
-/// the stream is no Kinect's. Fails where the file lacks a stream or its positions, and where
-/// a valid position is not finite. Stretches shorter than `least` rows are left out.
+/// The pairs of two streams. The inputs are the joints that a Kinect has too, with the Kinect's
+/// names (joint_names.h). If fewer than 10 joints have such a name, the stream is not a Kinect's
+/// and all joints are used. Stretches shorter than `least` rows are left out. Fails if a stream or
+/// its positions are absent, or if a valid position is not finite.
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
                        std::size_t least);
 
-/// The same for the joints of a model, by the Kinect's names for them (kinect_names()). Joints that
-/// a stream lacks are missing in the input and not valid in the truth.
+/// The same for the joints of a model, found by the Kinect's names (kinect_names()). Joints that a
+/// stream lacks are missing in the input and not valid in the truth.
 Result<Pairs> pairs_for(const Windows& windows, const std::string& input, const std::string& truth,
                         const Pairs& joints, std::size_t least);
 
-/// What a Kinect's stream says in a stretch, of the joints `wanted` by its names; those that it
-/// lacks are missing. Fails where the stretch has no such stream.
+/// The joints `wanted` of one stream in a stretch, found by the Kinect's names. Joints that the
+/// stream lacks are missing. Fails if the stretch has no such stream.
 Result<JointFrames> kinect_frames(const Windows& windows, const Stretch& stretch,
                                   const std::string& stream,
                                   const std::vector<std::string>& wanted);

@@ -14,12 +14,13 @@ namespace kinalign {
 
 namespace {
 
+/// The direction to a joint from its parent.
 struct Direction {
   std::string_view joint;
   double x, y, z;
 };
 
-/// The way to a joint from its parent in a T-pose that faces +z.
+/// Directions in a T-pose that faces +z.
 constexpr std::array<Direction, 20> rest_directions{
     {{"SpineMid", 0, 1, 0},    {"SpineShoulder", 0, 1, 0}, {"Neck", 0, 1, 0},
      {"Head", 0, 1, 0},        {"ShoulderLeft", 1, 0, 0},  {"ElbowLeft", 1, 0, 0},
@@ -36,13 +37,15 @@ std::optional<Vec3> known_direction(const std::string& joint) {
   return std::nullopt;
 }
 
-/// The tree from its root outward, and which joint of the clip turns each bone.
+/// The tree from its root outward, and the clip's joint that turns each bone.
 struct Plan {
-  std::vector<std::size_t> order;                  // of the points
-  std::vector<std::vector<std::size_t>> children;  // of each point
-  std::vector<int> joint, turner;                  // of the clip: a point's own, its bone's
+  std::vector<std::size_t> order;                  // indices of the points, root first
+  std::vector<std::vector<std::size_t>> children;  // children of each point
+  // Per point: its joint in the clip; the joint that turns its bone.
+  std::vector<int> joint, turner;
 };
 
+/// Builds the skeleton's joints and the plan. Fails if the parents are not a tree with one root.
 Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
   Plan plan;
   const std::size_t points = body.parents.size();
@@ -79,8 +82,8 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
   return plan;
 }
 
-/// The way to each joint from its parent in the rest pose. A joint that the table lacks goes the
-/// way of a known joint below it (a clavicle), else its parent's (a finger).
+/// The rest direction to each joint from its parent. A joint without a known direction takes that
+/// of a known joint below it (a clavicle), else its parent's (a finger).
 std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
   const auto names = kinect_names(body.names);
   std::vector<std::optional<Vec3>> ways;
@@ -102,8 +105,8 @@ std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
   return out;
 }
 
-/// The rotation that turns the rest directions of a joint's children best to where they are; the
-/// smallest from `before` where there is one child.
+/// The rotation that best turns the rest directions of a joint's children to their current
+/// directions. With one child it is the smallest rotation from `before`.
 Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const Quat& before) {
   if (rest.size() < 2) {
     return rest.empty() ? before : Quat::FromTwoVectors(before * rest[0], now[0]) * before;
@@ -116,6 +119,7 @@ Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const 
   return Quat(svd.matrixU() * sides * svd.matrixV().transpose());
 }
 
+/// Appends frames to a clip. set_lengths() is called first.
 class Poser {
  public:
   Poser(const PointBody& body, const Plan& plan, Clip& clip)
@@ -134,6 +138,7 @@ class Poser {
     }
   }
 
+  /// Adds one frame: finds all global rotations and stores them against their parents.
   void append(const float* frame, Time stamp) {
     const Skeleton& skeleton = clip_.skeleton;
     const std::size_t joints = skeleton.joints(), t = clip_.frames.size();
@@ -163,6 +168,7 @@ class Poser {
     return length > 1e-9 ? Vec3(way / length) : rest_[to];
   }
 
+  /// Finds the global rotation of every joint, from the root outward.
   void turn_all(const float* frame) {
     for (const std::size_t p : plan_.order) {
       const auto own = static_cast<std::size_t>(plan_.joint[p]);
@@ -183,7 +189,7 @@ class Poser {
 
   const PointBody& body_;
   const Plan& plan_;
-  std::vector<Vec3> rest_;  // of each point
+  std::vector<Vec3> rest_;  // rest direction of each point
   Clip& clip_;
   std::vector<Quat> global_;
 };

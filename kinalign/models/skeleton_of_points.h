@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real skeleton for joints whose bones have constant lengths: what a BVH needs.
+// Makes a skeleton with rotations from joints with constant bone lengths, as a BVH file needs it.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -12,14 +12,14 @@ namespace kinalign {
 
 struct PointBody {
   std::vector<std::string> names;  // [J]
-  std::vector<int> parents;        // [J] one root alone
+  std::vector<int> parents;        // [J] exactly one root
 };
 
-/// A clip whose joints lie where `positions` [T,J,3] m says. The rest pose is a T-pose that faces
-/// +z. A joint with several children has between itself and each child one more joint in the same
-/// place, named "<child>Root", which turns that bone alone. Twist about a bone is what its parent
-/// has: points do not show it. Bone lengths are those of the first frame. Fails where the parents
-/// are no tree with one root.
+/// A clip whose joints have the positions `positions` [T,J,3] m. The rest pose is a T-pose that
+/// faces +z. If a joint has several children, an extra joint at the same place, named
+/// "<child>Root", turns each child's bone. Points do not show the twist about a bone, so a bone
+/// takes the twist of its parent. Bone lengths are those of the first frame. Fails if the parents
+/// are not a tree with one root.
 Result<Clip> skeleton_of_points(const PointBody& body, std::span<const float> positions, Time start,
                                 double rate_hz);
 

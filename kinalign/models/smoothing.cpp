@@ -38,7 +38,7 @@ void smooth(const Smoothing& how, std::size_t channels, std::span<float> values)
   if (window < 2) return;
   const std::size_t order = std::min(how.order, window - 1);
   const std::size_t centre = how.causal ? window - 1 : window / 2;
-  // One set of weights for each place in a window; the middle of the sequence needs one alone.
+  // One set of weights for each place in a window; frames in the middle all use the same set.
   std::vector<std::vector<double>> weights(window);
   const std::vector<float> before(values.begin(), values.end());
   for (std::size_t t = 0; t < frames; ++t) {

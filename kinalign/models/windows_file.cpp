@@ -16,12 +16,14 @@ namespace {
 
 constexpr std::uint32_t end_mark = 0x06054b50, entry_mark = 0x02014b50, local_mark = 0x04034b50,
                         end64_mark = 0x06064b50;
+/// Bytes of the fixed part of a ZIP record.
 constexpr std::size_t end_size = 22, entry_size = 46, local_size = 30;
 constexpr std::size_t most_dimensions = 8;
-constexpr std::size_t most_length = std::size_t{1} << 40U;  // of one dimension
+constexpr std::size_t most_length = std::size_t{1} << 40U;  // length of one dimension
 constexpr std::int64_t most_rows = std::int64_t{1} << 40U;
 
-/// Little-endian numbers of the file; 0 beyond its end, which the callers' checks then refuse.
+/// Little-endian numbers of the file. Beyond its end they are 0, which the callers' checks then
+/// refuse.
 class Bytes {
  public:
   explicit Bytes(std::string_view all) : all_(all) {}
@@ -52,7 +54,7 @@ struct Entry {
   std::uint64_t size = 0, at = 0;
 };
 
-/// Sizes and place from the field of ZIP64 where they are too large for 32 bits.
+/// Takes the size and the offset from the ZIP64 field if they do not fit into 32 bits.
 void read_zip64(const Bytes& bytes, std::size_t extra, std::size_t length, Entry& entry) {
   for (std::size_t at = extra; at + 4 <= extra + length;) {
     const std::size_t size = bytes.number(at + 2, 2);
@@ -60,7 +62,7 @@ void read_zip64(const Bytes& bytes, std::size_t extra, std::size_t length, Entry
       std::size_t place = at + 4;
       if (entry.size == 0xffffffff) {
         entry.size = bytes.number(place, 8);
-        place += 16;  // plain and packed size, which are one here
+        place += 16;  // uncompressed and compressed size, equal for stored members
       }
       if (entry.at == 0xffffffff) entry.at = bytes.number(place, 8);
     }
@@ -68,6 +70,7 @@ void read_zip64(const Bytes& bytes, std::size_t extra, std::size_t length, Entry
   }
 }
 
+/// The offset of the end record. A ZIP comment of up to 65,535 bytes may follow it.
 std::optional<std::size_t> find_end(const Bytes& bytes) {
   if (bytes.size() < end_size) return std::nullopt;
   const std::size_t last = bytes.size() - end_size;
@@ -77,6 +80,7 @@ std::optional<std::size_t> find_end(const Bytes& bytes) {
   return std::nullopt;
 }
 
+/// Reads the ZIP's central directory.
 Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& name) {
   const auto end = find_end(bytes);
   if (!end) return broken(name, "an NPZ (numpy.savez)", "no end of a ZIP");
@@ -110,13 +114,14 @@ Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& nam
   return out;
 }
 
-/// The text behind `key` in a NumPy header: {'descr': '<f4', 'fortran_order': False, 'shape':
+/// The text after `key` in a NumPy header such as {'descr': '<f4', 'fortran_order': False, 'shape':
 /// (2,)}.
 std::string_view after(std::string_view header, std::string_view key) {
   const std::size_t at = header.find(key);
   return at == std::string_view::npos ? std::string_view{} : header.substr(at + key.size());
 }
 
+/// Reads type and shape of a NumPy header; empty if it is not valid or in Fortran order.
 std::optional<StoredArray> read_header(std::string_view header) {
   StoredArray out;
   std::string_view type = after(header, "'descr': '");
@@ -140,7 +145,7 @@ std::optional<StoredArray> read_header(std::string_view header) {
   return out;
 }
 
-/// Bytes a value: of "<U12" 48.
+/// Bytes per value, for example 48 for "<U12".
 std::size_t value_size(const std::string& type) {
   if (type.size() < 3) return 0;
   std::size_t count = 0;
@@ -148,6 +153,7 @@ std::size_t value_size(const std::string& type) {
   return type[1] == 'U' ? 4 * count : count;
 }
 
+/// Reads one member. Each length is checked against the bytes present before it is multiplied.
 Result<StoredArray> read_array(std::string_view npy, const std::string& what) {
   const Bytes bytes(npy);
   if (npy.size() < 12 || npy.substr(0, 6) != "\x93NUMPY") {
@@ -179,6 +185,7 @@ void append_as_float(std::string_view bytes, std::vector<float>& out) {
   }
 }
 
+/// Appends `count` rows as floats; false if the type is not a number.
 bool append_row(const StoredArray& array, std::size_t first, std::size_t count,
                 std::vector<float>& out) {
   const std::size_t rows = array.shape.empty() ? 0 : array.shape[0];
@@ -209,7 +216,8 @@ Result<std::vector<std::int64_t>> integers(const std::map<std::string, StoredArr
   if (size == 0 || size > 8 || (!has_sign && array.type[1] != 'u')) {
     return broken(name, key + " of integers", array.type);
   }
-  const std::size_t unused = 8 * (8 - size);  // bits above the value, which get its sign
+  // Bits above the value; the shifts extend its sign into them.
+  const std::size_t unused = 8 * (8 - size);
   std::vector<std::int64_t> out;
   for (std::size_t at = 0; at + size <= array.bytes.size(); at += size) {
     const std::uint64_t bits = Bytes(array.bytes).number(at, size);
@@ -219,6 +227,7 @@ Result<std::vector<std::int64_t>> integers(const std::map<std::string, StoredArr
   return out;
 }
 
+/// Converts NumPy's UTF-32 text to UTF-8.
 std::string utf8_of(const StoredArray& array) {
   std::string out;
   for (std::size_t at = 0; at + 4 <= array.bytes.size(); at += 4) {
@@ -250,6 +259,7 @@ WindowsFacts::Stream stream_of(const nlohmann::json& json) {
   return out;
 }
 
+/// Reads the file's manifest, which lists its streams and arrays.
 Result<WindowsFacts> read_facts(const std::string& text, const std::string& name) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("schema") || json.at("schema") != "kinalign.windows/1") {
@@ -273,23 +283,24 @@ Result<WindowsFacts> read_facts(const std::string& text, const std::string& name
   return out;
 }
 
+/// For each window: take, part, number of rows, and stamp of its first row.
 struct Places {
   std::vector<std::int64_t> take, part, rows, time_ns;
 };
 
-/// Whether an array of this name has a row of the stream for each of a window's: [N,T,...].
+/// True if the array `key` has one row of the stream for each row of a window: [N,T,...].
 bool is_of_rows(const std::string& key, const std::string& stream, const StoredArray& array) {
   return key.starts_with(stream + "_") && array.shape.size() > 2 && !key.ends_with("_rest_offsets");
 }
 
 using Arrays = std::map<std::string, StoredArray>;
 
-/// Rows `skip` ... skip + rows - 1 of a window.
+/// Rows `skip` ... `skip` + `rows` - 1 of a window.
 struct Piece {
   std::size_t window, skip, rows;
 };
 
-/// Appends them to the last stretch.
+/// Appends the piece to the last stretch.
 Result<void> append_piece(const Arrays& arrays, const Piece& piece, Windows& out,
                           const std::string& name) {
   Stretch& stretch = out.stretches.back();
@@ -314,8 +325,8 @@ Result<void> append_piece(const Arrays& arrays, const Piece& piece, Windows& out
   return {};
 }
 
-/// How many rows window `w` begins behind the one before it. Stamps say so: of windows at another
-/// rate than the take's, `first` is rounded.
+/// The number of rows from the start of window `w` - 1 to that of window `w`. It uses stamps,
+/// because `first` is rounded if the windows have another rate than the take.
 std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
   const double step =
       static_cast<double>(places.time_ns[w]) - static_cast<double>(places.time_ns[w - 1]);
@@ -323,6 +334,7 @@ std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
   return std::abs(rows) < static_cast<double>(most_rows) ? std::llround(rows) : 2 * most_rows;
 }
 
+/// Joins windows that overlap or follow each other to stretches.
 Result<void> join(const Arrays& arrays, const Places& places, Windows& out,
                   const std::string& name) {
   std::int64_t begin = 0, reached = 0;
@@ -355,7 +367,9 @@ Result<void> join(const Arrays& arrays, const Places& places, Windows& out,
 }
 
 Result<Places> places_of(const Arrays& arrays, const std::string& name) {
-  Places out;  // member by member: an aggregate whose later member fails leaks the earlier ones
+  // Filled member by member: GCC leaks the earlier members of a braced list if a later one returns
+  // early.
+  Places out;
   out.take = KA_TRY(integers(arrays, "take", name));
   out.part = KA_TRY(integers(arrays, "part", name));
   out.rows = KA_TRY(integers(arrays, "rows", name));

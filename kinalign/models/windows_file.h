@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file of windows (schema kinalign.windows/1, docs/windows.md) put back together: the whole
-// stretches of each take. Reads NPZ whose members are stored, as kinalign and numpy.savez write it,
-// with nothing but the standard library and JSON, so that `learn` also builds on a GPU machine.
+// Reads a file of windows (schema kinalign.windows/1, docs/windows.md) and joins the windows to the
+// whole stretches of each take. Reads NPZ with stored (uncompressed) members, as kinalign and
+// numpy.savez write it. It needs only the standard library and JSON, so that `learn` also builds on
+// a GPU machine.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,42 +15,42 @@
 
 namespace kinalign {
 
-/// An array of a file: its numbers are read from the file's bytes.
+/// An array of a file. `bytes` points into the file's bytes.
 struct StoredArray {
-  std::string type;  // NumPy's: "<f4"
+  std::string type;  // NumPy's type name, for example "<f4"
   std::vector<std::size_t> shape;
   std::string_view bytes;
 
-  /// Values a row (the product of all lengths but the first).
+  /// Values per row (the product of all lengths except the first).
   std::size_t row() const;
 };
 
-/// A stream of a stretch of T rows.
+/// One stream's arrays in a stretch of T rows.
 struct StretchStream {
   std::map<std::string, std::vector<float>> arrays;  // "positions" [T,C], "valid", "state", ...
 };
 
 /// Rows of one take between two gaps.
 struct Stretch {
-  std::size_t take = 0;  // position in the manifest's list of takes
-  std::size_t part = 0;  // position in the manifest's list of parts
+  std::size_t take = 0;  // index in the manifest's list of takes
+  std::size_t part = 0;  // index in the manifest's list of parts
   std::size_t rows = 0;
   std::map<std::string, StretchStream> streams;
 };
 
-/// What the file's manifest says.
+/// The contents of the file's manifest.
 struct WindowsFacts {
   struct Take {
     std::string name, subject, action;
   };
   struct Stream {
     std::string name, kind;          // kind: skeleton, points, nodes
-    std::vector<std::string> names;  // of joints or nodes
-    std::vector<int> parents;        // of a skeleton
+    std::vector<std::string> names;  // joints or nodes
+    std::vector<int> parents;        // empty unless the stream is a skeleton
   };
   std::string dataset, licence, citation;
   double rate_hz = 0.0;
-  std::vector<std::string> parts;  // train, validation, test; one, "all", without a split
+  std::vector<std::string> parts;  // train, validation, test; only "all" if there is no split
   std::vector<Take> takes;
   std::vector<Stream> streams;
 
@@ -59,14 +60,15 @@ struct WindowsFacts {
 struct Windows {
   WindowsFacts facts;
   std::vector<Stretch> stretches;
-  std::map<std::string, std::vector<float>> rest_offsets;  // by stream: [takes,J,3] m
+  std::map<std::string, std::vector<float>> rest_offsets;  // by stream name: [takes,J,3] m
 };
 
-/// All arrays of an NPZ. Fails where it is none, a member is compressed, or a length is not true.
+/// All arrays of an NPZ. Fails if it is not an NPZ, if a member is compressed, or if a length is
+/// wrong.
 Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
                                                          const std::string& name);
 
-/// `npz`: the file's bytes. Windows that overlap or follow each other become one stretch.
+/// `npz`: the file's bytes. Windows that overlap or follow each other are joined to one stretch.
 Result<Windows> read_windows(std::string_view npz, const std::string& name);
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only code that knows how vectors and rotations lie in arrays: x,y,z and w,x,y,z.
-// `auto` is right for these three (they are views) and for no other Eigen expression.
+// The only code that knows the order of components in arrays: x,y,z and w,x,y,z. `auto` is correct
+// for the results of vec3() (they are views) and for no other Eigen expression.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ namespace kinalign {
 using Vec3 = Eigen::Vector3d;
 using Quat = Eigen::Quaterniond;
 
-/// The i-th vector of an array of x,y,z triples, as a place to read and write.
+/// The i-th vector of an array of x,y,z triples, for reading and writing.
 inline Eigen::Map<Vec3> vec3(std::span<double> array, std::size_t i) {
   return Eigen::Map<Vec3>(&array[3 * i]);
 }

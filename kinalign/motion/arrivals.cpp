@@ -8,13 +8,15 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t reach = 256;  // samples: how far behind one the proof is looked for
-constexpr double slack = 0.05;        // of a step
-constexpr double regular = 0.2;  // of a step: so much longer or shorter is no haste and no pause
+// Samples; a later sample proves a delay at most this far back.
+constexpr std::uint64_t reach = 256;
+constexpr double slack = 0.05;   // relative uncertainty of the step
+constexpr double regular = 0.2;  // a step that differs by less than this share of it is usual
 constexpr double flush_share = 0.125, flush_steps = 10.0;
-constexpr double heap_share = 0.05;  // of a step
-constexpr std::uint64_t heap = 8;    // so near each other that many may come without a pause
-constexpr double hidden = 2.0;       // steps that may have waited behind a usual one
+constexpr double heap_share = 0.05;  // share of a step
+// At most this many samples may be so near each other without a pause.
+constexpr std::uint64_t heap = 8;
+constexpr double hidden = 2.0;  // steps of waiting that a usual step may hide
 
 }  // namespace
 
@@ -38,7 +40,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   const bool heels = last.step <= flush_share * step_;
   last.flush = before.flush && heels && static_cast<double>(t - before.first) < flush_steps * step_;
   if (last.flush) return last;
-  if (before.flush && heels) {  // too long for a flush: the device was quicker
+  if (before.flush && heels) {  // too many for a flush: the device measured faster
     last.near = 0;
     last.first_near = false;
   }
@@ -51,8 +53,9 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   return last;
 }
 
-/// Of two samples the later one lies lower if it came quicker behind the other than the device, 5 %
-/// quicker than known, can have taken it: by as much the other was late.
+/// The sample's position relative to an ideal sequence with a 5 % shorter step, ns. If a later
+/// sample has a smaller value than an earlier one, the difference is the least delay of the earlier
+/// one.
 double ArrivalSurveyor::after_line(const Last& last) const {
   return static_cast<double>(last.t - last.first) -
          (1.0 - slack) * step_ * static_cast<double>(last.count - 1);
@@ -66,7 +69,7 @@ void ArrivalSurveyor::add(std::int64_t t) {
   settled_ = false;
 }
 
-/// Compares the last sample with those before it, once it is known that it stays.
+/// Compares the last sample with earlier ones, once it can no longer be taken back.
 void ArrivalSurveyor::settle() {
   if (settled_) return;
   settled_ = true;
@@ -85,7 +88,8 @@ void ArrivalSurveyor::settle() {
   }
 }
 
-/// Of those that came behind a pause, by a sample that came in haste.
+/// Counts the samples after a pause whose delay is proven by a sample that arrived too early for
+/// the step.
 void ArrivalSurveyor::find_late(double after_line) {
   for (Candidate& c : candidates_) {
     const double late = std::min(c.pause, c.after_line - after_line);

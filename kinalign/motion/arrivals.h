@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How late samples were stamped that are stamped where they arrive, as far as the samples behind
-// them show it.
+// Some samples are stamped when they arrive, not when they are taken. This file estimates how late
+// they were stamped, as far as later samples show it.
 #pragma once
 
 #include <cstdint>
@@ -8,71 +8,74 @@
 
 namespace kinalign {
 
-/// Of two samples nearer than this share of the usual step the first was held back on its way: a
-/// hand that moves on within 0.1 ms would be metres away in between. KinectMultiTrack's server
-/// stamps are 8 of 34 ms apart at the least.
+/// Devices never stamp a sample early. If two samples are closer than 1/near_share of the usual
+/// step, the first one was delayed: a hand can't move metres within 0.1 ms. The server stamps of
+/// KinectMultiTrack are at least 8 ms apart, with a step of 34 ms.
 constexpr std::int64_t near_share = 5;
 
-/// Samples this many steps late are stale by more than what counts as a gap.
+/// A sample that is this many steps late is older than what counts as a gap.
 constexpr std::int64_t late_steps = 3;
 
 struct Arrivals {
-  std::uint64_t near = 0;          // less than a fifth of a step in front of the next one
-  std::uint64_t late = 0;          // stamped at least late_steps steps after they were taken
-  std::int64_t worst_late_ns = 0;  // of these, the worst; what is known to be its least
+  std::uint64_t near = 0;  // samples less than a fifth of a step before the next one
+  std::uint64_t late = 0;  // samples stamped at least late_steps steps after they were taken
+  std::int64_t worst_late_ns = 0;  // largest delay of these; a lower bound
   bool first_late = false;         // the first sample is near the next one, or late
-  bool near_only = false;          // no step was known by which late ones could be told
+  bool near_only = false;  // only `near` was counted, because the step is not known well enough
 
   bool operator==(const Arrivals&) const = default;
 };
 
-/// A device takes a sample each step. Sample i, which was taken j - i steps before sample j, was
-/// not taken later than that before j arrived: late_i >= (j - i) step - (t_j - t_i). Samples that
-/// come quicker than they are taken have waited, and so a pause stands in front of them, which is
-/// as long at the least: late_i <= t_i - t_k - (i - k) step behind a punctual sample k. A device
-/// that now and then measures quicker makes no pause before. In front of the first sample any
-/// pause may have been: of what stands there only a flush counts, samples up to an eighth of a
-/// step apart that are through within ten steps. The step may be 5 % off.
+/// The device takes one sample per step. Sample i was taken (j - i) steps before sample j, and
+/// sample j was taken before it arrived. This gives a lower bound of the delay: late_i >= (j - i)
+/// step - (t_j - t_i).
 ///
-/// Near ones need less: a loop that reads a little slower than the device measures finds two or
-/// three samples now and then, without a pause that shows. Up to eight in a row may come nearer
-/// than a twentieth of a step, and any usual step may hide two steps of waiting: where a device
-/// begins to measure five times quicker, two or three samples are so taken for near, of twenty
-/// times quicker eight.
+/// Samples that arrive faster than they are taken have waited, so there is a pause of at least that
+/// length before them. This gives an upper bound, from a punctual sample k: late_i <= t_i - t_k -
+/// (i - k) step. A device that sometimes measures faster leaves no pause. The pause before the
+/// first sample is unknown. At the start only a flush counts: samples at most an eighth of a step
+/// apart that all arrive within ten steps. The step may be wrong by 5 %.
+///
+/// Near samples need less evidence: a loop that reads slightly slower than the device measures
+/// sometimes finds two or three samples, without a visible pause. Up to eight samples in a row may
+/// be closer than a twentieth of a step, and any usual step may hide a delay of two steps.
+/// Therefore, if a device begins to measure five times faster, two or three samples are wrongly
+/// counted as near; with twenty times faster, eight.
 class ArrivalSurveyor {
  public:
-  /// 0: no step is known, nothing is told. Not `steady`: it is not known to 5 %, and no more than
-  /// near ones are told.
+  /// `step_ns` 0: the step is unknown and nothing is counted. Not `steady`: the step is not known
+  /// to 5 %, so only near samples are counted.
   explicit ArrivalSurveyor(std::int64_t step_ns, bool steady = true)
       : step_(static_cast<double>(step_ns)), steady_(steady) {}
 
-  /// Rising stamps, ns.
+  /// Adds a stamp, ns. Stamps must rise.
   void add(std::int64_t t);
-  /// The last one was no sample. One can be taken back, then the next is to be added.
+  /// Removes the last sample, because it was not a valid one. Only one sample can be removed before
+  /// the next add().
   void take_back();
-  /// Whether the last one was held back if the next comes at `t`.
+  /// True if the last sample turns out to be delayed when the next one comes at `t`.
   bool shows_late(std::int64_t t) const {
     return now_.count > 0 && shows_late(now_, static_cast<double>(t) - static_cast<double>(now_.t));
   }
   Arrivals result() const;
 
  private:
-  /// One that came behind a pause: it may turn out to have waited.
+  /// A sample after a pause; it may turn out to have waited.
   struct Candidate {
     std::uint64_t index = 0;
     double after_line = 0.0;
-    double pause = 0.0;  // how late it can be, ns
+    double pause = 0.0;  // upper bound of its delay, ns
     bool late = false;
   };
-  /// What is known when a sample has come.
+  /// The state after a sample.
   struct Last {
     std::uint64_t count = 0, near = 0;
-    std::uint64_t run = 0;  // quick steps in a row, to it
+    std::uint64_t run = 0;  // number of successive near steps up to this sample
     std::int64_t first = 0, t = 0;
-    double step = 0.0;   // to it, ns
-    double pause = 0.0;  // how late it can be behind the pauses that show, ns
-    double doubt = 0.0;  // and by steps that are usual, late_steps steps at the most
-    bool flush = false;  // all so far came on each other's heels
+    double step = 0.0;   // step before this sample, ns
+    double pause = 0.0;  // upper bound of the delay from visible pauses, ns
+    double doubt = 0.0;  // further delay that usual steps may hide, at most late_steps steps, ns
+    bool flush = false;  // all samples so far belong to a flush
     bool first_near = false;
   };
 
@@ -87,9 +90,9 @@ class ArrivalSurveyor {
   double step_;
   bool steady_;
   Last now_, before_;
-  bool settled_ = true;               // `now_` has been compared with those before it
-  std::deque<Candidate> candidates_;  // of the last `reach` samples
-  Arrivals late_;                     // near aside
+  bool settled_ = true;               // `now_` has been compared with earlier samples
+  std::deque<Candidate> candidates_;  // among the last `reach` samples
+  Arrivals late_;                     // without near samples
 };
 
 }  // namespace kinalign

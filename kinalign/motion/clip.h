@@ -12,26 +12,26 @@
 
 namespace kinalign {
 
-/// The tip of a leaf joint: a place without a rotation of its own.
+/// The end of a leaf joint: a position without a rotation.
 struct EndSite {
-  int parent = 0;              // index of the joint it hangs on
+  int parent = 0;              // index of its joint
   Vec3 offset = Vec3::Zero();  // m, in the parent's space
 };
 
-/// Joints in an order in which every parent stands before its children.
+/// Joints, each parent before its children.
 struct Skeleton {
   std::vector<std::string> joint_names;  // [J] unique
   std::vector<int> parents;              // [J] parents[j] < j; -1: a root
   std::vector<Vec3> rest_offsets;        // [J] m, from the parent, in the parent's space
-  std::vector<EndSite> end_sites;        // beside the joints, in file order
+  std::vector<EndSite> end_sites;        // not among the joints; in the order of the file
 
   std::size_t joints() const { return parents.size(); }
 };
 
-/// Fails where names repeat, sizes differ or a parent does not stand before its child.
+/// Fails if names repeat, sizes differ or a parent does not come before its child.
 Result<void> validate(const Skeleton& skeleton);
 
-/// T frames of one skeleton of J joints: a block of a clip, or all of it.
+/// T frames of a skeleton with J joints: a block of a clip, or all of it.
 struct ClipFrames {
   std::vector<Time> stamps;             // [T] strictly rising
   std::vector<double> local_positions;  // [T,J,3] m, each joint in its parent's space

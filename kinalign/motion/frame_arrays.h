@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arrays of a block of frames, said once for all that treat them alike.
+// Lists the arrays of each type of frame blocks, for code that treats all of them alike.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// Members of Frames, each [T] of something.
+/// The members of Frames that are arrays with one row per frame.
 template <class Frames>
 constexpr std::tuple<> frame_arrays;
 template <>
@@ -27,7 +27,7 @@ inline constexpr auto frame_arrays<ImuSamples> = std::tuple(&ImuSamples::stamps,
                                                             &ImuSamples::angular_velocity,
                                                             &ImuSamples::valid);
 
-/// Calls use(member) for each.
+/// Calls use(member) for each array.
 template <class Frames, class Use>
 void for_each_frame_array(Use&& use) {
   std::apply([&use](auto... array) { (use(array), ...); }, frame_arrays<Frames>);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 25 joints of Kinect v2 in the SDK's order (JointType), and what each hangs on.
+// The 25 joints of Kinect v2 in the SDK's order (JointType), and their parents.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 25> kinect_joints{
     "FootLeft",      "HipRight",    "KneeRight", "AnkleRight",    "FootRight",
     "SpineShoulder", "HandTipLeft", "ThumbLeft", "HandTipRight",  "ThumbRight"};
 
-/// The root hangs on itself.
+/// The parent of the root is the root itself.
 constexpr std::array<std::size_t, 25> kinect_parents{0,  0,  20, 2, 20, 4,  5,  6, 20, 8, 9,  10, 0,
                                                      12, 13, 14, 0, 16, 17, 18, 1, 7,  7, 11, 11};
 

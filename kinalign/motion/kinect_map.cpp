@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables. Heights above the hips, cm: Kinect SpineMid 32, SpineShoulder 55, Neck 63, Head 78
-// (18 recordings, formats.md 2.1); Perception Neuron, person of 175: Spine1 24.0, Spine2 34.1,
-// Spine3 43.9, Neck 54.3, Head 63.7, end 79.7; of Axis Studio: Spine1 25.1, Spine2 37.4, Neck 55.8,
-// Neck1 60.6, Head 65.3, end 81.2. Kinect hips are 15.7 apart, Perception Neuron's 18.5: 15 % of
-// the way to the middle. Of CMU's the names that its table in formats.md 7 gives.
+// Sources of the tables. Heights above the hips, cm: Kinect SpineMid 32, SpineShoulder 55, Neck 63,
+// Head 78 (18 recordings, formats.md 2.1). Perception Neuron, for a person of 175: Spine1 24.0,
+// Spine2 34.1, Spine3 43.9, Neck 54.3, Head 63.7, end 79.7. Axis Studio: Spine1 25.1, Spine2 37.4,
+// Neck 55.8, Neck1 60.6, Head 65.3, end 81.2. Kinect hips are 15.7 cm apart, Perception Neuron's
+// 18.5 cm, hence 15 % of the way to the middle. CMU's names are those of its table in formats.md 7.
 #include "kinalign/motion/kinect_map.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct Way {
 };
 using Table = std::array<Way, kinect_joints.size()>;
 
-/// The Perception Neuron's limbs, which both hierarchies share.
+/// The table for Perception Neuron; both hierarchies have the same limbs.
 constexpr Table limbs(const Way& mid, const Way& shoulder, const Way& neck, const Way& head) {
   return {{{"Hips"},
            mid,
@@ -89,7 +89,7 @@ const EndSite* find_end(const Skeleton& skeleton, std::size_t joint) {
   return found == skeleton.end_sites.end() ? nullptr : &*found;
 }
 
-/// What the skeleton lacks for one place; empty: nothing, and `place` is filled.
+/// Fills `place`. Returns the name of the missing joint or end site; empty if none is missing.
 std::string fill(const Skeleton& skeleton, const Way& way, KinectPlace& place) {
   const auto from = find_joint(skeleton, way.from);
   if (!from) return std::string(way.from);
@@ -109,7 +109,7 @@ std::string fill(const Skeleton& skeleton, const Way& way, KinectPlace& place) {
 
 struct Trial {
   KinectMap map;
-  std::vector<std::string> missing;  // each once
+  std::vector<std::string> missing;  // each name once
 };
 
 Trial tried(const Skeleton& skeleton, const Table& table) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the 25 joints of a Kinect lie in another skeleton: a joint, and a share of the way from it
-// to another one or to its end site. By height and not by name: by name the spine would be 10 to
-// 14 cm off. What stays (widths, what the Kinect takes for a knee) is calibration's, not a map's.
+// Finds the places of a Kinect's 25 joints in another skeleton: at a joint, or at a share of the
+// way from a joint to another joint or to its end site. Joints are mapped by height, not by name;
+// by name the spine would be wrong by 10 to 14 cm. Remaining differences (widths, the Kinect's
+// place of a knee) are left to a calibration.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,16 +18,16 @@ namespace kinalign {
 struct KinectPlace {
   std::size_t joint = 0, towards = 0;
   double share = 0.0;
-  Vec3 along = Vec3::Zero();  // m, in the joint's space: its share of the way to an end site
+  Vec3 along = Vec3::Zero();  // m, in the joint's space; part of the offset of its end site
 };
 
 struct KinectMap {
   std::array<KinectPlace, kinect_joints.size()> places;  // in the order of kinect_joints
 };
 
-/// For the skeletons whose names we know: Perception Neuron (legacy: Axis Neuron; Studio: Axis
-/// Studio), and CMU's as cgspeed converted them; with more joints or in another order, too. Fails
-/// where joints of the nearest of them are missing, and names these.
+/// The map for skeletons with known names: Perception Neuron (legacy: Axis Neuron; Studio: Axis
+/// Studio), and CMU's as converted by cgspeed. Further joints and another order are accepted. Fails
+/// if joints are missing; the message names the most similar skeleton and its missing joints.
 Result<KinectMap> kinect_map(const Skeleton& skeleton);
 
 /// Fills `out` [25,3] m, in the order of kinect_joints, in the space of the pose's roots.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over 16 frames at a time, structure of arrays inside the block, which the compiler turns
-// into vector code: 0.4 of the time of Eigen joint by joint (bench/kinematics_bench.cpp).
+// Processes 16 frames at a time, with a structure of arrays that the compiler turns into vector
+// code: 0.4 of the time of Eigen joint by joint (bench/kinematics_bench.cpp).
 #include "kinalign/motion/kinematics.h"
 
 #include "kinalign/motion/targets.h"
@@ -15,11 +15,12 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t block = 16;
-constexpr std::size_t few = 3;  // fewer lanes are quicker one by one
+constexpr std::size_t few = 3;  // fewer lanes are faster one by one
 using Lane = std::array<double, block>;
 
-// sin and cos of half an angle in degrees, through a quarter of it: reduced to +-180 degrees, the
-// quarter lies within +-45, where Taylor's series of degree 15 and 16 is exact to 5e-17.
+// Computes sine and cosine of half an angle in degrees from a quarter of it. The angle is reduced
+// to +-180 degrees, so the quarter is within +-45, where Taylor's series of degree 15 and 16 is
+// exact to 5e-17.
 KA_INLINE void half_angle(double degrees, double& sine, double& cosine) {
   constexpr double to_integer =
       0x1.8p52;  // adding and subtracting it rounds to the nearest integer
@@ -46,15 +47,15 @@ KA_INLINE void half_angle(double degrees, double& sine, double& cosine) {
   cosine = 1.0 - 2.0 * s * s;
 }
 
-/// +1 where a, b, c are an even permutation of x, y, z, else -1.
+/// +1 if the axes a, b and the third one are an even permutation of x, y, z, else -1.
 double parity(int a, int b) { return (b - a + 3) % 3 == 1 ? 1.0 : -1.0; }
 
 struct Rotations {
   std::array<Lane, 4> part;  // w, x, y, z
 };
 
-// q = q_a q_b q_c of three elementary rotations about different axes, multiplied out. `sign` is the
-// permutation's parity; the parts come out on the axes a, b, c.
+// Multiplies three elementary rotations about different axes: q = q_a q_b q_c. `sign` is the parity
+// of the permutation. The vector parts are ordered by the axes a, b, c.
 KA_INLINE void compose_lane(const std::array<Lane, 3>& degrees, double sign, std::size_t i,
                             Rotations& q) {
   double sa = 0.0, ca = 0.0, sb = 0.0, cb = 0.0, sc = 0.0, cc = 0.0;
@@ -73,13 +74,14 @@ void compose(const std::array<Lane, 3>& degrees, double sign, Rotations& q) {
   for (std::size_t i = 0; i < block; ++i) compose_lane(degrees, sign, i, q);
 }
 
-/// The same of the first lanes alone: streams bring their frames one by one.
+/// The same for the first lanes only, because streams deliver frames one by one.
 void compose_few(const std::array<Lane, 3>& degrees, double sign, std::size_t lanes, Rotations& q) {
   for (std::size_t i = 0; i < lanes; ++i) compose_lane(degrees, sign, i, q);
 }
 
-// One joint of the chain over a block of frames: turned = parent's * local, at = parent's + turned
-// offset. `global` parts: 0..3 rotation, 4..6 position.
+// Computes one joint of the chain for a block of frames: rotation = parent's rotation * local
+// rotation, position = parent's position + parent's rotation * offset. `global` parts: 0..3
+// rotation, 4..6 position.
 using Pose = std::array<Lane, 7>;
 
 KA_EVERY_PROCESSOR
@@ -101,7 +103,7 @@ void follow(const Pose& parent, const Pose& local, Pose& global) {
   }
 }
 
-/// Frames first.. of joint j as lanes; lanes beyond the last frame repeat it.
+/// Loads joint j from frame `first` on, one frame per lane. Lanes beyond the last frame repeat it.
 void load(const ClipFrames& frames, std::size_t joints, std::size_t first, std::size_t j,
           Pose& pose) {
   const std::size_t last = std::min(block, frames.size() - first) - 1;

@@ -9,7 +9,7 @@ namespace kinalign {
 
 Quat tilted(const Vec3& up_in_sensor, double heading) {
   const Vec3 up = Vec3::UnitY();
-  // The half-way quaternion 1 + up.a + a x up vanishes where a = -up.
+  // The half-way quaternion 1 + up.a + a x up is zero if a = -up.
   Quat tilt(1.0 + up_in_sensor.y(), 0.0, 0.0, 0.0);
   tilt.vec() = up_in_sensor.cross(up);
   if (tilt.squaredNorm() < 1e-24) tilt = Quat(0.0, 1.0, 0.0, 0.0);
@@ -17,7 +17,7 @@ Quat tilted(const Vec3& up_in_sensor, double heading) {
 }
 
 double heading_of(const Quat& world_from_sensor) {
-  // A tilt as above has no part about y: what a quaternion has of it is the heading's.
+  // A tilt from tilted() has no y component, so that component comes from the heading alone.
   return 2.0 * std::atan2(std::copysign(1.0, world_from_sensor.w()) * world_from_sensor.y(),
                           std::abs(world_from_sensor.w()));
 }
@@ -55,7 +55,8 @@ bool MahonyFilter::update(double dt_s, const InertialReading& reading) {
     if (up) set_tilt(*up, heading_of(orientation_));
     return true;
   }
-  // The paper's omega_mes, v x v^: v the measured direction of up, v^ = orientation^T up.
+  // The paper's omega_mes = v x v^, where v is the measured direction of up and v^ = orientation^T
+  // up.
   Vec3 correction = Vec3::Zero();
   if (up) correction = up->cross(orientation_.conjugate() * Vec3::UnitY());
   const Vec3 rate = reading.angular_velocity - bias_ + options_.tilt_gain * correction;

@@ -25,7 +25,7 @@ void forward_kinematics(const Skeleton& skeleton, const Pose& local, GlobalPose&
 
 ClipFrames sample_frames(const Motion& motion, double rate_hz, Time first) {
   const std::size_t joints = motion.skeleton.joints();
-  // A frame on the end itself counts, though the product may be a rounding beyond it.
+  // Includes a frame exactly at the end, even if rounding puts the product slightly beyond it.
   const auto count = static_cast<std::size_t>(std::floor(motion.length_s * rate_hz + 1e-9)) + 1;
   ClipFrames frames;
   frames.stamps.resize(count);

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// Of both sides' points, each about its mean, m2.
+/// The cross-covariance of the two sets of points, each relative to its mean, m2.
 Eigen::Matrix3d covariance(const PairMoments& m) {
   const auto n = static_cast<double>(m.count);
   return m.cross / n - (m.to_sum / n) * (m.from_sum / n).transpose();

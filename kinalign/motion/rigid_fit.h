@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rotation and translation that bring points onto points, least squares, from moments: one
-// pass over the data in any number of pieces (Umeyama, PAMI 13(4), 1991; no scale).
+// Finds the rotation and translation that map points onto points by least squares. It works on
+// moments, so one pass over the data in any number of pieces is enough (Umeyama, PAMI 13(4), 1991;
+// no scale).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -18,9 +19,9 @@ struct RigidTransform {
   Vec3 operator*(const Vec3& p) const { return rotation * p + translation; }
 };
 
-/// Sums over pairs of points, about origins near the data so that no digits are lost.
+/// Sums over pairs of points, relative to origins near the data so that no digits are lost.
 struct PairMoments {
-  Vec3 from_origin = Vec3::Zero(), to_origin = Vec3::Zero();  // the first pair's
+  Vec3 from_origin = Vec3::Zero(), to_origin = Vec3::Zero();  // the points of the first pair
   std::size_t count = 0;
   Vec3 from_sum = Vec3::Zero(), to_sum = Vec3::Zero();
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();  // sum of to * from^T
@@ -28,11 +29,12 @@ struct PairMoments {
   void add(const Vec3& from, const Vec3& to);
 };
 
-/// Fails with fewer than three pairs or pairs on one line, where a turn about it is free.
+/// Fails with fewer than three pairs, or with points on one line, because the rotation about that
+/// line is undefined.
 Result<RigidTransform> fit_rigid(const PairMoments& moments);
 
-/// How far the points spread beside the line that they lie nearest to, m rms: a turn about that
-/// line is as sure as this is large.
+/// The spread of the points perpendicular to the line that fits them best, m rms. The larger it is,
+/// the better the rotation about that line is determined.
 double spread_beside_line(const PairMoments& moments);
 
 }  // namespace kinalign

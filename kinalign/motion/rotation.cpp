@@ -11,7 +11,8 @@ Vec3 rotation_vector(const Quat& q) {
 Quat rotation(const Vec3& vector) {
   Vec3 r = vector;
   int halvings = 0;
-  // Above 1e9 rad a double no longer says which way the rotation points; 40 halvings reach it.
+  // Above 1e9 rad a double can't represent the direction of a rotation; 40 halvings suffice up to
+  // there.
   for (; !(r.squaredNorm() <= most_rotation_parts) && halvings < 40; ++halvings) r *= 0.5;
   const RotationParts parts = rotation_parts(r.squaredNorm());
   const Vec3 v = parts.vector * r;

@@ -14,7 +14,8 @@ std::size_t place_of(std::span<const std::string> joint_names, std::string_view 
                                   joint_names.begin());
 }
 
-/// UI-PRMD has a joint Head, too, at another place; only its files have a Waist.
+/// UI-PRMD's files also have a joint Head, at another place. Only these files have a Waist, which
+/// identifies them.
 const Names& names_among(std::span<const std::string> joint_names) {
   const bool ui_prmd = place_of(joint_names, "Waist") < joint_names.size();
   return ui_prmd ? shared_joints_in_ui_prmd : shared_joints;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 18 joints that a Kinect and optical markers both give (UI-PRMD's protocol), and the 11 limb
-// bones between them. Methods that clean Kinect skeletons are judged on these.
+// The 18 joints that both a Kinect and optical markers give (UI-PRMD's protocol), and the 11 limb
+// bones between them. Methods that clean Kinect skeletons are compared on these.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,19 +16,19 @@ namespace kinalign {
 
 inline constexpr std::size_t shared_joint_count = 18;
 
-/// Names by the Kinect SDK, in the protocol's order.
+/// Names of the Kinect SDK, in the protocol's order.
 inline constexpr std::array<std::string_view, shared_joint_count> shared_joints{
     "SpineBase", "SpineMid",      "SpineShoulder", "Head",       "ShoulderLeft", "ElbowLeft",
     "WristLeft", "ShoulderRight", "ElbowRight",    "WristRight", "HipLeft",      "KneeLeft",
     "AnkleLeft", "FootLeft",      "HipRight",      "KneeRight",  "AnkleRight",   "FootRight"};
 
-/// The joints of UI-PRMD's Kinect files (formats/points/ui_prmd_kinect.h) that lie at these places.
+/// The joints at these places in UI-PRMD's Kinect files (formats/points/ui_prmd_kinect.h).
 inline constexpr std::array<std::string_view, shared_joint_count> shared_joints_in_ui_prmd{
     "Waist",    "Spine",         "Chest",         "HeadTip",       "UpperArmLeft", "ForearmLeft",
     "HandLeft", "UpperArmRight", "ForearmRight",  "HandRight",     "UpperLegLeft", "LowerLegLeft",
     "FootLeft", "ToesLeft",      "UpperLegRight", "LowerLegRight", "FootRight",    "ToesRight"};
 
-/// Two joints by their place in shared_joints.
+/// Two joints as indices into shared_joints.
 struct SharedBone {
   std::size_t a = 0, b = 0;
 };
@@ -45,13 +45,12 @@ inline constexpr std::array<SharedBone, 11> limb_bones{{{4, 5},
                                                         {15, 16},
                                                         {16, 17}}};
 
-/// The index of each shared joint in `joint_names`, which are named by the SDK or as in UI-PRMD's
-/// Kinect files; absent for joints that are missing. A suit's skeleton has no tip of the foot.
+/// The index of each shared joint in `joint_names`, which are those of the SDK or of UI-PRMD's
+/// Kinect files; absent if the joint is missing. A suit's skeleton has no tip of the foot.
 std::array<std::optional<std::size_t>, shared_joint_count> shared_joints_there(
     std::span<const std::string> joint_names);
 
-/// The index of each shared joint in `joint_names`, which are named by the SDK or as in UI-PRMD's
-/// Kinect files. Fails where joints are missing, and names the first.
+/// The same, but fails if a joint is missing; the message names the first one.
 Result<std::array<std::size_t, shared_joint_count>> shared_joints_among(
     std::span<const std::string> joint_names);
 

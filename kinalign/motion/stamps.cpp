@@ -9,15 +9,17 @@ namespace kinalign {
 
 namespace {
 
-// Class of a step > 0: the seven bits behind its leading one, below the number of that bit.
+// The class of a step > 0: the position of its leading bit, followed by the next seven bits.
 std::size_t class_of(std::uint64_t step) {
   const auto bits = static_cast<unsigned>(std::bit_width(step | 1)) - 1;
   const std::uint64_t fraction = bits >= 7 ? step >> (bits - 7) : step << (7 - bits);
   return (std::size_t{bits} << 7) + (fraction & 127);
 }
 
-constexpr std::uint64_t longest_first = 1'000'000'000;  // ns; a longer first step may be a slip
-constexpr std::uint64_t longest_ratio = 4;              // and a later one of so many usual steps
+// Ns; a longer first step may be a clock error.
+constexpr std::uint64_t longest_first = 1'000'000'000;
+// A later step may be one if it is this many usual steps long.
+constexpr std::uint64_t longest_ratio = 4;
 
 std::int64_t rounded(double ns) { return ns < 9.2e18 ? std::llround(ns) : INT64_MAX; }
 
@@ -55,7 +57,8 @@ StampFate StampRule::judge(Time stamp) {
   return StampFate::replaces;
 }
 
-/// Follows shorter steps at once and longer ones slowly: one gap makes no slip look usual.
+/// The usual step follows shorter steps at once and longer steps slowly, so that a single gap does
+/// not make a clock error look usual.
 void StampRule::learn(std::uint64_t step) {
   constexpr std::uint64_t countable = std::uint64_t{1} << 60;
   step = std::min(step, countable);
@@ -80,7 +83,7 @@ void StampSurveyor::keep(Time stamp) {
   survey_.last = stamp;
 }
 
-/// The last stamp kept; the counts say already that it is gone.
+/// Removes the last kept stamp; the counts are already updated.
 void StampSurveyor::take_back() {
   if (survey_.kept() > 1) {
     const std::uint64_t step = step_between(before_, survey_.last);

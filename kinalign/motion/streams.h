@@ -12,12 +12,12 @@
 
 namespace kinalign {
 
-/// What a device says of a joint; the numbers are the Kinect SDK's TrackingState.
+/// The state that a device reports for a joint; the numbers are the Kinect SDK's TrackingState.
 enum class Tracking : std::uint8_t { missing = 0, inferred = 1, tracked = 2 };
 
 /// T frames of J points. A missing point holds zeros.
 struct PointFrames {
-  std::vector<Time> stamps;       // [T] as the device gave them: may repeat and step back
+  std::vector<Time> stamps;       // [T] as given by the device; may repeat and step back
   std::vector<double> positions;  // [T,J,3] m
   std::vector<Tracking> state;    // [T,J]
 
@@ -29,19 +29,19 @@ struct PointStream {
   PointFrames frames;
 };
 
-/// Which quantities a stream of inertial nodes carries; absent ones have empty arrays.
+/// The quantities of a stream of inertial nodes; absent ones have empty arrays.
 struct ImuContent {
   bool orientation = false;
   bool acceleration = false;
   bool angular_velocity = false;
-  bool gravity = true;  // stands in the acceleration: a node at rest reads +9.8 upwards
+  bool gravity = true;  // the acceleration contains gravity: a node at rest reads +9.8 upwards
 
   bool operator==(const ImuContent&) const = default;
 };
 
-/// T samples of S nodes that share their stamps. A sample that is not valid holds zeros.
+/// T samples of S nodes with common stamps. A sample that is not valid holds zeros.
 struct ImuSamples {
-  std::vector<Time> stamps;              // [T] as the device gave them
+  std::vector<Time> stamps;              // [T] as given by the device
   std::vector<double> orientation;       // [T,S,4] world_from_sensor, unit; world is y up
   std::vector<double> acceleration;      // [T,S,3] m/s2, in the sensor's space
   std::vector<double> angular_velocity;  // [T,S,3] rad/s, in the sensor's space

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hot loop built for several processors, chosen when the program starts. Fused multiply-add stays
-// off (cmake/kinalign_room.cmake), so that all builds of a loop give the same bits.
+// Builds a hot loop for several processors; the version is chosen when the program starts. Fused
+// multiply-add is off (cmake/kinalign_room.cmake), so that all versions of a loop give the same
+// bits.
 #pragma once
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(KINALIGN_SANITIZED)
@@ -9,5 +10,5 @@
 #define KA_EVERY_PROCESSOR
 #endif
 
-/// A part of such loops: it must become part of the loop to be built for its processor.
+/// For parts of such loops: they must be inlined to be built for the same processor.
 #define KA_INLINE inline __attribute__((always_inline))

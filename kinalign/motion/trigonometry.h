@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sine, cosine and arctangent as polynomials of the squared argument, for hot loops: they turn into
-// vector code and, unlike the C library's, give the same bits on every processor. Without square
-// roots: sin(x) = x * sine_ratio(x^2), so weights that depend on an angle need only its square.
+// Sine, cosine and arctangent as polynomials of the squared argument, for hot loops. They become
+// vector code and, unlike the C library's functions, give the same bits on every processor. No
+// square roots are needed: sin(x) = x * sine_ratio(x^2), so weights that depend on an angle need
+// only its square.
 #pragma once
 
 #include "kinalign/motion/targets.h"
@@ -12,7 +13,7 @@
 
 namespace kinalign {
 
-/// Coefficients, lowest power first, by Horner's rule.
+/// Evaluates a polynomial by Horner's rule; coefficients from the lowest power on.
 template <std::size_t terms>
 KA_INLINE double polynomial(const std::array<double, terms>& coefficients, double x) {
   double sum = coefficients[terms - 1];
@@ -23,8 +24,9 @@ KA_INLINE double polynomial(const std::array<double, terms>& coefficients, doubl
   return sum;
 }
 
-/// 1/first! - x/(first+2)! + x^2/(first+4)! - ...: first 0 is the cosine, 1 the sine over its
-/// argument, 4 and 5 what is left of both behind their first two terms; x the squared angle.
+/// The coefficients of 1/first! - x/(first+2)! + x^2/(first+4)! - ..., where x is the squared
+/// angle. first 0: cosine; 1: sine divided by its argument; 4 and 5: the remainders of both after
+/// their first two terms.
 template <std::size_t terms>
 constexpr std::array<double, terms> alternating_series(int first) {
   std::array<double, terms> c{};
@@ -38,20 +40,20 @@ constexpr std::array<double, terms> alternating_series(int first) {
   return c;
 }
 
-/// sin(x) / x of y = x^2, y in [0, (pi/2)^2]: to 2e-16.
+/// sin(x) / x as a function of y = x^2, y in [0, (pi/2)^2], exact to 2e-16.
 KA_INLINE double sine_ratio(double y) {
   constexpr auto c = alternating_series<12>(1);
   return polynomial(c, y);
 }
 
-/// cos(x) of y = x^2, y in [0, (pi/2)^2]: to 3e-16.
+/// cos(x) as a function of y = x^2, y in [0, (pi/2)^2], exact to 3e-16.
 KA_INLINE double cosine(double y) {
   constexpr auto c = alternating_series<13>(0);
   return polynomial(c, y);
 }
 
-/// atan(t) / t of x = t^2, t in [0, 1]: to 3e-16. Interpolated at the 20 Chebyshev points of x in
-/// [0, 1] in 70-digit arithmetic; without rounding it is off by 3e-17.
+/// atan(t) / t as a function of x = t^2, t in [0, 1], exact to 3e-16. Interpolated at the 20
+/// Chebyshev points of x in [0, 1] in 70-digit arithmetic; without rounding the error is 3e-17.
 KA_INLINE double arctangent_ratio(double x) {
   constexpr std::array<double, 20> c{1.0,
                                      -0.333333333333307,

@@ -30,7 +30,7 @@ constexpr std::array<ProtocolRow, 5> table{{
      .usual_rate_hz = 0.0,
      .needs_skeleton = false,
      .has_trackers = false,
-     .has_frame_decoder = false,  // a datagram that is no node's is refused and not recorded
+     .has_frame_decoder = false,  // a datagram of another sender is refused and not recorded
      .has_node_ids = true,
      .is_named_by_address = false},
     {.protocol = Protocol::noitom,

@@ -2,9 +2,10 @@
 // The protocols of the devices, one row each. The rest of the program asks a row or switches over
 // the enum; no other code compares names of protocols or transports.
 //
-// A new protocol is a room below this one, an enumerator and a row here, and a case in each switch
-// over the enum: its decoder while recording (capture/recorder/stream_watch.cpp) and its rows for
-// alignment (recording/streams/device_rows.cpp).
+// To add a protocol: make a room below this one, an enumerator and a row here, and a case in each
+// switch over the enum. There are two: the decoder while recording
+// (capture/recorder/stream_watch.cpp), and the rows for alignment
+// (recording/streams/device_rows.cpp).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -25,7 +26,7 @@ enum class Protocol : std::uint8_t { nodes, noitom, xsens, kinect, slimevr };
 /// `tcp`: kinalign connects to the device. `tcp_listen`: the device connects to kinalign.
 enum class Transport : std::uint8_t { udp, tcp, tcp_listen };
 
-/// What alignment makes of a stream.
+/// Kind of rows into which alignment converts a stream.
 enum class ProtocolRows : std::uint8_t { clip, points, imu };
 
 /// The numbers of the sender by which lost messages are counted.
@@ -35,12 +36,12 @@ enum class LossNumbers : std::uint8_t {
   frame_heads  // each frame has a number, in its first datagram only
 };
 
-/// What the recorder answers.
+/// Messages of the sender that the recorder answers.
 enum class Answers : std::uint8_t {
   none,
   node_requests,      // time requests of inertial nodes
   kinect_pings,       // time requests of a Kinect's sender
-  tracker_handshakes  // a SlimeVR tracker sends no samples before its handshake is answered
+  tracker_handshakes  // handshakes: a SlimeVR tracker sends no samples before an answer
 };
 
 struct ProtocolRow {
@@ -51,36 +52,38 @@ struct ProtocolRow {
   ProtocolRows rows;
   LossNumbers losses;
   Answers answers;
-  double usual_rate_hz;      // 0: differs from device to device
-  bool needs_skeleton;       // the stream does not say whose body moves; a BVH file must
-  bool has_trackers;         // the same stream also has inertial samples: select.kind = "trackers"
-  bool has_frame_decoder;    // the recorder decodes frames, so a stream without any is noticed
-  bool has_node_ids;         // senders say their ids: one device of a lab stands for all of them
-  bool is_named_by_address;  // senders say no ids: the address and a sensor's number are the name
+  double usual_rate_hz;    // 0: differs from device to device
+  bool needs_skeleton;     // the stream does not name a skeleton; a BVH file must describe it
+  bool has_trackers;       // the same stream also has inertial samples: select.kind = "trackers"
+  bool has_frame_decoder;  // the recorder decodes frames, so a stream without any is noticed
+  bool has_node_ids;  // senders state their ids; one device of a lab then stands for all of them
+  bool is_named_by_address;  // senders state no ids; the name is made of the address and a sensor's
+                             // number
 };
 
 /// Every row, in the order of the enum.
 std::span<const ProtocolRow> protocol_rows();
 const ProtocolRow& row_of(Protocol protocol);
 
-/// By the name in lab.toml and --device. Absent for any other text.
+/// Finds a protocol by its name in lab.toml and --device. Absent for any other text.
 std::optional<Protocol> find_protocol(std::string_view name);
-/// By the name in recordings. Absent for any other text, as a later version may have written it.
+/// Finds a protocol by its name in recordings. Absent for any other text; a later version may have
+/// written it.
 std::optional<Protocol> find_recorded_protocol(std::string_view recorded_name);
-/// "expected a known protocol (nearest: kinect), found "kinet""
+/// The error "expected a known protocol (nearest: kinect), found "kinet"".
 Error unknown_protocol(std::string_view name);
 std::vector<std::string> protocol_names();
 
-/// "udp", "tcp" or "tcp-listen".
+/// The transport's name: "udp", "tcp" or "tcp-listen".
 std::string_view name_of(Transport transport);
-/// Absent for any other text.
+/// Finds a transport by that name. Absent for any other text.
 std::optional<Transport> find_transport(std::string_view name);
-/// "expected a known transport (nearest: udp), found "udb""
+/// The error "expected a known transport (nearest: udp), found "udb"".
 Error unknown_transport(std::string_view name);
 std::vector<std::string> transport_names();
 
-/// A datagram holds whole messages. A connection delivers bytes that may be cut anywhere, and so
-/// does a transport with an unknown name.
+/// True if each datagram holds whole messages. False for a connection, which delivers bytes cut
+/// anywhere, and for an unknown transport.
 bool is_datagrams(std::string_view transport);
 
 bool may_come_over(const ProtocolRow& row, Transport transport);

@@ -7,11 +7,11 @@ namespace kinalign {
 
 namespace {
 
-// Chosen: an hour at 100 Hz. Who counts on further ahead has begun anew.
+// Chosen: an hour at 100 Hz. A number further ahead means that the sender restarted.
 constexpr std::uint64_t longest_loss = 360'000;
-// Chosen: a network that repeats or holds back more than 16 packets in one row has not been seen.
+// Chosen: no network was seen that repeats or delays more than 16 packets in a row.
 constexpr std::uint64_t restart_run = 16;
-// Chosen: the first that arrives was overtaken by fewer than this.
+// Chosen: the first packet to arrive was delayed behind fewer than this many.
 constexpr std::uint64_t near_first = 8;
 
 }  // namespace
@@ -96,7 +96,7 @@ Order SequenceCount::look_back(std::uint64_t number, bool may_restart) {
   const std::uint64_t back = ahead(number, now_.newest);
   if (here(number) || back >= now_.known + near_first) return old_number(number, may_restart);
   if (back >= now_.known) {
-    now_.counts.lost += back - now_.known + 1;  // from this one on they are missed
+    now_.counts.lost += back - now_.known + 1;  // numbers from this one on now count as missing
     now_.known = back + 1;
   }
   mark(number, true);
@@ -107,7 +107,7 @@ Order SequenceCount::look_back(std::uint64_t number, bool may_restart) {
   return Order::late;
 }
 
-// One that was not missed: it was here, or lies well before the count's first.
+// Handles a number that was not missing: it arrived before, or lies well below the first one.
 Order SequenceCount::old_number(std::uint64_t number, bool may_restart) {
   const bool rises = may_restart && number == ((now_.previous + 1) & mask_);
   now_.old_run = rises ? now_.old_run + 1 : 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the number that a sender gives each of its packets says of the way here: lost, doubled,
-// overtaken, or a sender that began anew. For packets that arrive one by one and are judged at
-// once; PacketCount (packet_count.h) gives rows of a file their places.
+// Classifies packets by the number that the sender gives each of them: lost, duplicate, late, or a
+// restart of the sender. It is for packets that arrive one by one and are judged at once.
+// PacketCount (packet_count.h) numbers the rows of a file instead.
 #pragma once
 
 #include <array>
@@ -9,25 +9,25 @@
 
 namespace kinalign {
 
-/// A packet against those that came before it.
+/// A packet compared with those that arrived before it.
 enum class Order {
-  newest,     // the first of all, the next one, or a later one behind a gap: what lacks is lost
-  late,       // overtaken by a newer one; where it was counted as lost, it no longer is
-  duplicate,  // its number was here
-  stray,      // far ahead, of a sender that has not begun anew: nothing lacks before it
-  restart     // the sender counts anew, or so it seems until the next packet: see `strays`
+  newest,     // the first packet, or the highest number so far; numbers that were skipped are lost
+  late,       // it arrived after a newer packet; if it was counted as lost, it no longer is
+  duplicate,  // its number arrived before
+  stray,      // its number is far ahead, but the sender did not restart; nothing is lost before it
+  restart     // the sender restarted, or so it seems until the next packet; see `strays`
 };
 
 struct SequenceCounts {
-  std::uint64_t received = 0;  // all that were pushed
-  std::uint64_t lost = 0;      // numbers that have not come, from the lowest on that has
+  std::uint64_t received = 0;  // all packets
+  std::uint64_t lost = 0;      // numbers that are missing above the lowest number that arrived
   std::uint64_t late = 0;
   std::uint64_t duplicates = 0;
   std::uint64_t restarts = 0;
-  std::uint64_t strays = 0;  // numbers far off that changed nothing
+  std::uint64_t strays = 0;  // packets with a number far away, which changed nothing
 
   bool operator==(const SequenceCounts&) const = default;
-  /// With those of an earlier run of the sender.
+  /// Adds the counts of an earlier run of the sender.
   SequenceCounts& operator+=(const SequenceCounts& more) {
     received += more.received;
     lost += more.lost;
@@ -39,19 +39,19 @@ struct SequenceCounts {
   }
 };
 
-/// Counts on over the wraps of a number of 1 to 64 bits; takes a fixed room of 0.4 kB.
-/// A number 1024 and more away begins a new count; if the packet behind it goes on with the old
-/// one, it was a stray and is taken back. A new count that begins less than an hour of packets
-/// ahead is no restart but a loss. A restart less than 1024 numbers back looks like duplicates for
-/// 16 packets. One that lands ahead of the old count can't be told from a loss.
-/// Where the sender has not begun anew, a number 1024 and more away changes nothing, however many
-/// come: behind the newest it is a duplicate, ahead of it a stray, and nothing is lost before it.
+/// Counts packets by numbers of 1 to 64 bits and follows their wraps; takes 0.4 kB.
+/// A number 1024 or more away begins a new count. If the next packet continues the old count, the
+/// number was a stray and is undone. A new count that begins less than an hour of packets ahead
+/// counts as a loss, not as a restart. A restart less than 1024 numbers back looks like duplicates
+/// for 16 packets. A restart ahead of the old count can't be told from a loss.
+/// If the caller knows that the sender did not restart, a number 1024 or more away changes nothing.
+/// Behind the newest it is a duplicate, ahead of it a stray, and nothing is lost before it.
 class SequenceCount {
  public:
   explicit SequenceCount(unsigned bits = 32);
 
-  /// `may_restart`: false where something else says that the packet is older than the newest, so
-  /// that the sender has not begun anew by it.
+  /// `may_restart`: false if the caller knows that the packet is older than the newest one, so the
+  /// sender did not restart with it.
   Order push(std::uint64_t number, bool may_restart = true);
   const SequenceCounts& counts() const { return now_.counts; }
 
@@ -61,12 +61,14 @@ class SequenceCount {
   struct State {
     SequenceCounts counts;
     std::uint64_t newest = 0;
-    std::uint64_t known = 0;     // of the window: how many numbers belong to this count
-    std::uint64_t previous = 0;  // the last that was pushed
-    std::uint64_t old_run = 0;   // numbers that rose one by one where nothing was missed
-    std::array<std::uint64_t, window / 64> seen{};  // a bit for each number, by number % 1024
+    std::uint64_t known = 0;     // how many numbers of the window belong to this count
+    std::uint64_t previous = 0;  // the number pushed last
+    std::uint64_t old_run = 0;   // length of the present run of old numbers that rise by one
+    /// A bit for each number of the window, at number % 1024.
+    std::array<std::uint64_t, window / 64> seen{};
   };
 
+  /// Steps from `of` up to `number`, with the wrap.
   std::uint64_t ahead(std::uint64_t of, std::uint64_t number) const {
     return (number - of) & mask_;
   }
@@ -75,13 +77,15 @@ class SequenceCount {
   void mark(std::uint64_t number, bool here);
   void begin(std::uint64_t number);
   void advance(std::uint64_t number);
+  /// A number far away: a loss, a restart or a stray.
   Order leap(std::uint64_t number, bool may_restart);
+  /// A number behind the newest one: late or old.
   Order look_back(std::uint64_t number, bool may_restart);
   Order old_number(std::uint64_t number, bool may_restart);
 
   std::uint64_t mask_;
   State now_, before_;
-  bool leapt_ = false;  // the last one began a count of its own; `before_` is the old one
+  bool leapt_ = false;  // the last packet began a new count; `before_` is the old one
 };
 
 }  // namespace kinalign

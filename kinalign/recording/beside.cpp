@@ -19,11 +19,12 @@ namespace {
 
 constexpr std::string_view suffix = ".mcap";
 
+// The parts of a file name; `number` is empty without ".partN".
 struct PartName {
   std::string_view stem, number{};
 };
 
-/// "take" of "take.mcap", and "take" and "2" of "take.part2.mcap".
+/// Splits a file name: "take.mcap" into "take" and "", "take.part2.mcap" into "take" and "2".
 PartName split(std::string_view name) {
   if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
   const auto digits = name.find_last_not_of("0123456789");
@@ -36,7 +37,8 @@ PartName split(std::string_view name) {
 
 std::string_view stem_of(std::string_view name) { return split(name).stem; }
 
-/// Where it lies, and where its file does: "" or ending in '/'.
+/// The folder of a path and, if the path is a link, the folder of its target. Each is "" or ends in
+/// '/'.
 std::set<std::string> folders_of(const std::string& path) {
   std::set<std::string> places{std::string(folder(path))};
   std::error_code failed;
@@ -47,17 +49,17 @@ std::set<std::string> folders_of(const std::string& path) {
   return places;
 }
 
-/// Behind all links.
+/// The path with all links resolved.
 std::string real(const std::string& path) {
   std::error_code failed;
   const auto canonical = std::filesystem::weakly_canonical(path.empty() ? "." : path, failed);
   return failed ? path : canonical.string();
 }
 
-/// In the order in which they were added, each file once.
+/// A list of paths in the order of insertion, each file once.
 class Paths {
  public:
-  /// Whether it is new.
+  /// Returns whether the file is new in the list.
   bool add(const std::string& path) {
     const bool is_new = known_.insert(real(path)).second;
     if (is_new) all_.push_back(path);
@@ -70,32 +72,34 @@ class Paths {
   std::set<std::string> known_;
 };
 
-/// Files beside this one, itself among them, that are of the same recording by their names.
+/// Finds sibling files: files in the same folder whose names say that they belong to the same
+/// recording. The file itself is included.
 std::vector<std::string> namesakes_of(const std::string& file,
                                       const std::optional<RecordingFacts>& facts) {
   std::set<std::string_view> stems{stem_of(file_name(file))};
   if (facts) stems.insert(stem_of(facts->first));
   std::vector<std::string> found;
   for (const std::string& place : folders_of(file)) {
-    std::error_code failed;  // a folder that can't be listed has nothing beside
+    std::error_code failed;  // a folder that cannot be listed has no siblings
     for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end;
          !failed && at != end; at.increment(failed)) {
       const std::string name = at->path().filename().string();
       if (name.ends_with(suffix) && stems.contains(stem_of(name))) found.push_back(place + name);
     }
   }
-  std::sort(found.begin(), found.end());  // folders have no order
+  std::sort(found.begin(), found.end());  // a folder lists files in no fixed order
   Paths once;
   for (const std::string& path : found) once.add(path);
   return once.take();
 }
 
-/// And what `beside` finds by each, once a recording.
+/// Adds the files that `beside` finds for each file. Each recording is searched once per folder.
 template <class Beside>
 std::vector<std::string> with_others(const std::vector<std::string>& named, Beside beside) {
   Paths all;
   for (const std::string& path : named) all.add(path);
-  std::map<std::string, std::set<std::string>> searched;  // by file: for its others
+  // folders in which a file's siblings were searched, by file
+  std::map<std::string, std::set<std::string>> searched;
   std::vector<std::string> to_search = named;
   for (std::size_t k = 0; k < to_search.size(); ++k) {
     const std::string path = to_search[k];
@@ -133,7 +137,7 @@ Error unreadable_beginning(const std::string& path) {
 }
 
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path) {
-  constexpr std::size_t page = 4096;  // the facts stand within the first one
+  constexpr std::size_t page = 4096;  // bytes; the facts stand within the first page
   InputFile file = KA_TRY(InputFile::open(files, path, page));
   McapReader reader;
   while (const auto record = KA_TRY(pull(reader, [&file] { return file.next_or_zeros(); }))) {
@@ -148,7 +152,7 @@ Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::s
 
 namespace {
 
-/// Files of the same recording in the same folder, itself among them.
+/// Finds the files of the same recording in the same folder, including the file itself.
 std::vector<std::string> files_beside(FileSystem& files, const std::string& path,
                                       const RecordingFacts& facts) {
   std::vector<std::string> found;
@@ -159,7 +163,7 @@ std::vector<std::string> files_beside(FileSystem& files, const std::string& path
   return found;
 }
 
-/// Of a folder in which other files of the recording may lie.
+/// Reports folders that cannot be listed, since they may contain other files of the recording.
 Findings judge_folders(const std::string& path) {
   Findings findings;
   for (const std::string& place : folders_of(path)) {
@@ -204,7 +208,8 @@ Findings judge_namesakes(FileSystem& files, const std::string& path) {
   for (const std::string& one : namesakes_of(path, is_ours ? *own : std::nullopt)) {
     const auto read = read_facts(files, one);
     const bool says_one = read && *read;
-    // By its first name: it was given another, and that one to another run's file, maybe.
+    // The file has only the recording's first name. It may have been renamed, and a file of another
+    // run may have that name now.
     const bool is_by_own_name = stem_of(file_name(one)) == stem_of(file_name(path));
     if (says_one && !is_by_own_name) continue;
     if (same_file(one, path) || (is_ours && says_one && is_same_recording(**read, **own))) continue;

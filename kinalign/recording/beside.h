@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of a recording that lie beside one another: by what they say and by their names.
-// docs/formats/recording.md.
+// Finds sibling files: the files of one recording in one folder, by their content and by their
+// names. docs/formats/recording.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -12,32 +12,32 @@
 
 namespace kinalign {
 
-/// Of the same run: parts of one recording.
+/// Returns whether two files are parts of one recording: they are from the same run.
 bool is_same_recording(const RecordingFacts& a, const RecordingFacts& b);
 
-/// Of a file on a bad disk.
+/// The error for a file whose beginning the disk cannot read.
 Error unreadable_beginning(const std::string& path);
 
-/// What a file says of itself before its messages; absent where it is no recording of ours. Fails
-/// where the disk can't give the beginning.
+/// Reads the facts that stand before the messages of a file. Absent if the file is not a recording
+/// of kinalign. Fails if the disk cannot read the beginning.
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path);
 
-/// 2 of "take.part2.mcap"; of another name 0.
+/// The number in a file name: 2 in "take.part2.mcap", 0 in a name without one.
 int part_number(const std::string& path);
 
-/// These and, as they lie in the same folders, all other files of their recordings. Where a file is
-/// a link both its folder and the one that it leads to count.
+/// Returns these files and all other files of their recordings in the same folders. For a link,
+/// both its folder and the folder of its target are searched.
 std::vector<std::string> with_parts(FileSystem& files, const std::vector<std::string>& named);
 
-/// As they lie in the same folders all files whose names say that they are of these recordings,
-/// whatever is in them, and these.
+/// Returns these files and all files in the same folders whose names say that they belong to these
+/// recordings, whatever their content.
 std::vector<std::string> with_namesakes(FileSystem& files, const std::vector<std::string>& named);
 
-/// Whether a file lies beside another and has a name of its recording's files.
+/// Returns whether a file lies in the folder of another and has a name of the same recording.
 bool is_namesake(const std::string& path, const std::string& other);
 
-/// Of those beside the file that they are of its recording by their names alone, and of a folder
-/// that can't be listed.
+/// Reports sibling files that belong to the recording by name only, and folders that cannot be
+/// listed.
 Findings judge_namesakes(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

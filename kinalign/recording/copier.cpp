@@ -64,7 +64,7 @@ bool RecordingCopier::proved_by(const RecordingSurvey& proof) const {
          std::all_of(proof.channels.begin(), proof.channels.end(), known);
 }
 
-/// What stands there before them stays.
+/// Adds definitions. Existing definitions of the same id are kept.
 void RecordingCopier::learn(const McapDefinitions& definitions) {
   schemas_.insert(definitions.schemas.begin(), definitions.schemas.end());
   channels_.insert(definitions.channels.begin(), definitions.channels.end());
@@ -74,8 +74,9 @@ Result<void> RecordingCopier::begin(const McapHeader& header) {
   return writer_.size() == 0 ? writer_.begin(header) : Result<void>();
 }
 
-/// MCAP: an id means one thing in a file, and parts of a recording share them. What a summary
-/// repeats and damage has changed is none the wiser.
+/// An MCAP id has one meaning in a file, and the parts of a recording share ids. The first
+/// definition is kept, because a damaged summary must not override the definitions in the data
+/// section.
 Result<void> RecordingCopier::add(const McapSchema& schema) {
   schemas_.try_emplace(schema.id, schema);
   return {};
@@ -87,7 +88,7 @@ Result<void> RecordingCopier::add(const McapChannel& channel) {
 }
 
 Result<void> RecordingCopier::add(const McapMetadata& metadata) {
-  if (metadata.name == torn_metadata) {  // of the furthest part alone, and at the end
+  if (metadata.name == torn_metadata) {  // counts only in the file with the highest part number
     torn_ = torn_ || part_ == furthest(parts_);
     return {};
   }
@@ -102,6 +103,8 @@ Result<void> RecordingCopier::add(const McapAttachment& attachment) {
   return writer_.write(attachment);
 }
 
+// A message whose channel has no definition cannot be used. A message with a better copy in another
+// part is counted only.
 Result<void> RecordingCopier::add(const McapMessage& message) {
   const std::uint16_t id = message.channel;
   const auto known = channels_.find(id);
@@ -132,7 +135,7 @@ Result<void> RecordingCopier::add(const McapStatistics& statistics) {
   return {};
 }
 
-/// What a part says of itself, said of all parts together.
+/// Changes the metadata of one part so that it describes all parts together.
 McapMetadata RecordingCopier::of_all(McapMetadata metadata) const {
   if (parts_.size() == 1) return metadata;
   std::set<int> joined;
@@ -145,15 +148,16 @@ McapMetadata RecordingCopier::of_all(McapMetadata metadata) const {
   return metadata;
 }
 
-/// Each file of a recording begins with what the first one says. Within a file records may share
-/// a name: programs of others write several.
+/// Returns whether the record repeats one of another part: each file of a recording begins with the
+/// same records. Within one file, records may share a name, because other programs write several.
 bool RecordingCopier::is_repeated(const std::string& name) {
   names_.insert(name);
   const std::size_t source = source_of(parts_, name);
   return source < parts_.size() && source != part_;
 }
 
-/// Or was written of another already, of which a first reading had not found it.
+/// Returns whether the message is taken from another part. It is also if the copy of another part
+/// was written already, because the first reading had not found that copy.
 bool RecordingCopier::stands_in_another(const McapMessage& message) const {
   if (has_better(parts_, part_, message)) return true;
   for (std::size_t other = 0; other < parts_.size(); ++other) {

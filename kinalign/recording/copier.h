@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of a recording's files, written anew into one: what `recover` does with them.
+// Writes the records of a recording's files into one new file, for `recover`.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -19,32 +19,33 @@ namespace kinalign {
 
 class RecordingCopier {
  public:
-  /// Both have to stay.
+  /// Both arguments must outlive the copier.
   RecordingCopier(OutputFile& out, const RecordingParts& parts);
 
-  /// A record of that part, in the order in which the new file is to have its messages: written,
-  /// unless another part has a better copy of it, or one of another part was. `unchecked`: no
-  /// checksum covers it.
+  /// Takes a record of a part. Call in the order in which the new file shall contain the messages.
+  /// The record is written unless another part has a better copy, or a copy of another part was
+  /// written already. `unchecked`: no checksum covers the record.
   Result<void> take(const McapRecord& record, std::size_t part, bool unchecked);
-  /// Of this part a checksum covers everything after all.
+  /// A checksum covers all of this part, so its messages do not count as unchecked.
   void all_checked(std::size_t part) { unchecked_[part] = 0; }
-  /// Index and end; `torn`: the part that reaches furthest is.
+  /// Writes index and end. `torn`: the file with the highest part number is truncated.
   Result<void> finish(bool torn);
 
-  /// Nothing but a header and definitions was there, which says nothing.
+  /// Returns whether the files contain nothing but a header and definitions.
   bool is_empty() const { return recovered.messages == 0 && names_.empty(); }
   std::uint64_t size() const { return writer_.size(); }
+  /// Written messages that no checksum covers.
   std::uint64_t unchecked() const;
-  /// Of those that were written, where the recording is ours.
+  /// The numbers of the written messages. Empty if kinalign did not make the recording.
   MessageNumbers numbers() const;
-  /// Whether it has all messages that a first reading found in the parts: of a disk that gives the
-  /// same each time it has.
+  /// Returns whether all messages of the first reading were read again. It is false if the disk
+  /// gives different data each time.
   bool has_all() const;
-  /// Whether a survey of the new file found in it what was written.
+  /// Returns whether a survey of the new file found everything that was written.
   bool proved_by(const RecordingSurvey& proof) const;
 
   Recovered recovered;
-  /// Messages, by the file's own statistics: as long as nothing says that they are damaged.
+  /// Messages by the file's own statistics; 0 if the statistics may be damaged.
   std::uint64_t counted = 0;
 
  private:
@@ -59,7 +60,7 @@ class RecordingCopier {
   Result<void> add(const McapStatistics& statistics);
   template <class Other>
   Result<void> add(const Other&) {
-    return {};  // the summary is made anew
+    return {};  // the new file gets its own summary
   }
   McapMetadata of_all(McapMetadata metadata) const;
   bool is_repeated(const std::string& name);
@@ -70,13 +71,14 @@ class RecordingCopier {
   const RecordingParts& parts_;
   std::size_t part_ = 0;
   bool is_unchecked_ = false;
-  bool torn_ = false;                     // the part that reaches furthest says so of itself
-  std::vector<std::uint64_t> unchecked_;  // messages, by part
-  std::vector<MessageNumbers> written_;   // by part, where the recording is ours
+  bool torn_ = false;  // the file with the highest part number has the record kinalign.torn
+  std::vector<std::uint64_t> unchecked_;  // messages without a checksum, by part
+  std::vector<MessageNumbers> written_;   // by part; empty if kinalign did not make the recording
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
+  // Checksum over the written messages, compared with that of the survey.
   std::uint32_t contents_ = 0;
-  std::set<std::string> names_;  // of metadata and attachments
+  std::set<std::string> names_;  // names of metadata and attachments
   McapChunkContent chunk_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A count and what it is called in JSON.
+/// A count and its name in JSON.
 template <class Counts>
 struct NamedCount {
   const char* name;
@@ -40,7 +40,7 @@ constexpr std::array<NamedCount<PortCounts>, 7> of_port{
      {"links", [](PortCounts& c) -> std::uint64_t& { return c.links; }},
      {"unsent", [](PortCounts& c) -> std::uint64_t& { return c.unsent; }}}};
 
-/// Properties of a schema, behind others.
+/// The properties of these counts in a JSON schema, to be appended to other properties.
 template <class Named>
 std::string integers(const Named& named) {
   std::string properties;
@@ -55,7 +55,8 @@ void put(const Named& named, Counts counts, Json& json) {
   for (const auto& count : named) json[count.name] = count.in(counts);
 }
 
-/// A hole that an overtaken frame fills is no loss any more: a count may fall.
+/// The difference of two counts, at least 0. A count may decrease: a lost frame that arrives late
+/// is no longer lost.
 template <class Named, class Counts>
 Counts difference(const Named& named, Counts before, Counts now) {
   Counts out;
@@ -81,7 +82,7 @@ void take(const Named& named, const Json& object, Counts& counts) {
   for (const auto& count : named) count.in(counts) = count_of(object, count.name);
 }
 
-/// Names are texts of others: bytes that are no UTF-8 become U+FFFD.
+/// Names come from other programs: bytes that are not valid UTF-8 become U+FFFD.
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -107,7 +108,7 @@ std::uint64_t frames_or_messages(const SenderCounts& counts) {
 bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCounts& counts) {
   const auto protocol = find_recorded_protocol(recorded_protocol);
   if (!protocol || !row_of(*protocol).has_frame_decoder) return false;
-  // Older versions counted no frames of trackers, only refused messages.
+  // Older versions did not count the frames of trackers, only refused messages.
   if (protocol == Protocol::slimevr && counts.refused < counts.messages) return false;
   const bool had_frames = counts.frames + counts.order.late + counts.order.duplicates > 0;
   return !had_frames && are_many(counts.messages);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recording counts while it is made: docs/formats/recording.md.
+// Counts that the recorder stores in a recording: docs/formats/recording.md.
 #pragma once
 
 #include "kinalign/mcap/records.h"
@@ -15,47 +15,50 @@ namespace kinalign {
 inline constexpr std::string_view sender_counts_topic = "/counts";
 inline constexpr std::string_view port_counts_topic = "/counts/ports";
 
-/// What has come of a stream in a take, and what its sender's own numbers say of the way.
+/// Counts of one sender's data in a take, and of losses by the sender's own numbers.
 struct SenderCounts {
-  std::uint64_t messages = 0, bytes = 0;  // as they came
-  std::uint64_t frames = 0;               // that were complete, where the protocol is decoded
-  SequenceCounts order;                   // of these, where the sender numbers them
-  std::uint64_t refused = 0;              // recognised and of no use
+  std::uint64_t messages = 0, bytes = 0;  // as received
+  std::uint64_t frames = 0;               // complete frames, if the protocol is decoded
+  SequenceCounts order;       // lost, late and duplicate frames, if the sender numbers them
+  std::uint64_t refused = 0;  // recognised but useless
 };
 McapSchema sender_counts_schema();
-/// Of counts that run on what came after `before`; none below 0.
+/// Counts since `before`, at least 0.
 SenderCounts since(const SenderCounts& before, const SenderCounts& now);
-/// Of the frames, where its protocol is decoded, else of the messages.
+/// The number of frames or, if there are none because the protocol is not decoded, of messages.
 std::uint64_t frames_or_messages(const SenderCounts& counts);
-/// Whether so many are no stray ones: a datagram or two may be anybody's.
+/// Returns whether the number is too high for stray datagrams: any program may send one or two.
 constexpr bool are_many(std::uint64_t datagrams) { return datagrams >= 20; }
-/// Of a protocol that is decoded: many messages, and nothing of them was a frame, sent again or
-/// late either.
+/// Returns whether the sender uses another protocol. True if the protocol is decoded and none of
+/// many messages contained a frame, not even a late or duplicate one.
 bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCounts& counts);
 struct CountedSender {
-  std::string topic, stream, sender;  // topic: what it sent stands there
-  std::string node;                   // of inertial nodes the id, else empty
+  std::string topic, stream, sender;  // topic: the channel of the sender's data
+  std::string node;                   // the id of an inertial node, else empty
   SenderCounts counts;
 };
 std::string to_json(const CountedSender& counted);
-/// Counts that are missing are 0; absent where nobody is named.
+/// Missing counts are 0. Absent if the text does not name a stream.
 std::optional<CountedSender> to_counted_sender(std::string_view json);
 
-/// What has come to a port in a take, and what was lost before it could be recorded.
+/// Counts of one port's data in a take, and of losses before recording.
 struct PortCounts {
+  // Datagrams, or reads of a connection.
   std::uint64_t pieces = 0, bytes = 0;
-  std::uint64_t refused = 0;  // of one sender too many; of marks also what is none
-  std::uint64_t cut = 0;      // datagrams longer than any can be
-  std::uint64_t dropped = 0;  // by the kernel, for want of room; of nodes also what is no frame
-  std::uint64_t links = 0;    // connections that were made, also before the take
-  std::uint64_t unsent = 0;   // answers that the system did not take
-  bool sifted = false;        // the kernel throws away what is no frame, and counts it so
+  // from senders beyond the limit; on a mark port also datagrams that are not marks
+  std::uint64_t refused = 0;
+  std::uint64_t cut = 0;  // datagrams truncated because they were too long
+  // by the kernel because its buffer was full; nodes' port: also foreign datagrams
+  std::uint64_t dropped = 0;
+  std::uint64_t links = 0;   // connections, including those made before the take
+  std::uint64_t unsent = 0;  // answers that the system did not accept
+  bool sifted = false;       // the kernel drops foreign datagrams and counts them in `dropped`
 };
 McapSchema port_counts_schema();
-/// As of senders; links and sifted as they are now.
+/// Counts since `before`, at least 0. `links` and `sifted` keep their present values.
 PortCounts since(const PortCounts& before, const PortCounts& now);
-/// Of a sifted port: how many at least of what was dropped were no frames. The others may be the
-/// `lost` ones of its nodes, by their own numbers: for want of room, if not on the way.
+/// The least number of foreign datagrams among the dropped ones of a sifted port. The others may be
+/// the `lost` frames of its nodes, dropped because the buffer was full.
 std::uint64_t strays(const PortCounts& counts, std::uint64_t lost);
 struct CountedPort {
   std::string stream;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view format = "1";
 
-/// Empty where the key is missing.
+/// Empty if the key is missing.
 std::string text_of(const McapTexts& texts, const std::string& key) {
   const auto found = texts.find(key);
   return found == texts.end() ? std::string() : found->second;
@@ -39,14 +39,15 @@ Stamp take_stamp(LittleEndianReader& from) {
   return Stamp{Duration{static_cast<std::int64_t>(from.take<std::uint64_t>())}};
 }
 
-/// Clocks that have run for 31 years at most, so that no difference of a few overflows.
+/// Returns whether a clock has run for at most 31 years, so that differences of a few stamps cannot
+/// overflow.
 template <class Stamp>
 bool is_near(Stamp stamp) {
   constexpr Duration furthest{1'000'000'000'000'000'000};
   return -furthest <= stamp.time_since_epoch() && stamp.time_since_epoch() <= furthest;
 }
 
-/// Absent where a clock is further than its limit.
+/// Absent if a clock exceeds its limit.
 std::optional<ClockPair> believable(HostTime raw, Time utc) {
   if (!is_near(raw) || to_ns(utc) < 0 || to_ns(utc) > latest_log_time) return std::nullopt;
   return ClockPair{raw, utc};
@@ -54,7 +55,7 @@ std::optional<ClockPair> believable(HostTime raw, Time utc) {
 
 bool is_part(std::int64_t number) { return 1 <= number && number <= 1'000'000; }
 
-/// "1 3 4"; what is none is left out.
+/// Reads part numbers such as "1 3 4". Words that are not part numbers are left out.
 std::set<int> parts_in(std::string_view text) {
   std::set<int> parts;
   while (!text.empty()) {
@@ -67,7 +68,7 @@ std::set<int> parts_in(std::string_view text) {
   return parts;
 }
 
-// What an exchange's flags say.
+// The meaning of the flags of an exchange.
 constexpr std::uint32_t echoed = 1, clockless = 2;
 constexpr std::uint64_t most_frames = std::uint64_t{1} << 33U;  // nine years at 15 Hz
 
@@ -175,6 +176,7 @@ std::string to_json(const ClockPair& pair) {
                      pair.utc.time_since_epoch().count());
 }
 
+// The text may be damaged: numbers that do not fit or clocks that exceed their limits are refused.
 std::optional<ClockPair> to_clock_pair(std::string_view json) {
   const auto object = nlohmann::json::parse(json, nullptr, false);
   const auto ns = [&](const char* key) -> std::optional<Duration> {
@@ -209,6 +211,7 @@ std::string to_json(const RecordedMark& recorded) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+// A mark with an impossible latency is refused.
 std::optional<RecordedMark> to_mark(std::string_view json) {
   const auto object = nlohmann::json::parse(json, nullptr, false);
   if (!object.is_object()) return std::nullopt;
@@ -238,6 +241,7 @@ std::string to_bytes(const RecordedExchange& recorded) {
   return out;
 }
 
+// The stamps of the echo are always present; the flag says whether they are valid.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes) {
   LittleEndianReader from(octets(bytes));
   RecordedExchange recorded;
@@ -265,6 +269,7 @@ std::string to_bytes(const RecordedClockless& recorded) {
   return out;
 }
 
+// T6 and T3 are always present; the flag says whether they are valid.
 std::optional<RecordedClockless> to_clockless(std::string_view bytes) {
   LittleEndianReader from(octets(bytes));
   RecordedClockless recorded;

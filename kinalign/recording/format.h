@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recording's MCAP file holds beside raw payloads: docs/formats/recording.md, which is
-// written first.
+// The contents of a recording's MCAP file besides raw payloads. docs/formats/recording.md is the
+// specification.
 #pragma once
 
 #include "kinalign/clock/exchange.h"
@@ -19,78 +19,78 @@
 
 namespace kinalign {
 
-/// Whether a file that begins with these bytes is an MCAP file.
+/// Returns whether a file that begins with these bytes is an MCAP file.
 bool looks_like_recording(std::string_view head);
 
 inline constexpr std::string_view recording_profile = "kinalign";
 inline constexpr std::string_view recording_metadata = "kinalign.recording";
 inline constexpr std::int64_t latest_log_time = 4'000'000'000'000'000'000;  // ns, the year 2096
 
-/// The metadata record of that name, which each file of a recording begins with.
+/// The metadata record kinalign.recording, at the beginning of each file of a recording.
 struct RecordingFacts {
   std::string subject, action;
   std::string host;        // the machine's name
   std::string first;       // name of the recording's first file
-  int part = 1;            // which file of the recording this is
-  ClockPair anchor;        // log times are UTC = host time + (utc - raw), in all of the recording
-  std::set<int> joined{};  // of what recover made of several: the files that went into it
+  int part = 1;            // number of this file in the recording, from 1
+  ClockPair anchor;        // log times are UTC = host time + (utc - raw), in the whole recording
+  std::set<int> joined{};  // numbers of the parts that recover joined into this file; else empty
   int last_part() const { return joined.empty() ? part : std::max(part, *joined.rbegin()); }
 };
 McapMetadata to_metadata(const RecordingFacts& facts);
-/// Absent where a field is missing or no number, or where a clock is further than its limit: the
-/// raw one 31 years from its start, UTC as log times.
+/// Absent if a field is missing or is not a number, or if a clock exceeds its limit: 31 years since
+/// its start for the raw clock, latest_log_time for UTC.
 std::optional<RecordingFacts> to_facts(const McapMetadata& metadata);
 
-/// The metadata record of that name: who was to be heard, as topics begin ("mocap", "imu/7"), and
-/// whether they are required.
+/// The metadata record kinalign.devices: the expected devices, by the beginning of their topics
+/// ("mocap", "imu/7"), and whether they are required.
 inline constexpr std::string_view devices_metadata = "kinalign.devices";
 using ExpectedDevices = std::map<std::string, bool>;
 McapMetadata to_metadata(const ExpectedDevices& devices);
-/// Absent where the record is another.
+/// Absent if the record has another name.
 std::optional<ExpectedDevices> to_expected_devices(const McapMetadata& metadata);
 
-/// The metadata record of that name, which the last file of a recording ends with: messages that
-/// reached the recorder and stand in none of its files, because the disk was not as fast as they
-/// came and memory was full.
+/// The metadata record kinalign.end, at the end of a recording's last file. `dropped`: messages
+/// that reached the recorder but stand in no file, because the disk was too slow and memory was
+/// full.
 inline constexpr std::string_view end_metadata = "kinalign.end";
 struct RecordingEnd {
   std::uint64_t dropped = 0;
 };
 McapMetadata to_metadata(const RecordingEnd& end);
-/// Absent where the record is another, or says no number.
+/// Absent if the record has another name or no valid number.
 std::optional<RecordingEnd> to_end(const McapMetadata& metadata);
 
-/// The metadata record of that name stands where the end would in what `recover` made of a
-/// recording that has none because it was torn.
+/// The metadata record kinalign.torn. `recover` writes it in place of kinalign.end if the recording
+/// was truncated.
 inline constexpr std::string_view torn_metadata = "kinalign.torn";
 
-/// What a file's records say of the recording behind it.
+/// The end of a recording by its records: no end found, truncated, or ended properly.
 enum class Ending : std::uint8_t { none, torn, ended };
 Ending ending_of(const McapMetadata& metadata);
 
-/// What a channel of raw payloads is, as its metadata.
+/// The description of a channel of raw payloads, stored as its metadata.
 struct RawChannel {
   std::string stream;     // "mocap"
   std::string protocol;   // "noitom"
   std::string transport;  // "udp"
   std::string sender;     // "192.168.7.20:51234"
-  std::string node;       // of inertial nodes: the id, decimal
-  std::string place{};    // of these, where the lab says it: where it is worn
+  std::string node;       // inertial nodes only: the id, decimal
+  std::string place{};    // inertial nodes only: the place on the body, if lab.toml names it
 
   bool operator==(const RawChannel&) const = default;
 };
 McapChannel to_channel(std::string topic, const RawChannel& raw);
 std::optional<RawChannel> to_raw(const McapChannel& channel);
 
-/// Both clocks of the host, once a second.
+/// The channel of the host's two clocks, one pair per second.
 inline constexpr std::string_view host_clock_topic = "/clock/host";
-/// What is said to be a channel's content: schema and the text of its JSON.
+/// The schema of the channel, and its messages as JSON.
 McapSchema clock_pair_schema();
 std::string to_json(const ClockPair& pair);
-/// Absent where it is none, or a clock is further than in the facts.
+/// Absent if the text is not a pair, or if a clock exceeds the limits of to_facts().
 std::optional<ClockPair> to_clock_pair(std::string_view json);
 
-/// A mark, and who made it: "keyboard", "call" or "trigger"; of the last two the address.
+/// A mark and its source: "keyboard", "call" or "trigger". `sender`: address of a call or trigger.
 struct RecordedMark {
   Mark mark;
   std::string source, sender;
@@ -102,34 +102,35 @@ McapSchema mark_schema();
 std::string to_json(const RecordedMark& recorded);
 std::optional<RecordedMark> to_mark(std::string_view json);
 
-/// An exchange as 48 bytes, little-endian. `epoch`: of the host's axis, which begins anew when the
-/// host has slept.
+/// An exchange as 48 bytes, little-endian. `epoch`: epoch of the host's axis, which increases when
+/// the host was suspended.
 inline constexpr std::string_view exchange_encoding = "kinalign-exchange";
 struct RecordedExchange {
   std::uint32_t epoch = 0;
   Exchange exchange;
 };
-/// The host's axis begins anew where it slept: another life for the clock.
+/// The key of a clock model. A new epoch of the host's axis needs a new model for the same boot.
 inline BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 40U); }
 std::string to_bytes(const RecordedExchange& recorded);
-/// Absent where the bytes are no exchange, or a clock of it has run for more than 31 years.
+/// Absent if the bytes are not an exchange, or if one of its clocks has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);
 
-/// A device's message as it was recorded.
+/// A recorded message of a device.
 struct RecordedMessage {
   const RawChannel* channel = nullptr;
   std::uint16_t channel_id = 0;
   HostTime arrival{};
-  std::string_view payload;  // good until the next message
+  std::string_view payload;  // valid until the next message
   bool is_exchange() const { return channel->protocol == exchange_encoding; }
 };
 
-/// The arrival of a message that was logged at `log_time`, ns of UTC.
+/// The arrival of a message with this log time, ns UTC.
 inline HostTime arrival_of(std::uint64_t log_time, Duration utc_minus_host) {
   return HostTime{Duration{static_cast<std::int64_t>(log_time)} - utc_minus_host};
 }
 
-/// The same 48 bytes of a node without a counter: of a request the times behind T2 are absent.
+/// The exchange of a node without a counter, also 48 bytes. For a request, the times after T2 are
+/// absent.
 struct RecordedClockless {
   std::uint32_t epoch = 0;
   ClocklessExchange exchange;

@@ -11,6 +11,7 @@ void KinectSurvey::add(std::uint16_t channel, const RawChannel& raw) {
   ways_.try_emplace(channel, Way{raw, {}});
 }
 
+// Sensors beyond most_sensors are ignored.
 void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
   const auto way = ways_.find(channel);
   if (way == ways_.end()) return;

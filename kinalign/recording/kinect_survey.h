@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the Kinects of a recording have ids of their own: of each channel's frames, without what
-// is in them.
+// Checks whether the Kinects of a recording have different ids. Only the origins of the frames are
+// examined, not their contents.
 #pragma once
 
 #include "kinalign/protocols/kinect/sessions.h"
@@ -17,10 +17,11 @@ namespace kinalign {
 
 class KinectSurvey {
  public:
-  /// `raw`: what the channel is; of anything but a Kinect nothing is looked at.
+  /// Adds a channel. Channels of other devices than Kinects are ignored.
   void add(std::uint16_t channel, const RawChannel& raw);
+  /// Takes a message of an added channel.
   void take(std::uint16_t channel, std::string_view payload);
-  /// Two senders of one sensor's id.
+  /// Reports two senders with the same sensor id.
   Findings findings(const std::string& path) const;
 
  private:
@@ -29,7 +30,7 @@ class KinectSurvey {
     RawChannel raw;
     KinectStreamDecoder decoder;
   };
-  using Sensor = std::pair<std::string, std::uint32_t>;  // of a stream
+  using Sensor = std::pair<std::string, std::uint32_t>;  // stream and sensor id
 
   std::map<std::uint16_t, Way> ways_;
   std::map<Sensor, KinectSessions> sensors_;

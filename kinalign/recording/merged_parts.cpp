@@ -48,17 +48,19 @@ Result<std::optional<McapRecord>> MergedParts::pull_from(Part& part) {
   return pull(part.reader, next_piece);
 }
 
-/// Programs of others number their messages as they like.
+/// Returns whether the number of the message is impossible. Files of other programs are not
+/// checked, because their numbers have no fixed order.
 bool MergedParts::is_stray(Part& part) {
   const auto* message = part.head ? std::get_if<McapMessage>(&*part.head) : nullptr;
   return message != nullptr && part.told->is_ours() &&
          !part.guard.believes(*message, part.reader.unchecked());
 }
 
-/// Where files wait for one another the earliest message goes on.
+/// Chooses the part with the next record. If all files wait for one another, the earliest message
+/// is chosen.
 std::optional<std::size_t> MergedParts::first() const {
   std::optional<std::size_t> first;
-  std::pair<bool, std::uint64_t> least;  // whether it waits, and since when it is there
+  std::pair<bool, std::uint64_t> least;  // whether the message waits, and its log time
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (!parts_[i]->head) continue;
     const auto* message = std::get_if<McapMessage>(&*parts_[i]->head);
@@ -71,6 +73,7 @@ std::optional<std::size_t> MergedParts::first() const {
   return first;
 }
 
+// A message waits while another file still has a lower number of its channel.
 bool MergedParts::waits(std::size_t part, const McapMessage& message) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Part& other = *parts_[i];

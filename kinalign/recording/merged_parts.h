@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of a recording's files, read side by side: a file may fill a hole of an earlier one.
-// Within a file log times do not rise: device after device is read. Each file stays open and holds
-// a piece and a chunk; each message looks at all files' next ones: for some tens of files at most.
+// Reads the records of a recording's files together, because a file may fill a gap of an earlier
+// one. Log times in a file need not increase, because the recorder reads one device after another.
+// Each open file holds a piece and a chunk in memory, and each message is compared with the next
+// message of all files. This is fast enough for some tens of files.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -19,27 +20,28 @@
 namespace kinalign {
 
 struct PartRecord {
-  const McapRecord* record = nullptr;  // good until the next one is taken
+  const McapRecord* record = nullptr;  // valid until the next record is taken
   std::size_t part = 0;
 };
 
 class MergedParts {
  public:
-  /// `parts` has to stay.
+  /// `parts` must outlive the object.
   static Result<MergedParts> open(FileSystem& files, const RecordingParts& parts,
                                   const Progress& progress);
 
-  /// A message once no other file has to give a lower one of its channel (where files wait for one
-  /// another so that none could go on: before it), of several such the earliest; what else there is
-  /// as soon as it stands first in its file. Absent: all were taken.
-  /// Fails where a file is no MCAP file or can't be read, but for pages of a bad disk: see
-  /// unread().
+  /// Returns the next record. A message is returned only when no other file still has a lower
+  /// number of its channel. Of several such messages the earliest comes first. If all files wait
+  /// for one another, the earliest message is returned nevertheless. Other records are returned as
+  /// soon as they are next in their file. Absent: all records were returned.
+  /// Fails if a file is not an MCAP file or cannot be read. Pages that a bad disk cannot read are
+  /// no failure: see unread().
   Result<std::optional<PartRecord>> next();
 
   const McapReader& reader(std::size_t part) const { return parts_[part]->reader; }
-  /// What it did not believe of the file's torn end was left out.
+  /// The guard of a part. Messages at the truncated end that it did not believe were left out.
   const NumberGuard& guard(std::size_t part) const { return parts_[part]->guard; }
-  /// Bytes that the disk did not give: they came as zeros.
+  /// Bytes that the disk could not read; they were replaced by zeros.
   std::uint64_t unread(std::size_t part) const { return parts_[part]->file.unread(); }
 
  private:
@@ -49,7 +51,7 @@ class MergedParts {
     McapReader reader{};
     NumberGuard guard{};
     std::optional<McapRecord> head{};
-    std::map<std::uint16_t, std::uint64_t> given{};  // by channel: behind the last one
+    std::map<std::uint16_t, std::uint64_t> given{};  // by channel: one more than the last number
   };
   Result<void> advance(Part& part);
   Result<std::optional<McapRecord>> pull_from(Part& part);
@@ -58,7 +60,7 @@ class MergedParts {
   bool waits(std::size_t part, const McapMessage& message) const;
 
   std::vector<std::unique_ptr<Part>> parts_;
-  std::optional<std::size_t> taken_;  // whose head was given
+  std::optional<std::size_t> taken_;  // the part whose record was returned last
   Progress progress_;
   std::uint64_t done_ = 0, total_ = 0;  // bytes
 };

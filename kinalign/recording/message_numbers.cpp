@@ -5,7 +5,7 @@
 
 namespace kinalign {
 
-/// Numbers that touch are one stretch.
+/// Adds a range of numbers. Adjacent ranges are merged.
 void MessageNumbers::add(Stretches& stretches, std::uint32_t begin, std::uint64_t end) {
   auto at = stretches.upper_bound(begin);
   if (at != stretches.begin() && std::prev(at)->second >= begin) {
@@ -79,10 +79,10 @@ bool NumberGuard::believes(const McapMessage& message, bool unchecked) {
     return true;
   }
   const auto first = proved_.next(message.channel, 0);
-  bool is_believed = true;  // where nothing is covered
+  bool is_believed = true;  // the result if no message of the channel was checked yet
   if (first && message.sequence > last->second.number) {
     const std::uint64_t since = message.log_time - std::min(message.log_time, last->second.at);
-    const std::uint64_t most = 1024 + (since >> 14U);  // some 61,000 a second
+    const std::uint64_t most = 1024 + (since >> 14U);  // about 61,000 messages per second
     is_believed = message.sequence - last->second.number <= most;
   } else if (first) {
     is_believed = message.sequence > *first && !proved_.has(message);
@@ -119,6 +119,7 @@ bool MessageNumbers::goes_on_with(const MessageNumbers& others, std::uint16_t ch
   return true;
 }
 
+// Both lists are sorted, so one search per range suffices.
 bool MessageNumbers::shares_with(const MessageNumbers& others, std::uint16_t channel) const {
   const Stretches& theirs = others.of(channel);
   for (const auto& [begin, end] : of(channel)) {

@@ -13,7 +13,7 @@ std::string name_of(const McapAttachment& attachment) { return "attachment " + a
 
 namespace {
 
-/// Not only torn.
+/// Returns whether a file is damaged, not only truncated.
 bool is_damaged(const McapReader& reader) {
   const Findings& findings = reader.findings();
   return reader.skipped() > 0 ||
@@ -21,7 +21,7 @@ bool is_damaged(const McapReader& reader) {
                      [](const Finding& one) { return one.severity == Severity::error; });
 }
 
-/// Which messages it has, what they are, and how it ends.
+/// Collects the numbers and definitions of a file's messages, and how the file ends.
 class PartReader {
  public:
   PartReader(RecordingPart& part, const McapReader& reader) : part_(part), reader_(reader) {}

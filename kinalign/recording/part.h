@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one of a recording's files brings: docs/formats/recording.md.
+// The content of one file of a recording: docs/formats/recording.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -18,29 +18,29 @@ struct RecordingPart {
   bool is_ours() const { return !facts.first.empty(); }
 
   std::string path;
-  RecordingFacts facts;  // of a file that is none of ours, which stands alone: none
+  RecordingFacts facts;  // empty for a file of another program, which stands alone
   MessageNumbers numbers{};
-  MessageNumbers nameless{};      // of channels that this file does not define
-  MessageNumbers unproved{};      // those that no checksum covers
-  McapDefinitions definitions{};  // that a checksum covers
+  MessageNumbers nameless{};      // messages of channels that this file does not define
+  MessageNumbers unproved{};      // messages without a checksum
+  McapDefinitions definitions{};  // covered by a checksum
+  // Not covered by a checksum.
   McapDefinitions unproved_definitions{};
-  std::set<std::string> names{};  // of metadata and attachments, as name_of() has them
-  bool is_sound = true;           // nothing in it was damaged or without a name
-  bool all_checked = false;       // a checksum covers all of it
-  Ending ending = Ending::none;   // of a file that breaks off: torn
-  std::set<std::uint16_t>
-      repeats{};  // channels: what files before have counts, see stands_elsewhere()
+  std::set<std::string> names{};      // of metadata and attachments, see name_of()
+  bool is_sound = true;               // the file has no damage and no message without a channel
+  bool all_checked = false;           // a checksum covers the whole file
+  Ending ending = Ending::none;       // `torn` for a truncated file
+  std::set<std::uint16_t> repeats{};  // channels taken from earlier files, see stands_elsewhere()
 };
 
-/// What a record of the same name in a later file repeats.
+/// The name by which a record of a later file is recognised as a repetition.
 std::string name_of(const McapMetadata& metadata);
 std::string name_of(const McapAttachment& attachment);
 
-/// How files end together: as the one whose messages reach furthest, but for an end, which nothing
-/// comes behind.
+/// The end of several files together. It is the end of the file with the highest part number,
+/// unless a file has a proper end, since nothing follows that.
 struct EndTogether {
   Ending ending = Ending::none;
-  int until = 0;  // the furthest one's last part
+  int until = 0;  // highest part number so far
 
   EndTogether with(Ending next, const RecordingFacts& facts) const {
     if (next == Ending::ended) return {next, facts.last_part()};
@@ -49,7 +49,7 @@ struct EndTogether {
   }
 };
 
-/// Reads the file once, a bad disk's as far as it can be read.
+/// Reads a file once. On a bad disk it is read as far as possible.
 Result<RecordingPart> read_part(FileSystem& files, const std::string& path,
                                 const RecordingFacts& facts, const Progress& progress);
 

@@ -14,8 +14,9 @@ namespace kinalign {
 
 namespace {
 
-/// Of those that begin with one part first what reaches furthest, so that what repeats it can be
-/// left out. Where every sync fails two files may say the same number, but their names don't.
+/// Sorts files by their first part. Among files with the same first part, the one with the highest
+/// last part comes first, so that files that it repeats can be left out. If every sync fails, two
+/// files may have the same part number, but their names differ.
 void sort(RecordingParts& parts) {
   const auto place = [](const RecordingPart& one) {
     return std::tuple(one.facts.part, -one.facts.last_part(), part_number(one.path), one.path);
@@ -24,7 +25,8 @@ void sort(RecordingParts& parts) {
             [&](const RecordingPart& a, const RecordingPart& b) { return place(a) < place(b); });
 }
 
-/// What recover made of several is read with what it lacks, and not behind its own parts.
+/// Returns whether a file follows another. A file joined by recover does not follow the parts that
+/// it contains, but later parts follow a joined file.
 bool stands_behind(const RecordingPart& other, const RecordingPart& part) {
   const bool is_twin = other.facts.part == part.facts.part && other.facts.joined.empty() &&
                        part.facts.joined.empty() &&
@@ -32,7 +34,7 @@ bool stands_behind(const RecordingPart& other, const RecordingPart& part) {
   return other.facts.part > part.facts.part || is_twin;
 }
 
-/// In their order.
+/// Leaves out files that only repeat earlier ones. The order is kept.
 RecordingParts without_repeated(RecordingParts parts) {
   RecordingParts kept;
   MessageNumbers before;
@@ -41,7 +43,8 @@ RecordingParts without_repeated(RecordingParts parts) {
   bool all_proved = true;
   for (RecordingPart& part : parts) {
     const EndTogether with_it = end.with(part.ending, part.facts);
-    // What it made of this one, too, recover has looked at already.
+    // If recover joined the first file from this part too, it has already taken everything readable
+    // from this part.
     const bool is_joined = !kept.empty() && kept.front().facts.joined.contains(part.facts.part);
     const bool is_repeated =
         (part.is_sound || is_joined) && with_it.ending == end.ending && all_proved &&
@@ -101,7 +104,8 @@ bool has_better(const RecordingParts& parts, std::size_t part, const McapMessage
   return false;
 }
 
-/// Who reads one file behind the other may meet what it does not name before its definition.
+/// A file may lack the definition of a channel. A program that reads one file after the other could
+/// meet such a message before its definition, so a copy in a file with the definition is preferred.
 bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
   const bool is_named = !parts[part].nameless.has(message);
   for (std::size_t other = 0; other < parts.size(); ++other) {
@@ -131,7 +135,8 @@ bool defines(const RecordingPart& part, std::uint16_t channel) {
          part.unproved_definitions.channels.contains(channel);
 }
 
-/// A channel means one thing in all files: what one does not define another may.
+/// Gives messages their channel if another file defines it, because a channel has the same meaning
+/// in all files.
 void name(RecordingParts& parts) {
   for (RecordingPart& part : parts) {
     for (const std::uint16_t channel : part.nameless.channels()) {
@@ -163,7 +168,7 @@ Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::stri
 Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
                                   const Progress& progress) {
   const auto facts = KA_TRY(read_facts(files, path));
-  if (!facts) return RecordingParts{{path, {}}};  // what it is instead shows when it is read
+  if (!facts) return RecordingParts{{path, {}}};  // reading it later shows what the file is instead
   std::vector<std::string> paths{path};
   for (const std::string& one : with_parts(files, {path})) {
     const auto other = KA_TRY(read_facts(files, one));

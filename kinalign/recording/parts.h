@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of one recording: it goes on in NAME.part2.mcap where its disk had failed, and that one
-// begins with all that the disk had not confirmed. docs/formats/recording.md.
+// The files of one recording. A recording continues in NAME.part2.mcap after a disk failure. That
+// file begins with all data that the disk had not confirmed. docs/formats/recording.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -14,40 +14,44 @@
 
 namespace kinalign {
 
-/// In their order.
+/// Sorted by part.
 using RecordingParts = std::vector<RecordingPart>;
 
-/// The definition of a channel that a checksum covers, in any of the files; where none does
-/// nullptr.
+/// The definition of a channel in any of the files, covered by a checksum. nullptr if there is
+/// none.
 const McapChannel* proved_channel(const RecordingParts& parts, std::uint16_t id);
 
-/// From which file metadata or an attachment of that name are taken: the end from the last that has
-/// it, all else from the first, of those that a checksum covers if there are any. parts.size()
-/// where none has it.
+/// The index of the file from which metadata or an attachment of that name is taken. The end is
+/// taken from the last file that has it. Other records are taken from the first file that has them,
+/// preferably one covered by checksums. parts.size() if no file has the record.
 std::size_t source_of(const RecordingParts& parts, const std::string& name);
 
-/// The one whose messages reach furthest, in parts of the recording; of several the last.
+/// The index of the file that contains the highest part number; of several, the last.
 std::size_t furthest(const RecordingParts& parts);
 
-/// Whether a better copy of this part's message stands in another: one that a checksum covers, or
-/// as good a one of a later file. Of the earlier one the disk had not said that it is there.
+/// Returns whether another file has a better copy of this part's message: one covered by a
+/// checksum, or an equally good one in a later file. The disk had not confirmed the copy in the
+/// earlier file.
 bool has_better(const RecordingParts& parts, std::size_t part, const McapMessage& message);
 
-/// For who reads one file behind the other. What stands twice is taken from the later file, of the
-/// earlier one the disk had not said that it is there; but not where the later one ends before the
-/// earlier or is less sure.
+/// Returns whether a message is to be taken from another file. For programs that read one file
+/// after the other. A message in two files is taken from the later file, because the disk had not
+/// confirmed the earlier copy. It is taken from the earlier file if the later file ends before it
+/// or is less certain.
 bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message);
 
-/// Reads these files once. Those that repeat others and say nothing more are left out:
-/// of one that `recover` has made all parts are. Fails where they are not all of one recording.
+/// Reads these files once. Files that only repeat others are left out; if recover has joined the
+/// parts into one of the files, these are all parts. Fails if the files do not belong to one
+/// recording.
 Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
                                   const Progress& progress);
 
-/// The file and, as they lie in the same folder, those that its recording went on in.
+/// Returns the file and the files in the same folder in which its recording continues.
 Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
                                   const Progress& progress);
 
-/// That the first of these is not all of its recording; the others were read with it or not.
+/// Reports that the first file is not the whole recording. `PartsBehind`: whether the other files
+/// were read with it.
 enum class PartsBehind { left, read };
 Findings judge_parts(const RecordingParts& parts, PartsBehind behind);
 

@@ -16,7 +16,7 @@ namespace kinalign {
 
 namespace {
 
-/// The new file, from its front, before it has its name.
+/// Reads the new file from its beginning, before it gets its name.
 PieceSource pieces_of(const OutputFile& file, std::uint64_t size, std::string& buffer) {
   return {file.path(), size,
           [&file, &buffer, at = std::uint64_t{0}]() mutable -> Result<std::string_view> {
@@ -27,7 +27,7 @@ PieceSource pieces_of(const OutputFile& file, std::uint64_t size, std::string& b
           }};
 }
 
-/// What could not be read of a file.
+/// Reports everything in a part that could not be read.
 Findings judge(const MergedParts& merged, std::size_t part, const std::string& path) {
   Findings findings = merged.reader(part).findings();
   for (Finding& finding : findings) finding.what.file = path;
@@ -42,7 +42,8 @@ Findings judge(const MergedParts& merged, std::size_t part, const std::string& p
   return findings;
 }
 
-/// With what lies beside: the beginning may be damaged, by which the others would be known.
+/// The error for a file in which nothing can be read. It names sibling files, because the beginning
+/// that names the recording may be damaged.
 Error nothing_in(FileSystem& files, const std::string& path) {
   std::string found = "nothing";
   for (const std::string& one : with_namesakes(files, {path})) {
@@ -57,7 +58,7 @@ Error reads_differently(const std::string& path) {
           "others: copy them with ddrescue, and recover the copies"};
 }
 
-/// Everything, with index and end.
+/// Copies everything, and writes index and end.
 Result<void> copy(FileSystem& files, const RecordingParts& parts, RecordingCopier& copier,
                   const Progress& progress) {
   MergedParts merged = KA_TRY(MergedParts::open(files, parts, progress));
@@ -77,7 +78,7 @@ Result<void> copy(FileSystem& files, const RecordingParts& parts, RecordingCopie
   return copier.finish(!merged.reader(furthest(parts)).closed());
 }
 
-/// Fails where the file does not begin as MCAP does.
+/// Fails if the file does not begin as an MCAP file.
 Result<void> check_beginning(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   const std::string_view head = KA_TRY(file.next_or_zeros());
@@ -87,11 +88,11 @@ Result<void> check_beginning(FileSystem& files, const std::string& path) {
   return Failure(Error{path, 0, "an MCAP file", beginning_of(head)});
 }
 
-/// Messages that were there and are not in the new file.
+/// The number of messages that were recorded and are not in the new file.
 std::uint64_t missing(const RecordingCopier& copier, std::size_t parts) {
   const Recovered& recovered = copier.recovered;
   std::uint64_t by_number = 0;
-  if (recovered.proof.facts) {  // programs of others number as they like
+  if (recovered.proof.facts) {  // other programs number messages as they like
     const MessageNumbers numbers = copier.numbers();
     for (const ChannelSurvey& one : recovered.proof.channels) {
       by_number += numbers.missing(one.channel.id);
@@ -113,20 +114,21 @@ Error is_input(const std::string& out, const std::string& part) {
           "'" + shown(file_name(part)) + "', which is one of them"};
 }
 
-/// Before anything is read through: that it may be read, and that nothing of it is written over.
+/// Checks, before anything is read, that the files can be read and that none of them is
+/// overwritten.
 Result<void> check_names(FileSystem& files, const std::vector<std::string>& paths,
                          const std::string& out) {
   for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
-  for (const std::string& path : with_namesakes(files, paths)) {  // needed or not
+  for (const std::string& path : with_namesakes(files, paths)) {  // also files that are not needed
     if (same_file(out, path)) return Failure(is_input(out, path));
   }
-  for (const std::string& path : paths) {  // in a folder that can't be listed
+  for (const std::string& path : paths) {  // needed if the folder cannot be listed
     if (version_of(out) && is_namesake(out, path)) return Failure(is_input(out, out));
   }
   return {};
 }
 
-/// Reads what was written, before it has its name.
+/// Reads the new file again before it gets its name.
 Result<void> prove(RecordingCopier& copier, const OutputFile& file, const std::string& out,
                    const Progress& progress) {
   std::string buffer;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A torn recording, or one that a bad disk split over several files, made into one whole file:
-// every message that can be read, once, all metadata and attachments, with an index. What was
-// written is read again to prove it: as many messages, and the same numbers, times and payloads.
+// Repairs a recording that was truncated, or split over several files by a bad disk. The result is
+// one complete file with an index: every readable message once, and all metadata and attachments.
+// It is read again to prove that it contains as many messages, with the same numbers, times and
+// payloads.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -13,11 +14,11 @@
 
 namespace kinalign {
 
-/// `paths`: files of the recording in any order, with those of its files that lie beside them.
-/// Where a disk can't give a page (EIO), but a file's first, the others are read. Fails where files
-/// are not all of one recording, `out` is one of them, or nothing can be read. Nothing
-/// stands at `out` before all is written and synced. It is read again before it gets its name: what
-/// is not what was written never does.
+/// `paths`: files of the recording in any order. Sibling files of the same recording are added. If
+/// the disk cannot read a page (EIO), the other pages are used, unless it is a file's first page.
+/// Fails if the files do not belong to one recording, if `out` is one of them, or if nothing can be
+/// read. The new file gets the name `out` only after it was written, synced and read again without
+/// a difference.
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress = {});

@@ -11,17 +11,17 @@ namespace kinalign {
 
 struct Recovered {
   std::uint64_t messages = 0;
-  /// Of these no checksum covers: from a torn end, from chunks without one, or outside of chunks.
+  /// Messages without a checksum: from a truncated end, from chunks without one, or outside of
+  /// chunks.
   std::uint64_t unchecked = 0;
-  /// Further copies of messages that stood in several files; the best copy was taken.
+  /// Further copies of messages in several files; the best copy was taken.
   std::uint64_t twice = 0;
-  std::uint64_t nameless = 0;  // left out: the definition of their channel is lost
-  std::uint64_t skipped = 0;   // bytes of the old files in which nothing could be read
-  /// Of which it is known that they were there: by their numbers or, of a single file, by its own
-  /// count.
+  std::uint64_t nameless = 0;  // left out, because the definition of their channel is lost
+  std::uint64_t skipped = 0;   // bytes of the old files that could not be read
+  /// Messages known to be missing, by their numbers or, for a single file, by its own count.
   std::uint64_t missing = 0;
-  RecordingSurvey proof;  // of the new file
-  Findings findings;      // of the old ones, and of the new one's order
+  RecordingSurvey proof;  // survey of the new file
+  Findings findings;      // on the old files, and on the order of the new file
 };
 
 }  // namespace kinalign

@@ -15,7 +15,8 @@ namespace kinalign {
 
 namespace {
 
-/// Whose rotations a tracker's datagram brings. A stranger's brings none.
+/// The sensors of a tracker that a datagram contains rotations of, one bit each. 0 if the datagram
+/// is not a tracker's.
 std::uint32_t rotating_sensors(std::string_view payload) {
   std::uint32_t sensors = 0;
   SlimeDatagram datagram;
@@ -30,12 +31,13 @@ std::uint32_t rotating_sensors(std::string_view payload) {
 
 constexpr std::size_t most_counted = 4096;
 
-/// Of a message on a channel of counts: who is counted, in the words that it begins with.
+/// The part of a message on a channel of counts that identifies the counted sender or port. The
+/// message begins with it.
 std::string_view counted(std::string_view json) {
   return json.substr(0, std::min(json.find("\"messages\":"), json.find("\"pieces\":")));
 }
 
-/// The last message of each.
+/// The last message of each sender or port.
 using LastCounts = std::map<std::string, std::string, std::less<>>;
 
 template <class Counted>
@@ -58,6 +60,7 @@ class RecordingSurveyor::State {
     std::visit([this](const auto& one) { add(one); }, record);
   }
 
+  /// Completes the survey after the last record.
   RecordingSurvey finish(const std::string& path, std::uint64_t bytes) {
     for (auto& [id, channel] : channels_) survey_.channels.push_back(std::move(channel));
     std::stable_sort(
@@ -81,7 +84,8 @@ class RecordingSurveyor::State {
   }
 
  private:
-  /// What a summary repeats and damage has changed is none the wiser.
+  /// A damaged summary must not override the definitions in the data section, so the first
+  /// definition is kept.
   void add(const McapChannel& channel) {
     const auto [known, is_new] = channels_.try_emplace(channel.id);
     if (!is_new && !known->second.channel.topic.empty()) return;
@@ -102,7 +106,8 @@ class RecordingSurveyor::State {
     survey_.attachments.push_back(attachment.name);
     if (attachment.name == "lab.toml") add_places(attachment.data);
   }
-  /// Of nodes that were never heard, too. What is no lab.toml of ours says nothing.
+  /// Adds the places of all nodes, including nodes that were never received. A lab.toml that cannot
+  /// be read is ignored.
   void add_places(std::string_view lab_toml) {
     const auto devices = read_devices(lab_toml, "lab.toml");
     if (!devices) return;
@@ -116,11 +121,11 @@ class RecordingSurveyor::State {
     survey_.contents = add_to(survey_.contents, message);
     if (reader_.unchecked()) ++survey_.unchecked;
     ChannelSurvey& channel = channels_[message.channel];
-    channel.channel.id = message.channel;  // defined or not
+    channel.channel.id = message.channel;  // the channel may have no definition
     if (channel.messages == 0) {
       channel.first = channel.last = message.log_time;
     } else {
-      // Of a writer that does not number its messages nothing is missing.
+      // If a writer does not number its messages, none is missing.
       const std::uint32_t step = message.sequence - channel.last_number;
       channel.in_order = channel.in_order && message.sequence > channel.last_number;
       if (step > 1 && step < 1U << 31U) channel.missing += step - 1;
@@ -138,7 +143,7 @@ class RecordingSurveyor::State {
       add_told(channel.channel.topic, message);
     }
   }
-  /// What the recorder itself says.
+  /// Takes messages of the recorder itself: counts, marks and clocks.
   void add_told(std::string_view topic, const McapMessage& message) {
     if (topic == sender_counts_topic) return keep_last(message.data, senders_);
     if (topic == port_counts_topic) return keep_last(message.data, ports_);

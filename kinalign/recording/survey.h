@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a recording's file, and whether all of it: read once from front to end, every checksum
-// checked. Works on torn files and on MCAP files of others, too.
+// Surveys a recording's file: its content and whether it is complete. The file is read once from
+// beginning to end, and every checksum is checked. Truncated files and MCAP files of other programs
+// can be surveyed too.
 #pragma once
 
 #include "kinalign/clock/utc_anchor.h"
@@ -24,48 +25,48 @@ namespace kinalign {
 
 struct ChannelSurvey {
   McapChannel channel;
-  std::uint64_t messages = 0, bytes = 0;  // of payload
-  std::uint64_t first = 0, last = 0;      // log time, the least and the greatest, ns
-  std::uint64_t missing = 0;              // numbers left out between the first and the last
+  std::uint64_t messages = 0, bytes = 0;  // bytes of payload
+  std::uint64_t first = 0, last = 0;      // lowest and highest log time, ns
+  std::uint64_t missing = 0;              // numbers missing between the first and the last
   std::uint32_t last_number = 0;
-  bool in_order = true;       // each number above the one before
-  std::uint32_t sensors = 0;  // of a SlimeVR tracker, a bit each: rotations came of it
+  bool in_order = true;       // each number is higher than the one before
+  std::uint32_t sensors = 0;  // sensors of a SlimeVR tracker with rotations, one bit each
 };
 
 struct RecordingSurvey {
-  std::optional<RecordingFacts> facts;  // absent: not ours
-  std::vector<ChannelSurvey> channels;  // by topic
+  std::optional<RecordingFacts> facts;  // absent: not a recording of kinalign
+  std::vector<ChannelSurvey> channels;  // sorted by topic
   std::uint64_t messages = 0;
-  std::uint64_t unchecked = 0;           // of these without a checksum
+  std::uint64_t unchecked = 0;           // messages without a checksum
   std::uint32_t contents = 0;            // CRC-32 of all messages, see add_to()
-  std::vector<std::string> torn;         // files whose index or end is not there
-  std::vector<std::string> attachments;  // names
+  std::vector<std::string> torn;         // files without index or end
+  std::vector<std::string> attachments;  // their names
   std::vector<WallClockStep> steps;      // of the recording machine's wall clock
   ExpectedDevices expected;
-  std::map<std::string, std::string> places;  // of nodes, as far as the lab says them: "imu/7"
-  std::optional<RecordingEnd> end;            // absent: torn, or it goes on in another file
-  Ending ending = Ending::none;               // of a file that breaks off: torn
-  std::vector<CountedSender> senders;         // the last counts of each, …
-  std::vector<CountedPort> ports;             // … and of each device's port
-  std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times
-  std::uint64_t more_marks = 0;                               // than are looked at
+  std::map<std::string, std::string> places;  // places of nodes, if the lab names them, by "imu/7"
+  std::optional<RecordingEnd> end;            // absent: truncated, or continued in another file
+  Ending ending = Ending::none;               // `torn` for a truncated file
+  std::vector<CountedSender> senders;         // the last counts of each sender
+  std::vector<CountedPort> ports;             // the last counts of each port
+  std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times, ns
+  std::uint64_t more_marks = 0;                               // marks beyond most_marks
   std::uint64_t bytes = 0;                                    // of the file
   Findings findings;
-  bool flawed = false;  // the reader found something of these: damage, or a torn end
+  bool flawed = false;  // the reader reported damage or a truncated end
 };
 
 /// Surveys one file from its records, for a caller that reads them for other purposes too.
 class RecordingSurveyor {
  public:
-  /// `reader`: that the records come from; it must outlive the surveyor.
+  /// `reader`: the reader of the records; it must outlive the surveyor.
   explicit RecordingSurveyor(const McapReader& reader);
   RecordingSurveyor(const RecordingSurveyor&) = delete;
   RecordingSurveyor& operator=(const RecordingSurveyor&) = delete;
   ~RecordingSurveyor();
 
-  /// Every record of the file, in its order.
+  /// Takes a record. Call for every record of the file, in order.
   void take(const McapRecord& record);
-  /// After the last record. `bytes`: of the file.
+  /// Call after the last record. `bytes`: size of the file.
   RecordingSurvey finish(const std::string& path, std::uint64_t bytes);
 
  private:
@@ -73,43 +74,42 @@ class RecordingSurveyor {
   std::unique_ptr<State> state_;
 };
 
-/// The CRC-32 of messages: channel, number, both times and payload of each, in their order.
+/// The CRC-32 of messages, in their order: channel, number, both times and payload of each.
 std::uint32_t add_to(std::uint32_t contents, const McapMessage& message);
 
-/// That messages of a recording's torn end were left out, where some were.
+/// Reports messages at a truncated end that were left out.
 Findings judge_strays(const std::string& path, const NumberGuard& guard);
 
-/// Of a recording of ours that was closed in order, but not because it ended: that the rest, if a
-/// disk took it, is missing.
+/// The finding for a recording of kinalign that was closed properly but does not end: the rest, if
+/// a disk stored it, is missing.
 Finding ends_before(const std::string& path);
-/// That, where it is so.
+/// Reports a recording without an end, see ends_before().
 Findings judge_end(const std::string& path, const RecordingSurvey& survey);
-/// That messages of a channel of ours stand behind later ones, where it is so. Files that recover
-/// has made and that lack what is in others bring this about, and garbage numbers in a file of
-/// which no checksum covers anything.
+/// Reports a channel of kinalign whose messages are out of order. The causes are files that recover
+/// made and that lack messages of other files, or impossible numbers in a file without checksums.
 Findings judge_order(const std::string& path, const RecordingSurvey& survey);
 
-/// Fails where the file can't be read or is no MCAP file.
+/// Fails if the file cannot be read or is not an MCAP file.
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
                                          const Progress& progress = {});
 
-/// Pieces of a file, one a call; empty at its end.
+/// Pieces of a file, one per call; empty at its end.
 struct PieceSource {
   std::string path;
   std::uint64_t size = 0;
   std::function<Result<std::string_view>()> next;
 };
-/// The same of a file that is not complete yet, or has no name.
+/// The same for a file that is not complete yet, or has no name.
 Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progress& progress = {});
 
-/// Hands every record to `take`, in the file's order. What the reader found is left in `reader`.
+/// Passes every record to `take`, in the file's order. Findings stay in `reader`.
 using TakeRecord = std::function<Result<void>(const McapRecord&)>;
 Result<void> read_recording(const PieceSource& source, McapReader& reader, const TakeRecord& take,
                             const Progress& progress = {});
 Result<void> read_recording(FileSystem& files, const std::string& path, McapReader& reader,
                             const TakeRecord& take, const Progress& progress = {});
 
-/// Whether a file begins as MCAP does. Fails where it can't be read.
+/// Returns whether a file begins as an MCAP file. Fails if it cannot be read.
 Result<bool> is_recording(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

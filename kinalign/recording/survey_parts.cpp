@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-/// What the same one says later, or what is new.
+/// Replaces counts by later ones of the same sender or port, and adds new ones.
 template <class Counted, class Same>
 void replace(std::vector<Counted>&& later, const Same& same, std::vector<Counted>& all) {
   for (Counted& one : later) {
@@ -35,7 +35,7 @@ void add(const ChannelSurvey& more, ChannelSurvey& channel) {
   channel.sensors |= more.sensors;
 }
 
-/// Marks that stand in both files are one.
+/// Adds marks. A mark in both files counts once.
 void add_marks(RecordingSurvey&& more, RecordingSurvey& survey) {
   for (auto& [mark, log_time] : more.marks) {
     const auto same = [time = log_time, &one = mark](const auto& known) {
@@ -47,7 +47,7 @@ void add_marks(RecordingSurvey&& more, RecordingSurvey& survey) {
   survey.more_marks = std::max(survey.more_marks, more.more_marks);
 }
 
-/// What a file that goes on behind adds.
+/// Adds the survey of the next file.
 void add(RecordingSurvey&& more, RecordingSurvey& survey) {
   for (const ChannelSurvey& one : more.channels) {
     const auto same = [&](const ChannelSurvey& c) { return c.channel.id == one.channel.id; };
@@ -55,7 +55,8 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
     if (found == survey.channels.end()) {
       survey.channels.push_back(one);
     } else {
-      if (found->channel.topic.empty()) found->channel = one.channel;  // not defined there
+      // the earlier file does not define the channel
+      if (found->channel.topic.empty()) found->channel = one.channel;
       add(one, *found);
     }
   }
@@ -74,7 +75,7 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
   survey.bytes += more.bytes;
   survey.unchecked += more.unchecked;
   survey.torn.insert(survey.torn.end(), more.torn.begin(), more.torn.end());
-  for (const WallClockStep& step : more.steps) {  // one may stand in both
+  for (const WallClockStep& step : more.steps) {  // a step may be in both files
     if (survey.steps.empty() || step.at > survey.steps.back().at) survey.steps.push_back(step);
   }
   append(survey.findings, more.findings);
@@ -84,6 +85,7 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
 
 }  // namespace
 
+// Messages are counted by their numbers, because a message may be in several files.
 RecordingSurvey join_surveys(const RecordingParts& parts, std::vector<RecordingSurvey> surveys) {
   RecordingSurvey survey = std::move(surveys.front());
   if (parts.size() == 1) return survey;

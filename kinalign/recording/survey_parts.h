@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a recording of several files: survey.h says it of one.
+// Surveys a recording of several files, see survey.h.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -11,13 +11,12 @@
 
 namespace kinalign {
 
-/// The surveys of all files of a recording as one: channels, their messages, each once (bytes and
-/// unchecked messages as they stand in all), numbers that are missing in all of them, the last
-/// counts, the end, marks, steps of the wall clock, which files are torn, and what is wrong with
-/// any. `surveys`: one of each part.
+/// Joins the surveys of all files of a recording: channels, messages (each counted once; bytes and
+/// unchecked messages are summed), numbers missing in all files, the last counts, the end, marks,
+/// steps of the wall clock, truncated files, and the findings of all. `surveys`: one for each part.
 RecordingSurvey join_surveys(const RecordingParts& parts, std::vector<RecordingSurvey> surveys);
 
-/// The same of files that are read for it.
+/// The same, but reads the files first.
 Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
                                      const Progress& progress);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which samples of a stream were held back on their way, where several nodes or bodies write rows
-// of their own into it.
+// Finds delayed samples in a stream into which several nodes or bodies write their own rows.
 #pragma once
 
 #include "kinalign/motion/arrivals.h"
@@ -14,34 +13,36 @@
 
 namespace kinalign {
 
-/// Rows of one node come near another's, without having been held back. So a row is only judged by
-/// its own line: the latest one whose last row shows something that it shows too. A row of which
-/// nothing was seen for long goes on in a line that has ended, or begins one.
+/// Rows of different nodes may be close in time without a delay. A row is therefore compared only
+/// within its own line: the line with the latest last row that shows some of the same columns. A
+/// row whose columns were not seen for a long time continues a line that has ended, or begins a new
+/// one.
 class ArrivalLines {
  public:
   explicit ArrivalLines(TakenStep step)
       : step_(step), near_ns_(step.role == Role::resampled ? step.ns / near_share : 0) {}
 
-  /// The line of a row at `t` (ns on the take's axis, rising) that shows some columns, not 0 in
-  /// `seen`. None beyond 64 lines.
+  /// The line of a row at `t` (ns on the take's axis, rising) whose columns are those not 0 in
+  /// `seen`. Empty if 64 lines exist.
   std::optional<std::size_t> line_of(std::int64_t t, std::span<const std::uint8_t> seen);
 
-  /// The last row of a line, if it was held back: the next one at `t` comes so soon behind it. Of a
-  /// whole stretch of such rows one a step stays.
+  /// The stamp of a line's last row if the next row at `t` shows that it was delayed. In a long
+  /// stretch of such rows one row per step is kept.
   std::optional<std::int64_t> shown_late(std::size_t line, std::int64_t t) const;
 
-  /// After shown_late: that row is left out, or stays and ends a stretch of those left out.
+  /// After shown_late(): that row is dropped, or kept (keep()), which ends a stretch of dropped
+  /// rows.
   void leave_out(std::size_t line);
   void keep(std::size_t line) { lines_[line].late_since.reset(); }
 
   void add(std::size_t line, std::int64_t t, std::span<const std::uint8_t> seen);
-  /// The row added last was no sample.
+  /// Removes the row added last, because it was not a valid sample.
   void take_back();
 
-  /// The first row that one behind `t` may still show to have been held back.
+  /// The first row that a row after `t` may still show to be delayed.
   std::optional<std::int64_t> open_since(std::int64_t t) const;
 
-  /// Of all lines; `near` as counted of the reference too.
+  /// The counts of all lines. For the reference, `near` is counted, too.
   Arrivals result() const;
 
  private:
@@ -50,11 +51,11 @@ class ArrivalLines {
 
   struct Line {
     ArrivalSurveyor arrivals;
-    std::optional<std::int64_t> t;  // of its last row
-    Columns seen;                   // in that
+    std::optional<std::int64_t> t;  // stamp of its last row
+    Columns seen;                   // columns of its last row
     std::optional<std::int64_t> late_since;
   };
-  /// A line as it was without its last row.
+  /// The state of a line before its last row.
   struct Before {
     std::size_t line = 0;
     std::optional<std::int64_t> t;
@@ -66,8 +67,8 @@ class ArrivalLines {
   TakenStep step_;
   std::int64_t near_ns_;
   std::vector<Line> lines_;
-  /// Without the row added last, and without the one before: a wild stamp is taken back, and then
-  /// the one in front of it may be late.
+  /// The states before the last row and before the one before it. A row with a wrong stamp may be
+  /// removed, and then the row before it may turn out to be late.
   std::array<Before, 2> before_;
 };
 

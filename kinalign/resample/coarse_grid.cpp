@@ -11,13 +11,14 @@ namespace kinalign {
 
 namespace {
 
-constexpr double least_share = 0.1;  // of the rms; less is below what sensors are true to
+// Share of the rms; smaller losses are below the accuracy of sensors.
+constexpr double least_share = 0.1;
 
 double root_mean(double sum, std::uint64_t samples) {
   return samples == 0 ? 0.0 : std::sqrt(std::max(0.0, sum) / static_cast<double>(samples));
 }
 
-/// Lagrange's weights of four times at `t`.
+/// Lagrange's weights of four values at the times `at`, for time `t`.
 std::array<double, 4> cubic_weights(const double* at, double t) {
   std::array<double, 4> weights{1.0, 1.0, 1.0, 1.0};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -41,7 +42,7 @@ double CarriedContent::missing() const { return root_mean(lost, samples); }
 void add_content(const Knots& raw, const Knots& rows, std::size_t first, CarriedContent& content) {
   const std::span<const double> at = rows.times;
   if (at.size() < 4) return;
-  std::size_t right = 2;  // the row behind the sample
+  std::size_t right = 2;  // index of the row after the sample
   for (std::size_t k = 0; k < raw.times.size(); ++k) {
     const double t = raw.times[k];
     if (t < at[1]) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a stream's content a grid that is coarser than its samples can't carry: every raw
-// sample is held against what the grid's rows say of its time.
+// Measures the content of a stream that is lost on a grid coarser than its samples: every raw
+// sample is compared with the value interpolated from the grid's rows at its time.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,33 +14,33 @@
 
 namespace kinalign {
 
-/// Sums over one joint's or node's vectors.
+/// Sums over the vectors of one joint or node.
 struct CarriedContent {
   std::uint64_t samples = 0;
-  std::array<double, 3> sum{};  // of the raw samples
-  double squares = 0.0;         // of the raw samples
-  double lost = 0.0;            // of the differences
+  std::array<double, 3> sum{};  // sum of the raw samples
+  double squares = 0.0;         // sum of squares of the raw samples
+  double lost = 0.0;            // sum of squared differences
 
-  /// Root mean squares: of the raw samples about their mean, and of what the rows lack.
+  /// Root mean squares: of the raw samples about their mean; of the differences.
   double variation() const;
   double missing() const;
 };
 
-/// Adds channels first, first + 1, first + 2 of the raw samples between the second row and the last
-/// but one: between rows stands the cubic through the four around, as nearly any user of the take
-/// would read it. A sine of a tenth of the grid's rate loses 0.3 % of its rms, of a quarter 8 %, of
-/// a third 22 %, of half all of it.
+/// Adds the channels first, first + 1, first + 2 of the raw samples between the second row and the
+/// last but one. Values between rows come from the cubic through the four rows around, as most
+/// users of the take would interpolate. A sine at a tenth of the grid's rate loses 0.3 % of its
+/// rms, at a quarter 8 %, at a third 22 %, at half all of it.
 void add_content(const Knots& raw, const Knots& rows, std::size_t first, CarriedContent& content);
 
-/// What the figures are of, for the message.
+/// Names for the message.
 struct ContentNames {
   std::string stream, quantity;    // "imu", "acceleration"
   std::vector<std::string> parts;  // [contents] joints or nodes
   double grid_hz;
-  double noise;  // rms that any sensor has, in the quantity's unit: no loss
+  double noise;  // rms noise of any sensor in the quantity's unit; smaller differences are no loss
 };
 
-/// One warning where more than a tenth of a part's variation is lost, for the worst part.
+/// One warning, for the worst part, if it loses more than a tenth of its variation.
 Findings judge_carried(const std::vector<CarriedContent>& contents, const ContentNames& names);
 
 }  // namespace kinalign

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams onto the stamps of a grid (paper section 3.2): natural cubic splines on the true stamps,
-// rotations on the rotation group. Nothing is invented across a gap: a row there is invalid and
-// zero. Splines end at gaps and do not run through samples that were not seen.
+// Resamples streams to the stamps of a grid (paper section 3.2): natural cubic splines on the true
+// stamps, rotations on the rotation group. Gaps are not interpolated: rows there are invalid and
+// zero. Splines end at gaps and use only samples that were seen.
 #pragma once
 
 #include "kinalign/motion/interpolation/rotation_spline.h"
@@ -16,51 +16,52 @@
 
 namespace kinalign {
 
-/// Knots on either side beyond which neither spline feels anything.
+/// Number of knots on either side that influence either spline.
 constexpr std::size_t knots_felt = std::max(spline_reach, rotation_spline_reach);
 
 enum class RotationCurve { spline, slerp };
 
 struct ResampleRule {
   std::int64_t gap_ns = 0;   // longer stretches without samples are gaps
-  std::int64_t step_ns = 0;  // nominal, else the stream's median one
-  TakenStep taken;           // in which the device took its samples
+  std::int64_t step_ns = 0;  // nominal step, else the stream's median step
+  TakenStep taken;           // the step at which the device took its samples
   RotationCurve curve = RotationCurve::spline;
-  std::int64_t begin_ns = 0, end_ns = 0;  // of the take: gaps are counted within
-  bool finer = false;                     // than the grid: what that can't carry is measured
+  std::int64_t begin_ns = 0, end_ns = 0;  // span of the take, in which gaps are counted
+  bool finer = false;  // the stream is finer than the grid: measure the lost content
 
   GapCount gap_count() const { return {gap_ns, begin_ns, end_ns}; }
   double rate_hz() const { return step_ns > 0 ? 1e9 / static_cast<double>(step_ns) : 0.0; }
   Reach reach() const { return {knots_felt, gap_ns}; }
 };
 
-/// What of a stream the grid can't carry, summed over calls; empty unless the rule says finer.
+/// The content of a stream that the grid can't carry, summed over calls. Empty unless the rule's
+/// `finer` is set.
 struct ResampleCount {
   std::vector<CarriedContent> positions;                       // [J]
   std::vector<CarriedContent> acceleration, angular_velocity;  // [S]
 };
 
-/// Neighbours of each row of a grid in a stream, on rising stamps.
+/// For each row of a grid its neighbours in a stream with rising stamps.
 struct Neighbours {
-  std::vector<std::size_t> left;             // [n] last sample at or before the row
-  std::vector<std::size_t> known_by;         // [n] as left; outside the stream the nearest sample
+  std::vector<std::size_t> left;             // [n] index of the last sample at or before the row
+  std::vector<std::size_t> known_by;         // [n] the same; outside the stream the nearest sample
   std::vector<std::int64_t> nearest_raw_ns;  // [n] at most farthest_nearest_ns
 };
 /// Rows outside the stream have left = stamps.size().
 Neighbours find_neighbours(std::span<const std::int64_t> stamps,
                            std::span<const std::int64_t> grid);
 
-/// What the resamplers of all three kinds share.
+/// The parts that the resamplers of all three kinds share.
 template <class Frames>
 class Resampler {
  public:
   const ResampleCount& content() const { return count_; }
   StreamCounts counts() const { return window_.counts(); }
-  /// After the last rows, so that counts are of all samples up to the take's end.
+  /// Call after the last rows: reads on so that the counts cover all samples up to the take's end.
   Result<void> read_to_end() { return window_.move(rule_.end_ns, rule_.end_ns, rule_.reach()); }
 
  protected:
-  /// `taken`: the device's step, by which late samples are found.
+  /// `taken`: the device's step, by which late samples are recognised.
   Resampler(Pass<Frames> pass, const TimeModel& clock, const ResampleRule& rule, TakenStep taken)
       : window_(std::move(pass), clock, rule.gap_count(), taken), clock_(&clock), rule_(rule) {}
 
@@ -75,19 +76,19 @@ class PointResampler : public Resampler<PointFrames> {
   PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
       : Resampler(std::move(pass), clock, rule, rule.taken) {}
 
-  /// Rows at the grid's stamps (ns, rising, from call to call too).
+  /// Makes the rows at the grid's stamps (ns, rising, also from call to call).
   Result<void> rows(std::span<const std::int64_t> grid, PointRows& out);
 };
 
-/// The nodes of one stream, which share their stamps, as columns `first_node`.. of a group.
+/// Resamples the nodes of one stream, which share their stamps.
 class ImuResampler : public Resampler<ImuSamples> {
  public:
   ImuResampler(Pass<ImuSamples> pass, const TimeModel& clock, const ResampleRule& rule,
                const ImuContent& content)
       : Resampler(std::move(pass), clock, rule, rule.taken), content_(content) {}
 
-  /// Vectors are turned into the world before they are interpolated, if `to_world`: in a turning
-  /// sensor's space a spline would bend what is straight.
+  /// If `to_world`, vectors are rotated into the world before interpolation. In the space of a
+  /// rotating sensor a spline would bend straight motion.
   Result<void> rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out);
 
  private:
@@ -99,7 +100,7 @@ class ClipResampler : public Resampler<ClipFrames> {
   ClipResampler(Pass<ClipFrames> pass, const TimeModel& clock, const ResampleRule& rule)
       : Resampler(std::move(pass), clock, rule, {}) {}
 
-  /// Fills all but the global positions.
+  /// Fills everything except the global positions.
   Result<void> rows(std::span<const std::int64_t> grid, ClipRows& out);
 };
 

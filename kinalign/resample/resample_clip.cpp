@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// One joint's rotations of consecutive frames.
+/// The rotations of one joint in consecutive frames.
 std::vector<double> column(const std::vector<double>& rotations, std::size_t joints, std::size_t j,
                            std::size_t first, std::size_t last) {
   std::vector<double> out;
@@ -21,7 +21,7 @@ std::vector<double> column(const std::vector<double>& rotations, std::size_t joi
   return out;
 }
 
-/// The rows of one segment.
+/// Fills the rows of one segment.
 void resample(const Segment& s, const Window<ClipFrames>& window,
               std::span<const std::int64_t> grid, RotationCurve curve, ClipRows& out) {
   const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;

@@ -14,7 +14,7 @@ namespace {
 struct NodeSamples {
   std::vector<std::int64_t> stamps;
   std::vector<double> orientation;  // [T',4]
-  std::vector<double> vectors;      // [T',C] acceleration and angular velocity, as far as present
+  std::vector<double> vectors;      // [T',C] acceleration and angular velocity, if present
   std::size_t channels = 0;
 };
 
@@ -43,7 +43,7 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
   return out;
 }
 
-/// A node's column of the rows, and where what happens in it is counted.
+/// The column of one node in the rows, and the sums for its lost content.
 struct NodeColumn {
   std::size_t node, nodes;
   const ImuContent& content;
@@ -63,7 +63,7 @@ void put_vectors(const std::vector<double>& values, const Segment& s, const Node
   }
 }
 
-/// What the rows of one segment can't carry of a node's vectors.
+/// Measures the content of a node's vectors that the rows of one segment can't carry.
 void measure(const Knots& raw, const Knots& rows, const NodeColumn& column) {
   ResampleCount& count = *column.count;
   count.acceleration.resize(column.nodes);
@@ -75,6 +75,7 @@ void measure(const Knots& raw, const Knots& rows, const NodeColumn& column) {
   }
 }
 
+/// Fills the rows of one node, segment by segment.
 void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
                  const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
@@ -104,7 +105,8 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
   }
 }
 
-/// How far each row is from the node's nearest sample, and which lie over lost ones.
+/// Finds each row's distance to the node's nearest sample, and the rows that lie between samples
+/// with lost ones between them.
 void put_distances(const NodeSamples& samples, std::span<const std::int64_t> grid,
                    const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
   const Neighbours near = find_neighbours(samples.stamps, grid);
@@ -119,7 +121,7 @@ void put_distances(const NodeSamples& samples, std::span<const std::int64_t> gri
   }
 }
 
-/// n samples, none of them valid.
+/// Arrays for n samples, none of them valid.
 ImuRows no_samples(std::size_t n, const ImuContent& content) {
   ImuRows out;
   out.valid.assign(n, 0);

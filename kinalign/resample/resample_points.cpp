@@ -12,7 +12,8 @@ namespace {
 
 using Joints = std::vector<std::size_t>;
 
-/// Joints by the samples in which they were seen: most often one group of all.
+/// Groups joints by the samples in which they were seen, because joints of one group share a
+/// spline. Usually there is one group.
 std::map<std::vector<bool>, Joints> joints_by_seen(const PointFrames& rows, std::size_t joints) {
   std::map<std::vector<bool>, Joints> groups;
   std::vector<bool> seen(rows.size());
@@ -25,7 +26,7 @@ std::map<std::vector<bool>, Joints> joints_by_seen(const PointFrames& rows, std:
   return groups;
 }
 
-/// Samples [T', 3 |group|] of a group's joints in the rows where they were seen.
+/// The samples [T', 3 |group|] of a group's joints, from the frames in which they were seen.
 struct Gathered {
   const Joints* group = nullptr;
   std::vector<std::int64_t> stamps;
@@ -47,7 +48,7 @@ Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen
   return out;
 }
 
-/// One spline for all of a group's channels in each segment; rows outside stay invalid.
+/// Fits one spline per segment for all channels of a group. Rows outside the segments stay invalid.
 void interpolate(const Gathered& samples, std::span<const std::int64_t> grid,
                  const ResampleRule& rule, PointRows& out, ResampleCount& count) {
   const Joints& group = *samples.group;
@@ -78,7 +79,7 @@ void interpolate(const Gathered& samples, std::span<const std::int64_t> grid,
   }
 }
 
-/// Stamps of the frames in which any joint was seen.
+/// The stamps of the frames in which any joint was seen.
 std::vector<std::int64_t> stamps_seen(const Window<PointFrames>& window) {
   std::vector<std::int64_t> out;
   for (std::size_t t = 0; t < window.time_ns.size(); ++t) {
@@ -107,6 +108,8 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
   return out;
 }
 
+/// A row has the worse state of its two neighbours. It counts as over a loss if a sample is missing
+/// between them.
 Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows& out) {
   out = {};
   if (grid.empty()) return {};

@@ -7,11 +7,12 @@
 namespace kinalign {
 
 TakenStep taken_step(const RecordedStream& s, const StreamOptions& options, Role role) {
-  // A step is known well enough within so much of another measure of it. KinectMultiTrack: 34 ms
-  // and usual ones of 32.2 to 33.3.
+  // A step is known well enough if another measure of it is within these shares. KinectMultiTrack:
+  // the median is 34 ms, the usual mean 32.2 to 33.3.
   constexpr double quite_another = 1.5, stated = 0.05, usual = 0.08, mean = 0.03;
-  constexpr double usual_beside_mean = 0.12;  // stalls: 10 %; rounded stamps: 15 and more
-  constexpr std::uint64_t loop = 50;          // one in so many steps, of a loop that reads two
+  constexpr double usual_beside_mean = 0.12;  // stalls: 10 %; rounded stamps: 15 % and more
+  // A loop is recognised if one step in this many was read at once with the next.
+  constexpr std::uint64_t loop = 50;
   const std::int64_t said_ns = usual_step_ns(s, options);
   const auto said = static_cast<double>(said_ns);
   const auto median = static_cast<double>(s.survey.median_step_ns);

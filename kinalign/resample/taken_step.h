@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step in which a device took its samples, by which one that was held back on its way is told.
+// The step at which a device took its samples, by which delayed samples are recognised.
 #pragma once
 
 #include "kinalign/take/manifest.h"
@@ -9,22 +9,25 @@
 
 namespace kinalign {
 
-/// What becomes of a stream's samples: their stamps are the grid, or they are resampled onto it.
+/// The role of a stream: its stamps are the grid, or it is resampled onto the grid.
 enum class Role { reference, resampled };
 
-/// 0: no step is known, nothing is told. Samples held back are counted of the reference, and left
-/// out of other streams.
+/// A device's step. With ns = 0 the step is unknown and no delay is found. Delayed samples of the
+/// reference are counted; those of other streams are dropped.
 struct TakenStep {
   std::int64_t ns = 0;
   Role role = Role::resampled;
-  bool steady = true;  // known well enough to tell late samples by
+  bool steady = true;  // known well enough to recognise late samples
 };
 
-/// The stated step where it says quite another than the median (stamps in bursts), or where a loop
-/// slower than the device read them and it is within 5 % of the mean of the usual steps; else the
-/// median. That is steady where those differ from it by less than 8 % in the mean, where the mean
-/// of all does by less than 3 %, which a stall without losses leaves as it was, or the stated one
-/// by less than 5 %: not where stamps are rounded coarsely or the rate has changed.
+/// Chooses the step of a stream. The stated step is used if it differs greatly from the median
+/// (stamps in bursts), or if a loop slower than the device read the samples and the stated step is
+/// within 5 % of the mean usual step. Otherwise the median is used.
+///
+/// The median is steady if the mean of the usual steps is within 8 % of it, or if the mean of all
+/// steps is within 3 % of it (a stall without losses does not change that mean), or if the stated
+/// step is within 5 % of it. It is not steady if stamps are coarsely rounded or the rate has
+/// changed.
 TakenStep taken_step(const RecordedStream& stream, const StreamOptions& options, Role role);
 
 }  // namespace kinalign

@@ -18,8 +18,8 @@
 
 namespace kinalign {
 
-// Rows first.. of one block appended to another, and rows dropped from the front or the last one.
-// The number of values in a row follows from the arrays' sizes. For all three kinds of blocks.
+// Append rows of one block to another, drop rows from the front, drop the last row. The number of
+// values per row follows from the sizes of the arrays. Defined for all three kinds of blocks.
 template <class Frames>
 void append_rows(Frames& to, const Frames& from, std::size_t first, std::size_t count);
 template <class Frames>
@@ -27,7 +27,7 @@ void drop_front(Frames& rows, std::size_t count);
 template <class Frames>
 void drop_last(Frames& rows);
 
-// What was seen in a row, column by column: joints, nodes, or the one body of a clip.
+// The columns of a row that were seen. A column is a joint, a node, or the whole body of a clip.
 inline std::size_t columns(const ClipFrames&) { return 1; }
 inline std::size_t columns(const PointFrames& rows) { return rows.state.size() / rows.size(); }
 inline std::size_t columns(const ImuSamples& rows) { return rows.valid.size() / rows.size(); }
@@ -51,31 +51,32 @@ bool any_seen(const Frames& rows, std::size_t row) {
   return false;
 }
 
-/// Distances to raw samples are told up to here, so that a column that was not seen for hours does
-/// not keep hours in memory.
+/// Distances to raw samples are measured up to this limit. Otherwise a column that was not seen for
+/// hours would keep hours of samples in memory.
 constexpr std::int64_t farthest_nearest_ns = 10'000'000'000;
 
-/// How far from a row samples still matter: so many seen ones of each column, or up to a gap; and
-/// the nearest one within farthest_nearest_ns.
+/// The samples around a row that matter: this many seen samples of each column, or those up to a
+/// gap; and the nearest one within farthest_nearest_ns.
 struct Reach {
   std::size_t knots = 0;
   std::int64_t gap_ns = 0;
 
-  /// Whether a row `distance` behind the last knot, or behind the start where `found` is none yet,
-  /// can't matter any more.
+  /// True if a sample is too far away to matter: it is `distance` from the last of the `found`
+  /// knots, or from the row if none was found yet.
   bool ended(std::int64_t distance, std::size_t found) const {
     return distance > (found == 0 ? std::max(gap_ns, farthest_nearest_ns) : gap_ns);
   }
 };
 
-/// Stretches within a span in which nothing was seen.
+/// Counts the stretches within a span in which nothing was seen.
 struct GapCount {
-  std::int64_t limit_ns = 0;                              // longer ones count
-  std::int64_t begin_ns = INT64_MIN, end_ns = INT64_MAX;  // of the take; by default no limits
+  std::int64_t limit_ns = 0;                              // longer stretches count as gaps
+  std::int64_t begin_ns = INT64_MIN, end_ns = INT64_MAX;  // span of the take; by default unlimited
   std::uint64_t gaps = 0;
-  std::int64_t time_ns = 0;  // sum of their lengths within the span
+  std::int64_t time_ns = 0;  // sum of the gaps' lengths within the span
 
-  /// What lies after the take's end counts for nothing: how much is read there must not show.
+  /// Adds a stretch. Time after the take's end is not counted, because the amount read there is
+  /// arbitrary.
   void add(std::int64_t from, std::int64_t to) {
     to = std::min(to, end_ns);
     if (from >= to || to - from <= limit_ns || to <= begin_ns) return;
@@ -84,11 +85,12 @@ struct GapCount {
   }
 };
 
-/// What was pulled of a stream so far, up to the take's end (gaps.end_ns).
+/// Counts of a stream so far, up to the take's end (gaps.end_ns).
 struct StreamCounts {
   GapCount gaps;
-  std::uint64_t held_back = 0;  // samples left out, as the next came on their heels
-  Arrivals arrivals;            // of all that rise; near: of a stream resampled those left out
+  std::uint64_t held_back = 0;  // samples dropped because the next one came too soon after them
+  /// Counts over all rising stamps. For a resampled stream `near` is the number of dropped samples.
+  Arrivals arrivals;
 };
 
 template <class Frames>
@@ -101,8 +103,8 @@ class Window {
         near_counts_(step.role == Role::reference),
         gaps_(count) {}
 
-  /// After it, `rows` hold all samples within [from, to] and, where the stream has them, `reach`
-  /// on either side. `from` and `to` (ns on the take's axis) rise from call to call.
+  /// Afterwards `rows` contain all samples within [from, to] and, if the stream has them, `reach`
+  /// on either side. `from` and `to` (ns on the take's axis) must rise from call to call.
   Result<void> move(std::int64_t from, std::int64_t to, const Reach& reach) {
     while (!ended_ && !reaches(to, reach)) {
       KA_TRY(pull());
@@ -112,8 +114,8 @@ class Window {
     return {};
   }
 
-  /// After it, `rows` begin at the first sample not before `from` and are at least `count`, where
-  /// the stream has them.
+  /// Afterwards `rows` begin at the first sample not before `from` and contain at least `count`
+  /// samples, if the stream has them.
   Result<void> fill(std::int64_t from, std::size_t count) {
     for (;;) {
       drop(first_not_before(from));
@@ -122,8 +124,8 @@ class Window {
     }
   }
 
-  Frames rows;                        // stamps as the device gave them
-  std::vector<std::int64_t> time_ns;  // [rows] on the take's axis, strictly rising
+  Frames rows;                        // stamps as given by the device
+  std::vector<std::int64_t> time_ns;  // [rows] ns on the take's axis, strictly rising
 
   StreamCounts counts() const {
     StreamCounts out{gaps_, held_back_, at_end_ ? *at_end_ : lines_.result()};
@@ -144,7 +146,7 @@ class Window {
     time_ns.erase(time_ns.begin(), time_ns.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
-  /// Keeps what `reach` wants of each column in front of `from`.
+  /// Drops the samples before `from` that are not within `reach` of it in any column.
   void drop_before(std::int64_t from, const Reach& reach) {
     const std::size_t inside = first_not_before(from);
     std::size_t first = inside;
@@ -163,7 +165,7 @@ class Window {
     drop(first);
   }
 
-  /// Whether `reach` is there of each column behind `to`.
+  /// True if the samples within `reach` after `to` are present in each column.
   bool reaches(std::int64_t to, const Reach& reach) const {
     const std::size_t end = sure();
     if (end == 0 || time_ns[end - 1] < to) return false;
@@ -182,21 +184,21 @@ class Window {
     return true;
   }
 
-  /// Rows of which no later sample can show that they were held back.
+  /// Number of rows that no later sample can show to be delayed.
   std::size_t sure() const {
     if (ended_ || time_ns.empty()) return time_ns.size();
     const auto open = lines_.open_since(time_ns.back());
     return open ? first_not_before(*open) : time_ns.size();
   }
 
-  /// Drops while pulling, where it is worth the move: a stretch without rows may be long. Samples
-  /// in front of `from` are still to come: what they may need stays.
+  /// Drops rows while pulling, when at least half of them are old: a stretch without rows may be
+  /// long. Rows before `from` may still come; the samples that they need are kept.
   void forget(std::int64_t from, const Reach& reach) {
     if (time_ns.empty() || time_ns[time_ns.size() / 2] >= from) return;
     drop_before(std::min(from, time_ns.back()), reach);
   }
 
-  /// Until the last row can't be taken back any more.
+  /// Pulls blocks until the last row can no longer be taken back.
   Result<void> pull() {
     do {
       if (!KA_TRY(pass_(block_))) {
@@ -208,6 +210,7 @@ class Window {
     return {};
   }
 
+  /// Appends the kept samples of a block. Runs of kept rows are appended together.
   void take_block() {
     std::size_t first = 0, i = 0;  // rows [first, i) are kept and not yet appended
     const auto flush = [&](std::size_t next) {
@@ -245,7 +248,7 @@ class Window {
     flush(i);
   }
 
-  /// Whether row i of the block has something in it, `seen_` what.
+  /// Fills `seen_` with the columns of row i of the block; true if any was seen.
   bool look(std::size_t i) {
     const std::size_t width = columns(block_);
     seen_.resize(width);
@@ -257,8 +260,8 @@ class Window {
     return any;
   }
 
-  /// The row at `late` was held back, as that in `seen_` shows: what both have in them goes. Behind
-  /// it may be rows of others.
+  /// Drops the row at `late`, because the row with `seen_` shows that it was delayed. Only the
+  /// columns that both rows show are dropped. Rows of other lines may follow it.
   void leave_out(std::int64_t late) {
     if (late <= gaps_.end_ns) ++held_back_;
     const std::size_t row = first_not_before(late), width = seen_.size();
@@ -277,7 +280,7 @@ class Window {
     }
   }
 
-  /// The last row was no sample.
+  /// Removes the last row, because its stamp was wrong.
   void take_back() {
     const bool was_seen = last_seen_ == time_ns.back();
     drop_last_row();
@@ -292,7 +295,7 @@ class Window {
     time_ns.pop_back();
   }
 
-  /// The row at `t` has `seen_` in it.
+  /// Records that the row at `t` shows the columns `seen_`.
   void see(std::int64_t t, std::optional<std::size_t> line) {
     before_[1] = before_[0];
     before_[0] = {last_seen_, gaps_, line.has_value()};
@@ -311,20 +314,20 @@ class Window {
   Pass<Frames> pass_;
   const TimeModel* clock_;
   Frames block_;
-  std::vector<std::uint8_t> seen_;  // [columns] of the row being taken
+  std::vector<std::uint8_t> seen_;  // [columns] of the row being processed
   StampRule rule_;
   ArrivalLines lines_;
   std::optional<Arrivals> at_end_;  // lines_.result() before the first row after the take's end
-  bool near_counts_;                // of the reference: rows held back stay
+  bool near_counts_;                // true for the reference, whose delayed rows are kept
   GapCount gaps_;
   std::uint64_t held_back_ = 0;
   std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it
-  /// As it was without that one, and without the one before: a wild stamp is taken back, and then
-  /// the one in front of it may be late.
+  /// The states before the last seen row and before the one before it. A row with a wrong stamp may
+  /// be removed, and then the row before it may turn out to be late.
   struct Before {
     std::optional<std::int64_t> last_seen;
     GapCount gaps;
-    bool in_line = false;  // the row that was added then
+    bool in_line = false;  // the row was added to a line
   };
   std::array<Before, 2> before_;
   bool ended_ = false;

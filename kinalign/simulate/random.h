@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers by counter: the k-th of a stream is a function of (seed, stream, k, lane), so it
-// is the same in whatever order and on however many threads it is asked for. The mixing function is
+// Random numbers by counter. Number k of a stream is a function of (seed, stream, k, lane), so it
+// does not depend on the order of calls or on the number of threads. The mixing function is
 // SplitMix64's (Steele, Lea, Flood, «Fast splittable pseudorandom number generators», 2014).
 #pragma once
 
@@ -18,7 +18,7 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// One stream of a seed: numbers k = 0, 1, … in 16 lanes that do not depend on one another.
+/// One stream of a seed: numbers k = 0, 1, … in 16 independent lanes.
 class RandomStream {
  public:
   constexpr RandomStream(std::uint64_t seed, std::uint64_t stream)
@@ -36,7 +36,7 @@ class RandomStream {
     return std::sqrt(-2.0 * std::log(uniform(k, lane))) *
            std::cos(2.0 * std::numbers::pi * uniform(k, lane + 1));
   }
-  /// Two independent ones from the same two lanes.
+  /// Two independent standard normal numbers from the same two lanes.
   std::pair<double, double> normals(std::uint64_t k, std::uint64_t lane) const {
     const double radius = std::sqrt(-2.0 * std::log(uniform(k, lane)));
     const double angle = 2.0 * std::numbers::pi * uniform(k, lane + 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curves that a movement is put together from: three times continuously differentiable and more, so
-// that what an accelerometer would read of it has no jump, and no jump in its slope.
+// Curves from which a movement is composed. They are at least three times continuously
+// differentiable, so a simulated accelerometer shows no jump, and its slope has none either.
 #pragma once
 
 #include <algorithm>
@@ -10,21 +10,22 @@
 
 namespace kinalign {
 
-/// 0 before 0, 1 behind 1, three times continuously differentiable; steepest 35/16 in the middle.
+/// Rises from 0 at x = 0 to 1 at x = 1, three times continuously differentiable. The slope is
+/// steepest in the middle, 35/16.
 inline double rise(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * x * x * (35.0 + x * (-84.0 + x * (70.0 - 20.0 * x)));
 }
 
-/// 0 outside 0 to 1, 1 in the middle, three times continuously differentiable.
+/// 1 in the middle, 0 outside of [0, 1]; three times continuously differentiable.
 inline double bump(double x) {
   x = std::clamp(x, 0.0, 1.0);
   const double y = 4.0 * x * (1.0 - x);
   return y * y * y * y;
 }
 
-/// As `rise`, of a body that speeds up for 0.42 of the time, keeps its speed, and slows down: four
-/// times continuously differentiable, and no more than 1.72 steep.
+/// Rises from 0 to 1, as a body that speeds up for 0.42 of the time, keeps its speed, and slows
+/// down. Four times continuously differentiable; the slope is at most 1.72.
 inline double glide(double x) {
   constexpr double ramp = 0.42, speed = 1.0 / (1.0 - ramp);
   x = std::clamp(x, 0.0, 1.0);
@@ -34,21 +35,22 @@ inline double glide(double x) {
   return speed * ramp * u * u * u * u * u * (7.0 + u * (-14.0 + u * (10.0 - 2.5 * u)));
 }
 
-/// The smaller of the two where they are `width` apart and more, below it by half of that where
-/// they are equal; any number of times differentiable.
+/// A smooth minimum. It equals the smaller value if the two are much more than `width` apart, and
+/// lies half of `width` below them if they are equal. Differentiable any number of times.
 inline double soft_min(double a, double b, double width) {
   return 0.5 * (a + b - std::sqrt((a - b) * (a - b) + width * width));
 }
 
-/// A curve along control values at even steps: a uniform B-spline of degree 5, four times
-/// continuously differentiable, never beyond its controls. Outside them the nearest stands.
+/// A curve along control values at even steps: a uniform B-spline of degree 5. It is four times
+/// continuously differentiable and never leaves the range of the controls. Outside of them it stays
+/// at the nearest control.
 class ControlTrack {
  public:
   ControlTrack(double step_s, std::vector<double> controls)
       : step_s_(step_s), controls_(std::move(controls)) {}
 
   double at(double t) const {
-    // Centred: at t = k step the heaviest of six weights is control k's.
+    // Centred: at t = k step, control k has the greatest of the six weights.
     const double x = t / step_s_;
     const double floor = std::floor(x), u = x - floor;
     const auto first = static_cast<std::ptrdiff_t>(std::clamp(floor, -1e9, 1e9)) - 2;
@@ -59,7 +61,7 @@ class ControlTrack {
   }
 
  private:
-  /// The cardinal B-spline of degree 5, about 0, of half-width 3.
+  /// The cardinal B-spline of degree 5, centred at 0, with half-width 3.
   static double weight(double x) {
     const auto fifth = [](double y) { return y > 0.0 ? y * y * y * y * y : 0.0; };
     const double a = std::abs(x);

@@ -33,24 +33,26 @@ struct Source {
   StreamFile file;
 };
 
-/// A format that a program of ours reads.
+/// A format with a reader of its own in this program.
 struct Format {
   std::string_view name;
   bool (*looks)(std::string_view head, std::string_view path);
   Result<AnyReader> (*make)(const Source& source);
-  std::string_view selects = {};  // the one name that `select` may have here
-  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;       // if any
-  Result<ClipSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;  // if own
+  std::string_view selects = {};  // the only key that `select` may have here
+  /// The further files that the reader opens; nullptr: none.
+  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;
+  /// A first pass of its own; nullptr: the survey reads all rows.
+  Result<ClipSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;
 };
 
-/// A format that is known whatever the file's name is.
+/// For a format that is recognised by its content, whatever the file's name is.
 template <bool (*looks)(std::string_view head)>
 bool by_content(std::string_view head, std::string_view) {
   return looks(head);
 }
 
-/// One of a pair of files. Angles, of the Kinect or of the optical system, would be wrong points if
-/// they were read by themselves: the reader refuses them.
+/// True for one of a pair of UI-PRMD files. Files of angles, of the Kinect or of the optical
+/// system, also look like tables of points, which would be wrong; the reader refuses them.
 bool is_ui_prmd(std::string_view head, std::string_view path) {
   if (named_as_ui_prmd_positions(path)) return looks_like_ui_prmd_kinect(head);
   return named_as_ui_prmd_angles(path) &&
@@ -69,7 +71,8 @@ Result<AnyReader> make_ui_prmd(const Source& source) {
                                               [file] { return file->next(); }));
 }
 
-/// A tracking system of BIDS-Motion, whatever its rows are; the files beside it say what they mean.
+/// True for a tracking system of BIDS-Motion, by its name; its sidecar files state the meaning of
+/// its columns.
 bool is_bids(std::string_view, std::string_view path) { return named_as_bids_motion(path); }
 
 Result<std::vector<std::string>> bids_files(const Source& source) {
@@ -77,7 +80,7 @@ Result<std::vector<std::string>> bids_files(const Source& source) {
   return bids_sidecar_paths(*source.files, source.file.path);
 }
 
-/// Points where there are positions, unless the user selects nodes.
+/// Reads points if the file has positions, else nodes. `select kind` decides if it is given.
 Result<AnyReader> make_bids(const Source& source) {
   const BidsSystem system = KA_TRY(read_bids_system(*source.files, source.file.path));
   const auto kind = source.options.select.find("kind");
@@ -92,7 +95,7 @@ Result<AnyReader> make_bids(const Source& source) {
   return AnyReader(KA_TRY(make_bids_node_reader(system, source.options, source.file.path)));
 }
 
-/// The body's segments, unless the user selects the sensors.
+/// Reads the body's segments, or the sensors if `select part` says so.
 Result<AnyReader> make_mvnx(const Source& source) {
   const auto part = source.options.select.find("part");
   if (part == source.options.select.end() || part->second == "segments") {
@@ -156,7 +159,7 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
           {}};
 }
 
-/// A choice that a format does not know would be ignored in silence.
+/// Refuses a selection that the format does not know: it would be ignored without notice.
 Result<void> check_selection(const Format& format, const Source& source) {
   for (const auto& [name, value] : source.options.select) {
     if (name == format.selects) continue;
@@ -170,7 +173,7 @@ Result<void> check_selection(const Format& format, const Source& source) {
   return {};
 }
 
-/// Each pass sees the further files as they are now.
+/// Makes each later pass fail if one of the further files has changed.
 FoundFormat watched(FoundFormat found) {
   std::vector<std::optional<FileVersion>> versions;
   for (const std::string& path : found.further_files) versions.push_back(version_of(path));
@@ -182,6 +185,7 @@ FoundFormat watched(FoundFormat found) {
   return found;
 }
 
+/// The format with its reader, its own survey and its further files, if it has any.
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
   KA_TRY(check_selection(format, source));
   FoundFormat out{
@@ -196,23 +200,24 @@ Result<FoundFormat> program_format(const Format& format, const Source& source) {
   return watched(std::move(out));
 }
 
-/// What reads a file: one of the two, or neither.
+/// The reader of a file: a format, a layout, or neither.
 struct Recognized {
   const Format* format = nullptr;
   std::optional<TableLayout> layout{};
 };
 
+/// A layout that knows the columns but not the rows is used too: its reader reports the wrong row.
 Result<Recognized> recognize(std::string_view head, std::string_view path) {
   for (const Format& format : formats) {
     if (format.looks(head, path)) return Recognized{&format};
   }
-  std::optional<TableLayout> named;  // the first one that knows the columns, if not the rows
+  std::optional<TableLayout> named;  // the first layout that knows the columns, if not the rows
   for (const std::string_view name : builtin_layout_names()) {
     TableLayout layout = KA_TRY(parse_layout(*builtin_layout(name), name));
     if (matches(layout, head)) return Recognized{nullptr, std::move(layout)};
     if (!named && knows_columns(layout, head)) named = std::move(layout);
   }
-  return Recognized{nullptr, std::move(named)};  // its reader says which row is wrong
+  return Recognized{nullptr, std::move(named)};  // its reader reports the wrong row
 }
 
 std::string known_formats() {
@@ -223,6 +228,7 @@ std::string known_formats() {
   return text;
 }
 
+/// The format of the option `layout`: a format's name, a built-in layout's, or a layout file.
 Result<FoundFormat> named_format(const Source& source) {
   const std::string& wanted = source.options.layout;
   const auto* known = std::find_if(formats.begin(), formats.end(),
@@ -268,7 +274,7 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
 
 Result<FileKind> kind_of_file(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
-  std::array<char, 10> start{};  // the longest signature
+  std::array<char, 10> start{};  // the length of the longest signature
   const std::string_view signature(start.data(), KA_TRY(file.read_at(0, start)));
   if (looks_like_recording(signature)) return FileKind::recording;
   if (looks_like_xdf(signature)) return FileKind::xdf;

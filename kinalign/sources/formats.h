@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The registry: which reader a file needs, by what its user says or by how it begins.
+// The registry of formats: chooses a file's reader by the user's option or by the file's beginning.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -19,22 +19,22 @@ namespace kinalign {
 
 /// Makes a fresh reader for each pass over a file.
 using MakeReader = std::function<Result<AnyReader>()>;
-/// A first pass of a format's own, quicker than one that reads every row.
+/// A first pass of the format's own, faster than reading every row.
 using SurveyClip = std::function<Result<ClipSurvey>(const Progress& progress)>;
 
 struct FoundFormat {
-  std::string name;  // "bvh", "trc", or a layout's
+  std::string name;  // "bvh", "trc", or the name of a layout
   MakeReader make;
-  std::vector<std::string> further_files;  // that the reader opens itself
-  SurveyClip survey;                       // empty: rows are read
+  std::vector<std::string> further_files;  // files that the reader opens itself
+  SurveyClip survey;                       // empty: the survey reads all rows
 };
 
-/// Decides by `options.layout` (a format's name, a built-in layout's, or the path of a layout) or,
-/// where that is empty, by `head`, the file's first bytes. Fails with the formats known.
+/// Chooses by `options.layout` (the name of a format or of a built-in layout, or the path of a
+/// layout); if it is empty, by `head`, the file's first bytes. The error lists the known formats.
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
                                 const StreamFile& file, std::string_view head);
 
-/// What a file is, by its first bytes; a manifest, which has none of its own, by its ending .toml.
+/// The kind of a file by its first bytes; a manifest, which has no signature, by its ending .toml.
 enum class FileKind : std::uint8_t {
   recording,  // MCAP
   xdf,
@@ -45,7 +45,7 @@ enum class FileKind : std::uint8_t {
   unknown,  // also an empty file; a layout that the user names may read it as a stream
 };
 
-/// Reads the file's head once. Fails where the file can't be opened or read.
+/// Reads the beginning of the file once. Fails if the file can't be opened or read.
 Result<FileKind> kind_of_file(FileSystem& files, const std::string& path);
 
 /// The names that `layout` may have besides paths.

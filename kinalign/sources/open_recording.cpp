@@ -18,6 +18,7 @@ namespace kinalign {
 
 namespace {
 
+/// The clock by the stream's options: offset and drift begin at the first stamp.
 TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   TimeModel model = options.clock == "shared" ? shared_clock() : TimeModel{};
   TimeModelPiece& piece = model.pieces.front();
@@ -28,14 +29,14 @@ TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   return model;
 }
 
-/// What a recording says of a clock, with a delay that its user knows.
+/// The clock that a recording states, moved by the user's offset.
 TimeModel moved_by(TimeModel model, const StreamOptions& options) {
   const Duration by{std::llround(options.offset_ms * 1e6)};
   for (TimeModelPiece& piece : model.pieces) piece.offset += by;
   return model;
 }
 
-/// Files read side by side, told as one job.
+/// Sums up the progress of files that are read in parallel.
 class SharedProgress {
  public:
   SharedProgress(const Progress& progress, std::size_t parts)
@@ -68,11 +69,12 @@ class SharedProgress {
 struct NamedFile {
   const StreamOptions* options = nullptr;
   const StreamFile* file = nullptr;
-  std::string remembered;  // as the take calls it
+  std::string remembered;  // its name in the take
+  // The name in messages: "mocap", "imu waist".
   std::string name() const { return options->name + (file->node.empty() ? "" : " " + file->node); }
 };
 
-/// A file, with its options and paths as a manifest in `folder` has them.
+/// A file with the options and paths as seen from the current folder.
 struct PlacedFile {
   StreamOptions options;
   StreamFile file;
@@ -82,12 +84,12 @@ PlacedFile place_of(const std::string& folder, const NamedFile& named) {
   StreamOptions& options = place.options;
   if (options.own_layout()) options.layout = path_in(folder, options.layout);
   if (!options.skeleton.empty()) options.skeleton = path_in(folder, options.skeleton);
-  if (options.files.size() > 1) options.start_ns.reset();  // start_together
+  if (options.files.size() > 1) options.start_ns.reset();  // see start_together
   return place;
 }
 
-/// Names its files as the take does and sets its clock. What the files of nodes share, such as a
-/// layout, is named with the first of them.
+/// Gives the files their names in the take, and sets the clock. A file that all nodes of a stream
+/// share, such as a layout, is kept with the first node only.
 SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const NamedFile& named,
                            const StreamOptions& options) {
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
@@ -118,8 +120,8 @@ Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, con
   return named_as_said(KA_TRY(survey_file(job, place.file)), folder, named, place.options);
 }
 
-/// Of two files that a take would call by one name, `rebuild` could not tell which is which, and a
-/// name that is no text it could not find.
+/// Fails if two different files would have one name in the take, since `rebuild` could not tell
+/// them apart, or if a name is not UTF-8, since `rebuild` could not find the file.
 Result<void> check_names(const std::vector<SurveyedFile>& opened) {
   struct Place {
     const std::string* path;
@@ -145,7 +147,8 @@ Result<void> check_names(const std::vector<SurveyedFile>& opened) {
   return {};
 }
 
-/// Files of one stream share an axis: where start_ns is given, the earliest sample of all has it.
+/// The files of one stream share an axis: if start_ns is given, it is the stamp of the earliest
+/// sample of all files.
 Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFile>& opened) {
   if (!options.start_ns || options.files.size() < 2) return {};
   std::optional<std::int64_t> first;
@@ -168,7 +171,7 @@ Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFi
   return {};
 }
 
-/// What a user calls subject, action, streams and nodes stands in the take.
+/// Fails if the subject, the action or a name is not UTF-8: a take stores them.
 Result<void> check_texts(const Manifest& manifest) {
   std::vector<std::string> texts{manifest.subject, manifest.action};
   for (const StreamOptions& stream : manifest.streams) {
@@ -183,7 +186,7 @@ Result<void> check_texts(const Manifest& manifest) {
   return {};
 }
 
-/// Their files.
+/// The files of all streams, with their names in the take.
 Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams) {
   std::vector<std::string> paths;
   for (const StreamOptions& options : streams) {
@@ -202,12 +205,12 @@ Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& str
   return named;
 }
 
-/// Files that are opened in one go: the streams of one recording, or one file.
+/// Files that are opened together: the streams of one recording, or a single file.
 struct Group {
-  std::string path;                // as the first of them spells it
+  std::string path;                // in the spelling of the first file
   std::filesystem::path one_path;  // the same for ./a.mcap and a.mcap
   bool is_recording = false;
-  std::vector<std::size_t> named;  // which files
+  std::vector<std::size_t> named;  // indices of the files
 };
 
 std::filesystem::path normal_path(const std::string& path) {
@@ -216,6 +219,7 @@ std::filesystem::path normal_path(const std::string& path) {
   return fault ? std::filesystem::path(path) : whole.lexically_normal();
 }
 
+/// Streams without a layout that name one recording form a group, so that it is read once.
 std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
                              const std::vector<NamedFile>& named) {
   std::vector<Group> groups;
@@ -229,14 +233,14 @@ std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
       known->named.push_back(i);
       continue;
     }
-    const auto recording = is_recording(files, path);  // who can't read it says so later
+    const auto recording = is_recording(files, path);  // opening reports a fault
     groups.push_back(
         {path, one_path, named[i].options->layout.empty() && recording && *recording, {i}});
   }
   return groups;
 }
 
-/// What is opened, by file.
+/// Opens groups and stores the result of each file.
 struct Opening {
   FileSystem* files = nullptr;
   const std::string* folder = nullptr;
@@ -250,6 +254,7 @@ struct Opening {
       opened[i] = open_file(*files, *folder, (*named)[i], progress);
       return;
     }
+    // A recording is opened once for all of its streams.
     std::vector<PlacedFile> places;
     std::vector<StreamOptions> wanted;
     for (const std::size_t i : group.named) {
@@ -279,7 +284,7 @@ struct Opening {
   }
 };
 
-/// Side by side; what becomes of each.
+/// Opens all groups in parallel and returns the result of each file.
 std::vector<Result<SurveyedFile>> open_each(FileSystem& files, const std::string& folder,
                                             const std::vector<NamedFile>& named,
                                             const OpenWith& with) {
@@ -292,6 +297,7 @@ std::vector<Result<SurveyedFile>> open_each(FileSystem& files, const std::string
   return std::move(opening.opened);
 }
 
+/// Opens all files; the first failure in their order is returned.
 Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string& folder,
                                            const std::vector<StreamOptions>& streams,
                                            const OpenWith& with) {
@@ -303,7 +309,7 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
   return out;
 }
 
-/// With the files that several of the streams are read from.
+/// The recording of these files. Streams of one recording refer to it as a shared file.
 Recording joined(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   Recording out{manifest.subject, manifest.action, {}, {}};
   std::vector<const RecordingSource*> sources;
@@ -321,7 +327,7 @@ Recording joined(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   return out;
 }
 
-/// Fails where a take could not name the files.
+/// The same, but fails if a take could not name the files.
 Result<Recording> recording_of(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   KA_TRY(check_names(opened));
   return joined(manifest, std::move(opened));
@@ -341,6 +347,7 @@ Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
   return recording_of(manifest, std::move(opened));
 }
 
+/// Opens what can be opened. A file that fails gives a warning and stops no other.
 Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
                                       const std::string& folder, const OpenWith& with) {
   KA_TRY(check_texts(manifest));

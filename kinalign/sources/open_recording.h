@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files into a Recording: each is read once to hash it and to learn its stamps, and can then be
-// read again, block by block, as often as alignment needs.
+// Opens files as a Recording. Each file is read once to hash it and to survey its stamps; alignment
+// can then read it again in blocks, as often as needed.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -17,23 +17,23 @@ namespace kinalign {
 
 struct OpenWith {
   Progress progress{};  // never called on two threads at once
-  /// Threads to use: files are read side by side, which changes nothing but the time.
+  /// Threads to use. Files are read in parallel, which changes only the time needed.
   std::size_t jobs = 1;
-  /// A recording that was opened already, if the streams are read from it.
+  /// A recording that is open already, if the streams are in it.
   std::shared_ptr<RecordingSource> recording{};
 };
 
-/// The recorded streams of the given ones: one each, or one for each file of nodes. Paths are taken
-/// as they stand. `files` must outlive the streams. A recording is read once, however many streams
-/// it has. Of several failures the error is that of the first file, in their order.
+/// Opens streams: one for each, or one for each file of nodes. Paths are relative to the current
+/// folder. `files` must outlive the streams. A recording is read once, however many streams it has.
+/// Of several failures the first in the order of the files is returned.
 Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOptions>& streams,
                                const OpenWith& with = {});
 
-/// All streams of a manifest; relative paths are relative to `folder` ("" or ending in '/').
+/// Opens all streams of a manifest; relative paths are relative to `folder` ("" or ending in '/').
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  const std::string& folder, const OpenWith& with = {});
 
-/// The same of what can be read, and of each stream or node that can't a warning why.
+/// The streams that could be opened, and a warning with the reason for each that could not.
 struct OpenedInPart {
   Recording recording;
   Findings left_out;
@@ -41,7 +41,7 @@ struct OpenedInPart {
 Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
                                       const std::string& folder, const OpenWith& with = {});
 
-/// Reads the streams to their ends whose late findings have not come yet, side by side.
+/// Reads those streams in parallel to their ends whose late findings are not known yet.
 Result<void> read_through(const Recording& recording, const Progress& progress = {});
 
 }  // namespace kinalign

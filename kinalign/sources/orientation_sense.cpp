@@ -13,17 +13,19 @@ namespace kinalign {
 
 namespace {
 
+/// Fewer samples are not judged.
 constexpr std::uint64_t enough_samples = 50;
-/// Chosen: a runner's mean leans by a few degrees, another axis by 90.
+/// Chosen limit: a runner's mean leans by a few degrees, a wrong axis by 90.
 constexpr double most_lean_deg = 45.0;
-/// Slower turns drown in the gyroscope's bias (0.05 rad/s and less) and in rounded angles.
+/// Slower turns are lost in the gyroscope's bias (0.05 rad/s and less) and in rounded angles.
 constexpr double least_turn_rad_s = 0.2;
-/// Chosen: no node of UNSW's walk, of the Xsens exports and of the demo lies below; the demo's
-/// wrist with x,y,z,w read as w,x,y,z has -0.16.
+/// Chosen limit: all nodes of UNSW's walk, of the Xsens exports and of the demo lie above; the
+/// demo's wrist with x,y,z,w read as w,x,y,z has -0.16.
 constexpr double least_likeness = 0.5;
 
 }  // namespace
 
+/// Sums up gravity in the world, and turns by the orientations and by the gyroscope.
 void OrientationSense::add(const ImuSamples& block) {
   if (block.size() == 0 || block.orientation.empty()) return;
   const std::size_t count = block.valid.size() / block.size();
@@ -45,9 +47,9 @@ void OrientationSense::add(const ImuSamples& block) {
   }
 }
 
-/// Steps that are long, or in which the node turned far, say little of the rate between. Turns are
-/// held against each other, not rates: a stamp that is 10 us in front of the next would outweigh
-/// all the others.
+/// Adds the turn between two samples. Long steps and wide turns are left out, since they say little
+/// about the rate between. Turns are compared, not rates: a stamp 10 us before the next one would
+/// outweigh all others.
 void OrientationSense::add_turn(Node& node, const Last& now) {
   constexpr double longest_s = 0.2, farthest_rad = 1.0, quickest_rad_s = 40.0;  // 2,300 deg/s
   const double seconds = 1e-9 * (static_cast<double>(now.t) - static_cast<double>(node.last->t));

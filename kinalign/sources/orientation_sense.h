@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether nodes' orientations belong to what they felt: the order of a quaternion's parts, which
-// way it turns, and which axis is up can't be read from a file, but they show in its numbers.
+// Checks whether the orientations of nodes fit their accelerations and angular velocities. A file
+// does not state the order of a quaternion's parts, its direction, or the axis that is up, but its
+// numbers show them.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,8 +17,8 @@ namespace kinalign {
 class OrientationSense {
  public:
   void add(const ImuSamples& block);
-  /// Findings where gravity, turned into the world by the orientations, does not point up, and
-  /// where the orientations turn about other axes than the gyroscope says.
+  /// Findings if gravity, turned into the world by the orientations, does not point up, or if the
+  /// orientations turn about other axes than the gyroscope states.
   Findings judge(const ImuHeader& header, const std::string& file) const;
 
  private:
@@ -28,12 +29,12 @@ class OrientationSense {
   };
   struct Node {
     std::uint64_t samples = 0;
-    Vec3 up = Vec3::Zero();           // accelerations in the world, their sum, m/s2
-    std::optional<Last> last;         // valid sample
-    std::uint64_t turns = 0;          // pairs of samples one behind the other
-    double both = 0.0;                // (turn by the orientations) . (by the gyroscope), rad2
-    double turned = 0.0, felt = 0.0;  // their squares
-    double times = 0.0;               // the squares of the times between, s2
+    Vec3 up = Vec3::Zero();    // sum of accelerations in the world, m/s2
+    std::optional<Last> last;  // the last valid sample
+    std::uint64_t turns = 0;   // pairs of consecutive samples
+    double both = 0.0;         // sum of (turn by the orientations) . (turn by the gyroscope), rad2
+    double turned = 0.0, felt = 0.0;  // sums of their squares
+    double times = 0.0;               // sum of the squared times between, s2
   };
 
   void add_turn(Node& node, const Last& now);

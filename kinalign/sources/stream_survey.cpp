@@ -21,7 +21,7 @@ namespace {
 ClipInput input_of(const Skeleton& header, Passes<ClipFrames> passes) {
   return {header, std::move(passes)};
 }
-/// Names of files from before UTF-8, as takes hold texts.
+/// Takes store UTF-8; older files may have names in other encodings.
 std::vector<std::string> all_as_utf8(std::vector<std::string> names) {
   for (std::string& name : names) name = as_utf8(name);
   return names;
@@ -59,6 +59,8 @@ struct Reading {
   }
 };
 
+/// Passes over a file with a fresh reader each. A pass fails if the file has changed since it was
+/// surveyed.
 template <class R>
 Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const Version& version,
                                      MakeReader make) {
@@ -73,7 +75,7 @@ Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const 
       };
 }
 
-/// The first pass: hashes the file and surveys its stamps and sizes, rows are thrown away.
+/// The first pass: hashes the file and surveys stamps and values; rows are dropped.
 template <class R>
 Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_view head,
                               const FoundFormat& format, std::unique_ptr<R> reader) {
@@ -113,7 +115,8 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   return out;
 }
 
-/// A BVH stamped from a click on record and, where it is known, a click on stop.
+/// A warning if a BVH's length differs from the time between the clicks on record and stop by more
+/// than two steps.
 Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
   if (!options.start_ns || !options.end_ns || !s.step_ns) return {};
   const double between = 1e-9 * static_cast<double>(*options.end_ns - *options.start_ns);
@@ -127,6 +130,7 @@ Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
            "the true step may differ from the file's, or frames are missing"}};
 }
 
+/// The first pass of a format with its own survey, for skeletons.
 Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path,
                                    const FoundFormat& format) {
   const ClipSurvey made = KA_TRY(format.survey(*job.progress));
@@ -144,7 +148,8 @@ Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path
   return out;
 }
 
-/// Passes of a device. The first one that is read to its end has the findings about its values.
+/// The passes over a device's stream. The first pass read to its end stores the findings about
+/// values.
 template <class Frames>
 Passes<Frames> device_passes(DevicePasses<Frames> passes,
                              typename DevicePass<Frames>::Header header, std::string path,
@@ -169,7 +174,7 @@ Passes<Frames> device_passes(DevicePasses<Frames> passes,
   };
 }
 
-/// Reads a stream to its end, for its late findings.
+/// Reads a stream to its end, so that its late findings are known.
 template <class Frames>
 Result<void> read_through(const Passes<Frames>& passes) {
   const Pass<Frames> pass = KA_TRY(passes());
@@ -212,7 +217,8 @@ Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named
   stream.name = job.options->name;
   stream.format = "recording";
   stream.survey = made.survey;
-  // Nodes are never a take's grid, whose rows are counted by these (align/plan.cpp).
+  // A take's grid is never a stream of nodes; only a grid's rows are counted by these stamps
+  // (align/plan.cpp).
   if (!std::holds_alternative<ImuHeader>(made.header)) stream.stamps = std::move(made.stamps);
   stream.findings = std::move(made.findings);
   stream.late_findings = std::make_shared<std::optional<Findings>>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first pass over a stream's file: hashed and surveyed, rows are thrown away.
+// The first pass over a stream's file: hashes and surveys it; rows are dropped.
 #pragma once
 
 #include "kinalign/core/file_version.h"
@@ -18,22 +18,22 @@ namespace kinalign {
 
 struct SurveyJob {
   FileSystem* files = nullptr;
-  const StreamOptions* options = nullptr;  // a layout's path as it can be opened
+  const StreamOptions* options = nullptr;  // with a layout's path that can be opened
   const Progress* progress = nullptr;
-  std::optional<FileVersion> version;  // of the file, before it was opened
+  std::optional<FileVersion> version;  // the file's, before it was opened
 };
 
 struct SurveyedFile {
-  RecordedStream stream;                       // its files by their names only
-  std::vector<std::string> paths;              // where these files lie; the stream's own first
-  std::optional<TimeModel> clock;              // where the file itself says what its stamps are
-  std::shared_ptr<RecordingSource> recording;  // that it is a stream of, if any
+  RecordedStream stream;           // its files have only their names
+  std::vector<std::string> paths;  // paths of these files; the stream's own first
+  std::optional<TimeModel> clock;  // set if the file itself states the clock of its stamps
+  std::shared_ptr<RecordingSource> recording;  // the recording with the stream, if any
 };
 
-/// `named.path` as it can be opened. Each later pass over the stream fails where the file changed.
+/// Surveys a file. `named.path` can be opened from here. Later passes fail if the file has changed.
 Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named);
 
-/// The same of one device of a recording, which has been read already.
+/// The same for one device of a recording, which has been read already.
 Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named,
                                    const std::shared_ptr<RecordingSource>& recording);
 

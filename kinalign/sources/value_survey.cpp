@@ -12,26 +12,27 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t enough = 10;  // points for a person, frames or samples for a mean
+constexpr std::uint64_t enough = 10;  // points of a person, or frames or samples of a mean
 
-/// Bounds chosen wide: a metre taken for a centimetre or the other way round lies outside, children
-/// and two people in one volume lie inside.
+/// Wide limits: a metre taken for a centimetre, or the other way round, lies outside; children and
+/// two people in one volume lie inside.
 constexpr double smallest_m = 0.2, largest_m = 20.0;
-/// From frame to frame, of a root that walks at 30 Hz. The joints of a hand are 6 cm and more from
-/// its wrist.
+/// The step from frame to frame of a root that walks, at 30 Hz. The joints of a hand are at least 6
+/// cm from its wrist.
 constexpr double furthest_step_m = 0.05;
-/// A node at rest reads 9.8 m/s2, shanks of runners 20 in the mean.
+/// A node at rest measures 9.8 m/s2, a runner's shank 20 in the mean.
 constexpr double least_with_gravity = 6.0, most_acceleration = 40.0;
-/// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times more.
+/// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times larger.
 constexpr double most_angular_velocity = 12.0;
 
-/// The power of ten that brings a size nearest to a person's.
+/// The factor, a power of ten, by which a size is too large for a person.
 double times_too_large(double size_m) {
   return std::pow(10.0, std::round(std::log10(size_m / 1.7)));
 }
 
 }  // namespace
 
+/// Counts zeros of a joint that was far from zero before or after: such zeros mark a lost joint.
 void PointSizes::Seen::add(const Vec3& at) {
   if (at.isZero(0.0)) {
     ++now_at_zero;
@@ -44,6 +45,7 @@ void PointSizes::Seen::add(const Vec3& at) {
   far = comes_far;
 }
 
+/// Counts states and measures the box around the points of each frame.
 void PointSizes::add(const PointFrames& block) {
   if (block.size() == 0) return;
   const std::size_t joints = block.state.size() / block.size();
@@ -83,6 +85,7 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
   return out;
 }
 
+/// Findings about points that were never tracked or never seen.
 Findings PointSizes::judge_seen(const PointHeader& header, const std::string& file) const {
   Findings out;
   if (inferred_ >= enough && tracked_ == 0) {
@@ -110,9 +113,10 @@ Findings PointSizes::judge_seen(const PointHeader& header, const std::string& fi
   return out;
 }
 
-/// A point that is always at zero, or moves away from it, is the file's origin: a body seen from
-/// its own root, or from where its root was first. Two are only where they have no offset from each
-/// other.
+/// Findings about points at exactly zero or far away, which writers use as marks for "not seen". A
+/// point that is always at zero, or moves away from it steadily, is the file's origin instead: a
+/// body seen from its own root, or from its root's first place. Only joints without an offset from
+/// each other can both be the origin.
 Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
   Findings out;
   const auto stays = std::count_if(joints_.begin(), joints_.end(),
@@ -145,6 +149,7 @@ Findings PointSizes::judge_marks(const PointHeader& header, const std::string& f
   return out;
 }
 
+/// A finding if the points of a frame lie too far apart or too close together for a person.
 Findings PointSizes::judge_unit(const std::string& file) const {
   const Frames& most = far_.count > person_.count ? far_ : person_;
   if (far_.count + person_.count < enough) return {};
@@ -203,7 +208,8 @@ Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const
   if (acceleration_.count >= enough) {
     const double mean = acceleration_.mean();
     const std::string found = fmt::format("{:.3g} m/s2", mean);
-    // A limb without gravity stands still and jerks in turn; with it the mean is 9.8 and steady.
+    // Without gravity the acceleration of a limb is small or jerky in turn; with it the mean is
+    // about 9.8 and steady.
     const bool steady = mean > 8.5 && mean < 12.0 && acceleration_.deviation() < 0.5 * mean;
     if (mean > most_acceleration || (gravity && mean < least_with_gravity)) {
       find(gravity ? "accelerations with gravity of 6 to 40 m/s2 in the mean"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stream's values are like, from the pass that surveys its stamps: enough to see a unit that
-// can't be right, orientations that belong to another node, and that hardly anything can be used.
-// BVHs are judged by their rest pose instead (formats/bvh/size.cpp).
+// Statistics of a stream's values, taken in the pass that surveys its stamps. They show a unit that
+// can't be right, orientations of another node, and streams with hardly any valid data. BVHs are
+// judged by their rest pose instead (formats/bvh/size.cpp).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -18,23 +18,23 @@ namespace kinalign {
 class PointSizes {
  public:
   void add(const PointFrames& block);
-  /// Findings where the points of a frame lie too far apart for a person or, where ten or more
-  /// were seen, too near, where hardly a frame has any, and where a point now and then is at
-  /// exactly 0, 0, 0 or far from all others, as writers mark what they did not see.
+  /// Findings if the points of a frame lie too far apart for a person or, with ten or more points,
+  /// too close together; if hardly a frame has a point; and if points are sometimes at exactly 0,
+  /// 0, 0 or far from all others, as writers mark points that were not seen.
   Findings judge(const PointHeader& header, const std::string& file) const;
 
  private:
-  /// Frames with two points or more, and the diagonals of the boxes around these.
+  /// Frames with two points or more, and the diagonals of the boxes around them.
   struct Frames {
     std::uint64_t count = 0;
-    double diagonals_m = 0.0;  // their sum
+    double diagonals_m = 0.0;  // sum of the diagonals, m
   };
-  /// Where a joint was in the frames in which it was seen.
+  /// The places of a joint in the frames in which it was seen.
   struct Seen {
-    bool elsewhere = false;          // than at zero
-    bool far = false;                // its last place elsewhere was
-    std::uint64_t now_at_zero = 0;   // since then
-    std::uint64_t lost_at_zero = 0;  // before, with a place far away in front or behind
+    bool elsewhere = false;          // once at another place than zero
+    bool far = false;                // its last place other than zero was far from zero
+    std::uint64_t now_at_zero = 0;   // zeros since then
+    std::uint64_t lost_at_zero = 0;  // earlier zeros with a far place before or after
 
     void add(const Vec3& at);
     bool seen() const { return elsewhere || now_at_zero > 0; }
@@ -46,17 +46,17 @@ class PointSizes {
   Findings judge_unit(const std::string& file) const;
 
   std::uint64_t all_frames_ = 0, seen_frames_ = 0;
-  std::uint64_t inferred_ = 0, tracked_ = 0;  // points
-  Frames person_, far_;                       // up to 20 m, and beyond
-  std::uint64_t most_points_ = 0;             // in one of them
+  std::uint64_t inferred_ = 0, tracked_ = 0;  // counts of points
+  Frames person_, far_;                       // frames with a box of up to 20 m, and of more
+  std::uint64_t most_points_ = 0;             // points seen in one frame, at most
   std::vector<Seen> joints_;
 };
 
 class ImuSizes {
  public:
   void add(const ImuSamples& block);
-  /// Findings where accelerations can't be m/s2 with (or without) gravity, rates not rad/s,
-  /// orientations not those of the same node, or where hardly a sample is valid.
+  /// Findings if accelerations can't be m/s2 with (or without) gravity, if rates can't be rad/s, if
+  /// orientations are not those of the same node, or if hardly a sample is valid.
   Findings judge(const ImuHeader& header, const std::string& file) const;
 
  private:
@@ -74,13 +74,13 @@ class ImuSizes {
   std::uint64_t samples_ = 0, valid_ = 0;
 };
 
-/// A skeleton's rest pose says more than its frames do: it is judged where it is read.
+/// A skeleton is judged by its rest pose where it is read; its frames show less.
 struct ClipSizes {
   void add(const ClipFrames&) {}
   Findings judge(const Skeleton&, const std::string&) const { return {}; }
 };
 
-/// The sizes to take of frames of a kind.
+/// The statistics for each kind of frames.
 inline PointSizes sizes_of(const PointFrames&) { return {}; }
 inline ImuSizes sizes_of(const ImuSamples&) { return {}; }
 inline ClipSizes sizes_of(const ClipFrames&) { return {}; }

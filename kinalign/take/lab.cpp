@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-// What a recorder has itself: ports, and topics that would stand below the device's name.
+// The names that a recorder uses itself for ports and topics; no device may have one.
 const std::vector<std::string> own_names{"marks", "trigger", "clock", "counts"};
 
 bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
@@ -30,13 +30,13 @@ Result<std::int64_t> parse_port(const std::string& text) {
   return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "none" : shown(text)});
 }
 
-/// `found` of a device where something else was expected.
+/// The failure of a device with another value than expected.
 Failure wrong(const DeviceOptions& device, std::string expected, std::string found) {
   return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
 }
 
-/// IPv4 or IPv6. Which interface is meant may stand behind a '%': whether it is there, the system
-/// says when the port is opened.
+/// True for IPv4 and IPv6. An interface may stand after a '%'; the system checks it when the port
+/// is opened.
 bool is_ip_address(const std::string& text) {
   in6_addr room{};
   return ::inet_pton(AF_INET, text.c_str(), &room) == 1 ||
@@ -47,7 +47,7 @@ bool connects(const DeviceOptions& device) {
   return find_transport(device.transport) == Transport::tcp;
 }
 
-/// Whether a device can be reached, or reach us.
+/// Fails if the device can't be reached and can't reach this machine.
 Result<void> check_place(const DeviceOptions& device, const ProtocolRow& row) {
   const auto transport = find_transport(device.transport);
   if (transport && !may_come_over(row, *transport)) {
@@ -71,7 +71,7 @@ bool is_every(const std::string& address) {
   return address.empty() || address == "0.0.0.0" || address == "::";
 }
 
-/// Whether two devices leave each other room.
+/// Fails if two devices have one name, one port, or are both devices of nodes.
 Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other) {
   if (other.name == device.name) {
     return wrong(device, "each name once", device.name + " twice");
@@ -80,7 +80,7 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   if (protocol && row_of(*protocol).has_node_ids && other.protocol == device.protocol) {
     return wrong(device, "one device for all nodes", other.name + " beside it");
   }
-  const bool serves = !connects(device);  // an address that is left out is then every one
+  const bool serves = !connects(device);  // an address left out means every one
   const bool same_place = other.address == device.address ||
                           (serves && (is_every(device.address) || is_every(other.address)));
   const bool same_port = device.port != 0 && other.port == device.port &&
@@ -93,8 +93,8 @@ bool is_number(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Whether a place is one node's alone, and can be no other one's id: nodes are called by it, and
-/// such a node may come that the lab has no place for.
+/// Fails unless each place belongs to one node and can't be another node's id. Nodes are called by
+/// their places, and a node without a place may send, too, and is called by its id.
 Result<void> check_places(const DeviceOptions& device) {
   std::map<std::string, std::string> ids;  // by place
   for (const auto& [id, place] : device.nodes) {
@@ -111,7 +111,7 @@ Result<void> check_places(const DeviceOptions& device) {
   return {};
 }
 
-/// Whether all that is said of a device is of use to its protocol.
+/// Fails if an option of the device has no meaning for its protocol.
 Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   if (!device.skeleton.empty() && !row.needs_skeleton) {
     return wrong(device, "skeleton of noitom alone", "of " + device.protocol);
@@ -133,7 +133,7 @@ Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   return check_places(device);
 }
 
-/// It stands on the screen, and ports and topics are told by it.
+/// Checks the name, which is printed on terminals and used for ports and topics.
 Result<void> check_name(const DeviceOptions& device) {
   const bool harmless = std::none_of(device.name.begin(), device.name.end(),
                                      [](unsigned char c) { return c < ' ' || c == 0x7f; });
@@ -145,6 +145,7 @@ Result<void> check_name(const DeviceOptions& device) {
 
 }  // namespace
 
+/// The address may contain colons (IPv6), so the port is taken from the end first.
 Result<DeviceOptions> parse_device(const std::string& text) {
   const Failure unlike(Error{"", 0, "NAME=PROTOCOL:PORT, as in imu=nodes:5005", shown(text)});
   const auto equals = text.find('=');

@@ -19,7 +19,7 @@ StampSurvey survey(const std::vector<Time>& stamps) {
   return surveyor.result();
 }
 
-/// All frames as the one block of each pass.
+/// Passes over frames in memory; each pass has all frames in one block.
 template <class Frames>
 Passes<Frames> from_memory(Frames frames) {
   return [all = std::make_shared<const Frames>(std::move(frames))]() -> Result<Pass<Frames>> {
@@ -41,7 +41,7 @@ RecordedStream stream(std::string name, const StampSurvey& survey, Input input) 
   return out;
 }
 
-/// A whole number of which a few still fit into 64 bits.
+/// The step rounded to a whole number, limited so that sums of a few steps fit into 64 bits.
 std::int64_t step_of(double ns) {
   constexpr double longest = 1e18;
   return std::llround(std::min(ns, longest));
@@ -79,7 +79,7 @@ const SharedFile* newly_read_file(const Recording& recording, std::size_t stream
 
 Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
                                const std::function<Result<void>()>& go) {
-  std::set<std::pair<std::int64_t, std::size_t>> reached;  // how far, and which pass
+  std::set<std::pair<std::int64_t, std::size_t>> reached;  // stamp, and index of its pass
   for (std::size_t i = 0; i < passes.size(); ++i) reached.emplace(INT64_MIN, i);
   while (!reached.empty()) {
     const std::size_t i = reached.extract(reached.begin()).value().second;

@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-/// The path's last `count` parts, none of them a way up; all of them where it has no more.
+/// The path's last `count` parts without "..". All parts if there are no more.
 std::string tail(const std::string& path, std::size_t count) {
   std::vector<std::string> parts;
   for (const auto& part : std::filesystem::path(path).lexically_normal().relative_path()) {
@@ -24,12 +24,13 @@ std::string tail(const std::string& path, std::size_t count) {
   return out;
 }
 
-/// Whether one is the end of the other: then both may be one file, spelt in two ways.
+/// True if one path is the end of the other: both may name one file.
 bool may_be_one(const std::string& a, const std::string& b) {
   const std::string all = "/" + tail(a, SIZE_MAX), other = "/" + tail(b, SIZE_MAX);
   return all.ends_with(other) || other.ends_with(all);
 }
 
+/// True if the path is absolute or leads up, out of the manifest's folder.
 bool leads_out(const std::string& normal) {
   return normal.starts_with('/') || normal == ".." || normal.starts_with("../");
 }
@@ -45,8 +46,10 @@ std::string remembered_path(const std::string& path) {
   return leads_out(normal) ? std::string(file_name(path)) : normal;
 }
 
+/// A file outside the folder is named by its file name; if another file has that name, as many of
+/// its folders are added as are needed.
 std::map<std::string, std::string> remembered_paths(const std::vector<std::string>& paths) {
-  std::map<std::string, std::set<std::string>> by_name;  // of normal paths
+  std::map<std::string, std::set<std::string>> by_name;  // normal paths by their names
   const auto normal = [](const std::string& path) {
     return std::filesystem::path(path).lexically_normal().string();
   };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arrays of a take's rows by their names in every file, said once for all that treat them
-// alike.
+// The arrays of a take's rows with their names, which are the same in every file format.
 #pragma once
 
 #include "kinalign/take/take.h"
@@ -9,8 +8,8 @@
 
 namespace kinalign {
 
-/// Calls use(name, of) for each array of Rows, `of(rows)` being the array; also for those that a
-/// stream leaves empty.
+/// Calls use(name, of) for each array of Rows; of(rows) gives the array. Arrays that a stream
+/// leaves empty are included.
 template <class Rows, class Use>
 void for_each_column(Use&& use) {
   if constexpr (std::is_same_v<Rows, ImuRows>) {

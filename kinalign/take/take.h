@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take: several streams of one motion on one grid, in one space, with the truth about every
-// sample. Written and read in slabs of rows. The layout on disk: docs/formats/take.md.
+// A take: several streams of one motion on one grid and in one space, with the quality of every
+// sample. It is written and read in slabs of rows. The layout on disk: docs/formats/take.md.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -17,11 +17,12 @@
 
 namespace kinalign {
 
-/// How far a resampled stream's samples are from what the device said. Rows as the stream's.
+/// The distance of a resampled stream's samples from the raw ones. Rows as in the stream.
 struct SampleDistance {
-  std::vector<std::int64_t> nearest_raw_ns;    // at most 10 s; empty: not resampled
+  std::vector<std::int64_t> nearest_raw_ns;    // limited to 10 s; empty: not resampled
   std::vector<std::int64_t> time_interval_ns;  // half-width of the stamp's interval; empty: unknown
-  /// As `valid`: 1 between samples that miss some. In no file: only the report counts it.
+  /// Shaped like `valid`; 1: between samples of which some are missing. No file stores it; only the
+  /// report counts it.
   std::vector<std::uint8_t> over_loss{};
 };
 
@@ -30,15 +31,15 @@ struct ClipRows {
   std::vector<double> positions;        // [n,J,3] m, in the take's space
   std::vector<double> local_positions;  // [n,J,3] m
   std::vector<double> local_rotations;  // [n,J,4]
-  std::vector<std::uint8_t> valid;      // [n]; empty for the reference, where all are
+  std::vector<std::uint8_t> valid;      // [n]; empty for the reference, whose rows are all valid
   SampleDistance distance;              // [n]
 };
 
 /// n rows of a stream of points.
 struct PointRows {
   std::vector<double> positions;    // [n,J,3] m; zeros where not valid
-  std::vector<Tracking> state;      // [n,J] the lesser of both neighbouring raw samples
-  std::vector<std::uint8_t> valid;  // [n,J] 0: nothing was seen near enough
+  std::vector<Tracking> state;      // [n,J] the worse of both neighbouring raw samples
+  std::vector<std::uint8_t> valid;  // [n,J] 0: no raw sample is near enough
   SampleDistance distance;          // [n]
 };
 
@@ -60,38 +61,39 @@ struct PointGroup {
 struct ImuGroup {
   std::vector<std::string> node_names;
   ImuContent content;
-  std::string root_node;  // whose space the others are in; empty: the world's
+  std::string root_node;  // the others are in its space; empty: in the world's
 };
 
-/// Whether gravity stands in a node's acceleration. Below a root node it stands in the root's
-/// alone: the others' are what they differ from it by.
+/// True if a node's acceleration contains gravity. With a root node only the root's does: the
+/// accelerations of the others are their difference from it.
 bool has_gravity(const ImuGroup& group, std::size_t node);
 
-/// What is known of a stream before its first row.
+/// The facts about a stream that are known before its first row.
 struct TakeGroup {
   std::string name;  // "mocap"
   std::variant<ClipGroup, PointGroup, ImuGroup> kind;
-  bool resampled = false;       // nearest_raw_ns is there
-  bool interval_known = false;  // time_interval_ns is there
+  bool resampled = false;       // it has nearest_raw_ns
+  bool interval_known = false;  // it has time_interval_ns
   std::vector<InputFacts> files;
-  std::string space = "take";  // of positions: the reference's, or a stream's that was not moved
+  /// The space of positions: the reference's, or that of a stream that was not moved.
+  std::string space = "take";
 };
 
 struct TakeHeader {
   std::string subject, action;
   std::uint64_t frames = 0;
   std::vector<TakeGroup> groups;
-  Manifest parameters;  // all that made it
+  Manifest parameters;  // all that the take was made with
 };
 
-/// Rows first, first + 1, ... of all streams, in the order of the header's groups.
+/// The rows first, first + 1, ... of all streams, in the order of the header's groups.
 struct TakeSlab {
   std::uint64_t first = 0;
   std::vector<Time> stamps;
   std::vector<std::variant<ClipRows, PointRows, ImuRows>> rows;
 };
 
-/// Puts the rows of `slab` behind those of `all`, which has the same groups or, still empty, none.
+/// Appends the rows of `slab` to `all`, which has the same groups or is still empty.
 void append_rows(TakeSlab& all, const TakeSlab& slab);
 
 /// A whole take in memory.

@@ -6,6 +6,7 @@
 
 namespace kinalign {
 
+/// Interpolates between the two nearest stamps, and extrapolates with the first or last two.
 std::optional<Time> true_time(const TrueClock& clock, Time stamp) {
   const auto& stamps = clock.stamps_ns;
   if (stamps.size() < 2) return std::nullopt;
@@ -13,7 +14,8 @@ std::optional<Time> true_time(const TrueClock& clock, Time stamp) {
   const auto i = static_cast<std::size_t>(behind - stamps.begin()) - 1;
   const std::int64_t step = stamps[i + 1] - stamps[i];
   const std::int64_t run = clock.times_ns[i + 1] - clock.times_ns[i];
-  // Not the quotient itself: what it is off 1 keeps its digits.
+  // The quotient itself would lose digits: it is close to 1, so only its difference from 1 is
+  // computed.
   const std::int64_t within = to_ns(stamp) - stamps[i];
   const double extra =
       static_cast<double>(within) * (static_cast<double>(run - step) / static_cast<double>(step));

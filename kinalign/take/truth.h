@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is true of a simulated recording, which no device knows. In a file: docs/formats/truth.md.
+// The truth about a simulated recording, which no device knows. As a file: docs/formats/truth.md.
 #pragma once
 
 #include "kinalign/motion/rigid_fit.h"
@@ -12,17 +12,17 @@
 
 namespace kinalign {
 
-/// Of stamps and times, either sign: until 2033, and sums of a few fit into 64 bits.
+/// The limit of stamps and times, of either sign: until 2033; sums of a few fit into 64 bits.
 inline constexpr std::int64_t most_true_ns = 2'000'000'000'000'000'000;
 
-/// A device's stamps, rising, and when they were true; linear in between.
+/// The stamps of a device, rising, and their true times; linear in between.
 struct TrueClock {
-  std::vector<std::int64_t> stamps_ns;  // as the device's file or packets have them
+  std::vector<std::int64_t> stamps_ns;  // stamps in the device's file or packets
   std::vector<std::int64_t> times_ns;   // UTC
 };
 
-/// The true time of a stamp; the nearest two go on before the first and behind the last. Absent
-/// where fewer than two are known.
+/// The true time of a stamp; outside the known stamps by the nearest two. Absent if fewer than two
+/// are known.
 std::optional<Time> true_time(const TrueClock& clock, Time stamp);
 
 struct TrueMocap {
@@ -37,34 +37,35 @@ struct TrueMocap {
 struct TrueKinect {
   std::string stream;
   RigidTransform world_from_kinect;
-  double drift_ppm = 0.0;  // of its clock: 1 fast by 1e-6
+  double drift_ppm = 0.0;  // its clock's; 1: fast by 1e-6
   TrueClock clock;
 };
 
 struct TrueNode {
-  std::string stream, node, joint;  // worn on the bone that begins there
+  std::string stream, node, joint;  // worn on the bone that begins at the joint
   std::uint32_t id = 0;
   Vec3 offset = Vec3::Zero();  // m, from the joint, in the joint's space
   Quat bone_from_sensor = Quat::Identity();
-  double sensor_delay_ms = 0.0;  // by which its filters see a movement late
+  double sensor_delay_ms = 0.0;  // by which its filters delay a movement
   Vec3 gyroscope_zero = Vec3::Zero(), accelerometer_zero = Vec3::Zero();  // rad/s, m/s2
   TrueClock clock;
 };
 
-/// Both clocks of the host that sent, read at once.
+/// Both clocks of the sending host, read at the same time.
 struct TrueHost {
   std::int64_t raw_ns = 0, utc_ns = 0;
 };
 
 struct TrueRecording {
   std::uint64_t seed = 0;
-  std::string motion;       // "built-in", or the file that it was made of
-  std::string motion_file;  // a BVH of it, relative to the truth's own
+  std::string motion;       // "built-in", or the motion's file
+  std::string motion_file;  // a BVH of the motion, relative to the truth's file
   double length_s = 0.0;
-  std::int64_t start_ns = 0;  // UTC of its time 0
-  /// Of a recording that was sent live; `times_ns` are CLOCK_MONOTONIC_RAW + utc_ns - raw_ns of it.
+  std::int64_t start_ns = 0;  // UTC of time 0 of the motion
+  /// Set for a recording that was sent live. `times_ns` are then CLOCK_MONOTONIC_RAW + utc_ns -
+  /// raw_ns of this host.
   std::optional<TrueHost> host;
-  std::string link;  // of the nodes, "A" to "G"; empty: none
+  std::string link;  // radio of the nodes, "A" to "G"; empty: none
   TrueMocap mocap;
   TrueKinect kinect;
   std::vector<TrueNode> nodes;

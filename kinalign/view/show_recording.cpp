@@ -17,16 +17,16 @@ namespace kinalign {
 
 namespace {
 
-/// A stream in the middle of being shown.
+/// A stream that is being written.
 class Showing {
  public:
   virtual ~Showing() = default;
-  /// When its next sample is; absent behind the last.
+  /// The time of its next sample; absent after the last one.
   virtual std::optional<Time> next() const = 0;
   virtual Result<void> show(ShownFile& out) = 0;
 };
 
-/// Where a kind of stream goes.
+/// Writes the messages of a skeleton's stream.
 class ShowClip {
  public:
   static Result<ShowClip> begin(const std::string& stream, const ClipInput& input, ShownFile& out) {
@@ -138,7 +138,7 @@ class StreamShowing final : public Showing {
   std::size_t row_ = 0;
   bool ended_ = false;
   std::optional<Time> next_;
-  ShownPace pace_;  // of transforms
+  ShownPace pace_;  // for transforms
 };
 
 template <class Frames, class Show, class Input>
@@ -168,7 +168,7 @@ class ShowJson final : public Showing {
       : pass_(std::move(pass)), channels_(std::move(channels)) {}
 
   static Result<std::unique_ptr<Showing>> begin(const RecordingSource& recording, ShownFile& out) {
-    std::map<std::uint16_t, std::uint16_t> channels;  // its id -> ours
+    std::map<std::uint16_t, std::uint16_t> channels;  // the recording's id -> ours
     std::vector<std::uint16_t> ids;
     for (const JsonChannel& one : recording.json_channels()) {
       channels[one.id] = KA_TRY(out.add_channel(one.topic, one.schema));
@@ -212,16 +212,17 @@ class ShowJson final : public Showing {
 
   MessagePass pass_;
   std::map<std::uint16_t, std::uint16_t> channels_;
-  std::vector<Message> messages_;  // of a chunk
+  std::vector<Message> messages_;  // the messages of a chunk
   std::size_t row_ = 0;
   bool ended_ = false;
 };
 
-/// All streams by turns, in the order of their samples' times; `own`: the recording's own messages.
+/// Writes all streams in the order of their samples' times. `own`: the recording's own messages.
 Result<void> show_streams(const std::vector<RecordedStream>& recorded, std::unique_ptr<Showing> own,
                           ShownFile& shown, const Progress& progress) {
   std::vector<std::unique_ptr<Showing>> streams;
-  std::set<std::pair<Time, std::size_t>> next;  // sample of which stream
+  // Time of the next sample, and the index of its stream.
+  std::set<std::pair<Time, std::size_t>> next;
   std::uint64_t rows = 0, done = 0;
   const auto wait = [&](std::size_t i) {
     if (const auto at = streams[i]->next()) next.emplace(*at, i);

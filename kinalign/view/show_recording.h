@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording's streams, or a file's, as an MCAP file of JSON that Foxglove and Lichtblick show:
-// every sample at its time on UTC, skeletons as frame transforms too. docs/formats/shown.md.
+// Writes the streams of a recording or of a file as an MCAP file of JSON that Foxglove and
+// Lichtblick show: every sample at its time on UTC, skeletons also as frame transforms.
+// docs/formats/shown.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -14,13 +15,14 @@
 namespace kinalign {
 
 struct ShowFiles {
-  /// Whose JSON channels (marks, counts, the host's clocks) are copied; nullptr: none.
+  /// The recording whose JSON channels (marks, counts, the host's clocks) are copied; nullptr:
+  /// none.
   const RecordingSource* recording = nullptr;
   std::string out;
   Overwrite overwrite = Overwrite::no;
 };
 
-/// Messages stand in the order of their times.
+/// Messages are written in the order of their times.
 Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
                              const Progress& progress = {});
 

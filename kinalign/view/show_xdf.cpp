@@ -25,14 +25,14 @@ McapSchema sample_schema() {
           R"("one a channel; of numbers NaN, Infinity and -Infinity as these words"}}})"};
 }
 
-/// Absent of what is no time of a recorder.
+/// The time of a log entry; absent if a recorder can't have such a time.
 std::optional<Time> time_of(double s) {
   constexpr double latest_s = 4e9;
   if (!(s >= 0.0) || s > latest_s) return std::nullopt;
   return utc_time(std::llround(s * 1e9));
 }
 
-/// JSON has no word for what is no number: as protobuf's JSON has it,
+/// JSON has no NaN and no infinity; they are written as in protobuf's JSON,
 /// https://protobuf.dev/programming-guides/json/
 Json value_json(double value) {
   if (std::isnan(value)) return "NaN";
@@ -42,6 +42,7 @@ Json value_json(double value) {
 Json value_json(std::int64_t value) { return value; }
 Json value_json(const std::string& value) { return value; }
 
+/// A sample with its stamp, whether the stamp was deduced, and its values.
 std::string sample_json(const XdfSamples& samples, std::size_t t) {
   Json values = Json::array();
   std::visit(
@@ -56,7 +57,8 @@ std::string sample_json(const XdfSamples& samples, std::size_t t) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A channel's name: the stream's, with its id where it is not alone, and no slash or blank in it.
+/// A channel's name: the stream's name without slashes and blanks, with its id if other streams
+/// have the same name.
 std::string topic_of(const XdfStream& stream, bool alone) {
   std::string name = stream.name.empty() ? "stream" : stream.name;
   for (char& c : name) {
@@ -70,13 +72,13 @@ struct Channel {
   std::vector<XdfClockLine> lines;
 };
 
-/// What samples go to: a channel for each stream.
+/// The channels for samples, one for each stream.
 class Channels {
  public:
   Channels(const XdfSurvey& survey, ShownFile& out) : survey_(survey), out_(out) {}
 
   Result<void> begin() {
-    std::map<std::string, std::set<std::uint32_t>> ids;  // by name
+    std::map<std::string, std::set<std::uint32_t>> ids;  // by the stream's name
     for (const XdfStreamSurvey& one : survey_.streams) ids[one.stream.name].insert(one.stream.id);
     for (const XdfStreamSurvey& one : survey_.streams) {
       const std::string topic = topic_of(one.stream, ids[one.stream.name].size() == 1);

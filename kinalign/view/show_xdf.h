@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An XDF file as an MCAP file of JSON: a channel for each stream, whole numbers and doubles as they
-// are. docs/formats/xdf.md.
+// Writes an XDF file as an MCAP file of JSON: a channel for each stream; whole numbers and doubles
+// keep their values. docs/formats/xdf.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,9 +16,9 @@ struct ShownXdf {
   Findings findings;
 };
 
-/// Log times are the recorder's clock, on which XDF knows no date: stamps with the stream's clock
-/// offsets (formats/xdf/xdf.h). Publish times are the stamps as they stand. Each stream's header is
-/// an attachment. Messages stand in the order of the file.
+/// Log times are on the recorder's clock, which has no date in XDF: stamps with the stream's clock
+/// offsets (formats/xdf/xdf.h). Publish times are the stamps in the file. Each stream's header is
+/// an attachment. Messages keep the order of the file.
 Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
                           Overwrite overwrite, const Progress& progress = {});
 

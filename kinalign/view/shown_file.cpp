@@ -18,7 +18,8 @@ Result<void> ShownFile::attach(std::string name, std::string description) {
 }
 
 Result<std::uint16_t> ShownFile::add_channel(std::string topic, McapSchema schema) {
-  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();  // MCAP's numbers of them
+  // MCAP has 16 bits for them.
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
   if (channels_.size() == most) {
     return Failure(Error{path_, 0, "at most " + std::to_string(most) + " channels", "more"});
   }

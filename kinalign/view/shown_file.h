@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An MCAP file of JSON while it is made: channels are added as they come, chunks of 1 MiB.
+// An MCAP file of JSON while it is being written: channels are added when needed, chunks have 1
+// MiB.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,20 +17,21 @@ namespace kinalign {
 
 struct Shown {
   std::uint64_t messages = 0;
-  std::uint64_t out_of_range = 0;  // samples before 1970: no MCAP time
+  std::uint64_t out_of_range = 0;  // samples before 1970, which MCAP can't state
 };
 
 class ShownFile {
  public:
-  /// `out` has to stay; who made it commits it.
+  /// `out` must live longer; its owner commits it.
   explicit ShownFile(OutputFile& out);
 
   Result<void> begin();
-  /// Before the first message. `description` of a stream, as text.
+  /// Adds a stream's description as an attachment. Call before the first message.
   Result<void> attach(std::string name, std::string description);
-  /// Schemas of one name are one, the first. Fails where MCAP has no number left for the channel.
+  /// Adds a channel. Of schemas with one name only the first is stored. Fails if MCAP has no id
+  /// left.
   Result<std::uint16_t> add_channel(std::string topic, McapSchema schema);
-  /// `device`: on the device's own clock.
+  /// `device`: the sample's time on the device's own clock.
   Result<void> add(std::uint16_t channel, Time at, Time device, std::string_view json);
   Result<void> finish();
 
@@ -41,8 +43,8 @@ class ShownFile {
   std::string path_;
   McapWriter writer_;
   std::vector<McapSchema> schemas_;                  // [i] has the id i + 1
-  std::vector<McapChannel> channels_;                // likewise
-  std::map<std::string, std::uint16_t> schema_ids_;  // by name
+  std::vector<McapChannel> channels_;                // [i] has the id i + 1
+  std::map<std::string, std::uint16_t> schema_ids_;  // by the schema's name
   std::vector<std::uint32_t> numbers_;
   McapChunkContent chunk_;
   Shown counts_;

@@ -61,7 +61,7 @@ Json frame_json(const Frame& frame, const Json& time) {
           {"rotation", rotation_json(frame.turn)}};
 }
 
-/// With the turn from the viewers' world to ours in front.
+/// The transforms, with the turn from the viewers' world to ours as the first.
 std::string frames_json(const std::vector<Frame>& frames, const ShownTime& time) {
   const Json at = time_json(time.at);
   const double half = std::numbers::sqrt2 / 2.0;
@@ -76,7 +76,7 @@ void add_time(const ShownTime& time, Json& json) {
   if (time.half_width) json["interval_ns"] = time.half_width->count();
 }
 
-/// The nearest ancestor of a Kinect's joint that is there; nothing: none is.
+/// The nearest ancestor of a Kinect's joint that is not missing; absent if there is none.
 std::optional<std::size_t> ancestor(const PointFrames& frames, std::size_t row, std::size_t joint) {
   while (kinect_parents[joint] != joint) {
     joint = kinect_parents[joint];
@@ -87,6 +87,7 @@ std::optional<std::size_t> ancestor(const PointFrames& frames, std::size_t row, 
 
 }  // namespace
 
+/// The JSON schema of foxglove.FrameTransforms.
 McapSchema transforms_schema() {
   return {0, "foxglove.FrameTransforms", "jsonschema",
           R"({"type": "object", "properties": {"transforms": {"type": "array", "items": )"
@@ -147,6 +148,7 @@ std::string transforms_json(const std::string& stream, const std::vector<std::st
   return frames_json(out, time);
 }
 
+/// A pose: each joint's position and rotation in its parent's space.
 std::string pose_json(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t,
                       const ShownTime& time) {
   Json json, joints = Json::object();
@@ -161,6 +163,7 @@ std::string pose_json(const Skeleton& skeleton, const ClipFrames& frames, std::s
   return text_of(json);
 }
 
+/// Points with their states; a missing point has no position.
 std::string points_json(const std::vector<std::string>& joints, const PointFrames& frames,
                         std::size_t t, const ShownTime& time) {
   constexpr std::array<std::string_view, 3> states{"missing", "inferred", "tracked"};

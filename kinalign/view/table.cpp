@@ -19,7 +19,7 @@ constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
      {"csv", TableFormat::csv},
      {"json", TableFormat::json}}};
 
-/// "2,961,581".
+/// The digits grouped by thousands: "2,961,581".
 std::string grouped(std::string digits) {
   const std::size_t first = digits.starts_with('-') ? 1 : 0;
   const std::size_t point = std::min(digits.find('.'), digits.size());
@@ -30,6 +30,7 @@ std::string grouped(std::string digits) {
   return digits;
 }
 
+/// The text with some characters replaced.
 std::string replaced(std::string_view text,
                      const std::vector<std::pair<char, std::string_view>>& by) {
   std::string out;
@@ -49,6 +50,7 @@ std::string for_markdown(std::string_view text) {
   return replaced(text, {{'|', "\\|"}, {'\n', " "}, {'<', "&lt;"}, {'*', "\\*"}, {'_', "\\_"}});
 }
 
+/// The text with LaTeX's special characters escaped.
 std::string for_latex(std::string_view text) {
   return replaced(text, {{'\\', "\\textbackslash{}"},
                          {'&', "\\&"},
@@ -63,12 +65,13 @@ std::string for_latex(std::string_view text) {
                          {'\n', " "}});
 }
 
-/// Code points, which is the width on a terminal but for East Asian letters.
+/// The number of code points, which is the width on a terminal but for East Asian letters.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
+/// The table as text, in columns of one width; numbers are right-aligned.
 std::string text_of(const Table& table) {
   const std::vector<bool> right = numeric_columns(table);
   std::vector<std::vector<std::string>> lines(1);
@@ -96,6 +99,7 @@ std::string text_of(const Table& table) {
   return out;
 }
 
+/// The table in Markdown.
 std::string markdown_of(const Table& table) {
   const std::vector<bool> right = numeric_columns(table);
   std::string out = table.caption.empty() ? "" : for_markdown(table.caption) + "\n\n";
@@ -120,6 +124,7 @@ std::string latex_row(std::size_t columns, Text text) {
   return out + " \\\\\n";
 }
 
+/// The table in LaTeX; a line separates a row of sums.
 std::string latex_of(const Table& table) {
   std::string places;
   for (const bool right : numeric_columns(table)) places += right ? 'r' : 'l';
@@ -141,6 +146,7 @@ std::string csv_cell(const std::string& text) {
   return "\"" + replaced(text, {{'"', "\"\""}}) + "\"";
 }
 
+/// The table as CSV: keys in the first line, numbers with all digits.
 std::string csv_of(const Table& table) {
   std::string out;
   for (const TableColumn& column : table.columns) {
@@ -158,6 +164,7 @@ std::string csv_of(const Table& table) {
   return out + "\n";
 }
 
+/// A cell as JSON; an unknown value is null.
 nlohmann::ordered_json json_cell(const Cell& cell) {
   return std::visit(
       [](const auto& value) -> nlohmann::ordered_json {

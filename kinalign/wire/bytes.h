@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes of datagrams, in network order (big-endian, RFC 1700): all of wire's layouts use it. A
-// reader or writer that runs past its end keeps quiet until it is asked: one check behind a layout
-// instead of one a field.
+// Reads and writes the bytes of datagrams, in network order (big-endian, RFC 1700). All layouts of
+// wire use it. Running past the end is not reported at once: one check after a layout replaces a
+// check for each field.
 #pragma once
 
 #include <bit>
@@ -12,7 +12,8 @@
 
 namespace kinalign {
 
-/// Takes fields from the front of a datagram. Past the end it gives zeros and `complete` is false.
+/// Reads fields from the front of a datagram. Past the end it returns zeros, and `complete` is
+/// false.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -39,7 +40,8 @@ class ByteReader {
   bool complete_ = true;
 };
 
-/// Puts fields one behind another. What has no room is not written and `complete` is false.
+/// Writes fields one after another. A field that does not fit is not written, and `complete` is
+/// false.
 class ByteWriter {
  public:
   explicit ByteWriter(std::span<std::uint8_t> bytes) : bytes_(bytes) {}

@@ -7,8 +7,10 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t times_size = 4 + 8 + 8;  // and the request's room for them
+// a request has as many zero bytes, so that the answer is not longer
+constexpr std::size_t times_size = 4 + 8 + 8;
 
+/// Reads the fields of a request. The room for the answer's times must be zero.
 NodeRefusal take_request(const NodeHead& head, ByteReader& reader, ClocklessRequest& request) {
   if (head.byte21 > 1) return NodeRefusal::too_many_samples;
   request.origin = head.origin;
@@ -22,7 +24,7 @@ NodeRefusal take_request(const NodeHead& head, ByteReader& reader, ClocklessRequ
   return NodeRefusal::none;
 }
 
-/// Answer and confirm differ in the type alone.
+/// Answer and confirm differ only in the type.
 template <class Exchange>
 NodeRefusal take_times(const NodeHead& head, ByteReader& reader, Exchange& exchange) {
   if (head.byte21 != 0) return NodeRefusal::stray_bits;

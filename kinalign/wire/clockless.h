@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exchange of a node without a counter (section 3.2 of the HFUT-MMD paper): request, answer,
+// The exchange with a node without a counter (section 3.2 of the HFUT-MMD paper): request, answer,
 // confirm. Layout: docs/formats/imu_node.md.
 #pragma once
 
@@ -8,35 +8,36 @@
 
 namespace kinalign {
 
-/// Node to host.
+/// Sent by the node to the host.
 struct ClocklessRequest {
   DatagramOrigin origin;
   bool has_battery = false;
   std::uint16_t battery_mv = 0;
   bool has_sample = false;
-  NodeSample sample;  // its age is 0 where the node can't tell
+  NodeSample sample;  // its age is 0 if the node does not know it
 
   bool operator==(const ClocklessRequest&) const = default;
 };
 
-/// Stamps of the host's raw monotonic clock, ns. The host keeps its own: copies are compared alone.
+/// Stamps of the host's raw monotonic clock, ns. The host uses its own record of them; the copies
+/// are only compared with it.
 struct ClocklessTimes {
   std::uint32_t nonce = 0;
-  std::uint64_t t2_ns = 0;  // the request's arrival
-  std::uint64_t t3_ns = 0;  // the answer's departure
+  std::uint64_t t2_ns = 0;  // arrival of the request
+  std::uint64_t t3_ns = 0;  // departure of the answer
 
   bool operator==(const ClocklessTimes&) const = default;
 };
 
-/// Host to node; never longer than the request.
+/// Sent by the host to the node. It is never longer than the request.
 struct ClocklessAnswer {
-  DatagramOrigin origin;  // of the request
+  DatagramOrigin origin;  // that of the request
   ClocklessTimes times;
 
   bool operator==(const ClocklessAnswer&) const = default;
 };
 
-/// Node to host, sent at once: the answer's fields, copied.
+/// Sent by the node to the host at once. It contains a copy of the answer's fields.
 struct ClocklessConfirm {
   DatagramOrigin origin;
   ClocklessTimes times;
@@ -48,7 +49,7 @@ std::size_t encoded_size(const ClocklessRequest& request, const MacKey* key);
 std::size_t encoded_size(const ClocklessAnswer& answer, const MacKey* key);
 std::size_t encoded_size(const ClocklessConfirm& confirm, const MacKey* key);
 
-/// The datagram, at the front of `out`; empty where it has no room.
+/// Writes the datagram to the front of `out`. Empty if there is not enough space.
 [[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessRequest& request,
                                                    const MacKey* key, std::span<std::uint8_t> out);
 [[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessAnswer& answer, const MacKey* key,
@@ -56,7 +57,7 @@ std::size_t encoded_size(const ClocklessConfirm& confirm, const MacKey* key);
 [[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessConfirm& confirm,
                                                    const MacKey* key, std::span<std::uint8_t> out);
 
-/// After a refusal the last argument is as new.
+/// After a refusal the last argument is default-constructed.
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessRequest& request);
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessAnswer& answer);
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessConfirm& confirm);

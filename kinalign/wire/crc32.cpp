@@ -7,7 +7,8 @@ namespace kinalign {
 
 namespace {
 
-// What four bits do to the remainder: 64 bytes of table instead of 1024, for the node's sake.
+// The change of the remainder by four bits. The table has 64 bytes instead of 1024, to save memory
+// in the node's firmware.
 constexpr std::array<std::uint32_t, 16> nibbles = [] {
   std::array<std::uint32_t, 16> table{};
   for (std::uint32_t i = 0; i < 16; ++i) {

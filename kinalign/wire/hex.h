@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys and hashes in text: two hexadecimal digits a byte.
+// Converts keys and hashes to text and back: two hexadecimal digits per byte.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// Writes lowercase digits; `out` has room for two a byte.
+/// Writes lowercase digits. `out` must have two characters per byte.
 constexpr void put_hex(std::span<const std::uint8_t> bytes, std::span<char> out) {
   constexpr char digits[] = "0123456789abcdef";
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -17,14 +17,14 @@ constexpr void put_hex(std::span<const std::uint8_t> bytes, std::span<char> out)
   }
 }
 
-/// 0 to 15, of digits in either case; -1: it is none.
+/// The value of a digit in either case, 0 to 15; -1: not a digit.
 constexpr int hex_value(char digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';
   const char lower = static_cast<char>(digit | 0x20);
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-/// Fills `bytes`. False: the text is not that many digits, or something else.
+/// Fills `bytes`. Returns false if the text does not consist of exactly that many digits.
 constexpr bool take_hex(std::span<const char> text, std::span<std::uint8_t> bytes) {
   if (text.size() != 2 * bytes.size()) return false;
   for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers whose lowest byte stands first, as recordings, Noitom's packets and XDF have them. What
-// goes over the network in network order has wire/bytes.h.
+// Numbers in little-endian order, as in recordings, Noitom's packets and XDF. Data in network order
+// uses wire/bytes.h.
 #pragma once
 
 #include <cassert>
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// The number at `at`; its bytes must be there.
+/// The number at position `at`. All its bytes must be present.
 template <std::unsigned_integral T>
 T little_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   assert(at <= bytes.size() && sizeof(T) <= bytes.size() - at);
@@ -20,7 +20,7 @@ T little_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<T>(value);
 }
 
-/// Where there is room for it: to[0] and behind.
+/// Writes a number to to[0] and the following bytes, which must exist.
 template <std::unsigned_integral T, class Byte>
 void put_little(T value, Byte* to) {
   for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -28,7 +28,7 @@ void put_little(T value, Byte* to) {
   }
 }
 
-/// At the end of a string or of a vector of bytes.
+/// Appends a number to a string or a vector of bytes.
 template <std::unsigned_integral T, class Bytes>
 void append_little(T value, Bytes& out) {
   typename Bytes::value_type bytes[sizeof(T)];

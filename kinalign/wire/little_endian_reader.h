@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields of a message in little-endian order; wire/bytes.h has the same for network order. A reader
-// that runs past its end keeps quiet until it is asked.
+// Reads the fields of a message in little-endian order. wire/bytes.h does the same for network
+// order. Running past the end is not reported at once; check `complete` after the last field.
 #pragma once
 
 #include "kinalign/wire/little_endian.h"
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// The same bytes in the other dress.
+/// The same bytes as another type.
 inline std::span<const std::uint8_t> octets(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -19,7 +19,7 @@ inline std::string_view text_of(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Takes fields from the front. Past the end it gives zeros and `complete` is false.
+/// Reads fields from the front. Past the end it returns zeros, and `complete` is false.
 class LittleEndianReader {
  public:
   explicit LittleEndianReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -30,7 +30,7 @@ class LittleEndianReader {
     return bytes.empty() ? T{0} : static_cast<T>(little_at<std::make_unsigned_t<T>>(bytes, 0));
   }
   float take_float() { return std::bit_cast<float>(take<std::uint32_t>()); }
-  /// All of them or none.
+  /// Returns `count` bytes, or none if fewer are left.
   std::span<const std::uint8_t> take_bytes(std::uint64_t count) {
     if (count > left()) {
       at_ = bytes_.size();
@@ -40,7 +40,7 @@ class LittleEndianReader {
     at_ += static_cast<std::size_t>(count);
     return bytes_.subspan(at_ - static_cast<std::size_t>(count), static_cast<std::size_t>(count));
   }
-  /// What was not taken.
+  /// The bytes that are not read yet.
   std::span<const std::uint8_t> rest() const { return bytes_.subspan(at_); }
 
   bool complete() const { return complete_; }

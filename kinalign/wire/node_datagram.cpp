@@ -24,7 +24,8 @@ Mac mac_of(const MacKey& key, std::span<const std::uint8_t> bytes) {
   return mac;
 }
 
-/// In a time that does not tell how many bytes agree: a forger could else find them one by one.
+/// Compares in constant time. Otherwise the time would tell how many bytes agree, and a forger
+/// could find the MAC byte by byte.
 bool same(const Mac& mac, std::span<const std::uint8_t> claimed) {
   std::uint8_t difference = 0;
   for (std::size_t i = 0; i < mac.size(); ++i) {
@@ -52,6 +53,7 @@ std::uint8_t known_flags(DatagramType type) {
 
 const char* refusal_name(NodeRefusal refusal) { return names[static_cast<std::size_t>(refusal)]; }
 
+// The CRC is checked before any further field is used.
 NodeRefusal open_envelope(std::span<const std::uint8_t> datagram, Envelope& envelope) {
   envelope = {};
   if (datagram.size() < node_datagram_size(0, false)) return NodeRefusal::too_short;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the datagrams between node and host have in common. Layout: docs/formats/imu_node.md.
-// One is read in two steps, since the key depends on the node: open_envelope says which node it is
-// said to be from, decode (node_frame.h, node_reply.h, clockless.h) checks the MAC and gives the
-// rest.
+// The common part of all datagrams between node and host. Layout: docs/formats/imu_node.md. A
+// datagram is read in two steps, because the key depends on the node. open_envelope returns the
+// claimed node; decode (node_frame.h, node_reply.h, clockless.h) checks the MAC and returns the
+// fields.
 #pragma once
 
 #include "kinalign/wire/siphash.h"
@@ -14,57 +14,58 @@
 namespace kinalign {
 
 inline constexpr std::uint8_t node_protocol_version = 1;
-inline constexpr std::uint32_t node_magic = 0x4b414e44;  // "KAND", its first bytes
-inline constexpr std::size_t max_node_datagram = 1410;   // bytes; a buffer of this size holds any
+inline constexpr std::uint32_t node_magic = 0x4b414e44;  // "KAND", the first bytes of a datagram
+// bytes; a buffer of this size holds any datagram
+inline constexpr std::size_t max_node_datagram = 1410;
 
-/// A node's own; nullptr in its place means that the node has none.
+/// The key of one node. A nullptr in place of a key means that the node has none.
 using MacKey = SipHashKey;
 
 enum class DatagramType : std::uint8_t { frame = 1, reply, request, answer, confirm };
 
-/// Whose datagram it is, or in what the host sends: whose it answers.
+/// The node of a datagram. In a datagram of the host, the origin of the answered datagram.
 struct DatagramOrigin {
   std::uint32_t node_id = 0;
   std::uint32_t boot_id = 0;   // new at every start of the node
-  std::uint32_t sequence = 0;  // of frames or requests since then; wraps
+  std::uint32_t sequence = 0;  // number of the frame or request since the start; wraps
 
   bool operator==(const DatagramOrigin&) const = default;
 };
 
-/// Why a datagram is dropped; receivers count each by itself.
+/// The reason for dropping a datagram. Receivers count each reason separately.
 enum class [[nodiscard]] NodeRefusal : std::uint8_t{
     none,
     too_short,
     bad_magic,
-    unknown_version,  // Envelope::version says which
-    wrong_length,     // not the one that the length field says
+    unknown_version,  // Envelope::version contains it
+    wrong_length,     // differs from the length field
     bad_crc,
     wrong_type,
-    no_key,     // it has a MAC that nothing can be held against
-    no_mac,     // the node has a key, and this went without
-    wrong_mac,  // try the node's old key while that holds, then count
+    no_key,     // it has a MAC, but there is no key to check it
+    no_mac,     // the node has a key, but the datagram has no MAC
+    wrong_mac,  // a receiver first tries the node's old key while that is valid
     stray_bits,
     too_many_samples,
-    wrong_fields,  // they end before or behind the datagram
+    wrong_fields,  // the fields are shorter or longer than the datagram
 };
-inline constexpr std::size_t node_refusals = 13;  // with none: for an array of counts
+inline constexpr std::size_t node_refusals = 13;  // including `none`: for an array of counts
 
-/// As docs/formats/imu_node.md has it: "bad_crc".
+/// The same word as in docs/formats/imu_node.md: "bad_crc".
 const char* refusal_name(NodeRefusal refusal);
 
-/// A datagram that arrived undamaged. Anyone may have sent it: until the MAC is checked its origin
-/// is good for finding the key alone.
+/// A datagram that arrived undamaged. Anyone may have sent it: until the MAC is checked, the origin
+/// may only be used to find the key.
 struct Envelope {
-  std::uint8_t version = 0;  // said of unknown versions too
+  std::uint8_t version = 0;  // set for unknown versions too
   DatagramType type{};
   DatagramOrigin origin;
   bool has_mac = false;
-  std::span<const std::uint8_t> datagram;  // the caller's bytes, which have to stay
-  /// Set by who reads what a recorder accepted: it held the MAC against the key when that came.
+  std::span<const std::uint8_t> datagram;  // the caller's bytes, which must outlive the envelope
+  /// Set by readers of recordings: the recorder checked the MAC when the datagram arrived.
   bool mac_was_checked = false;
 };
 
-/// Everything but type and MAC; of what is refused `envelope` says the version alone.
+/// Checks everything except type and MAC. After a refusal only `version` of the envelope is set.
 NodeRefusal open_envelope(std::span<const std::uint8_t> datagram, Envelope& envelope);
 
 }  // namespace kinalign

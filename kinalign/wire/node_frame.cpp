@@ -19,6 +19,7 @@ NodeRefusal take_samples(ByteReader& reader, NodeFrame& frame) {
   return NodeRefusal::none;
 }
 
+/// Reads the fields of a frame. Without an echo its fields must be zero.
 NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& frame) {
   if (head.byte21 > max_node_samples) return NodeRefusal::too_many_samples;
   frame.origin = head.origin;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame, what a node with a counter sends to the host: its counter, the samples since the last
-// one, and the echo of the newest reply. Layout: docs/formats/imu_node.md.
+// The frame that a node with a counter sends to the host: its counter, the samples since the
+// previous frame, and the echo of the newest reply. Layout: docs/formats/imu_node.md.
 #pragma once
 
 #include "kinalign/wire/node_datagram.h"
@@ -10,17 +10,16 @@ namespace kinalign {
 
 inline constexpr std::size_t max_node_samples = 30;
 
-/// Of the newest reply that reached the node.
+/// Identifies the newest reply that the node has received.
 struct ReplyEcho {
   std::uint32_t reply_sequence = 0;
   std::uint32_t nonce = 0;
-  std::uint64_t n_rx_us = 0;  // the node's counter when it had arrived
+  std::uint64_t n_rx_us = 0;  // the node's counter when the reply had arrived
 
   bool operator==(const ReplyEcho&) const = default;
 };
 
-/// Some 1.5 KiB. n_rx and ages are as the node says: whether they can be is for the receiver to
-/// ask.
+/// About 1.5 KiB. n_rx and ages are as sent: the receiver must check whether they are possible.
 struct NodeFrame {
   DatagramOrigin origin;
   std::uint64_t n_tx_us = 0;  // the node's counter just before sending
@@ -36,11 +35,12 @@ struct NodeFrame {
 
 std::size_t encoded_size(const NodeFrame& frame, const MacKey* key);
 
-/// The datagram, at the front of `out`; empty where it has no room or there are too many samples.
+/// Writes the datagram to the front of `out`. Empty if there is not enough space, or if there are
+/// too many samples.
 [[nodiscard]] std::span<const std::uint8_t> encode(const NodeFrame& frame, const MacKey* key,
                                                    std::span<std::uint8_t> out);
 
-/// After a refusal `frame` is as new.
+/// After a refusal `frame` is default-constructed.
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, NodeFrame& frame);
 
 }  // namespace kinalign

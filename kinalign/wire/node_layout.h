@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Head and end of a node's datagram, for the files that know the fields between: encode puts a
-// head, its fields, and seals; decode unseals and takes the fields. Layout:
+// Head and end of a node's datagram, for the files that know the fields between them. encode writes
+// a head and fields, and calls seal. decode calls unseal and reads the fields. Layout:
 // docs/formats/imu_node.md.
 #pragma once
 
@@ -13,7 +13,7 @@ inline constexpr std::size_t node_head_size = 24;
 inline constexpr std::size_t node_mac_size = 8;
 inline constexpr std::size_t node_crc_size = 4;
 
-/// Of a datagram with so many bytes of fields behind its head.
+/// The size of a datagram with `fields` bytes after its head.
 constexpr std::size_t node_datagram_size(std::size_t fields, bool has_mac) {
   return node_head_size + fields + (has_mac ? node_mac_size : 0) + node_crc_size;
 }
@@ -23,24 +23,25 @@ inline constexpr std::uint8_t mac_flag = 1, battery_flag = 2, echo_flag = 4;
 struct NodeHead {
   DatagramType type{};
   DatagramOrigin origin;
-  std::uint8_t flags = 0;  // but for the MAC's
+  std::uint8_t flags = 0;  // without the MAC's flag
+  // Number of samples in a frame or request, state in a reply; else 0.
   std::uint8_t byte21 = 0;
   std::uint16_t battery_mv = 0;
 };
 
-/// A datagram of `size` bytes begun in `out`, which has the room.
+/// Begins a datagram of `size` bytes in `out`, which must be large enough.
 ByteWriter begin_datagram(std::span<std::uint8_t> out, std::size_t size, const NodeHead& head,
                           const MacKey* key);
 
-/// The same with MAC and CRC in its last bytes.
+/// Adds MAC and CRC in the last bytes of a datagram.
 std::span<const std::uint8_t> seal(std::span<std::uint8_t> datagram, const MacKey* key);
 
-/// Type and MAC are checked before anything is told; `fields` is what lies between head and end.
+/// Checks type and MAC before it returns anything. `fields`: the bytes between head and end.
 NodeRefusal unseal(const Envelope& envelope, DatagramType type, const MacKey* key, NodeHead& head,
                    std::span<const std::uint8_t>& fields);
 
-/// Fills `out` by take(head, reader, out) from a datagram that is right in everything else; after a
-/// refusal `out` is as new.
+/// Decodes a datagram. Fills `out` with take(head, reader, out) if everything else is right. After
+/// a refusal `out` is default-constructed.
 template <class Out, class Take>
 NodeRefusal decode_as(DatagramType type, const Envelope& envelope, const MacKey* key, Out& out,
                       Take take) {

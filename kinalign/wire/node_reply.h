@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reply, what the host sends to a node for its frame. Layout: docs/formats/imu_node.md.
+// The reply that the host sends to a node for its frame. Layout: docs/formats/imu_node.md.
 #pragma once
 
 #include "kinalign/wire/node_datagram.h"
@@ -7,23 +7,24 @@
 namespace kinalign {
 
 struct NodeReply {
-  DatagramOrigin origin;  // of the frame
-  bool locked = false;    // the host has an interval for this node's clock
+  DatagramOrigin origin;  // that of the frame
+  bool locked = false;    // the host has a certified interval for this node's clock
   std::uint32_t reply_sequence = 0;
   std::uint32_t nonce = 0;
-  std::uint64_t h_tx_ns = 0;  // the host's raw monotonic clock, to be shown: the host keeps its own
+  // the host's raw monotonic clock, for display; the host uses its own record
+  std::uint64_t h_tx_ns = 0;
 
   bool operator==(const NodeReply&) const = default;
 };
 
-/// Never more than any frame with the same key.
+/// Never more than the size of any frame with the same key.
 std::size_t encoded_size(const NodeReply& reply, const MacKey* key);
 
-/// The datagram, at the front of `out`; empty where it has no room.
+/// Writes the datagram to the front of `out`. Empty if there is not enough space.
 [[nodiscard]] std::span<const std::uint8_t> encode(const NodeReply& reply, const MacKey* key,
                                                    std::span<std::uint8_t> out);
 
-/// After a refusal `reply` is as new.
+/// After a refusal `reply` is default-constructed.
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, NodeReply& reply);
 
 }  // namespace kinalign

@@ -16,6 +16,7 @@ std::uint8_t flags_of(const NodeSample& sample) {
       (sample.has_acceleration && sample.gravity_included ? gravity_flag : 0));
 }
 
+/// Unknown flags, and gravity without an acceleration, are refused.
 bool known(std::uint8_t flags) {
   const bool gravity_of_nothing = (flags & gravity_flag) != 0 && (flags & acceleration_flag) == 0;
   return flags < 2 * gravity_flag && !gravity_of_nothing;
@@ -29,7 +30,7 @@ void take(ByteReader& reader, std::span<float> values) {
   for (float& value : values) value = reader.take_float();
 }
 
-// By the exponent's bits: <cmath> is no part of a freestanding library.
+// Tests the exponent's bits, because <cmath> is not part of a freestanding library.
 bool finite(std::span<const float> values) {
   for (const float value : values) {
     if ((std::bit_cast<std::uint32_t>(value) & 0x7f800000) == 0x7f800000) return false;

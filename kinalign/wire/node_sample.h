@@ -9,11 +9,11 @@
 namespace kinalign {
 
 struct NodeSample {
-  std::uint32_t age_us = 0;  // the frame's n_tx - the counter at the sample
+  std::uint32_t age_us = 0;  // the frame's n_tx minus the counter at the sample
   bool has_acceleration = false;
   bool has_angular_velocity = false;
   bool has_orientation = false;
-  bool gravity_included = false;            // in the acceleration; only where there is one
+  bool gravity_included = false;            // in the acceleration; false without an acceleration
   std::array<float, 3> acceleration{};      // m/s2, in the node's own space
   std::array<float, 3> angular_velocity{};  // rad/s, in the node's own space
   std::array<float, 4> orientation{};       // w,x,y,z, world_from_sensor
@@ -21,10 +21,10 @@ struct NodeSample {
   bool operator==(const NodeSample&) const = default;
 };
 
-/// What a receiver marks, though the sample came whole and its stamp is good.
+/// Faults that a receiver marks although the sample is complete and its stamp is valid.
 struct SampleFaults {
-  bool not_finite = false;        // NaN or infinite, anywhere in what is present
-  bool zero_orientation = false;  // four zeros: no rotation at all
+  bool not_finite = false;        // a value that is present is NaN or infinite
+  bool zero_orientation = false;  // four zeros, which are not a rotation
 };
 SampleFaults faults(const NodeSample& sample);
 
@@ -32,7 +32,7 @@ inline constexpr std::size_t max_sample_size = 4 + 1 + 4 * (3 + 3 + 4);
 std::size_t encoded_size(const NodeSample& sample);
 void put_sample(ByteWriter& writer, const NodeSample& sample);
 
-/// Whether its flags are those of this version.
+/// Reads a sample. Returns false if its flags are not known in this version.
 [[nodiscard]] bool take_sample(ByteReader& reader, NodeSample& sample);
 
 }  // namespace kinalign

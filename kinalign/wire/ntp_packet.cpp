@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t ns_per_s = 1'000'000'000;
 constexpr std::int64_t from_1900_to_1970_s = 2'208'988'800;
 
-/// Whole seconds since 1970, downwards, and the nanoseconds behind them.
+/// A time as whole seconds since 1970, rounded down, and the remaining nanoseconds.
 struct Seconds {
   std::int64_t s, ns;
 };
@@ -22,24 +22,26 @@ Seconds seconds_of(Time t) {
   return {to_ns(t) / ns_per_s - (rest < 0 ? 1 : 0), rest < 0 ? rest + ns_per_s : rest};
 }
 
-/// Nanoseconds of a fraction of 2^-32 s, to the nearest: up to 1e9.
+/// Nanoseconds of a fraction of 2^-32 s, rounded to the nearest; at most 1e9.
 std::uint64_t ns_of_fraction(std::uint32_t fraction) {
   return (std::uint64_t{fraction} * ns_per_s + (std::uint64_t{1} << 31)) >> 32;
 }
 
-/// Whether `left` bytes behind the extension fields can be a MAC: a key id alone (a crypto-NAK) or
-/// with a digest of 16 or 20 bytes (RFC 7822 section 7.5); of 8 before version 4 (RFC 1305).
+/// Returns whether `left` bytes after the extension fields can be a MAC: a key id alone (a
+/// crypto-NAK), or with a digest of 16 or 20 bytes (RFC 7822 section 7.5). Before version 4 also a
+/// digest of 8 bytes (RFC 1305), but no key id alone.
 bool is_mac(std::size_t left, std::uint8_t version) {
   return left == 20 || left == 24 || left == (version == 4 ? 4U : 12U);
 }
 
-/// What stands behind the header: extension fields (of version 4: type, length, at least 16 bytes,
-/// the last one at least 28 where no MAC follows), then a MAC or nothing.
+/// Checks the bytes after the header: extension fields, then a MAC or nothing. Only version 4 has
+/// extension fields (type, length, at least 16 bytes; the last one has at least 28 bytes if no MAC
+/// follows).
 bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
   constexpr std::size_t least_field = 16, least_last_field = 28;
   while (version == 4 && rest.size() >= least_last_field) {
     ByteReader field(rest);
-    field.take<std::uint16_t>();  // its type: none is answered, any is passed over
+    field.take<std::uint16_t>();  // the type: all types are skipped, none is answered
     const std::size_t length = field.take<std::uint16_t>();
     if (length < least_field || length % 4 != 0 || length > rest.size()) return false;
     if (length == rest.size()) return length >= least_last_field;
@@ -48,6 +50,7 @@ bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
   return rest.empty() || is_mac(rest.size(), version);
 }
 
+/// Reads the 48 bytes of the header.
 NtpPacket take_header(ByteReader& reader) {
   NtpPacket packet;
   const auto first = reader.take<std::uint8_t>();
@@ -77,7 +80,7 @@ NtpAnswer kiss(std::uint32_t code) {
 NtpStamp ntp_from_time(Time t) {
   const auto [s, ns] = seconds_of(t);
   const auto seconds_1900 = static_cast<std::uint64_t>(s + from_1900_to_1970_s);
-  // to the nearest; 999,999,999 ns stay below 2^32
+  // Rounded to the nearest. 999,999,999 ns stay below 2^32.
   const std::uint64_t fraction = ((static_cast<std::uint64_t>(ns) << 32) + ns_per_s / 2) / ns_per_s;
   const std::uint64_t bits = seconds_1900 << 32 | fraction;
   return {bits == 0 ? 1 : bits};
@@ -124,6 +127,7 @@ NtpRefusal decode_request(std::span<const std::uint8_t> datagram, NtpPacket& pac
   return NtpRefusal::none;
 }
 
+// The originate stamp is checked before the kiss code, so that a forged kiss has no effect.
 NtpAnswer decode_answer(std::span<const std::uint8_t> datagram, NtpStamp sent, NtpPacket& packet) {
   if (datagram.size() < ntp_packet_size) return NtpAnswer::malformed;
   ByteReader reader(datagram);

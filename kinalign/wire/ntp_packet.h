@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The NTP packet (RFC 5905 section 7.3): 48 bytes in network order. Requests of clients are read by
-// decode_request, answers to requests of ours by decode_answer; each says why it refuses.
+// The NTP packet (RFC 5905 section 7.3): 48 bytes in network order. decode_request reads requests
+// of clients, and decode_answer reads answers to own requests. Both return the reason for a
+// refusal.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -15,30 +16,30 @@ namespace kinalign {
 
 constexpr std::size_t ntp_packet_size = 48;
 
-/// Seconds since 1900-01-01 UTC and 2^-32 of them, modulo 2^32 s: the eras begin in 1900, 2036 and
-/// 2172. 0 means unknown.
+/// Seconds since 1900-01-01 UTC in units of 2^-32 s, modulo 2^32 s. The eras begin in 1900, 2036
+/// and 2172. 0 means unknown.
 struct NtpStamp {
   std::uint64_t bits = 0;
   bool operator==(const NtpStamp&) const = default;
 };
 
-/// A delay or a dispersion, 2^-16 s.
+/// A delay or a dispersion in units of 2^-16 s.
 struct NtpShort {
   std::uint32_t bits = 0;
   bool operator==(const NtpShort&) const = default;
 };
 
-/// The stamp nearest to `t`, never 0: where that would stand, the lowest bit is set.
+/// The stamp nearest to `t`. It is never 0: if it would be 0, the lowest bit is set.
 NtpStamp ntp_from_time(Time t);
 
-/// The time nearest to `pivot` that has this stamp, so any pivot within 68 years of it gives the
-/// right era. None: the stamp is 0, or the time is beyond what Time holds.
+/// The time with this stamp that is nearest to `pivot`. Any pivot within 68 years gives the right
+/// era. Absent if the stamp is 0, or if Time cannot hold the time.
 std::optional<Time> time_from_ntp(NtpStamp stamp, Time pivot);
 
-/// later - earlier for stamps less than 68 years apart, whatever era each is in.
+/// later - earlier, for stamps less than 68 years apart. The stamps may be in different eras.
 Duration ntp_difference(NtpStamp earlier, NtpStamp later);
 
-/// Rounded up, so that an error stated is never less than the one meant; 0 to 65536 s.
+/// Rounded up, so that a stated error is never too small; 0 to 65536 s.
 NtpShort ntp_short_from(Duration d);
 Duration duration_from(NtpShort value);
 
@@ -51,42 +52,44 @@ struct NtpPacket {
   NtpLeap leap = NtpLeap::none;
   std::uint8_t version = 4;  // 3 bits
   std::uint8_t mode = 0;     // 3 bits
-  std::uint8_t stratum = 0;  // 0 in an answer: a kiss code stands in reference_id
+  std::uint8_t stratum = 0;  // 0 in an answer: reference_id contains a kiss code
   std::int8_t poll = 0;      // log2 s
+  // log2 s
   std::int8_t precision = 0;
   NtpShort root_delay, root_dispersion;
   std::uint32_t reference_id = 0;
-  NtpStamp reference;  // when the clock was last set
-  NtpStamp originate;  // T1: the request's transmit stamp, verbatim
+  NtpStamp reference;  // the time when the clock was last set
+  NtpStamp originate;  // T1: a copy of the request's transmit stamp
   NtpStamp receive;    // T2
   NtpStamp transmit;   // T3
   bool operator==(const NtpPacket&) const = default;
 };
 
-/// Why a datagram is no request to answer; each is counted by its name.
+/// The reason why a datagram is not a request to answer. Each is counted by its name.
 enum class [[nodiscard]] NtpRefusal : std::uint8_t{
     none,
     too_short,      // less than 48 bytes
     wrong_version,  // 0 or above 4
-    wrong_mode,     // not from a client; 6 and 7 are those that amplify
-    wrong_trailer   // longer than 48 bytes, and what follows is no extension field or MAC
+    wrong_mode,     // not from a client; modes 6 and 7 are those used for amplification
+    wrong_trailer   // longer than 48 bytes, and the rest is neither an extension field nor a MAC
 };
 
-/// Fills `packet` where the answer is `none`. Of the fields, a server may believe version, poll and
-/// transmit; the rest of a request means nothing (chrony sends zeros there).
+/// Fills `packet` if the result is `none`. A server may use only version, poll and transmit. The
+/// other fields of a request have no meaning (chrony sends zeros).
 NtpRefusal decode_request(std::span<const std::uint8_t> datagram, NtpPacket& packet);
 
-/// Why a datagram is no answer to a request of ours, or which kiss it is (RFC 5905 section 7.4).
+/// The reason why a datagram is not an answer to an own request, or its kiss code (RFC 5905 section
+/// 7.4).
 enum class [[nodiscard]] NtpAnswer : std::uint8_t{
     good,
-    malformed,       // too short, another version or mode than a server's to us
-    not_ours,        // originate is not what we sent: a spoof, a duplicate or too late; ignore it
+    malformed,  // too short, or not a server's version or mode
+    not_ours,   // originate differs from the sent stamp: forged, duplicate or too late; ignore it
     unsynchronised,  // leap 3, stratum above 15, or no transmit stamp
     kiss_deny,       // DENY or RSTR: stop asking
-    kiss_rate,       // RATE: ask half as often, at most
+    kiss_rate,       // RATE: ask at most half as often
     kiss_other};
 
-/// Fills `packet` where the answer is not `malformed`. `sent`: the transmit stamp of our request.
+/// Fills `packet` if the result is not `malformed`. `sent`: the transmit stamp of the request.
 NtpAnswer decode_answer(std::span<const std::uint8_t> datagram, NtpStamp sent, NtpPacket& packet);
 
 std::array<std::uint8_t, ntp_packet_size> encode(const NtpPacket& packet);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names as in section 2 of the paper: v0 to v3 the state, m_i the words of the message.
+// The names are those of section 2 of the paper: v0 to v3 are the state, m is a word of the
+// message.
 #include "kinalign/wire/siphash.h"
 
 #include <bit>
@@ -9,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// Up to eight bytes, lowest first.
+/// Reads up to eight bytes, the lowest first.
 std::uint64_t word(std::span<const std::uint8_t> bytes) {
   std::uint64_t value = 0;
   for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8 | bytes[i];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SipHash-2-4 with 64 bits: J.-P. Aumasson, D. J. Bernstein, "SipHash: a fast short-input PRF",
-// INDOCRYPT 2012. Without the key its results can neither be told from chance nor be foretold, so
-// it is the MAC of the node's datagrams, and the hash of tables whose keys strangers choose.
+// INDOCRYPT 2012. Without the key its results look random and cannot be predicted. It is used as
+// the MAC of the node's datagrams, and as the hash of tables whose keys are chosen by unknown
+// senders.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@ namespace kinalign {
 
 using SipHashKey = std::array<std::uint8_t, 16>;
 
-/// As a number; the reference writes it lowest byte first.
+/// The hash as a number. The reference implementation writes its lowest byte first.
 std::uint64_t siphash_2_4(const SipHashKey& key, std::span<const std::uint8_t> bytes);
 
 }  // namespace kinalign

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three axes of time that can't be subtracted from, compared with or stored as one another. Files
-// of recordings have Time alone, which a TimeModel (kinalign/clock) moves onto the take's; a node
-// that is heard live has NodeTime, the machine that hears it HostTime, and a LiveClock or
-// HostFromNode (kinalign/clock) leads from the one to the other.
+// Three time axes that cannot be subtracted, compared or assigned across axes. Files of recordings
+// contain only Time, which a TimeModel (kinalign/clock) converts to the take's axis. A live node
+// has NodeTime, and the machine that receives it has HostTime. A LiveClock or HostFromNode
+// (kinalign/clock) converts from NodeTime to HostTime.
 #pragma once
 
 #include <chrono>
@@ -20,11 +20,11 @@ using Time = std::chrono::time_point<UtcClock, Duration>;
 using HostTime = std::chrono::time_point<HostClock, Duration>;
 using NodeTime = std::chrono::time_point<NodeClock, Duration>;
 
-/// For files and packets: the integer that stands there, and back.
+/// Converts a time to the integer in files and packets, and back.
 constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
 constexpr Time utc_time(std::int64_t ns) { return Time{Duration{ns}}; }
 
-/// later - earlier, ns, also where that is more than a Duration holds.
+/// later - earlier, ns. The result may exceed the range of Duration.
 constexpr std::uint64_t step_between(Time earlier, Time later) {
   return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
 }

@@ -28,7 +28,8 @@ TEST_CASE("a smooth motion is given back between its samples, and exactly at the
   const PointRows& kinect = rows(*take, 1);
   for (std::size_t r = 0; r < take->all.stamps.size(); ++r) {
     const double t = 1e-9 * static_cast<double>(to_ns(take->all.stamps[r]));
-    const bool inner = r > 30 && r + 30 < take->all.stamps.size();  // the natural ends are flat
+    // The natural splines are flat at their ends.
+    const bool inner = r > 30 && r + 30 < take->all.stamps.size();
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const double off = (at(kinect, r, j) - wander(j, t)).norm();
       CHECK(off < (r % 3 == 0 ? 1e-12 : inner ? 2e-6 : 2e-3));
@@ -148,7 +149,8 @@ TEST_CASE("samples in bursts are a warning, and rate_hz tells the true period") 
   manifest.streams[0].rate_hz = 30.0;
   const auto told = align(recording, manifest);
   REQUIRE(told);
-  // Of each burst the last sample counts; the first row lies in front of the first of these.
+  // Only the last sample of each burst counts. The take's first row lies before the first of these,
+  // so all its joints are invalid.
   CHECK(told->report.streams[1].invalid == joints.size());
   CHECK(told->report.streams[1].held_back == 66);
 }

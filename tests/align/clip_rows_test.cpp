@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A skeleton's stream on another one's stamps: turns by the curve that was asked for, places by the
-// skeleton, nothing across a gap.
+// A skeleton's stream at another stream's stamps: rotations by the chosen curve, positions from the
+// skeleton, and no rows across a gap.
 #include "tests/align/streams.h"
 
 #include "kinalign/align/align.h"
@@ -55,7 +55,7 @@ std::vector<double> seconds_of(const std::vector<Time>& stamps) {
   return out;
 }
 
-/// Largest turn, rad, between the leg's rows and what slerp makes of its samples.
+/// Largest angle, rad, between the leg's rows and slerp between its samples.
 double from_slerp(const Clip& clip, const Take& take) {
   std::vector<double> leg;
   for (std::size_t t = 0; t < clip.frames.size(); ++t) {

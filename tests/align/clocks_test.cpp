@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a device's stamps to the take's axis, and what a take says of the doubt that is left.
+// From a device's stamps to the take's time axis, and the doubt that a take states for it.
 #include "tests/align/two_streams.h"
 #include "tests/seeds.h"
 
@@ -14,7 +14,8 @@ using namespace kinalign::test;
 
 namespace {
 
-/// A Kinect whose clock is `clock`: its samples are of the take's axis, its stamps of its own.
+/// A Kinect whose clock is `clock`: its samples are taken at times of the take's axis, but its
+/// stamps are those of its own clock.
 Take seen_through(const TimeModelPiece& clock) {
   Recording recording = two(points(joints, every(10 * ms, 600, 1000 * ms), wander), {});
   const auto on_axis = [&](Time stamp) { return take_time({{clock}}, stamp); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rows of a take hold anything, and what the report says of them: held against a plain loop
+// Which rows of a take hold data, and what the report says about them: compared with a plain loop
 // over all samples for every cell.
 #include "tests/align/two_streams.h"
 #include "tests/seeds.h"
@@ -37,7 +37,7 @@ PointStream with_losses(std::mt19937_64& random) {
   return out;
 }
 
-/// A cell of a take as a plain loop over the samples finds it.
+/// A cell of a take, computed by a plain loop over the samples.
 struct Cell {
   bool valid = false;
   bool bridged = false;
@@ -131,7 +131,7 @@ TEST_CASE("what is valid runs through its own samples and through no others") {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
     const PointStream kinect = with_losses(random);
-    PointStream astray = kinect;  // where a joint was not seen a device may say anything
+    PointStream astray = kinect;  // a device may write anything for a joint that it did not see
     for (std::size_t cell = 0; cell < astray.frames.state.size(); ++cell) {
       if (astray.frames.state[cell] != Tracking::missing) continue;
       std::fill_n(&astray.frames.positions[3 * cell], 3, 1e6);
@@ -160,7 +160,8 @@ TEST_CASE("the gaps of a report are the stretches without a sample within the ta
     REQUIRE(take);
     return take->report.streams[1];
   };
-  const auto without = [](std::size_t first, std::size_t last) {  // of 0, 20, ... 3000 ms
+  // Rows first to last - 1 of stamps at 0, 20, ... 3000 ms are left out.
+  const auto without = [](std::size_t first, std::size_t last) {
     auto stamps = every(20 * ms, 151);
     stamps.erase(stamps.begin() + static_cast<std::ptrdiff_t>(first),
                  stamps.begin() + static_cast<std::ptrdiff_t>(last));
@@ -176,5 +177,5 @@ TEST_CASE("the gaps of a report are the stretches without a sample within the ta
   const auto across_the_end = report_of(without(95, 120));  // 1880 to 2400 ms
   CHECK(across_the_end.gap_time_ns == 120 * ms);
   CHECK(report_of(without(10, 20)).gaps == 0);    // before the take
-  CHECK(report_of(without(120, 130)).gaps == 0);  // behind it
+  CHECK(report_of(without(120, 130)).gaps == 0);  // after the take
 }

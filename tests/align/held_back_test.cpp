@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that were held back on their way and stamped where they arrived, on the heels of the
-// next: wherever they stand, no curve runs through them.
+// Samples that were delayed on their way and stamped on arrival, just before the next sample.
+// Wherever they stand, no curve may run through them.
 #include "tests/align/two_streams.h"
 #include "tests/seeds.h"
 
@@ -29,7 +29,7 @@ PointStream stamped(const std::vector<Time>& taken, const std::vector<Time>& arr
   return out;
 }
 
-/// How far a valid row lies from the truth at most, m.
+/// Largest distance of a valid row from the truth, m.
 double worst_of(const Take& take) {
   const PointRows& kinect = rows(take, 1);
   double worst = 0.0;
@@ -48,7 +48,7 @@ Take aligned(PointStream kinect, double rate_hz = 0.0) {
   manifest.streams.resize(1);
   manifest.streams[0].name = "kinect";
   manifest.streams[0].rate_hz = rate_hz;
-  // The grid goes on to the Kinect's end: what comes behind the take is not counted.
+  // The grid goes on to the Kinect's end, so no sample after the take is counted.
   const auto rows =
       static_cast<std::size_t>(to_ns(kinect.frames.stamps.back()) / (10 * ms)) + std::size_t{2};
   auto take = align(two(points(joints, every(10 * ms, rows), wander), std::move(kinect)), manifest);
@@ -100,7 +100,7 @@ TEST_CASE(
 
 TEST_CASE("rows in which nothing was seen hold no sample back") {
   PointStream kinect = points(joints, every(step, 60), hand);
-  PointStream beats;  // an empty row a millisecond before and behind each fifth sample
+  PointStream beats;  // an empty row a millisecond before and after each fifth sample
   beats.joint_names = joints;
   for (std::size_t i = 0; i < 60; ++i) {
     const auto empty = [&](Time stamp) {
@@ -195,12 +195,13 @@ TEST_CASE("of nodes in rows of their own each one's late samples go, whoever sta
         std::int64_t arrived, taken;
         std::size_t node;
       };
-      std::vector<Row> all;  // one node by a loop that reads each 50 ms
+      std::vector<Row> all;  // one node that is read in a loop each 50 ms
       for (std::int64_t i = 0; i < 200; ++i) {
         const std::int64_t read = (i * step + 50 * ms - 1) / (50 * ms) * 50 * ms;
         const bool second = i > 0 && ((i - 1) * step + 50 * ms - 1) / (50 * ms) * 50 * ms == read;
         all.push_back({read + (second ? ms / 10 : 0), i * step, polled});
-        if (!second) all.push_back({read + ms / 20, read + ms / 20, 1 - polled});  // between two
+        // Between two readings.
+        if (!second) all.push_back({read + ms / 20, read + ms / 20, 1 - polled});
       }
       std::sort(all.begin(), all.end(),
                 [](const Row& a, const Row& b) { return a.arrived < b.arrived; });
@@ -225,7 +226,7 @@ TEST_CASE("of nodes in rows of their own each one's late samples go, whoever sta
 
 TEST_CASE("of a row that was held back by half only that half goes") {
   PointStream half = points(joints, every(step, 200), hand);
-  PointFrames& rows = half.frames;  // and 0.1 ms behind each row one hand again, as it is then
+  PointFrames& rows = half.frames;  // 0.1 ms after each row another row with one hand as it is then
   PointStream out;
   out.joint_names = joints;
   for (std::size_t i = 0; i < 200; ++i) {
@@ -254,7 +255,8 @@ TEST_CASE("the reference keeps its rows, and blocks of any size hold back the sa
   REQUIRE(take);
   CHECK(take->report.frames == 100);
   CHECK(take->report.streams[0].held_back == 0);
-  REQUIRE(take->report.findings.size() == 1);  // but it is said that their stamps are not theirs
+  // They are used, but a finding says that the stamps are not the device's.
+  REQUIRE(take->report.findings.size() == 1);
   CHECK(take->report.findings[0].what.found.starts_with("4 with the next one nearer"));
   CHECK(take->report.findings[0].meaning.find("as the reference") != std::string::npos);
   for (const std::size_t size : {1, 2, 7, 100}) {
@@ -285,7 +287,7 @@ TEST_CASE("a wild stamp between a late sample and the next one hides nothing") {
 
 TEST_CASE("what waited in a stall and was sent quicker than it was taken is a warning") {
   std::vector<Time> arrived = every(step, 200);
-  for (std::size_t k = 100; k < 200; ++k) {  // a second, and then 10 ms each
+  for (std::size_t k = 100; k < 200; ++k) {  // a second without samples, and then 10 ms each
     const Time sent = k == 100 ? arrived[130] : arrived[k - 1] + Duration{10 * ms};
     arrived[k] = std::max(arrived[k], sent);
   }
@@ -312,7 +314,7 @@ TEST_CASE("of a whole stretch of samples that waited one a step stays") {
     arrived.push_back(arrived[59] + Duration{5000 * ms + k * ms});
   }
   for (std::int64_t k = 1; k < 60; ++k) arrived.push_back(arrived[209] + Duration{k * step});
-  std::vector<Time> taken = arrived;  // whatever was there: only the count is asked
+  std::vector<Time> taken = arrived;  // only the count is checked
   const std::uint64_t left =
       150 - aligned(stamped(taken, arrived), 1e9 / step).report.streams[1].held_back;
   CHECK(left >= 4);

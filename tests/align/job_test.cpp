@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a take is handed on: the header first, slabs in order, the same on one thread and on two, and
-// an end when someone says so.
+// How a take is passed on: the header first, then slabs in order, the same on one thread and on
+// two, and an end when the receiver asks for it.
 #include "tests/align/two_streams.h"
 
 #include "kinalign/align/align.h"
@@ -13,7 +13,7 @@ using namespace kinalign::test;
 
 namespace {
 
-/// Three slabs and a bit.
+/// A recording whose take has more than three slabs.
 const Recording& long_recording() {
   static const Recording recording = two(points(joints, every(10 * ms, 7000), wander),
                                          points(joints, every(30 * ms, 2334), wander));
@@ -26,7 +26,7 @@ Manifest fitted() {
   return manifest;
 }
 
-/// Ends after `most` calls; remembers what was done.
+/// A receiver that ends the job after `most` calls and remembers the calls.
 struct Watched {
   std::size_t most = SIZE_MAX;
   std::vector<std::string> told;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person is told of a take: each finding whole, with what it means and what mends it, and
-// the figures at which it begins.
+// The findings about a take: each with its full text, its meaning and its repair, and the figures
+// from which on it appears.
 #include "tests/align/findings.h"
 
 #include "kinalign/align/judge.h"
@@ -12,7 +12,8 @@ using namespace kinalign::test;
 
 namespace {
 
-/// Of a take with this header, made of `streams` over the first one's whole span.
+/// The findings about a take with this header, which is made of `streams` and lasts as long as
+/// the first of them.
 Findings judged(TakeHeader header, std::vector<RecordedStream> streams = {kinect()}) {
   AlignPlan plan;
   plan.begin = streams.front().survey.first;
@@ -116,7 +117,7 @@ TEST_CASE("one file with one selection for two streams is a warning, with anothe
 }
 
 TEST_CASE("streams that share less than half of the shortest one's time are a warning") {
-  RecordedStream late = kinect();  // of 32.967 s, as the other
+  RecordedStream late = kinect();  // 32.967 s long, like the first stream
   late.name = "suit";
   late.survey.first = utc_time(16'000'000'000);
   late.survey.last = utc_time(48'967'000'000);
@@ -132,7 +133,7 @@ TEST_CASE("streams that share less than half of the shortest one's time are a wa
         "note: expected the frames of 'kinect' within the span of all streams, found 486 of 1000 "
         "outside: 'suit' begins last, 'kinect' ends first; these are cut; ");
   plan.header.frames = 900;
-  CHECK(judge_plan(recording, plan).empty());  // a tenth
+  CHECK(judge_plan(recording, plan).empty());  // a tenth is still accepted
   plan.header.frames = 899;
   CHECK(judge_plan(recording, plan).size() == 1);
   plan.header.frames = 514;

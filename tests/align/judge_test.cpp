@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person is told of streams: each finding whole, with what it means and what mends it, and
-// the figures at which it begins.
+// The findings about streams: each with its full text, its meaning and its repair, and the figures
+// from which on it appears.
 #include "kinalign/align/judge.h"
 
 #include "tests/align/findings.h"
@@ -14,7 +14,7 @@ using namespace kinalign::test;
 
 namespace {
 
-/// `samples` of a sine's share: rms 1 of which `lost` is not carried.
+/// The content of a sine of rms `rms`, of which `lost` is not carried by the grid.
 CarriedContent carried(double rms, double lost) {
   CarriedContent out;
   out.samples = 100;
@@ -82,7 +82,7 @@ TEST_CASE("a start_ns at a first sample that was late or wild is a warning") {
         "warning: kinect: expected start_ns at a first sample stamped when it was taken, found one "
         "that was held back; all of the stream is shifted by as much; cut that sample from the "
         "file, and say start_ns of the one behind it");
-  options.start_ns = 7;  // and the first one kept has 0
+  options.start_ns = 7;  // and the first row that is kept has stamp 0
   CHECK(judge_start(kinect(), options, {}).at(0).what.found ==
         "one with a stamp far from the others'");
   options.files = {{"a.csv", "a"}, {"b.csv", "b"}};  // and the other begins 7 ns earlier
@@ -143,10 +143,10 @@ TEST_CASE("a stream that stands still for half its time is told as what the stam
       "the time; the device paused, or samples came in bursts and were stamped on arrival; if it "
       "paused, say rate_hz = 30.3; if they came in bursts, leave the time column out of a layout "
       "and say rate_hz = 3.03");
-  s.survey.long_steps = 10;  // of eleven trials
+  s.survey.long_steps = 10;  // 10 of eleven steps are long
   CHECK(judge_stamps(s, {}).empty());
   s.survey.long_steps = 500;
-  s.counted = true;  // stamps that the device did not write are what their rate makes them
+  s.counted = true;  // stamps made from the rate, not by the device, always have its step
   CHECK(judge_stamps(s, {}).empty());
   s.counted = false;
   s.survey.samples = 9;  // too few to tell
@@ -158,11 +158,12 @@ TEST_CASE("a stated rate is held against the stamps, and says that long steps ar
   StreamOptions options;
   options.rate_hz = 30.0;
   CHECK(judge_stamps(s, options).empty());
-  s.survey.last = utc_time(65'934'000'000);  // as many are missing: gaps, which are counted
+  // Half of the samples are missing; they are counted as gaps.
+  s.survey.last = utc_time(65'934'000'000);
   s.survey.long_steps = 500;
   s.survey.long_time_ns = 49'450'000'000;
   CHECK(judge_stamps(s, options).empty());
-  options.rate_hz = 15.0;  // the device's way, as the advice is
+  options.rate_hz = 15.0;  // the option that the advice names
   CHECK(judge_stamps(s, options).empty());
   options.rate_hz = 100.0;
   const Findings found = judge_stamps(s, options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of nodes: each node's samples are its own, mountings and roots are turns that can be turned
-// back.
+// Rules for nodes: each node keeps its own samples, and turns for mountings and roots can be
+// undone.
 #include "tests/align/streams.h"
 #include "tests/seeds.h"
 

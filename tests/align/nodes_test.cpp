@@ -26,7 +26,7 @@ Quat turning(std::size_t s, double t) {
               Eigen::AngleAxisd(0.3 * std::sin(t + k), Vec3::UnitX()));
 }
 
-/// What a node's gyroscope reads.
+/// The gyroscope reading of node `s` at time `t` (s), rad/s.
 Vec3 turned_by(std::size_t s, double t) {
   const double k = static_cast<double>(s);
   return {std::sin(t + k), 0.5 + k, std::cos(2.0 * t)};
@@ -51,7 +51,7 @@ Recording worn_nodes() {
 const Quat worn_by_waist(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
 const Quat worn_by_wrist(Eigen::AngleAxisd(-2.1, Vec3(3, -1, 0.5).normalized()));
 
-/// As a user may write it: the length does not count.
+/// The quaternion at another length, which a user may write: the length does not count.
 std::vector<double> scaled(const Quat& q) {
   return {1.5 * q.w(), 1.5 * q.x(), 1.5 * q.y(), 1.5 * q.z()};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can't be aligned is refused before anything is made, with the names that the user gave.
+// A recording that can't be aligned is refused before anything is made, with the names that the
+// user gave.
 #include "tests/align/two_streams.h"
 
 #include "kinalign/align/align.h"
@@ -41,7 +42,7 @@ std::string fault(const Recording& recording, const Manifest& manifest = {}) {
   return take ? "none" : to_string(take.error());
 }
 
-/// Of a manifest that says of "kinect" what `space` says.
+/// The error for a manifest that gives the stream "kinect" the options `space`.
 std::string fault_of_space(const SpaceOptions& space, PointStream kinect = hundred()) {
   Manifest manifest;
   manifest.spaces["kinect"] = space;

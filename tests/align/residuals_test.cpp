@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equations (1) and (2) held against their printed form, and the report's figures against plain
-// sums over the take.
+// Equations (1) and (2) compared with their printed form, and the report's figures compared with
+// plain sums over the take.
 #include "tests/align/two_streams.h"
 #include "tests/seeds.h"
 
@@ -28,7 +28,7 @@ Recording unrelated(std::mt19937_64& random, std::uint64_t lost) {
   return two(std::move(optical), std::move(kinect));
 }
 
-/// The same before anything was moved.
+/// The same take with no stream moved.
 Take unmoved(const Recording& recording) {
   const auto take = align(recording, own_space());
   REQUIRE(take);
@@ -101,7 +101,7 @@ TEST_CASE("what the report counts is what the take holds, also where the root wa
     for (std::size_t cell = 0; cell < out.valid.size(); ++cell) {
       if (out.valid[cell] == 0) continue;
       worst = std::max(worst, out.distance.nearest_raw_ns[cell / joints.size()]);
-      bridged += out.state[cell] == Tracking::missing ? 1 : 0;  // on the same stamps none are lost
+      bridged += out.state[cell] == Tracking::missing ? 1 : 0;  // no cell is lost on equal stamps
     }
     CHECK(take->report.streams[1].worst_nearest_ns == worst);
     CHECK(take->report.streams[1].bridged == bridged);

@@ -25,7 +25,7 @@ void flip_odd(std::vector<double>& rotations, std::size_t columns) {
   }
 }
 
-/// Valid neighbours of a column, gaps between them or not.
+/// Neighbouring valid rows of a column, with or without gaps between them.
 struct Neighbouring {
   std::size_t pairs = 0, gaps = 0;
   double least_dot = 1.0;
@@ -72,7 +72,7 @@ Clip turning_clip(const std::vector<Time>& stamps) {
   return clip;
 }
 
-/// Without the samples of a second in the middle.
+/// Stamps without those of one second in the middle.
 std::vector<Time> with_a_gap(std::int64_t step_ns, std::size_t count) {
   std::vector<Time> stamps = every(step_ns, count);
   const std::int64_t middle = step_ns * static_cast<std::int64_t>(count) / 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take is made in slabs from windows of its streams; neither may show in it. The truth here is
-// one spline through all samples at once.
+// A take is made in slabs from windows of its streams, and neither may change a value. The truth
+// here is one spline through all samples at once.
 #include "tests/align/same_take.h"
 #include "tests/align/streams.h"
 #include "tests/seeds.h"
@@ -18,14 +18,14 @@ using namespace kinalign::test;
 
 namespace {
 
-constexpr std::size_t block_rows = 40;  // as from pieces of a file
+constexpr std::size_t block_rows = 40;  // the size of the blocks in which a reader hands out a file
 
 /// 5000 rows of a grid are three slabs.
 RecordedStream grid() {
   return recorded("points", points({"a"}, every(10 * ms, 5000, 1000 * ms), wander));
 }
 
-/// Stamps that are nowhere regular, over the grid and a little more.
+/// Irregular stamps over the grid and a little more.
 std::vector<Time> irregular(std::int64_t step_ns) {
   std::mt19937_64 random(7);
   std::vector<Time> out;
@@ -150,7 +150,8 @@ TEST_CASE("nodes of many slabs are one spline's across every loss shorter than t
   REQUIRE(take);
   CHECK(take->report.streams[1].invalid == 0);
   const auto& rows = std::get<ImuRows>(take->all.rows[1]);
-  CHECK(farthest(rows.acceleration, 1, 0, at_once(seen, values, *take)) < 1e-11);  // of 9.8
+  // The largest value is 9.8.
+  CHECK(farthest(rows.acceleration, 1, 0, at_once(seen, values, *take)) < 1e-11);
 }
 
 TEST_CASE("an empty sample of a node is none: it shortens no distance and hides no loss") {
@@ -221,7 +222,7 @@ TEST_CASE("how a stream is cut into blocks shows in no row and no count") {
     std::mt19937_64 random(seed);
     PointStream kinect;
     const RecordedStream other = troubled_kinect(random, kinect);
-    // The grid ends in a pause, so that the take goes on behind its last row but one.
+    // The grid ends in a pause, so the take goes on after its last row but one.
     std::vector<Time> rows = every(10 * ms, 12'000);
     rows.push_back(utc_time(130'000 * ms));
     const RecordedStream points_a = recorded("points", points({"a"}, rows, wander));

@@ -25,7 +25,7 @@ TEST_CASE("a rigid fit once per take finds a camera's place and turn") {
   REQUIRE(take->report.spaces.size() == 1);
   const SpaceReport& space = take->report.spaces[0];
   CHECK(space.transform.rotation.angularDistance(turn.conjugate()) < 1e-5);
-  CHECK(space.after_m < 2e-4);  // what the splines leave at the ends
+  CHECK(space.after_m < 2e-4);  // the rest is the splines' error at their ends
   CHECK(space.before_m > 2.0);
   CHECK(space.joints.size() == 4);
   for (std::size_t r = 100; r < 2900; ++r) {
@@ -34,7 +34,8 @@ TEST_CASE("a rigid fit once per take finds a camera's place and turn") {
 }
 
 TEST_CASE("without named joints a Kinect is fitted by the places that both skeletons have") {
-  // Neck and Head stand on both, but are not the same places: they must not be paired by name.
+  // Both skeletons have a Neck and a Head, but at different places, so these must not be paired by
+  // name.
   const std::vector<std::string> kinect{"SpineBase", "Neck", "Head", "KneeLeft", "WristLeft"};
   const std::vector<std::string> mocap{"Hips", "Neck", "Head", "LeftLeg", "LeftHand"};
   const auto higher = [](std::size_t j, double t) {

@@ -19,7 +19,7 @@ namespace kinalign::test {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// Each part between -most and most.
+/// A random vector with each part between -most and most.
 inline Vec3 any_vector(std::mt19937_64& random, double most) {
   std::uniform_real_distribution<double> range(-most, most);
   return {range(random), range(random), range(random)};
@@ -78,7 +78,7 @@ inline ImuStream nodes(const std::vector<std::string>& names, const std::vector<
   return out;
 }
 
-/// Says that "kinect" shall stay in its own space.
+/// A manifest in which "kinect" stays in its own space.
 inline Manifest own_space() {
   Manifest manifest;
   manifest.spaces["kinect"].method = "none";
@@ -98,7 +98,7 @@ Pass<Frames> in_blocks(const Frames& all, std::size_t size) {
   };
 }
 
-/// The stream read so in every pass; `all` must outlive it.
+/// A stream that is read in such blocks in every pass; `all` must outlive it.
 template <class Frames>
 RecordedStream read_in_blocks(RecordedStream stream, const Frames& all, std::size_t size) {
   std::visit(

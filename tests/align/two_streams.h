@@ -15,7 +15,7 @@ namespace kinalign::test {
 
 inline const std::vector<std::string> joints{"SpineBase", "Head", "HandLeft", "HandRight"};
 
-/// The first is the reference.
+/// A recording of both; the first is the reference.
 inline Recording two(PointStream optical, PointStream kinect) {
   Recording recording;
   recording.streams.push_back(recorded("optical", std::move(optical)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a manifest says counts, or is refused.
+// Every option of a manifest is used, or the manifest is refused.
 #include "kinalign/align/unused_options.h"
 
 #include "tests/align/two_streams.h"
@@ -28,7 +28,7 @@ Clip skeleton() {
   return clip;
 }
 
-/// Of a stream "some" of which `say` is said.
+/// The error for a stream named "some" whose options are set by `say`.
 std::string fault(RecordedStream stream, const SayOfStream& say) {
   stream.name = "some";
   Manifest manifest;
@@ -80,7 +80,7 @@ TEST_CASE("of what a recording knows itself nothing can be said: start, clock, d
   }
   CHECK(!fault(recording(recorded("", ImuStream{})), drift).empty());
   CHECK(fault(recording(recorded("", ImuStream{})), root).empty());
-  CHECK(fault(recording(recorded("", skeleton())), rate).empty());  // of a stream that says none
+  CHECK(fault(recording(recorded("", skeleton())), rate).empty());  // the stream states no rate
 }
 
 TEST_CASE("an interval is of another clock than the reference's, and of one that leaves doubt") {
@@ -105,7 +105,7 @@ TEST_CASE("an interval is of another clock than the reference's, and of one that
         "expected of 'kinect' a shared clock or an interval_ms, found both: clock = \"shared\" "
         "leaves no doubt");
   manifest.streams[1].interval_ms.reset();
-  manifest.streams[0].clock = "shared";  // as it is anyway
+  manifest.streams[0].clock = "shared";  // the reference's clock is shared in any case
   CHECK(fault_of("").empty());
 }
 
@@ -198,13 +198,13 @@ TEST_CASE(
   };
   CHECK(line() == 4);
   manifest.streams[0].lines.erase("root_node");
-  CHECK(line() == 3);  // of the reference nothing is unknown
+  CHECK(line() == 3);  // the reference's clock has no doubt
   manifest.align.reference = "other";
   CHECK(line() == 0);
   manifest.streams[0].interval_ms = 4.0;
   CHECK(line() == 3);
   manifest.streams[0].lines.erase("clock");
   CHECK(line() == 0);
-  manifest.streams[0].lines["mounting"] = 5;  // an empty one
+  manifest.streams[0].lines["mounting"] = 5;  // a mounting without a value
   CHECK(line() == 5);
 }

@@ -69,7 +69,7 @@ TEST_CASE("a finding counts for the streams of its file, or for the one that it 
 
 TEST_CASE("shares of samples count from their limits on") {
   AlignmentReport report = fine_report();
-  report.streams[1].invalid = 50;  // of 1000: at the limit
+  report.streams[1].invalid = 50;  // 50 of 1000: at the limit
   CHECK(kinect_of(report).quality == Quality::good);
   CHECK(kinect_of(report).reason == "5.0 % of samples invalid");
   report.streams[1].invalid = 51;

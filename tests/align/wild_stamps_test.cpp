@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clocks that slip: what the survey keeps and what alignment reads are the same samples.
+// Clocks that slip: the survey and the alignment must keep the same samples.
 #include "tests/align/streams.h"
 #include "tests/seeds.h"
 

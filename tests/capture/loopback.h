@@ -28,7 +28,7 @@ inline bool has_ipv6_loopback() {
   return bound;
 }
 
-/// What came, and from where: "127.0.0.5".
+/// A datagram that came, and the address of its sender: "127.0.0.5".
 struct Came {
   std::vector<std::uint8_t> bytes;
   std::string from;
@@ -63,7 +63,7 @@ class Client {
             static_cast<ssize_t>(bytes.size()));
   }
 
-  /// The next datagram; none came in two seconds.
+  /// The next datagram; nothing if none came in two seconds.
   std::optional<Came> receive() const {
     std::vector<std::uint8_t> bytes(2048);
     sockaddr_in6 from{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recording sessions over loopback, and what their files then hold.
+// Recording sessions over loopback, and the contents of their files.
 #pragma once
 
 #include "tests/capture/loopback.h"
@@ -55,7 +55,7 @@ inline std::vector<std::uint8_t> bytes_of(const std::string& text) {
   return {text.begin(), text.end()};
 }
 
-/// A session that records from its beginning on.
+/// A session that records from its start on.
 class LiveSession {
  public:
   explicit LiveSession(const std::vector<std::string>& devices,
@@ -73,7 +73,7 @@ class LiveSession {
 
   RecordingSession& session() { return *session_; }
   const RecordingSession& session() const { return *session_; }
-  /// Of the first device.
+  /// The port of the first device.
   std::uint16_t port() const { return session_->ports().front().second; }
   std::uint64_t pieces() const { return session_->port_counts().front().second.pieces; }
   template <class Holds>
@@ -91,7 +91,7 @@ class LiveSession {
   std::unique_ptr<RecordingSession> session_;
 };
 
-/// A device's connection to us.
+/// A connection of a device to the recorder.
 class Connection {
  public:
   explicit Connection(std::uint16_t port) : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -110,7 +110,7 @@ class Connection {
   void send(const std::string& text) const {
     CHECK(::write(fd_, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
   }
-  /// What came; empty: nothing did in two seconds.
+  /// The datagram that came; empty if none came within two seconds.
   std::string receive() const {
     std::string text(2048, '\0');
     const ssize_t got = ::read(fd_, text.data(), text.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node for tests of the host: its counter follows the host's clock as it is told, it makes frames
-// and takes replies. Time is an argument.
+// A node for tests of the host: its counter follows the host's clock as the test sets it, it makes
+// frames and accepts replies. All times are arguments.
 #pragma once
 
 #include "kinalign/capture/nodes/node_desk.h"
@@ -28,7 +28,7 @@ class TestNode {
     if (lab) key_ = node_key(*lab, id);
   }
 
-  double offset_s = -86'400.0 + 5.0;  // of its counter against host_s
+  double offset_s = -86'400.0 + 5.0;  // the node's counter minus host_s
   double drift = 20e-6;
   bool narrow = false;
   std::uint16_t battery_mv = 0;
@@ -65,7 +65,7 @@ class TestNode {
     out.resize(encode(frame, key(), out).size());
     return out;
   }
-  /// Whether it is one for this node.
+  /// Whether the bytes are a reply for this node.
   bool take_reply(const Bytes& bytes, HostTime now) {
     Envelope envelope;
     NodeReply reply;
@@ -85,7 +85,7 @@ class TestNode {
   std::optional<ReplyEcho> echo_;
 };
 
-/// The desk with what arrives after `up`, and its reply after `down`.
+/// NodeDesk with frames that arrive after a delay of `up`, and replies after a delay of `down`.
 struct TestDesk {
   explicit TestDesk(const std::optional<LabKey>& lab = std::nullopt) : desk({lab, secret}) {}
 
@@ -97,7 +97,7 @@ struct TestDesk {
     out.resize(desk.answer(at, out).size());
     return out;
   }
-  /// A frame at t, and its reply.
+  /// Sends a frame at t, and gives the node its reply.
   NodeNews exchange(TestNode& node, const NodeAddress& from, double t) {
     const NodeNews news = take(node.frame(host_s(t)), from, host_s(t + 0.001));
     const Bytes answer = reply(host_s(t + 0.0011));

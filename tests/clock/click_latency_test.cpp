@@ -30,7 +30,7 @@ TEST_CASE("median and spread of a few pairs are those of a table") {
   CHECK(found->median == 46ms);
   // Deviations 1 1 2 4 6 44 ms: their median is 3 ms.
   CHECK(found->spread == Duration{std::llround(1.4826 * 3e6)});
-  CHECK(found->low == 40ms);  // six coins fall alike in 3 % of the cases
+  CHECK(found->low == 40ms);  // six coins all fall alike in 3 % of the cases
   CHECK(found->high == 90ms);
 }
 
@@ -53,7 +53,8 @@ TEST_CASE("the interval holds the median in 95 of 100 cases at least") {
         pairs.push_back({HostTime{}, HostTime{lag}});
       }
       const auto found = click_latency(pairs);
-      const double truth = 0.045 + 0.5 / 60.0;  // of a symmetric law
+      // 45 ms and half a frame: the median of a symmetric law.
+      const double truth = 0.045 + 0.5 / 60.0;
       held += seconds(found->low) <= truth && truth <= seconds(found->high) ? 1 : 0;
     }
     CHECK(held > static_cast<int>(0.94 * trials));  // five deviations below 0.959
@@ -76,7 +77,7 @@ TEST_CASE("clicks and counts of frames give the step and the latencies' differen
 }
 
 TEST_CASE("a step's stated deviation is how far it lies off") {
-  // Twenty takes of 20 to 120 s with 6 ms of jitter at each click: 79 ppm of a frame's step, 6 ms.
+  // Twenty takes of 20 to 120 s with 6 ms of jitter at each click give a frame's step to 79 ppm.
   for (const auto seed : fresh_seeds(2)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

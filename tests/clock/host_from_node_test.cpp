@@ -11,8 +11,8 @@ namespace {
 constexpr HostTime host(Duration d) { return HostTime{d}; }
 constexpr NodeTime node(Duration d) { return NodeTime{d}; }
 
-/// One piece of life 7, heard from 100 to 110 s; the counter is 90 s behind, then 10 us a second
-/// less.
+/// One piece for life 7, heard from 100 to 110 s of the host. The counter is 90 s behind, and then
+/// loses another 10 us a second.
 HostFromNode one_piece() {
   ClockPieceModel piece;
   piece.boot = 7;

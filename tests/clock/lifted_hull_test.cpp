@@ -26,7 +26,7 @@ std::vector<Point> random_points(std::size_t n, std::mt19937_64& random) {
   return points;
 }
 
-/// The witness: all bounds, one by one.
+/// An independent slow way: looks at every bound.
 double least(const std::vector<Point>& points, double rho, double t, double slope) {
   double bound = 1e9;
   for (const Point& p : points) {
@@ -45,7 +45,7 @@ TEST_CASE("at any time and slope the hull gives the least of all bounds") {
     const double rho = std::array{0.0, 1e-8, 5e-8, 2e-6, 1e-3}[random() % 5];
     auto points = random_points(1 + random() % 200, random);
     const double end = points.back().s;
-    if (seed % 2 == 0) {  // a few come late
+    if (seed % 2 == 0) {  // a few points come late
       for (std::size_t i = 3; i < points.size(); i += 7)
         std::swap(points[i], points[i - 1 - random() % 3]);
     }

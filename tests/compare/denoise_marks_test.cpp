@@ -114,7 +114,7 @@ TEST_CASE("wrists and standing feet have marks of their own") {
   REQUIRE(marker);
   const DenoiseMarks marks = marker->marks_of(still.pair, still.answer, {});
   REQUIRE(marks.hand_cm);
-  CHECK(*marks.hand_cm == doctest::Approx(3.0).epsilon(1e-4));  // of two wrists one is 6 cm off
+  CHECK(*marks.hand_cm == doctest::Approx(3.0).epsilon(1e-4));  // one of the two wrists is 6 cm off
   // Both ankles stand; one of them slides by 1 cm a frame at 30 Hz.
   CHECK(marks.feet.contacts == 2 * (frames - 1));
   CHECK(marks.feet.skate_m_s == doctest::Approx(0.15).epsilon(1e-3));

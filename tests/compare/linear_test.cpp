@@ -9,8 +9,8 @@ using namespace kinalign;
 
 namespace {
 
-/// People whose Kinect is off by one offset of each joint: `spread` m, of the sign of a draw that
-/// is each person's own or all people's.
+/// People whose Kinect has a constant offset for each joint: `spread` m, with a random sign for
+/// each person, or with one sign for all.
 std::vector<Pair> people(std::size_t count, float spread, bool alike) {
   std::mt19937_64 random(11);
   std::vector<Pair> out;

@@ -69,7 +69,7 @@ TEST_CASE("what is no UTF-8 is shown as one sign for each byte that Python's dec
       {"\xed\xa0\x80", "???"},                     // the first
       {"\xed\xbf\xbf", "???"},                     // the last
       {"\xed\xa0\xbd\xed\xb8\x80", "??????"},      // a pair
-      {"\xee\x80\x80", "\xee\x80\x80"},            // behind them
+      {"\xee\x80\x80", "\xee\x80\x80"},            // the first code point after the surrogates
       {"\xf4\x8f\xbf\xbf", "\xf4\x8f\xbf\xbf"},    // U+10FFFF
       {"\xf4\x90\x80\x80", "????"},                // U+110000
       {"\xf5\x80\x80\x80", "????"},                // beyond
@@ -104,7 +104,7 @@ TEST_CASE("text of a file is shown short and without control characters") {
   CHECK(shown("a\xc2\x9b"
               "31m\xe2\x80\xae"
               "b\xe2\x81\xa6") == "a?31m?b?");  // CSI, turned text
-  CHECK(shown("\xc2") == "?");                  // half a letter
+  CHECK(shown("\xc2") == "?");                  // half a character
   CHECK(shown(std::string(40, 'x')) == std::string(40, 'x'));
   CHECK(shown(std::string(41, 'x')) == std::string(40, 'x') + "...");
 }

@@ -28,7 +28,7 @@ TEST_CASE("a file that grows, shrinks or is replaced has another version") {
 TEST_CASE("other bytes of the same length are another version, a look and another name are none") {
   const FreshFolder folder;
   const std::string path = folder.write("a", "1234");
-  // Older than the file system's clock is coarse.
+  // Older than the resolution of the file system's clock.
   std::filesystem::last_write_time(
       path, std::filesystem::last_write_time(path) - std::chrono::seconds(10));
   const auto first = version_of(path);

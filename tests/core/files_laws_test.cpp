@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files against a string in memory that is written and read in the same way.
+// Files compared with a string in memory that is written and read in the same way.
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
 #include "tests/seeds.h"
@@ -22,10 +22,10 @@ std::string random_bytes(std::size_t n, std::mt19937_64& random) {
   return bytes;
 }
 
-/// A file as it should be: what lies behind its end reads as zeros.
+/// A file as it should be: reads after its end give zeros.
 struct Model {
   std::string bytes;
-  std::size_t next = 0;  // where write() goes on
+  std::size_t next = 0;  // the offset of the next write()
 
   void put(std::size_t at, const std::string& piece) {
     bytes.resize(std::max(bytes.size(), at + piece.size()));
@@ -36,7 +36,7 @@ struct Model {
   }
 };
 
-/// One random step on both; the file's answer.
+/// Does one random step on both; gives the file's answer.
 Result<void> step(OutputFile& file, Model& model, std::mt19937_64& random) {
   const std::size_t at = random() % 3000;
   const std::string piece = random_bytes(1 + random() % 500, random);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any number in text, and of any bytes' digest.
+// Rules for any number as text, and for any bytes' digest.
 #include "tests/seeds.h"
 #include "tests/witness.h"
 
@@ -30,7 +30,7 @@ double number(const std::string& text) {
   return value;
 }
 
-/// Digits that say something: 3 of "-0.0120e5" are two, "1000" is one.
+/// The number of significant digits: 2 for "-0.0120e5", 1 for "1000".
 std::size_t digits_of(const std::string& text) {
   std::string digits;
   for (const char c : text.substr(0, text.find('e'))) {
@@ -40,7 +40,7 @@ std::size_t digits_of(const std::string& text) {
   return std::max<std::size_t>(digits.size(), 1);
 }
 
-/// Any finite double, and those of few decimals.
+/// Random finite doubles, some with few decimals.
 Arrays random_numbers(std::mt19937_64& random) {
   std::vector<double> values;
   while (values.size() < 5000) {
@@ -65,7 +65,7 @@ TEST_CASE("a number is written with no more digits than Python needs, and reads 
       const std::string text = written(values[i], static_cast<int>(random() % 16));
       CAPTURE(text);
       const auto needed = static_cast<std::size_t>(digits[i]);
-      // All digits of a large whole number where they are no longer than 1.2345e+20.
+      // A large whole number is written with all digits if that is no longer than 1.2345e+20.
       const bool whole = text.find_first_of(".e") == std::string::npos;
       CHECK((digits_of(text) == needed || (whole && text.size() <= needed + 6)));
       CHECK(std::bit_cast<std::uint64_t>(number(text)) == std::bit_cast<std::uint64_t>(values[i]));
@@ -103,7 +103,7 @@ TEST_CASE("a number stays itself with zeros around it, and turns with its sign")
       CHECK(number("00" + text + std::string(random() % 20, '0')) == value);
       CHECK(number("+" + text) == value);
       CHECK(number("-" + text) == -value);
-      // The point moved is an exponent.
+      // Moving the point is the same as an exponent.
       CHECK(number(digits + "e-" + std::to_string(digits.size() - point)) == value);
     }
   }

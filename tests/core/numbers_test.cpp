@@ -22,7 +22,8 @@ std::string digits(std::size_t n, std::mt19937_64& random) {
   return text;
 }
 
-/// As files write numbers: a sign or none, digits, a point or none, sometimes an exponent.
+/// A number as it stands in files: a sign or none, digits, a point or none, sometimes an
+/// exponent.
 std::string random_decimal(std::mt19937_64& random) {
   std::string text = random() % 3 == 0 ? "-" : "";
   const std::size_t most = random() % 16 == 0 ? 40 : 17;
@@ -37,7 +38,8 @@ std::string random_decimal(std::mt19937_64& random) {
   return text;
 }
 
-/// What from_chars says, bit for bit; nothing where it finds no number or none in range.
+/// Whether number() gives the same bits as std::from_chars, and nothing where that finds no
+/// number or one out of range.
 bool same_as_from_chars(const std::string& text) {
   double expected = 0.0, found = 0.0;
   const char *begin = text.data(), *end = begin + text.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any number of pieces of work on any number of threads.
+// Rules for any number of pieces of work on any number of threads.
 #include "tests/seeds.h"
 
 #include "kinalign/core/parallel.h"
@@ -62,7 +62,7 @@ TEST_CASE("whichever bodies throw, one of theirs is thrown, and nothing runs twi
       CHECK(n <= 1);
       begun += n;
     }
-    // With one job the first in order is the first in time, and the last to run.
+    // With one job the first piece in order begins first, and is the last one to run.
     if (jobs == 1) CHECK(begun == static_cast<int>(from) + 1);
   }
 }

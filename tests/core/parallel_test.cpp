@@ -32,7 +32,7 @@ TEST_CASE("one job runs in order on the caller's thread") {
 
 TEST_CASE("two jobs run side by side") {
   std::atomic<int> here{0};
-  // Each waits for the other: with one thread this would never end.
+  // Each piece waits for the other: with one thread this would never end.
   parallel_for(2, 2, [&](std::size_t) {
     ++here;
     while (here < 2) std::this_thread::yield();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any text: lines, names and what a message shows of it.
+// Rules for any text: its lines, names, and how a message shows it.
 #include "tests/seeds.h"
 
 #include "kinalign/core/error.h"
@@ -27,7 +27,7 @@ std::string random_text(const std::string& letters, std::size_t n, std::mt19937_
   return text;
 }
 
-/// As the C++ library cuts it, each without one '\r' at its end.
+/// The lines that the C++ library finds, each without one '\r' at its end.
 Lines plain_lines(const std::string& text) {
   Lines lines;
   std::istringstream stream(text);
@@ -38,7 +38,8 @@ Lines plain_lines(const std::string& text) {
   return lines;
 }
 
-/// Letters put in, left out, changed or swapped with their neighbour, by the definition.
+/// The number of letters inserted, left out, changed or swapped with a neighbour, by the
+/// definition.
 std::size_t plain_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {

@@ -9,7 +9,7 @@ using namespace kinalign;
 
 namespace {
 
-/// The bytes of RFC 3629, section 3.
+/// The UTF-8 bytes of a code point by RFC 3629, section 3.
 std::string encoded(char32_t code) {
   const auto tail = [&](int place) {
     return static_cast<char>(0x80U | (code >> (6U * place) & 0x3fU));
@@ -50,6 +50,6 @@ TEST_CASE("bytes of other encodings are no UTF-8") {
   CHECK(!is_utf8("\xc0\xaf"));          // '/' in two bytes
   CHECK(!is_utf8("\xe0\x80\xaf"));      // and in three
   CHECK(!is_utf8("\xf0\x80\x80\xaf"));  // and in four
-  CHECK(!is_utf8("\xf4\x90\x80\x80"));  // beyond the last character
+  CHECK(!is_utf8("\xf4\x90\x80\x80"));  // after the last code point
   CHECK(!is_utf8("\xff"));
 }

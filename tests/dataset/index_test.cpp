@@ -14,7 +14,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A data set whose takes are there as summaries alone.
+/// A data set in which only the takes' summaries exist.
 class Listed {
  public:
   Listed() {
@@ -117,14 +117,15 @@ TEST_CASE("a summary that can't be read is a finding, and hides no other take") 
   CHECK(number(index, "select count(*) from takes") == 1);
   REQUIRE(index.findings().size() == 1);
   CHECK(index.findings()[0].what.file == "sub-01/sub-01_task-S1A01_run-02_take.json");
-  CHECK(set.open().findings().size() == 1);  // until it is mended
+  CHECK(set.open().findings().size() == 1);  // until the take is repaired
 }
 
 TEST_CASE("a person's folder that can't be read is an error, and the index stays") {
   Listed set;
   set.put({"01", "S1A01", 1}, 600);
   (void)set.open();
-  std::filesystem::create_symlink("sub-02", set.folder / "sub-02");  // root can read all else
+  // The user root can read any other folder.
+  std::filesystem::create_symlink("sub-02", set.folder / "sub-02");
   const auto index = DatasetIndex::open(set.files, set.folder.path());
   REQUIRE(!index);
   CHECK(index.error().file == set.folder / "sub-02");

@@ -14,7 +14,7 @@ namespace {
 
 Catalogue catalogue() { return *read_catalogue(*catalogue_template("hfut-mmd", "x"), "x"); }
 
-/// Takes of the template's people and actions: each person does some of each class.
+/// Takes with the people and actions of the template: each person does some actions of each class.
 std::vector<SplitTake> many() {
   std::vector<SplitTake> out;
   const Catalogue of = catalogue();
@@ -84,7 +84,8 @@ TEST_CASE("a split by people has nobody in two parts") {
       if (train.contains(name.subject)) both.insert(name.subject);
     }
     CHECK(both.empty());
-    CHECK(std::abs(share_of(*split, "test", takes) - 0.25) < 0.06);  // people are whole
+    // A person's takes stay together.
+    CHECK(std::abs(share_of(*split, "test", takes) - 0.25) < 0.06);
     CHECK(check_split(*split, takes, "s").empty());
   }
 }

@@ -45,7 +45,7 @@ nodes = { "12" = "RightForeArm", "7" = "Hips" }
   CHECK(first.transport == "tcp");
   CHECK(first.address == "192.168.7.5");
   CHECK(first.port == 7001);
-  CHECK(first.skeleton == "labs/rig.bvh");  // beside lab.toml
+  CHECK(first.skeleton == "labs/rig.bvh");  // in the folder of lab.toml
   CHECK(first.rate_hz == 125);
   CHECK(first.required);
   const DeviceOptions& second = devices->back();
@@ -86,7 +86,7 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
   CHECK(error_of(nodes + "{ \"1\" = \"2\", \"2\" = \"Hips\" }\n") ==
         "labs/lab.toml:1: expected a place by name, as waist: a number is another node's id, found "
         "2 of node 1");
-  CHECK(error_of(nodes + "{ \"1\" = \"02\" }\n")  // also of one that has no place
+  CHECK(error_of(nodes + "{ \"1\" = \"02\" }\n")  // a node without a place too
             .ends_with("a number is another node's id, found 02 of node 1"));
   CHECK(error_of(nodes + "{ \"1\" = \"1\", \"2\" = \"2nd\" }\n") == "none");
   CHECK(error_of("[device.a]\nprotocol = \"kinect\"\nskeleton = \"a.bvh\"\n") ==
@@ -131,7 +131,8 @@ TEST_CASE("two devices share a port at addresses of their own alone") {
   };
   CHECK(fits("noitom:udp:127.0.0.1:7012", "xsens:udp:127.0.0.2:7012"));
   CHECK(!fits("noitom:udp:127.0.0.1:7012", "xsens:udp:127.0.0.1:7012"));
-  CHECK(!fits("noitom:udp:127.0.0.1:7012", "xsens:udp:7012"));  // which is heard on all of them
+  // "udp:7012" listens on all addresses.
+  CHECK(!fits("noitom:udp:127.0.0.1:7012", "xsens:udp:7012"));
   CHECK(!fits("noitom:tcp-listen:7012", "kinect:tcp-listen:127.0.0.1:7012"));
   CHECK(fits("noitom:udp:7012", "kinect:tcp-listen:7012"));
   CHECK(fits("noitom:tcp:127.0.0.1:7012", "kinect:tcp:127.0.0.2:7012"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every option, as TOML says it and as JSON does: what one takes the other takes, what one refuses
-// the other refuses in the same words.
+// Every option in TOML and in JSON: both accept the same values, and refuse the others in the same
+// words.
 #include "kinalign/documents/option_values.h"
 
 #include "kinalign/documents/manifest_toml.h"
@@ -22,7 +22,7 @@ struct Said {
   std::string table, option, value;
 };
 
-/// "" where it is taken, else "expected ..., found ...".
+/// "" if the value is accepted, else "expected ..., found ...".
 template <class Parsed>
 std::string fault_of(const Parsed& parsed) {
   if (parsed) return "";
@@ -44,7 +44,7 @@ std::string by_json(const Said& said) {
   return fault_of(parse_parameters_json("{\"schema\": \"kinalign.parameters/1\", " + inner + "}"));
 }
 
-/// What both say; they must say the same.
+/// The message that both readers give; it must be the same.
 std::string both(const Said& said) {
   const std::string toml = by_toml(said);
   CHECK(by_json(said) == toml);
@@ -56,7 +56,7 @@ struct Table {
   Fields fields;
 };
 
-/// All described options; none of them names a stream, which would have to be there.
+/// All described options except those that name a stream, because the stream would have to exist.
 class AllOptions {
  public:
   std::vector<Table> tables() {

@@ -47,7 +47,7 @@ std::vector<double> any_rotation(Random& random) {
   return out;
 }
 
-/// Puts anything that is allowed into every described option.
+/// Sets every described option to a random allowed value.
 void fill(const Fields& fields, Random& random) {
   for (const Field& field : fields) {
     std::uniform_real_distribution<double> range(std::max(field.least, -1e9),

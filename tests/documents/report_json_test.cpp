@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A report as JSON, whole: what reads it elsewhere has nothing but these words.
+// A whole report as JSON: other programs depend on exactly these names.
 #include "kinalign/documents/report_json.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for every metric (models.md 8.13).
+// Rules for every metric (models.md 8.13).
 #include "tests/evaluate/moving_body.h"
 #include "tests/seeds.h"
 
@@ -19,7 +19,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Every place by a function of it.
+/// Changes every position by a function.
 template <class Change>
 std::vector<double> changed(const std::vector<double>& places, const Change& change) {
   std::vector<double> out = places;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A made-up truth and a prediction near it, for metrics.
+// An invented truth and a prediction near it, for metrics.
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
@@ -28,8 +28,8 @@ struct MovingBody {
   Sequence sequence() const { return {joints, rate_hz, truth, valid}; }
 };
 
-/// Joints that swing about places of their own; the prediction is `noise_m` off per axis. About one
-/// cell in twenty is not valid, never a joint in frame 0.
+/// Joints that swing about places of their own; the prediction is `noise_m` off on each axis. About
+/// one cell in twenty is not valid, but all cells of frame 0 are.
 inline MovingBody moving_body(std::uint64_t seed, std::size_t frames = 80, double noise_m = 0.03) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0.0, noise_m), place(0.0, 0.5);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t node = 7, boot = 0x5eedf00d;
 
-/// That has issued `sent` frames, the last ones up to `last`.
+/// A gate that has issued `sent` frame numbers, the last of them `last`.
 AnswerGate gate(std::uint32_t sent, std::uint32_t last) {
   AnswerGate made({node, boot, last - sent + 1});
   for (std::uint32_t i = 0; i < sent; ++i) CHECK(made.issue().sequence == last - sent + 1 + i);
@@ -43,7 +43,7 @@ TEST_CASE("an answer to a frame that was not sent, or long ago, is ignored") {
   CHECK(!fresh.admit({node, boot, UINT32_MAX}));
   AnswerGate three = gate(3, 2);
   CHECK(!three.admit({node, boot, 3}));
-  CHECK(!three.admit({node, boot, UINT32_MAX}));  // one before the first
+  CHECK(!three.admit({node, boot, UINT32_MAX}));  // the number before the first
   AnswerGate long_run = gate(1000, 999);
   CHECK(!long_run.admit({node, boot, 999 - AnswerGate::window}));
   CHECK(long_run.admit({node, boot, 1000 - AnswerGate::window}));
@@ -53,7 +53,7 @@ TEST_CASE("an answer to a frame that was not sent, or long ago, is ignored") {
 }
 
 TEST_CASE("frame numbers wrap") {
-  AnswerGate wrapped = gate(10, 4);  // 0xfffffffb to 4
+  AnswerGate wrapped = gate(10, 4);  // numbers 0xfffffffb to 4
   CHECK(wrapped.admit({node, boot, 0xfffffffe}));
   CHECK(!wrapped.admit({node, boot, 0xfffffffd}));
   CHECK(wrapped.admit({node, boot, 3}));

@@ -14,10 +14,10 @@ inline constexpr NodeSettings settings{
 struct Bench {
   explicit Bench(const NodeSettings& with = settings) : node(board, with), key_of(with) {
     node.set_link(true);
-    node.poll();  // from here on frames are due, the first in half a period
+    node.poll();  // frames are due from here on, the first after half a period
   }
 
-  /// Ticks every 10 ms, polls every ms.
+  /// Ticks every 10 ms, and polls every ms, for `for_us`.
   void run(std::uint64_t for_us) {
     for (const std::uint64_t end = board.now_us + for_us; board.now_us < end;) {
       const std::uint64_t ms = board.now_us / 1000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node makes of what arrives, and of a link that fails.
+// A node's handling of arriving datagrams, and of a link that fails.
 #include "tests/firmware/bench.h"
 
 using namespace kinalign;
@@ -13,7 +13,7 @@ NodeSettings keyed() {
   return with;
 }
 
-/// Hands the node a datagram now.
+/// Gives the node a datagram now.
 void arrive(Bench& bench, Bytes datagram) {
   bench.board.arriving.push_back(std::move(datagram));
   bench.node.poll();
@@ -37,7 +37,7 @@ TEST_CASE("the next frame echoes a reply, with the counter read first when it ha
   CHECK(bench.last().has_echo);
   CHECK(bench.last().echo == ReplyEcho{900, 0xbeef0000 + 900, arrived + 1});
   bench.run(100'000);
-  CHECK(!bench.last().has_echo);  // each is echoed once
+  CHECK(!bench.last().has_echo);  // each reply is echoed once
 }
 
 TEST_CASE("of several replies the newest is echoed") {
@@ -119,7 +119,7 @@ TEST_CASE("rubbish is counted by its cause") {
   arrive(bench, {});
   arrive(bench, Bytes(10, 0));
   arrive(bench, Bytes(1500, 0));
-  arrive(bench, bench.board.sent[0]);  // its own frame, sent back
+  arrive(bench, bench.board.sent[0]);  // the node's own frame, sent back to it
   reply.back() ^= 1;
   arrive(bench, reply);
   CHECK(refused(bench, NodeRefusal::too_short) == 2);
@@ -165,12 +165,12 @@ TEST_CASE("without a link no frame is begun, and samples wait") {
   std::size_t samples = 0;
   for (std::size_t i = 0; i < bench.board.sent.size(); ++i) samples += bench.frame(i).sample_count;
   CHECK(bench.frame(1).origin.sequence == 1);
-  CHECK(samples >= 400);  // of 406: the last frame's tick or two are not sent yet
+  CHECK(samples >= 400);  // 406 were taken; those of the last tick or two are not sent yet
   CHECK(bench.node.counts().samples.dropped == 0);
 }
 
 TEST_CASE("what is too old for the room there is, is dropped and counted") {
-  for (const bool link : {false, true}) {  // lost, and there but taking nothing
+  for (const bool link : {false, true}) {  // the link is lost, or it is up but takes no datagrams
     CAPTURE(link);
     Bench bench;
     bench.node.set_link(link);

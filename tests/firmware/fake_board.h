@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A board in virtual time: every reading of its counter takes 1 us, what is sent is kept, what
-// shall arrive is put into `arriving`, and the order of its calls is written down.
+// A board in virtual time. Every reading of its counter takes 1 us. It keeps the datagrams that are
+// sent, takes arriving ones from `arriving`, and writes down the order of its calls.
 #pragma once
 
 #include "firmware/node/board.h"

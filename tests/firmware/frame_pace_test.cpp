@@ -11,7 +11,7 @@ using namespace kinalign;
 
 namespace {
 
-/// When frames are sent by who asks every microsecond from 0 on.
+/// The times at which a sender that asks every microsecond from 0 on sends its frames.
 std::vector<std::uint64_t> sends(std::uint32_t period_us, std::uint32_t dither_us,
                                  std::uint32_t seed) {
   FramePace pace(period_us, dither_us, seed);
@@ -53,7 +53,7 @@ TEST_CASE("frames whose time is over are left out, and the grid stays") {
   CHECK(pace.due(50));
   CHECK(pace.advance(50));
   CHECK(pace.due(480));
-  CHECK(!pace.advance(480));  // those of 250, 350 and 450 will not come
+  CHECK(!pace.advance(480));  // the frames of 250, 350 and 450 are left out
   CHECK(pace.next_us() == 550);
 }
 

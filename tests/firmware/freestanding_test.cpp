@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node's logic is compiled freestanding, without exceptions and RTTI; this asks what it still
-// calls: no heap, no operating system.
+// The node's logic is compiled freestanding, without exceptions and RTTI. This tests which outside
+// functions it still calls: no heap, no operating system.
 #include "tests/symbols.h"
 
 using namespace kinalign;

@@ -9,7 +9,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A letter an LED.
+/// The picture with one letter for each LED.
 std::string drawn(const Lights& lights) {
   std::string text;
   for (const LedColour& colour : picture(lights)) {

@@ -10,7 +10,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Steps ten times a second; what was wanted, and at which second: "join 0".
+/// Steps ten times a second, and collects the actions with their second: "join 0".
 struct Run {
   void go(int seconds, bool up, bool heard) {
     for (const int end = tenths + 10 * seconds; tenths < end; ++tenths) {
@@ -53,7 +53,7 @@ TEST_CASE("a link that comes and goes without an answer is not stormed") {
     run.go(1, true, false);
     run.go(1, false, false);
   }
-  CHECK(run.wanted.size() == 20);  // one each time it is lost
+  CHECK(run.wanted.size() == 20);  // one join each time the link is lost
 }
 
 TEST_CASE("a link over which nobody answers is joined anew, ever more seldom") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node sends, and when.
+// The frames that a node sends, and their times.
 #include "tests/firmware/bench.h"
 
 using namespace kinalign;
@@ -29,7 +29,7 @@ TEST_CASE("the counter is read last before sending") {
   bench.board.calls.clear();
   bench.node.poll();
   REQUIRE(bench.board.sent.size() == 1);
-  // nothing arrives; due?; battery; n_tx; sent
+  // Calls in their order: does a datagram arrive; is a frame due; battery; n_tx; send.
   CHECK(bench.board.calls == "rcbcs");
   CHECK(bench.last().n_tx_us == bench.board.now_us);
 }
@@ -37,7 +37,7 @@ TEST_CASE("the counter is read last before sending") {
 TEST_CASE("each sample has its own stamp, read before the sensor") {
   Bench bench;
   std::vector<std::uint64_t> stamps;
-  for (const std::uint64_t pause : {9'000, 10'700, 9'900, 11'000}) {  // ticks come unevenly
+  for (const std::uint64_t pause : {9'000, 10'700, 9'900, 11'000}) {  // ticks with jitter
     bench.board.now_us += pause;
     stamps.push_back(bench.board.now_us + 1);
     bench.node.tick(1);
@@ -128,7 +128,8 @@ TEST_CASE("a pause is not followed by a burst of frames") {
   CHECK(bench.board.sent.size() == 1);
   bench.board.now_us += 1'000'000;
   bench.run(100'000);
-  CHECK(bench.board.sent.size() == 2 + 1);  // the one that is due at once, and the next on its grid
+  // The frame that is due at once, and the next on its grid.
+  CHECK(bench.board.sent.size() == 2 + 1);
   CHECK(bench.node.counts().frames.late == 1);
 }
 
@@ -189,5 +190,6 @@ TEST_CASE("a sample that is later than its frame is not sent: the counter went b
   bench.run(200'000);
   CHECK(bench.frame(0).n_tx_us < 200'000);
   CHECK(bench.node.counts().frames.unstampable == 1);
-  CHECK(bench.board.sent.size() == 2);  // and frames do not wait until it is where it was
+  // And frames do not wait until the counter is back where it was.
+  CHECK(bench.board.sent.size() == 2);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sampling in a task of its own, beside the one that sends: what ./dev tsan looks at.
+// Sampling in a task of its own beside the sending task; ./dev tsan checks it for data races.
 #include "firmware/node/node.h"
 #include "tests/firmware/fake_board.h"
 
@@ -11,7 +11,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Its counter goes up by 100 us a call, whoever calls, and its sensor says which sample it is.
+/// Its counter goes up by 100 us at each call, and its sensor gives the sample's number.
 class TwoTaskBoard : public Board {
  public:
   std::uint64_t counter_us() override { return now_us_ += 100; }

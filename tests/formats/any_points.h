@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points for tests of writers: anywhere within nine metres, a fifth of them missing.
+// Random points for tests of writers: within nine metres, a fifth of them missing.
 #pragma once
 
 #include "tests/folder.h"
@@ -38,7 +38,7 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
   return most;
 }
 
-/// positions.in and states.in, for a script of tests/witness.
+/// Writes positions.in and states.in for a script of tests/witness.
 inline void put_points(const FreshFolder& folder, const PointFrames& frames) {
   std::vector<double> states;
   for (const Tracking state : frames.state) states.push_back(static_cast<double>(state));

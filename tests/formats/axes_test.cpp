@@ -15,7 +15,7 @@ using namespace kinalign;
 
 namespace {
 
-/// All 48 ways to name three axes by three, signs and all.
+/// All 48 ways to map three axes to three axes, with signs.
 std::vector<Axes> all_axes() {
   std::vector<Axes> out;
   Axes order{1, 2, 3};
@@ -47,7 +47,7 @@ StreamOptions up(const std::string& axis) {
 TEST_CASE("half of all axes are a turn, half a mirror image, and a repeated one is neither") {
   int turns = 0;
   for (const Axes& axes : all_axes()) {
-    // A turn keeps the cross product; a mirror image turns it round.
+    // A rotation keeps the sign of the cross product; a mirror image changes it.
     const Vec3 crossed = ours(axes, Vec3::UnitX()).cross(ours(axes, Vec3::UnitY()));
     const Vec3 third = ours(axes, Vec3::UnitZ());
     CHECK(determinant(axes) == (crossed == third ? 1 : -1));
@@ -112,7 +112,8 @@ TEST_CASE("points come out turned and in metres, missing ones as zeros, whatever
 }
 
 TEST_CASE("a node's world turns with the axes, its own space does not") {
-  const std::array<double, 4> half_turned{0, 0, 2, 0};  // about y; of any length
+  // About y; quaternions of any length are accepted.
+  const std::array<double, 4> half_turned{0, 0, 2, 0};
   const std::array<double, 3> a{1, 2, 3}, w{-90, 0, 90};
   for (const Axes& axes : all_axes()) {
     if (determinant(axes) < 0) continue;

@@ -19,7 +19,7 @@ namespace {
 constexpr ColumnUse skipped{};
 constexpr ColumnUse first{0, -1}, second{1, -1}, third{2, -1};
 
-/// What a line of three numbers gives; nullopt: missing.
+/// The result of reading a line of three numbers; nullopt: missing.
 struct Cells {
   std::vector<std::optional<double>> numbers;
   std::string error;
@@ -108,7 +108,7 @@ TEST_CASE("a column of which nothing is wanted may hold anything, a delimiter in
     CAPTURE(line);
     CHECK(read(row, line).numbers == std::vector<std::optional<double>>{1, 2});
   }
-  // Quotes that never close are a part of the cell.
+  // A quote that is never closed is a part of the cell.
   CHECK(read(row, "1,\"a,2").numbers == std::vector<std::optional<double>>{1, 2});
 }
 

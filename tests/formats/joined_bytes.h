@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that are put together, for tests.
+// Functions that join values to bytes, for tests.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Rows of a neck and two shoulders; `seen` false: the left one was not.
+/// Rows of a neck and two shoulders; `seen` false: the left shoulder was not seen.
 struct Row {
   double left_x, right_x;
   bool seen = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers and layouts of this room under test.
+// Helpers to run readers and layouts in tests.
 #pragma once
 
 #include "tests/pieces.h"
@@ -13,7 +13,7 @@
 
 namespace kinalign {
 
-/// Pieces of 1, 2, 3, ... bytes give what the whole text gives.
+/// Checks that pieces of 1, 2, 3, ... bytes give the same as the whole text.
 template <class MakeReader>
 void check_pieces(MakeReader make, std::string_view text) {
   const auto whole = read_all(make(), text);

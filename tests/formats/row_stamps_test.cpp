@@ -19,14 +19,14 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr TimeScale in_ns{1, 0}, in_us{1'000, 0}, in_ms{1'000'000, 0}, in_s{second_ns, 0},
     in_ticks{100, 0}, in_net_ticks{100, year_1_s};
 
-/// "1700000000.000000001" of a stamp in units of `unit_ns`, with all its digits.
+/// "1700000000.000000001" for a stamp in units of `unit_ns`, with all its digits.
 std::string written(std::int64_t ns, std::int64_t unit_ns) {
   const std::int64_t size = ns < 0 ? -ns : ns;
-  std::string fraction = std::to_string(unit_ns + size % unit_ns).substr(1);  // with its zeros
+  std::string fraction = std::to_string(unit_ns + size % unit_ns).substr(1);  // with leading zeros
   return (ns < 0 ? "-" : "") + std::to_string(size / unit_ns) + "." + fraction;
 }
 
-/// The stamps of a file whose column says `column`.
+/// The stamps of a file with these texts in its time column.
 std::vector<std::int64_t> stamps_of(RowStamps stamps, const std::vector<std::int64_t>& column) {
   HeldRows<PointFrames> held;
   PointFrames out;
@@ -94,7 +94,8 @@ TEST_CASE("stamps reach 4e18 ns either way and no further") {
   CHECK_FALSE(parse_stamp("4000000001", in_s));
   CHECK_FALSE(parse_stamp("-1e300", in_s));
   CHECK_FALSE(parse_stamp("0", {1, 10 * second_ns}));
-  CHECK_FALSE(parse_stamp("0", {1, year_1_s}));  // nanoseconds since the year 1 are too many
+  // Too many nanoseconds since the year 1 for 64 bits.
+  CHECK_FALSE(parse_stamp("0", {1, year_1_s}));
   CHECK_FALSE(parse_stamp("9223372036854775799", in_net_ticks));
   CHECK_FALSE(parse_stamp("-9223372036854775799", in_net_ticks));
 }
@@ -107,7 +108,7 @@ TEST_CASE("a stamp is a number and nothing else") {
   }
   CHECK(parse_stamp("+1.5", in_s) == 1'500'000'000);
   CHECK(parse_stamp("1.", in_s) == second_ns);
-  CHECK(parse_stamp("1,5e0", in_s) == 1'500'000'000);  // a French locale's
+  CHECK(parse_stamp("1,5e0", in_s) == 1'500'000'000);  // a decimal comma, as in a French locale
 }
 
 TEST_CASE("a rate's stamps do not drift: an hour of 29.97 Hz ends where it should") {

@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// `write(out)` -> Result<void>; the error where it fails.
+/// `write(out)` returns Result<void>. Gives the text, or the error if it fails.
 template <class Write>
 Result<std::string> written_text(const Write& write) {
   const FreshFolder folder;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fuzz targets are seeded with and once stumbled over (tests/data/fuzz), played again by
-// an ordinary build: a target that finds a fault aborts. Each target is compiled in under its own
+// Runs the fuzz targets on their seeds and on inputs that once failed (tests/data/fuzz), in an
+// ordinary build: a target that finds a fault aborts. Each target is compiled in under its own
 // name.
 #include <doctest/doctest.h>
 
@@ -25,7 +25,7 @@ void replay(const std::string& name, Target* target) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-    // whole, and cut at a hundred places
+    // The input is given whole, and cut at a hundred places.
     for (std::size_t k = 0; k <= 100; ++k) CHECK(target(data, bytes.size() * k / 100) == 0);
     ++files;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each build of the kernels against plain loops in double.
+// Each build of the kernels compared with plain loops in double.
 #include "kinalign/infer/kernels.h"
 
 #include "tests/infer/networks.h"

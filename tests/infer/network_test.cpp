@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small networks by hand. tests/infer/network_check.py compares random ones with PyTorch.
+// Small networks computed by hand. tests/infer/network_check.py compares random ones with PyTorch.
 #include "kinalign/infer/network.h"
 
 #include "tests/infer/allocations.h"
@@ -57,7 +57,7 @@ TEST_CASE("along_time: each channel alone, the mean over all windows that a fram
   // Windows 1 2 and 2 4 become 2 1 and 4 2.
   CHECK(run({two}, exchange, {1, 2, 4}) == std::vector<float>{2, 2.5F, 2});
   CHECK(run({two}, exchange, {1, 2}) == std::vector<float>{2, 1});
-  CHECK(run({two}, exchange, {5}) == std::vector<float>{5});  // filled up with its last frame
+  CHECK(run({two}, exchange, {5}) == std::vector<float>{5});  // padded with the window's last frame
   CHECK(run({two}, exchange, {}).empty());
   const Network both = network_of({2, {two}}, exchange);
   CHECK(result_of(both, {1, 10, 2, 20, 4, 40}) == std::vector<float>{2, 20, 2.5F, 25, 2, 20});
@@ -105,7 +105,7 @@ TEST_CASE("both builds of the kernels agree") {
       largest = std::max(largest, std::abs(best[i]));
       apart = std::max(apart, std::abs(best[i] - baseline[i]));
     }
-    CHECK(apart < 1e-5F * largest);  // some hundred roundings of 6e-8
+    CHECK(apart < 1e-5F * largest);  // some hundred roundings of 6e-8 each
   }
 }
 

@@ -49,7 +49,7 @@ inline Tensors random_tensors(const Architecture& architecture, std::uint64_t se
   return out;
 }
 
-/// Every kind that runs frame by frame.
+/// A network with every kind of layer that can run frame by frame.
 inline Architecture online_architecture() {
   const Layer leaky{.kind = leaky_relu, .slope = 0.125};
   const Layer tail{.kind = slice, .out = 5, .begin = 2};
@@ -66,7 +66,7 @@ inline Architecture online_architecture() {
            causal_conv(3, 2, 7)}};
 }
 
-/// A smoother of each channel by itself.
+/// A layer that smooths each channel by itself.
 inline Layer smoother(std::size_t window) {
   const Layer block = branches(sum, {{}, {layer(linear, 3), layer(tanh), layer(linear, 12)}});
   return {.kind = along_time,
@@ -74,7 +74,7 @@ inline Layer smoother(std::size_t window) {
           .branches = {{layer(linear, 12), block, layer(linear, window)}}};
 }
 
-/// Every kind.
+/// A network with every kind of layer.
 inline Architecture offline_architecture() {
   Architecture out = online_architecture();
   Layer both = layer(lstm, 4);

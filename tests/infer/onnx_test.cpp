@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files as others read them: tests/infer/network_check.py.
+// The ONNX writer. tests/infer/network_check.py reads its files with other programs.
 #include "kinalign/infer/onnx.h"
 
 #include "tests/infer/networks.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the network of a SafeTensors file for tests/infer/network_check.py:
-//   run_network offline|online baseline|best MODEL IN OUT   float32 [T,inputs] to float32
-//   [T,outputs]
-// The architecture stands as JSON in the metadata.
+//   run_network offline|online baseline|best MODEL IN OUT
+// IN: float32 [T,inputs], OUT: float32 [T,outputs]. The architecture is JSON in the file's
+// metadata.
 #include "tests/folder.h"
 
 #include "kinalign/infer/architecture_json.h"

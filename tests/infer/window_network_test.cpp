@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t window_inputs = 6;
 
-/// Every kind of layer that a window fits, centred and causal.
+/// Every kind of layer that works on a window, centred and causal.
 Architecture windowed_architecture() {
   Layer part = layer(slice, 8);
   part.begin = 3;
@@ -29,7 +29,7 @@ Architecture windowed_architecture() {
        layer(dropout), centred_conv(7, 3, 8), layer(linear, 5)}};
 }
 
-/// A window of the rows of `all` before `end`, moved on frame by frame.
+/// A window of the rows of `all` before `end`, which moves on frame by frame.
 struct Moving {
   const std::vector<float>& all;
   std::size_t first = 0, end = 0;
@@ -63,7 +63,7 @@ TEST_CASE("results in a moving window are those of all frames since the start, b
     for (std::size_t t = ahead; t < 120; ++t) {
       const std::size_t before = moving.end;
       moving.end = t + 1;
-      const std::size_t wanted = t - ahead;  // the row that is answered
+      const std::size_t wanted = t - ahead;  // the row for which the answer is
       const auto found = window.run(moving.rows(), moving.end - moving.first, before - moving.first,
                                     wanted + 1 - moving.first);
       const auto whole = result_of(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods that clean skeletons, on one short pair.
+// The methods that clean skeletons, trained on one short pair.
 #include "kinalign/learn/denoise_task.h"
 
 #include "tests/models/bodies.h"
@@ -17,7 +17,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A rough motion and its truth: other waves about the same body.
+/// A rough motion and its truth: the truth has other waves about the same body.
 Pair one_pair(std::size_t frames) {
   Pair out;
   out.input = moving_body(frames, 1);
@@ -49,16 +49,16 @@ Architecture narrow_network(const DenoiseMethod& method, const DenoiseLayout& la
   return out;
 }
 
-/// The window that the method sees at once, at most 61 frames.
+/// The method's training for small tests: batches of two, no mirror images, and no smoothness loss.
 DenoiseTraining small_training(const DenoiseMethod& method) {
   DenoiseTraining out = method.training;
   out.batch = 2;
   out.mirror = false;
-  out.loss.smooth = 0.0;  // holds the answer back, whatever the truth is
+  out.loss.smooth = 0.0;  // it holds the answer back, whatever the truth is
   return out;
 }
 
-/// The pair, or of a method that learns from the truth alone one whose input is the truth.
+/// The pair. For a method that learns from the truth alone, the input is the truth, too.
 Pair pair_for(const DenoiseMethod& method) {
   Pair out = one_pair(static_cast<std::size_t>(method.training.crop));
   if (method.training.from_truth) out.truth = out.input.positions;
@@ -69,7 +69,7 @@ void answer_zeros(TorchNetwork& network) {
   for (auto& [name, tensor] : network.tensors()) tensor.detach().zero_();
 }
 
-/// The judgement after the fit as a share of that of the network as it was drawn.
+/// The judgement after the fit, as a share of that of the untrained network.
 double left_over(const DenoiseMethod& method, std::int64_t steps) {
   const DenoiseLayout layout = layout_of(method);
   const std::vector<Pair> pairs{pair_for(method)};
@@ -101,7 +101,7 @@ Result<DenoiseFit> fitted(DenoiseMethod method, std::uint64_t seed) {
 TEST_CASE("denoise task: each network learns one window by heart") {
   CHECK(left_over(refine_method(), 300) < 0.05);
   CHECK(left_over(refine_linear_method(), 300) < 0.05);
-  // Its pools hold two frames together; by the processor's rounding it ends at 0.05 to 0.09.
+  // Its pools join two frames each; with the processor's rounding it ends at 0.05 to 0.09.
   CHECK(left_over(cnn_method(), 1000) < 0.12);
   CHECK(left_over(bra_method(), 400) < 0.05);
   CHECK(left_over(cnn_manifold_method(), 1000) < 0.05);
@@ -149,7 +149,7 @@ TEST_CASE("denoise task: a weight of the hands counts their errors so many times
   for (std::size_t i = 0; i < still.truth.size(); ++i) {
     still.input.positions[i] = still.truth[i] = standing_body[i / 3 % 21][i % 3];
   }
-  // 10 cm to both sides in turn: what a joint is off by on average is none.
+  // The joint is 10 cm off to one side and then to the other, so its mean error is zero.
   const auto loss = [&](std::size_t joint, double hands) {
     Pair wrong = still;
     for (std::size_t t = 0; t < 60; ++t) wrong.truth[63 * t + 3 * joint] += t < 30 ? 0.1F : -0.1F;
@@ -166,7 +166,7 @@ TEST_CASE("denoise task: a weight of the hands counts their errors so many times
   constexpr std::size_t wrist = 6, knee = 13;
   CHECK(loss(wrist, 1.0) == doctest::Approx(loss(knee, 1.0)).epsilon(0.01));
   CHECK(loss(wrist, 3.0) == doctest::Approx(3.0 * loss(knee, 3.0)).epsilon(0.03));
-  // 4 of 21 joints are hands: weights keep a mean of 1.
+  // 4 of 21 joints are hands, and the weights keep a mean of 1.
   CHECK(loss(knee, 3.0) == doctest::Approx(loss(knee, 1.0) * 21.0 / (17.0 + 12.0)).epsilon(0.01));
 }
 
@@ -266,7 +266,7 @@ TEST_CASE("denoise task: joints without truth do not count") {
     torch::NoGradGuard guard;
     return task.loss(TorchNetwork(narrow_network(method, layout)), 1, 0).item<double>();
   };
-  // Second differences weigh whole frames: 3 of 3 frames of the joint are not valid.
+  // Second differences need whole frames: all 3 frames of the joint are not valid.
   CHECK(loss(pair) == doctest::Approx(loss(wrong)).epsilon(1e-6));
 }
 

@@ -7,7 +7,7 @@ using namespace kinalign;
 
 namespace {
 
-/// [T,C] noise, and what a convolution makes of it.
+/// [T,C] noise, and its convolution.
 struct Convolved {
   torch::Tensor input, weight, bias, target;
 };

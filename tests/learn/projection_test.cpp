@@ -32,7 +32,7 @@ JointFrames standing(std::size_t frames) {
   return out;
 }
 
-/// A model of the method after two steps: its answer meets no constraint.
+/// A model of the method after only two training steps, so its answer violates the constraints.
 DenoiseModel hasty_model(DenoiseMethod method) {
   method.training.batch = 2;
   method.training.crop = 16;
@@ -71,8 +71,8 @@ TEST_CASE("standing frames: slow, near the floor, four or more") {
   };
   stay(10, 0.0F, 0.05F);                                                       // stands
   for (int i = 1; i <= 5; ++i) stay(1, 0.05F * static_cast<float>(i), 0.05F);  // 1.5 m/s
-  stay(10, 0.25F, 0.20F);  // rests 15 cm above the floor
-  stay(3, 0.25F, 0.05F);   // too brief, and it falls there
+  stay(10, 0.25F, 0.20F);  // it rests 15 cm above the floor
+  stay(3, 0.25F, 0.05F);   // the rest is too brief, and the joint falls meanwhile
   stay(1, 0.50F, 0.05F);
   const auto found = standing_frames(foot, 30.0);
   CHECK(std::count(found.begin(), found.begin() + 10, 1) == 10);
@@ -102,8 +102,7 @@ TEST_CASE("projection: feet that stand in the input slide less, bones keep their
   const auto projected = project(model, body);
   REQUIRE(plain);
   REQUIRE(projected);
-  // All four foot joints stand in all frames, so that the moves of the world's joints are those
-  // that count.
+  // All four foot joints stand in all frames, so only the moves of the joints in the world count.
   CHECK(projected->before.feet_cm ==
         doctest::Approx(foot_moves(plain->answer.positions)).epsilon(1e-3));
   CHECK(projected->after.feet_cm ==

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Networks in LibTorch against the ones that `infer` runs.
+// Networks in LibTorch compared with those that `infer` runs.
 #include "kinalign/learn/torch_network.h"
 
 #include "tests/infer/networks.h"
@@ -15,7 +15,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Draws architectures: up to `count` layers of any kind, which fit each other.
+/// Draws random architectures: up to `count` layers of any kind that fit each other.
 class Drawer {
  public:
   explicit Drawer(std::uint64_t seed) : random_(seed) {}
@@ -107,7 +107,7 @@ void compare(const Architecture& architecture, std::size_t frames, std::uint64_t
   auto wanted = result_of(same, {in.begin(), in.begin() + static_cast<std::ptrdiff_t>(half)});
   const auto second = result_of(same, {in.begin() + static_cast<std::ptrdiff_t>(half), in.end()});
   wanted.insert(wanted.end(), second.begin(), second.end());
-  // A layer_norm over values that hardly differ enlarges rounding, in both alike.
+  // A layer_norm over nearly equal values enlarges rounding, in both networks alike.
   const double rounding =
       difference(values_of(network.forward(batch, false)), exact(network, batch));
   CHECK(difference(values_of(network.forward(batch, false)), wanted) < 1e-5 + 2.0 * rounding);
@@ -147,7 +147,7 @@ TEST_CASE("torch network: the same seed draws the same weights, another seed oth
     torch::manual_seed(seed);
     return tensors_of(TorchNetwork(offline_architecture()));
   };
-  CHECK((drawn(4) == drawn(4)));  // glog would print what doctest compares
+  CHECK((drawn(4) == drawn(4)));  // glog would print the values that doctest compares
   CHECK((drawn(4) != drawn(5)));
 }
 
@@ -174,7 +174,7 @@ TEST_CASE("torch network: parts of a batch drop and unpool what the whole batch 
   torch::manual_seed(1);
   torch::NoGradGuard guard;
   const Layer half{.kind = dropout, .rate = 0.5};
-  // Values lie in another order in memory behind convolutions and behind recurrent layers.
+  // Values have another order in memory after convolutions than after recurrent layers.
   const TorchNetwork network({4,
                               {half,
                                {.kind = conv, .out = 6, .kernel = 3},

@@ -14,7 +14,7 @@ using namespace kinalign;
 
 namespace {
 
-/// y = x W for a W of its own; batches by seed and step, judgements as they are given.
+/// Learns y = x W for a given W. Batches follow from seed and step; judgements are given.
 class LineTask : public TrainingTask {
  public:
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override {
@@ -84,8 +84,8 @@ TEST_CASE("trainer: the learning rate is that of PyTorch's OneCycleLR") {
 }
 
 TEST_CASE("trainer: a step is AdamW's") {
-  // By hand: the first step of Adam moves each weight by its rate against the gradient's sign;
-  // matrices lose rate x decay of themselves.
+  // By hand: the first step of Adam moves each weight by the rate, against the gradient's sign.
+  // Matrices also lose rate x decay of themselves.
   TorchNetwork network({1, {layer(linear, 1)}});
   {
     torch::NoGradGuard guard;
@@ -162,7 +162,8 @@ TEST_CASE("trainer: the best judgement's weights are kept, and patience ends the
   CHECK(state.best_judgement == 1.0);
   LineTask other;
   TorchNetwork twenty = line_network(1);
-  // The rate depends on the number of steps, so the shorter run is stopped by its judgements too.
+  // The rate depends on the number of steps, so the shorter run must be stopped by its judgements,
+  // too.
   other.judgements = {2.0, 1.0, 3.0};
   const auto short_run =
       trained(twenty, other,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The official conformance files: what a reader must see of each stands in a JSON beside it.
+// The official conformance files. A JSON beside each file lists what a reader must find in it.
 #include "tests/mcap/mcap_files.h"
 #include "tests/shared_data.h"
 

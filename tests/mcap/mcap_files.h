@@ -27,7 +27,7 @@ struct MemoryFile {
   }
 };
 
-/// A message that owns its data.
+/// A message with its own copy of the data.
 struct OwnedMessage {
   McapMessage message;
   std::string data;
@@ -35,11 +35,12 @@ struct OwnedMessage {
 };
 
 struct ReadMcap {
-  std::vector<McapRecord> records;  // but messages, whose data would not last
+  std::vector<McapRecord> records;  // all records but messages, whose data would not stay valid
   std::vector<OwnedMessage> messages;
   Findings findings;
   bool closed = false;
-  bool unchecked = false, all_checked = false;  // the last message; all of a closed file
+  /// The last message had no checksum; all records of a closed file had one.
+  bool unchecked = false, all_checked = false;
 };
 
 inline ReadMcap read_mcap(std::string_view bytes, std::size_t piece = std::size_t{64} << 10) {
@@ -85,7 +86,7 @@ inline void add(McapChunkContent& content, const OwnedMessage& m) {
   content.add(message);
 }
 
-/// A whole file of `messages` messages, so many in a chunk; `ends` gets where each chunk ends.
+/// A whole file of `messages` messages, `a_chunk` in each chunk; `ends` gets the end of each chunk.
 inline std::string mcap_file(std::uint32_t messages, std::uint32_t a_chunk,
                              McapCompression compression, std::vector<std::size_t>* ends = nullptr,
                              bool finish = true) {

@@ -15,7 +15,7 @@ namespace kinalign {
 
 namespace {
 
-/// The messages before the k-th are those that were written.
+/// Whether the messages are the first ones that were written.
 bool are_the_first(const std::vector<OwnedMessage>& messages) {
   for (std::uint32_t k = 0; k < messages.size(); ++k) {
     const OwnedMessage expected = nth_message(k);
@@ -29,14 +29,15 @@ bool are_the_first(const std::vector<OwnedMessage>& messages) {
   return true;
 }
 
-/// At each seventh byte a chunk could begin whose compression has a name of 2 MiB.
+/// Bytes in which a chunk could begin at each seventh byte, with a compression whose name has 2
+/// MiB.
 std::string named_chunks(std::size_t size) {
   std::string bytes;
   while (bytes.size() < size) bytes += std::string("\6\1\0\0\x20\0\1", 7);
   return bytes;
 }
 
-/// Chunks of a byte, as they say, in each of which all that stands behind its head is stored.
+/// Chunks that state one byte each; every one holds all chunks after it.
 std::string nested_chunks(std::size_t size) {
   const std::string_view none;
   std::string head;
@@ -261,10 +262,10 @@ TEST_CASE("a file made to be searched for ever is searched in a moment") {
   for (const std::string& rubbish : {named_chunks(size), nested_chunks(size)}) {
     std::string bytes(mcap_magic);
     bytes += static_cast<char>(McapOp::message);
-    append_little(std::uint64_t{200} << 20, bytes);  // longer than the file: chunks are looked for
+    append_little(std::uint64_t{200} << 20, bytes);  // longer than the file, so chunks are searched
     const double begin = processor_seconds();
     const ReadMcap read = read_mcap(bytes + rubbish);
-    CHECK(processor_seconds() - begin < 5.0);  // without limits it is up to a minute
+    CHECK(processor_seconds() - begin < 5.0);  // without limits it takes up to a minute
     CHECK(read.messages.empty());
     REQUIRE(read.findings.size() == 1);
     CHECK(read.findings[0].what.found.starts_with("the file's end in the midst of one"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body that moves, with the joints of a Kinect.
+// A moving body with the joints of a Kinect.
 #pragma once
 
 #include "kinalign/models/joint_frames.h"
@@ -13,12 +13,12 @@
 
 namespace kinalign {
 
-/// The first 20 joints of a Kinect and its shoulders: a body without finger tips.
+/// The first 20 joints of a Kinect and SpineShoulder: a body without finger tips.
 inline std::vector<std::string> body_joint_names() {
   return {kinect_joints.begin(), kinect_joints.begin() + 21};
 }
 
-/// A person who faces +z, in the order of kinect_joints; x points to the person's left.
+/// A standing person who faces +z, in the order of kinect_joints; x points to the person's left.
 inline constexpr std::array<std::array<float, 3>, 21> standing_body{
     {{0.00F, 0.95F, 0.00F},  {0.00F, 1.20F, 0.00F},  {0.00F, 1.50F, 0.02F},  {0.00F, 1.65F, 0.04F},
      {0.18F, 1.40F, 0.00F},  {0.24F, 1.12F, 0.02F},  {0.26F, 0.88F, 0.06F},  {0.27F, 0.80F, 0.08F},

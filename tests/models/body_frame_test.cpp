@@ -46,7 +46,7 @@ TEST_CASE("body frame: root and sides are found by the names of each style") {
   REQUIRE(hips);
   CHECK(hips->root == std::vector<std::size_t>{1, 0});
   CHECK_FALSE(body_joints({"SpineBase", "Head"}));
-  CHECK_FALSE(body_joints({"ShoulderLeft", "ShoulderRight"}));  // sides, but no root
+  CHECK_FALSE(body_joints({"ShoulderLeft", "ShoulderRight"}));  // sides, but no root joint
   CHECK_FALSE(body_joints({}));
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("body frame: a body seen from the side keeps its heading") {
   JointFrames body = moving_body(30, 5);
   for (std::size_t t = 0; t < 30; ++t) {
     if (t >= 5 && t < 20) continue;
-    for (std::size_t j = 0; j < body.joints; ++j) {  // both sides in one place
+    for (std::size_t j = 0; j < body.joints; ++j) {  // both sides are at one place
       float* at = &body.positions[(t * body.joints + j) * 3];
       at[0] *= 0.05F;
       at[2] *= 0.05F;
@@ -95,9 +95,7 @@ TEST_CASE("body frame: a body seen from the side keeps its heading") {
   }
   const auto frames = body_frames(joints(), body);
   for (std::size_t t = 0; t < 30; ++t) {
-    const std::size_t same = t < 5     ? 5
-                             : t >= 20 ? 19
-                                       : t;  // the first known one, the last known one
+    const std::size_t same = t < 5 ? 5 : t >= 20 ? 19 : t;  // the first and the last known one
     CHECK(frames[t].cosine == frames[same].cosine);
     CHECK(frames[t].sine == frames[same].sine);
   }

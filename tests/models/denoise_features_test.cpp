@@ -23,7 +23,7 @@ TEST_CASE("layout: bases and parents by name, whatever style the names have") {
   CHECK(out->parents == std::vector<int>{-1, 0, 1, -1});
   CHECK(out->channels() == 7 * 21);
   CHECK(out->answers() == 12);
-  CHECK(out->smoothing.window == 9);  // 0.3 s, odd
+  CHECK(out->smoothing.window == 9);  // 0.3 s, rounded to an odd number of frames
   const auto other = denoise_layout({"SpineBase", "Head"}, {"Head"}, 30.0);
   REQUIRE_FALSE(other);
   CHECK(to_string(other.error()) ==

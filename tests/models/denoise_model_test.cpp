@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file of a model: what is written is read again, and what does not fit together is refused.
+// A model's file: it is read as it was written, and refused if its parts do not fit together.
 #include "tests/models/small_model.h"
 
 #include "kinalign/infer/safetensors.h"
@@ -49,7 +49,7 @@ std::string misfit(const std::string& what) {
   return "m: expected parts that fit together, found " + what;
 }
 
-/// What is accepted must run: answers of the right size.
+/// Any model that is accepted must run, and give answers of the right size.
 void check_sound(const std::string& bytes) {
   auto model = read_denoise_model(bytes, "m");
   if (!model) return;
@@ -238,7 +238,8 @@ TEST_CASE("denoiser: a mirrored body has the mirrored answer") {
     CHECK(std::abs(a.positions[i] - b.positions[i]) < 1e-5F);
   }
   const Denoised plain = denoiser.answer(body), mirrored = denoiser.answer(other);
-  CHECK(std::abs(plain.positions[0] + mirrored.positions[0]) > 1e-4F);  // the network is not even
+  // The network itself is not mirror-symmetric.
+  CHECK(std::abs(plain.positions[0] + mirrored.positions[0]) > 1e-4F);
 }
 
 TEST_CASE("denoiser: what is cleaned has bones of constant length") {

@@ -13,7 +13,7 @@ constexpr double rate = 30.0, gap = 0.2;
 
 Time at_ms(std::int64_t ms) { return utc_time(1'000'000'000 + ms * 1'000'000); }
 
-/// The standing body at these times, at x = time in seconds.
+/// The standing body at these times, moved to x = time in seconds.
 PointFrames walking(const std::vector<std::int64_t>& times_ms) {
   PointFrames out;
   for (const std::int64_t ms : times_ms) {
@@ -71,7 +71,7 @@ TEST_CASE("even grid: a joint is seen as well as the worse of the samples around
   put_state(points, 3, 6, Tracking::missing);
   const auto frames = even(points);
   REQUIRE(frames);
-  // Sample 3 is at 120 ms: rows 3 (100 ms) and 4 (133 ms) lie beside it.
+  // Sample 3 is at 120 ms, between rows 3 (100 ms) and 4 (133 ms).
   for (const std::size_t t : {3U, 4U}) {
     CHECK(seen(*frames, t, 5) == 1);
     CHECK(seen(*frames, t, 6) == 0);
@@ -100,7 +100,7 @@ TEST_CASE("even grid: rows far from any sample are missing") {
   std::size_t missing = 0;
   for (std::size_t t = 0; t < frames->body.frames(); ++t)
     missing += seen(*frames, t, 0) == 0 ? 1 : 0;
-  // 1.033 s of gap, less 0.2 s at both ends, at 30 Hz: 19.
+  // 1.033 s of gap, minus 0.2 s at both ends, at 30 Hz: 19 rows.
   CHECK(missing == 19);
   CHECK(seen(*frames, 14 + 5, 0) == 2);
   CHECK(seen(*frames, 14 + 6, 0) == 0);

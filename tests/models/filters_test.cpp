@@ -12,7 +12,8 @@ namespace {
 
 constexpr double rate = 30.0;
 
-/// One joint that moves along x as `place` says; `noise` m of a Gaussian on each axis.
+/// One joint that moves along x by the function `place`, with `noise` m of Gaussian noise on each
+/// axis.
 template <class Place>
 JointFrames one_joint(std::size_t frames, double noise, const Place& place) {
   std::mt19937_64 random(7);

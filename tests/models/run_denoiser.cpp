@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model's answers for tests/learn/learn_check.py:
+// Writes a model's answers for tests/learn/learn_check.py:
 //   run_denoiser answer|clean MODEL IN OUT
 // IN: float32 [T,J,3] m, all joints tracked; OUT: float32 [T,Jout,3] m.
 #include "tests/folder.h"

@@ -47,7 +47,8 @@ TEST_CASE("skeleton of points: forward kinematics gives the points back") {
         const std::size_t at = place_of(clip->skeleton, cleaned.body.names[j]);
         for (std::size_t k = 0; k < 3; ++k) {
           const auto wanted = static_cast<double>(cleaned.positions[(t * points + j) * 3 + k]);
-          // Lengths are those of the first frame: five bones to a hand, each within float's 3e-7 m.
+          // Bone lengths are those of the first frame. Five bones lead to a hand, each with float's
+          // rounding of 3e-7 m.
           CHECK(std::abs(global[(t * joints + at) * 3 + k] - wanted) < 2e-6);
         }
       }

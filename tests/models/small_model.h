@@ -15,7 +15,7 @@ inline std::vector<std::string> leg_names() {
   return {"SpineBase", "HipLeft", "HipRight", "KneeLeft", "KneeRight"};
 }
 
-/// Its weights are drawn from `seed`; all 0 with seed 0.
+/// A model whose weights are drawn from `seed`; with seed 0 all are 0.
 inline DenoiseModel small_model(std::uint64_t seed) {
   DenoiseModel out;
   out.facts = {"denoise", "refine", "0.1.0", R"({"data":[{"name":"walks","licence":"CC0"}]})",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file by numpy.savez (tests/data/models/windows_numpy.py) and one by the writer of
-// `dataset windows`; damaged ones.
+// A file that numpy.savez wrote (tests/data/models/windows_numpy.py) and one by the writer of
+// `dataset windows`; damaged files, too.
 #include "kinalign/models/windows_file.h"
 
 #include "tests/folder.h"
@@ -32,7 +32,7 @@ std::string refusal(const std::string& bytes) {
   return windows ? "no error" : to_string(windows.error());
 }
 
-/// The arrays of NumPy's file, for changes.
+/// The arrays of NumPy's file, to be changed by tests.
 struct Arrays {
   struct One {
     NpzArray about;
@@ -52,7 +52,7 @@ struct Arrays {
     }
   }
 
-  /// The file as `dataset windows` writes it.
+  /// The file in the form in which `dataset windows` writes it.
   std::string written() const {
     const FreshFolder folder;
     PosixFiles files;
@@ -83,7 +83,7 @@ TEST_CASE("windows file: windows that overlap or follow become one stretch") {
   const Windows windows = windows_of(numpy_file());
   REQUIRE(windows.stretches.size() == 3);
   CHECK(windows.stretches[0].rows == 6);  // rows 0-3 and 2-5 of the take
-  CHECK(windows.stretches[1].rows == 3);  // 10-12: the fourth is no row of the take
+  CHECK(windows.stretches[1].rows == 3);  // rows 10-12: a fourth row is beyond the take
   CHECK(windows.stretches[2].rows == 4);
   CHECK(windows.stretches[0].take == 0);
   CHECK(windows.stretches[1].take == 0);
@@ -260,7 +260,7 @@ TEST_CASE("pairs: of a Kinect's 25 joints and others the Kinect's are taken") {
   windows.stretches = {stretch};
   const auto pairs = pairs_of(windows, "kinect", "mocap", 1);
   REQUIRE(pairs);
-  // "Tail" and "Neck" (a bone that a Kinect lacks) are left out.
+  // "Tail" and "Neck" (a joint that a Kinect lacks) are left out.
   CHECK(pairs->inputs.size() == 10);
   CHECK(pairs->inputs[1] == "SpineMid");
   CHECK(pairs->all[0].input.positions[3] == 6.0F);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How late samples were stamped on arrival, against the times at which they were taken.
+// Lateness of samples that were stamped on arrival, compared with the times at which they were
+// taken.
 #include "kinalign/motion/arrivals.h"
 
 #include "tests/seeds.h"
@@ -23,8 +24,8 @@ Arrivals arrivals(const std::vector<std::int64_t>& stamps, std::int64_t step_ns)
   return surveyor.result();
 }
 
-/// Samples taken each step; those of [from, to) wait, and come one each `drain_ns` from `to` on,
-/// until none waits.
+/// Samples are taken each step. Those of [from, to) wait, and from `to` on one arrives each
+/// `drain_ns` until none waits.
 std::vector<std::int64_t> stalled(std::size_t count, std::int64_t step, std::size_t from,
                                   std::size_t to, std::int64_t drain_ns) {
   std::vector<std::int64_t> stamps;
@@ -82,7 +83,7 @@ TEST_CASE("what waited in a stall is counted, and how late the first of it was, 
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       if (stamps[k] - static_cast<std::int64_t>(k) * 10 * ms >= late_steps * 10 * ms) ++late;
     }
-    // 5 % of slack for each of up to 200 samples until the stall is drained
+    // 5 % of tolerance for each of up to 200 samples until no sample waits.
     CHECK(found.late <= late);
     CHECK(found.late >= late * 3 / 4 - 10);
     CHECK(found.worst_late_ns <= 400 * ms);
@@ -107,7 +108,7 @@ TEST_CASE("a device that begins quicker than it goes on has not waited") {
     for (int k = 0; k < 1000; ++k) stamps.push_back(stamps.back() + 50 * ms);
     const Arrivals found = arrivals(stamps, 50 * ms);
     CHECK(found.late == 0);
-    CHECK(found.near <= 3);  // of 6 ms: where the flush that it could have been ends
+    CHECK(found.near <= 3);  // with steps of 6 ms: the end of the stretch that could be a flush
     if (quick >= 10) CHECK(!found.first_late);
   }
 }
@@ -140,7 +141,8 @@ TEST_CASE("bursts at the stated rate are late by what the last one of each shows
   const Arrivals found = arrivals(stamps, 10 * ms);
   CHECK(found.late == 600);
   CHECK(found.near == 900);
-  CHECK(found.worst_late_ns == 76'500'000);  // of true 81: nine steps less 5 %, and nine of 1 ms
+  // The truth is 81 ms: nine steps less 9 ms; 5 % of the steps is allowed.
+  CHECK(found.worst_late_ns == 76'500'000);
 }
 
 TEST_CASE("a loop that reads a little slower than the device measures finds pairs, all told") {
@@ -188,7 +190,7 @@ TEST_CASE("no sample is late: jitter, losses, pauses, another rate for a while, 
   for (std::int64_t k = 1; k < 300; ++k) awake.push_back(awake[399] + k * 17 * ms);
   for (std::int64_t k = 1; k < 100; ++k) awake.push_back(awake[698] + k * 100 * ms);
   CHECK(arrivals(awake, 100 * ms).late == 0);
-  CHECK(arrivals(awake, 100 * ms).near == 2);  // where the quick stretch begins
+  CHECK(arrivals(awake, 100 * ms).near == 2);  // the beginning of the quick stretch
 }
 
 TEST_CASE("a wild stamp that is taken back leaves nothing behind") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Skeletons of any shape in any pose, for tests.
+// Skeletons of random shapes in random poses, for tests.
 #pragma once
 
 #include "tests/motion/rotations.h"
@@ -18,7 +18,7 @@ struct Chain {
   ClipFrames frames;
 };
 
-/// Joints under random parents, several roots among them, in random poses.
+/// Joints with random parents, several roots among them, in random poses.
 inline Chain random_chain(std::size_t joints, std::size_t frames, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   Chain chain;

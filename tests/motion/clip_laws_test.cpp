@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any skeleton, and that no array of a block of frames is forgotten.
+// Rules for any skeleton, and a check that no array of a block of frames is forgotten.
 #include "tests/motion/chains.h"
 #include "tests/seeds.h"
 
@@ -18,7 +18,7 @@ namespace {
 template <class Frames>
 constexpr std::size_t arrays_told = std::tuple_size_v<decltype(frame_arrays<Frames>)>;
 
-/// Whether `more` of each array is told, and told once.
+/// Whether `more` of each array is reported, and reported once.
 template <class Frames>
 void check_each_once(std::size_t members) {
   Frames frames;
@@ -30,7 +30,8 @@ void check_each_once(std::size_t members) {
 }  // namespace
 
 TEST_CASE("what treats the arrays of a block alike treats all of them") {
-  // A member put in or taken out no longer fits these names: then frame_arrays has to follow.
+  // If a member is added or removed, these names no longer fit and this does not compile: then
+  // frame_arrays must be changed, too.
   const auto& [clip_stamps, places, rotations] = ClipFrames{};
   static_assert(arrays_told<ClipFrames> == 3);
   check_each_once<ClipFrames>(3);

@@ -32,7 +32,7 @@ Skeleton skeleton_of(std::initializer_list<Given> joints) {
   return skeleton;
 }
 
-/// The joints of a person of 1.75 m that the map asks for, from formats.md 1.3.
+/// The joints that the map needs, of a person of 1.75 m, from formats.md 1.3.
 Skeleton legacy() {
   return skeleton_of({{"Hips", -1, {0, 93.02, 0}},
                       {"RightUpLeg", 0, {-9.25, -1.59, 0}},
@@ -160,7 +160,7 @@ TEST_CASE("CMU's joints go by name") {
 TEST_CASE("what is missing is named, against the nearest skeleton that we know") {
   Skeleton skeleton = legacy();
   rename(skeleton, "LeftHandThumb2", "Daumen");
-  skeleton.end_sites.erase(skeleton.end_sites.begin() + 2);  // the head's
+  skeleton.end_sites.erase(skeleton.end_sites.begin() + 2);  // the end site of the head
   const auto map = kinect_map(skeleton);
   REQUIRE_FALSE(map);
   CHECK(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of angles and poses of any skeleton.
+// Rules for angles and poses of any skeleton.
 #include "tests/motion/chains.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
@@ -30,7 +30,7 @@ double worst_distance(std::span<const double> a, std::span<const double> b) {
   return worst;
 }
 
-/// Whether `joint` is `of` or hangs on it, however far down.
+/// Whether `joint` is `of` or one of its descendants.
 bool hangs_on(const Skeleton& skeleton, std::size_t joint, std::size_t of) {
   for (auto j = static_cast<int>(joint); j >= 0;
        j = skeleton.parents[static_cast<std::size_t>(j)]) {
@@ -39,7 +39,7 @@ bool hangs_on(const Skeleton& skeleton, std::size_t joint, std::size_t of) {
   return false;
 }
 
-/// A new order of the joints, new place -> old one, in which parents still stand first.
+/// A new order of the joints, new place -> old place, in which parents still come first.
 std::vector<std::size_t> another_order(const Skeleton& skeleton, std::mt19937_64& random) {
   std::vector<std::size_t> order, waiting(skeleton.joints());
   std::iota(waiting.begin(), waiting.end(), std::size_t{0});
@@ -137,7 +137,7 @@ TEST_CASE("a joint that turns moves what hangs on it and nothing else") {
                          hangs_on(chain.skeleton, i % joints, turned);
       CHECK((vec3(before, i) != vec3(after, i)) == below);
       if (!below) continue;
-      // On a sphere about the joint that turned.
+      // The joint stays on a sphere about the joint that turned.
       const double radius = (vec3(before, i) - vec3(before, at)).norm();
       CHECK(std::abs((vec3(after, i) - vec3(after, at)).norm() - radius) <= 1e-12);
     }
@@ -195,7 +195,7 @@ TEST_CASE("turns about one axis add up, and whole turns are none") {
       const auto turns = static_cast<double>(static_cast<int>(random() % 2000001) - 1000000);
       CHECK(angle_between(turn_by(order, {0, a, 0}) * turn_by(order, {0, b, 0}),
                           turn_by(order, {0, a + b, 0})) <= 2e-14);
-      // b + 360 turns has lost the digits of b that are smaller than its own last one.
+      // b + 360 turns has lost the digits of b that are smaller than its own last digit.
       const double wound = b + 360.0 * turns;
       CHECK(angle_between(turn_by(order, {a, 0, wound}),
                           turn_by(order, {a, 0, std::remainder(wound, 360.0)})) <= 2e-14);

@@ -25,7 +25,7 @@ Quat by_axes(const std::array<int, 3>& order, const double* degrees) {
   return q;
 }
 
-/// [n,3] angles up to two turns, those where tables and series break among them.
+/// [n,3] angles up to two turns, among them those at which tables and series change.
 std::vector<double> awkward_angles(std::size_t n, std::mt19937_64& random) {
   std::uniform_real_distribution<double> any(-720.0, 720.0);
   std::vector<double> angles(3 * n);
@@ -36,7 +36,7 @@ std::vector<double> awkward_angles(std::size_t n, std::mt19937_64& random) {
   return angles;
 }
 
-/// Frame by frame, joint by joint, with matrices.
+/// The same computed frame by frame and joint by joint, with matrices.
 void plain(const Chain& chain, std::vector<double>& positions) {
   const std::size_t joints = chain.skeleton.joints();
   std::vector<Eigen::Isometry3d> global(joints);
@@ -68,7 +68,7 @@ TEST_CASE("euler angles up to two turns, in all six orders, agree with three axi
     for (const auto& order : orders) {
       const std::size_t n = 1 + random() % 40;
       const auto angles = awkward_angles(n, random);
-      std::vector<double> q(5 * n, -7.0);  // rows of 5: the fifth is not ours to touch
+      std::vector<double> q(5 * n, -7.0);  // rows of 5: the fifth must not be changed
       rotations_from_euler({order[0], order[1], order[2]},
                            {{&angles[0], &angles[1], &angles[2]}, 3, q.data(), 5}, n);
       for (std::size_t i = 0; i < n; ++i) {

@@ -24,7 +24,7 @@ constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 const Vec3 still = Vec3::Zero();
 const Vec3 upright(0.0, gravity, 0.0);
 
-/// rad, of the estimated up against the true one in the sensor.
+/// The angle between the estimated and the true up in the sensor's axes, rad.
 double tilt_error(const Quat& estimate, const Quat& truth) {
   const Vec3 seen = estimate.conjugate() * Vec3::UnitY(), is = truth.conjugate() * Vec3::UnitY();
   return std::atan2(seen.cross(is).norm(), seen.dot(is));
@@ -50,7 +50,7 @@ TEST_CASE(
     CHECK(tilt_error(filter.orientation(), truth) < 1e-12);
     CHECK(heading_of(filter.orientation()) == about(0.7, 1e-9));
   }
-  // Upside down there is no shortest way: half a turn about x.
+  // Upside down no turn is the shortest; it is half a turn about x.
   MahonyFilter filter;
   filter.update(0.01, {still, -upright});
   CHECK(angle_between(filter.orientation(), Quat(0, 1, 0, 0)) < 1e-12);
@@ -87,15 +87,15 @@ TEST_CASE("a wrong tilt of a sensor at rest falls as the differential equation s
       filter.update(0.001, {still, upright});
       if (i % 1000 != 0) continue;
       const double expected = 2.0 * std::atan(std::tan(first / 2.0) * std::exp(-0.0005 * i));
-      // A step of Euler's rule is kP dt^2 / 2 of the error off: 6000 of them 1.5e-3 of it.
+      // A step of Euler's rule is off by kP dt^2 / 2 of the error: 6000 steps by 1.5e-3 of it.
       CHECK(tilt_error(filter.orientation(), Quat::Identity()) == about(expected, 2e-3));
     }
   }
 }
 
 TEST_CASE("a bias is learnt as a critically damped filter learns it, but about the vertical") {
-  // e'' = -kP e' - kI e from e = 0, e' = b: e = b t exp(-t / tau), what is unlearnt of the bias
-  // -e' - kP e ... with tau = 2 / kP: b (1 + t / tau) exp(-t / tau).
+  // e'' = -kP e' - kI e from e = 0, e' = b. So e = b t exp(-t / tau), and the part of the bias that
+  // is not learnt yet is b (1 + t / tau) exp(-t / tau), with tau = 2 / kP.
   const Vec3 bias(0.01, 0.02, -0.005);
   MahonyFilter filter({.tilt_gain = 0.4, .bias_gain = 0.04});
   filter.update(0.001, {bias, upright});
@@ -106,7 +106,7 @@ TEST_CASE("a bias is learnt as a critically damped filter learns it, but about t
     if (i % 5000 != 0 || i > 20000) continue;
     const double t = 0.001 * i / 5.0;
     const double left = (1.0 + t) * std::exp(-t);
-    // The turn about the vertical mixes x and z: their length is what falls.
+    // The turn about the vertical mixes x and z, so only their length falls.
     const Vec3 wrong = bias - filter.gyroscope_bias();
     CHECK(std::hypot(wrong.x(), wrong.z()) == about(left * std::hypot(bias.x(), bias.z()), 0.03));
   }
@@ -114,7 +114,7 @@ TEST_CASE("a bias is learnt as a critically damped filter learns it, but about t
   CHECK(std::abs(filter.gyroscope_bias().x() - bias.x()) < 2e-6);
   CHECK(std::abs(filter.gyroscope_bias().z() - bias.z()) < 2e-6);
   CHECK(std::abs(filter.gyroscope_bias().y()) < 1e-3);
-  // So the heading drifts by bias times time.
+  // So the heading drifts by the bias times the time.
   CHECK(heading_of(filter.orientation()) == about(0.02 * 60.0, 0.02));
 }
 
@@ -161,7 +161,7 @@ TEST_CASE("behind a gap the tilt starts anew from gravity, heading and bias stay
   CHECK(tilt_error(filter.orientation(), after) < 1e-12);
   CHECK(heading_of(filter.orientation()) == about(0.4));
   CHECK(filter.gyroscope_bias() == bias);
-  // Half a second is none: the rate turns through it.
+  // Half a second is no gap: the rate turns the sensor through it.
   MahonyFilter turns({.tilt_gain = 0.0, .bias_gain = 0.0});
   turns.update(0.01, {still, upright});
   turns.update(0.5, {Vec3(1.0, 0.0, 0.0), upright});
@@ -176,7 +176,8 @@ TEST_CASE("an acceleration that says nothing corrects nothing, and the rate stil
     for (int i = 0; i < 100; ++i) CHECK(filter.update(0.01, {Vec3(0.5, 0, 0), nothing}));
     CHECK(angle_between(filter.orientation(), rotation(Vec3(0.5, 0, 0))) < 1e-12);
     CHECK(filter.gyroscope_bias() == Vec3::Zero());
-    // Nor does one set the tilt: the first that has an up does, without a turn.
+    // Such an acceleration does not set the tilt either. The first one with a usable up does,
+    // without a turn.
     MahonyFilter blind;
     CHECK(blind.update(0.01, {Vec3(0.5, 0, 0), nothing}));
     CHECK_FALSE(blind.has_tilt());

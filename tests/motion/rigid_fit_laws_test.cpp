@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of the fit whatever the points.
+// Rules for the fit, whatever the points are.
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 
@@ -35,7 +35,7 @@ Points moved_by(const RigidTransform& transform, Points points) {
   return points;
 }
 
-/// The same cloud, each point shaken by 5 cm.
+/// The same cloud, each point moved randomly by 5 cm.
 Points shaken(Points points, std::mt19937_64& random) {
   for (Vec3& p : points) p += 0.05 * random_direction(random);
   return points;
@@ -53,7 +53,7 @@ RigidTransform fitted(const Points& from, const Points& to) {
   return *fit;
 }
 
-/// The largest distance between what two transforms make of the same points, m.
+/// The largest distance between the same points after either transform, m.
 double apart(const RigidTransform& a, const RigidTransform& b, const Points& points) {
   double worst = 0.0;
   for (const Vec3& p : points) worst = std::max(worst, (a * p - b * p).norm());
@@ -138,7 +138,8 @@ TEST_CASE("a fit brings the mean onto the mean") {
   for (const auto seed : fresh_seeds(100)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    const Points from = cloud(10, 5.0, random), to = cloud(10, 50.0, random);  // nothing alike
+    // Two clouds without any relation.
+    const Points from = cloud(10, 5.0, random), to = cloud(10, 50.0, random);
     Vec3 from_mean = Vec3::Zero(), to_mean = Vec3::Zero();
     for (const Vec3& p : from) from_mean += 0.1 * p;
     for (const Vec3& p : to) to_mean += 0.1 * p;

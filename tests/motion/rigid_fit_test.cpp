@@ -19,7 +19,7 @@ struct Pairs {
   std::size_t size() const { return from.size() / 3; }
 };
 
-/// Points about 3 m away, a kilometre off where `far`, turned, moved and with noise of 0.1 m.
+/// Points about 3 m away, a kilometre more if `far`; turned, moved, and with noise of 0.1 m.
 Pairs noisy_pairs(std::size_t n, double far, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   const RigidTransform truth{random_rotation(random), Vec3(1, -2, 0.5)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of rotations and their vectors.
+// Rules for rotations and their vectors.
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 
@@ -58,7 +58,7 @@ TEST_CASE("the parts of a rotation vector up to half a turn lead back to it") {
     CHECK(parts.w * parts.w + across.squaredNorm() == doctest::Approx(1.0).epsilon(2e-15));
     const double factor = rotation_vector_factor(parts.w, across.squaredNorm());
     const double limit = 3e-15 * (1.0 + v.norm());
-    // At half a turn, where w is nothing or a rounding, the vector may be the opposite one.
+    // At half a turn, where w is zero or a rounding error, the vector may be the opposite one.
     const double off = std::min((factor * across - v).norm(), (factor * across + v).norm());
     CHECK((v.norm() < std::numbers::pi - 1e-12 ? (factor * across - v).norm() : off) <= limit);
     // The other quaternion of the same rotation.

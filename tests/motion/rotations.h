@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations for tests: awkward ones, random ones, walks; and how far two are apart.
+// Rotations for tests: awkward ones, random ones, random walks; and the angle between two.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -19,7 +19,7 @@ inline double angle_between(const Quat& a, const Quat& b) {
   return 2.0 * std::atan2(apart.vec().norm(), std::abs(apart.w()));
 }
 
-/// No number where one of them is none, so that no limit holds.
+/// NaN if one of them is NaN, so that any limit fails.
 inline double worst_angle(std::span<const double> a, std::span<const double> b) {
   double worst = 0.0;
   for (std::size_t i = 0; i < a.size() / 4; ++i) {
@@ -40,7 +40,7 @@ inline Quat random_rotation(std::mt19937_64& random) {
   return Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
 }
 
-/// Rotation vectors where formulas break: none, tiny, near and at half a turn, several turns.
+/// Rotation vectors at which formulas fail: zero, tiny, near and at half a turn, several turns.
 inline std::vector<Vec3> awkward_vectors() {
   using std::numbers::pi;
   std::vector<Vec3> all{Vec3::Zero()};
@@ -71,7 +71,7 @@ inline std::vector<double> irregular_stamps(std::size_t n, std::mt19937_64& rand
   return t;
 }
 
-/// About `n` rising places in [t.front(), t.back()], both ends and all knots among them.
+/// About `n` rising places in [t.front(), t.back()], including both ends and all knots.
 inline std::vector<double> places_within(const std::vector<double>& t, std::size_t n,
                                          std::mt19937_64& random) {
   std::uniform_real_distribution<double> anywhere(t.front(), t.back());
@@ -83,7 +83,8 @@ inline std::vector<double> places_within(const std::vector<double>& t, std::size
   return at;
 }
 
-/// [n,4] rotations, each up to `most` rad from the one before about a random axis, signs at random.
+/// [n,4] rotations, each up to `most` rad from the one before about a random axis, with random
+/// signs.
 inline std::vector<double> rotation_walk(std::size_t n, double most, std::mt19937_64& random) {
   std::uniform_real_distribution<double> angle(0.0, most);
   std::vector<double> out(4 * n);

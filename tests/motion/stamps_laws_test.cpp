@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any stamps, however they jump.
+// Rules for any stamps, however they jump.
 #include "tests/seeds.h"
 
 #include "kinalign/motion/stamps.h"
@@ -19,7 +19,7 @@ using Stamps = std::vector<Time>;
 
 Duration milliseconds(double ms) { return Duration{std::llround(ms * 1e6)}; }
 
-/// A stream of about 30 Hz of which one sample in eight repeats, steps back, leaps ahead or is
+/// A stream of about 30 Hz in which one sample in eight is repeated, steps back, leaps ahead or is
 /// late.
 Stamps messy_stamps(std::mt19937_64& random) {
   std::uniform_real_distribution<double> step(20.0, 45.0), any(0.0, 1.0);
@@ -52,7 +52,7 @@ Stamps messy_stamps(std::mt19937_64& random) {
   return out;
 }
 
-/// What is left when each stamp has met its fate.
+/// The stamps that StampRule keeps.
 Stamps kept_of(const Stamps& stamps) {
   StampRule rule;
   Stamps kept;
@@ -140,15 +140,16 @@ TEST_CASE("one wild stamp anywhere in a steady stream costs itself alone") {
     std::mt19937_64 random(seed);
     Stamps stamps;
     for (int i = 0; i < 60; ++i) stamps.push_back(utc_time(i * 33'333'333LL));
-    const std::size_t wild = random() % 59;  // none behind the last one says who is wrong
-    // More than four usual steps; of the first two, for which no step is usual, more than a second.
+    const std::size_t wild = random() % 59;  // after the last one nothing shows which one is wrong
+    // Jumps of more than four usual steps. For the first two stamps no step is usual yet: more than
+    // a second.
     std::uniform_real_distribution<double> digits(wild < 2 ? 9.1 : 8.2, 16.0);
     const auto size = std::llround(std::pow(10.0, digits(random)));
     Stamps others = stamps;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(wild));
     for (const std::int64_t jump : {size, -size}) {
-      // A clock that was set forward looks the same; and the second stamp has taken the first one
-      // back before the third says which of them was wrong.
+      // A clock that was set forward looks the same. And the second stamp has already removed the
+      // first one, before the third shows which of them was wrong.
       if (wild <= 1 && jump < 0) continue;
       Stamps given = stamps;
       given[wild] += Duration{jump};

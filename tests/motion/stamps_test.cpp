@@ -48,7 +48,8 @@ TEST_CASE("one wild stamp far ahead costs one sample, not all that follow") {
   CHECK(found.kept() == 6);
   CHECK(found.last == utc_time(5 * s));
   CHECK(found.median_step_ns == s);
-  CHECK(survey(stamps({0, s, 999'999 * s})).kept() == 3);  // nothing behind it says who is wrong
+  // Nothing after it shows which one is wrong.
+  CHECK(survey(stamps({0, s, 999'999 * s})).kept() == 3);
 }
 
 TEST_CASE("a stamp that runs ahead by some steps costs one sample too") {
@@ -122,7 +123,8 @@ TEST_CASE("the median step is true to one percent at any rate") {
 }
 
 TEST_CASE("the median step is true to one percent also where the next larger steps lie close") {
-  // Found by a seed: the mean of a class of steps was up to 1.5 percent above its least one.
+  // A random seed found this: the mean of a class of steps was up to 1.5 percent above its least
+  // one.
   std::vector<std::int64_t> ns{0};
   const auto add = [&](int count, std::int64_t step) {
     for (; count > 0; --count) ns.push_back(ns.back() + step);
@@ -157,7 +159,7 @@ TEST_CASE("stamps from one end of time to the other are surveyed without overflo
   const auto found = survey(stamps({INT64_MIN, INT64_MAX, INT64_MIN}));
   CHECK(found.kept() == 2);
   CHECK(found.backward == 1);
-  CHECK(found.largest_step_back_ns == INT64_MAX);  // as much as there is room for
+  CHECK(found.largest_step_back_ns == INT64_MAX);  // the largest number there is
 }
 
 TEST_CASE("frames of a fixed step are counted from the first, and end before time does") {

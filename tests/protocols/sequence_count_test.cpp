@@ -97,13 +97,14 @@ TEST_CASE("sequence: what is late behind a long loss is no duplicate of what was
   for (const auto number : range(0, 1000)) count.push(number);
   count.push(5'000);
   count.push(5'001);
-  CHECK(count.push(4'071) == Order::late);  // 4071 and 999, the newest before, share a bit
+  // 4071 and 999, the newest before the loss, share a bit of the window.
+  CHECK(count.push(4'071) == Order::late);
   CHECK(count.counts() == SequenceCounts{1003, 3'999, 1, 0, 0, 0});
 }
 
 namespace {
 
-/// Numbers with places in a queue that are up to 30 later, some twice, some never.
+/// Numbers in the order in which they arrive: each up to 30 places late, some twice, some never.
 std::vector<std::pair<std::uint64_t, std::uint64_t>> on_the_air(std::uint64_t sent,
                                                                 std::mt19937_64& random) {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> queue;
@@ -133,7 +134,8 @@ TEST_CASE("sequence: any loss, doubling and reordering is counted exactly") {
       if (!doubled && !here.empty() && k < *here.rbegin()) ++truth.late;
       here.insert(k);
       count.push(first + k);
-      if (here.size() == 1 && k > 7) break;  // the first but eight overtakes more than is believed
+      // The first arrival has overtaken at least eight, more than is believed.
+      if (here.size() == 1 && k > 7) break;
     }
     if (here.size() == 1) continue;
     truth.received = queue.size();
@@ -147,7 +149,7 @@ TEST_CASE(
   SequenceCount count;
   for (const auto number : range(5'000, 100)) count.push(number, false);
   for (const auto number : range(5'000, 50)) {
-    CHECK(count.push(number, false) == Order::duplicate);  // as the window has them
+    CHECK(count.push(number, false) == Order::duplicate);  // these numbers are in the window
   }
   for (const auto number : range(10, 50)) {
     CHECK(count.push(number, false) == Order::duplicate);  // from before the window

@@ -61,7 +61,8 @@ TEST_CASE("a file that is of the recording by its name alone is told, also by it
   REQUIRE(told.size() == 1);
   CHECK(told.front().what.file == damaged);
   std::filesystem::remove(damaged);
-  std::string another = part_of(1, 0, 20, true);  // of another machine: the name was given again
+  // A recording of another machine that has the same file name.
+  std::string another = part_of(1, 0, 20, true);
   folder.write("a.mcap", another.replace(another.find("lab"), 3, "bal"));
   CHECK(judge_namesakes(files, renamed).empty());
   CHECK(sorted(with_parts(files, {renamed})) == std::vector{renamed});

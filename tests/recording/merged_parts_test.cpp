@@ -22,7 +22,7 @@ struct Told {
   std::uint64_t log_time = 0;
 };
 
-/// Part of a recording with these messages in a chunk, as they stand here.
+/// A part of a recording with these messages in a chunk, in this order.
 std::string part_with(int part, const std::vector<Told>& messages) {
   MemoryFile file;
   McapWriter writer(file.store());
@@ -41,7 +41,7 @@ std::string part_with(int part, const std::vector<Told>& messages) {
   return file.bytes;
 }
 
-/// Of each channel the numbers as they come.
+/// The sequence numbers of each channel in the order in which they are read.
 std::map<std::uint16_t, std::vector<std::uint32_t>> merged(const std::vector<std::string>& bytes) {
   const FreshFolder folder;
   PosixFiles files;
@@ -65,7 +65,8 @@ std::map<std::uint16_t, std::vector<std::uint32_t>> merged(const std::vector<std
 }  // namespace
 
 TEST_CASE("channels stay in order where log times do not rise within a file") {
-  // Behind a standstill all of one device was written, then what had come of the other.
+  // After a standstill of the disk the recorder wrote all messages of one device first, then those
+  // of the other.
   std::vector<Told> first, second;
   for (std::uint32_t k = 0; k < 50; ++k) first.push_back({1, k, 100 + k});
   for (std::uint32_t k = 0; k < 20; ++k) first.push_back({2, k, 100 + k});
@@ -94,7 +95,7 @@ TEST_CASE("whatever files have of a recording, channels come in order, and all t
       for (const Told& one : all) {
         if (random() % 3 == 0) own.push_back(one);
       }
-      own.push_back(all[static_cast<std::size_t>(part)]);  // none has nothing
+      own.push_back(all[static_cast<std::size_t>(part)]);  // no part is empty
       std::stable_sort(own.begin(), own.end(),
                        [](const Told& a, const Told& b) { return a.log_time < b.log_time; });
       for (const Told& one : own) there[one.channel].insert(one.number);

@@ -20,7 +20,7 @@ McapMessage numbered(std::uint32_t number, std::uint16_t channel = 7) {
   return {channel, number, 0, 0, {}};
 }
 
-/// Some of a few numbers, at the beginning and at the end of what 32 bits hold.
+/// Some random numbers near the beginning or the end of the range of 32 bits.
 Numbers some(std::mt19937_64& random) {
   Numbers numbers;
   const std::uint32_t base = random() % 2 == 0 ? 0 : UINT32_MAX - 20;
@@ -96,10 +96,10 @@ TEST_CASE("of what no checksum covers a number is believed that can be in the ti
     message.log_time = 1'000'000'000 * (1000 + seconds);
     return message;
   };
-  CHECK(guard.believes(after(0, 1'000'000'000), true));  // nothing is known of the channel
+  CHECK(guard.believes(after(0, 1'000'000'000), true));  // nothing is known of the channel yet
   for (const std::uint32_t number : {5U, 6U, 900U}) CHECK(guard.believes(after(0, number), false));
   for (const std::uint32_t number : {901U, 950U, 902U, 900U + 1024U, 7U, 899U}) {
-    CHECK(guard.believes(after(0, number), true));  // each against the checked ones alone
+    CHECK(guard.believes(after(0, number), true));  // each is compared only with the checked ones
   }
   CHECK(guard.believes(after(1, 60'000), true));
   CHECK(guard.believes(after(3600, 3600 * 60'000), true));  // the disk stood still for an hour
@@ -108,8 +108,9 @@ TEST_CASE("of what no checksum covers a number is believed that can be in the ti
     CHECK_FALSE(guard.believes(after(0, number), true));
   }
   CHECK_FALSE(guard.believes(after(1, 70'000), true));
-  CHECK_FALSE(guard.believes(numbered(70'000), true));  // its time is garbage, too
+  CHECK_FALSE(guard.believes(numbered(70'000), true));  // the time of this message is wrong, too
   CHECK(guard.strays() == 9);
   CHECK(guard.believes(numbered(0, 8), true));
-  CHECK(guard.believes(numbered(5), false));  // what is covered is there, whatever its number
+  // A message with a valid checksum is believed, whatever its number.
+  CHECK(guard.believes(numbered(5), false));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of a recording that goes on in others, for tests.
+// The files of a recording that continues in further files, for tests.
 #pragma once
 
 #include "tests/mcap/mcap_files.h"
@@ -21,7 +21,7 @@ inline Severity worst_of(const Findings& findings) {
   return worst;
 }
 
-/// Messages [from, to), numbered by channel, as ours are.
+/// Messages [from, to), numbered by channel as the recorder numbers them.
 inline McapChunkContent messages_of(int from, int to) {
   McapChunkContent content;
   for (int k = from; k < to; ++k) {
@@ -32,7 +32,7 @@ inline McapChunkContent messages_of(int from, int to) {
   return content;
 }
 
-/// Torn in front of the k-th message's times, in a chunk that is not compressed.
+/// The bytes cut before the times of the k-th message, in a chunk that is not compressed.
 inline std::string torn_at(const std::string& bytes, std::uint32_t k) {
   const McapMessage message = nth_message(k).message;
   std::string times;
@@ -41,7 +41,7 @@ inline std::string torn_at(const std::string& bytes, std::uint32_t k) {
   return bytes.substr(0, bytes.find(times));
 }
 
-/// Its definitions of channels are records of another kind then.
+/// The bytes with each channel's definition turned into a record of an unknown kind.
 inline std::string nameless(std::string bytes) {
   for (auto at = bytes.find("/topic"); at != std::string::npos; at = bytes.find("/topic", at + 1)) {
     bytes[at - 17] = 0x7e;
@@ -49,7 +49,7 @@ inline std::string nameless(std::string bytes) {
   return bytes;
 }
 
-/// Part of a recording, closed in order; `ends`: recording ended there.
+/// A part of a recording, closed in order; `ends`: the recording ended in it.
 inline std::string part_of(int part, const std::vector<McapChunkContent>& chunks, bool ends) {
   MemoryFile file;
   McapWriter writer(file.store());

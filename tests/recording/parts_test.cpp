@@ -18,7 +18,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A recording of forty seconds whose disk failed at 25 s: the second file repeats half a second.
+/// A recording of forty seconds whose disk failed at 25 s. The second file repeats half a second.
 class TornLab {
  public:
   explicit TornLab(const FreshFolder& folder) : folder_(&folder) {
@@ -31,7 +31,7 @@ class TornLab {
   std::string first() { return write("take.mcap", {1, -1e9, 25.0}); }
   std::string second() { return write("take.part2.mcap", {2, 24.5, 35.0}); }
   std::string third() { return write("take.part10.mcap", {10, 34.0, 1e9}); }
-  /// All in one file.
+  /// The whole recording in one file.
   std::string whole() { return write("whole_take.mcap", {}); }
   RecordedLab& lab() { return lab_; }
 
@@ -81,7 +81,7 @@ TEST_CASE("a recording is read on in the files that it went on in") {
   lab.third();
   CHECK(samples(files, path, "12") == all);
   CHECK(samples(files, path, "13") == samples(files, whole, "13"));
-  // The nodes of all files are in the manifest, and those files in the take.
+  // The manifest has the nodes of all files, and the take has those files.
   const auto manifest =
       manifest_of(*survey_parts(files, *parts_from(files, path, {}), {}), "take.mcap");
   REQUIRE(manifest);
@@ -124,7 +124,8 @@ TEST_CASE("of a recording's files it is said which are not there or were not rea
   CHECK(judged(second) == "the recording's first file, take.mcap, part 2\n");
   lab.third();
   CHECK(judged(path) == "a recording in one file, take.part2.mcap, take.part10.mcap\n");
-  // Of a file that has all of it the others are no parts, and neither are files of another run.
+  // A file that holds the whole recording has no further parts, and files of another run are no
+  // parts of it either.
   folder.write("other.part2.mcap", lab.lab().file({2, 24.5, 35.0, "take_02.mcap"}));
   CHECK(judged(lab.write("other.mcap", {})).empty());
 }
@@ -173,7 +174,7 @@ TEST_CASE("what is missing of a recording is what no file of it has") {
   };
   const std::string path = lab.first();
   CHECK(missing(path).count("/imu/13/raw") == 0);
-  lab.write("take.part3.mcap", {3, 30.0, 1e9});  // of the second one nothing is left
+  lab.write("take.part3.mcap", {3, 30.0, 1e9});  // the second part is lost
   CHECK(missing(path)["/imu/12/raw"] == 5 * 15);
   CHECK(missing(path)["/imu/13/raw"] == 0);
   lab.second();
@@ -212,7 +213,7 @@ TEST_CASE("what the disk spoilt in one file is taken from the next, which repeat
   std::string bytes = lab.lab().file({1, -1e9, 25.0});
   const std::string second = lab.write("take.part2.mcap", {2, 23.0, 1e9});
   const ReadMcap before = read_mcap(bytes);
-  std::vector<McapChunkIndex> chunks;  // of half a second each
+  std::vector<McapChunkIndex> chunks;  // chunks of half a second each
   for (const McapRecord& record : before.records) {
     if (const auto* chunk = std::get_if<McapChunkIndex>(&record)) chunks.push_back(*chunk);
   }
@@ -233,7 +234,8 @@ TEST_CASE("what a torn end says of a channel counts only where no checksum cover
   TornLab lab(folder);
   PosixFiles files;
   std::string first = lab.lab().file({1, -1e9, 30.4, "take.mcap", McapCompression::none}, false);
-  const auto begin = first.rfind("kinalign-node");  // of node 13, in the last chunk
+  // The begin of a message of node 13, in the last chunk.
+  const auto begin = first.rfind("kinalign-node");
   first.resize(begin + 500);
   first[begin] ^= 1;
   folder.write("take.mcap", first);
@@ -246,8 +248,8 @@ TEST_CASE("a message of a torn end whose number can't be is left out, and told")
   TornLab lab(folder);
   PosixFiles files;
   std::string bytes = lab.lab().file({1, -1e9, 25.0, "take.mcap", McapCompression::none});
-  // Channel 1 is node 12's; its last message but one, 0x05 and a length in front, in the torn
-  // chunk.
+  // Channel 1 is that of node 12. Finds its last message but one in the torn chunk: 0x05 and a
+  // length come before it.
   std::size_t last = 0, before = 0;
   for (std::size_t at = 0; (at = bytes.find(std::string("\0\0\0\0\0\0\1\0", 8), at)) < bytes.size();
        ++at) {

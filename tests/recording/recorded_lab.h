@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording of three devices in memory, for tests. Each sample carries the true time at which it
-// was taken, seconds since the recording began, so that whatever reads it can be held against it.
+// was taken, in seconds since the recording began, so a reader's stamps can be checked against it.
 #pragma once
 
 #include "tests/mcap/mcap_files.h"
@@ -41,14 +41,16 @@ inline std::string noitom_chain(const std::string& tenth, bool displacement) {
 class RecordedLab {
  public:
   static constexpr std::int64_t utc_begin = 1'790'000'000'000'000'000;
-  static constexpr std::int64_t host_begin = 5'000'000'000'000;  // up for 5000 s
+  /// The machine has been up for 5000 s.
+  static constexpr std::int64_t host_begin = 5'000'000'000'000;
 
   explicit RecordedLab(std::uint64_t seed) : random_(seed) {}
 
-  std::uint64_t dropped = 0;  // that memory had no room for
+  std::uint64_t dropped = 0;  // messages for which memory had no room
 
-  /// A counter that reads `at_begin_s` when the recording begins and runs `ppm` fast. While the
-  /// host sleeps it runs on by `slept_s`, the host's clock does not; less than 0: that went back.
+  /// A counter that reads `at_begin_s` when the recording begins and is fast by `ppm`. While the
+  /// host sleeps the counter moves on by `slept_s`, and the host's clock does not. Less than 0: the
+  /// host's clock went back.
   struct Counter {
     double at_begin_s = 0.0, ppm = 0.0;
     double sleep_at_s = 1e9, slept_s = 0.0;
@@ -57,7 +59,7 @@ class RecordedLab {
     }
   };
 
-  /// `frames_hz` frames a second from `from` to `to`, two samples in each, answered.
+  /// `frames_hz` frames a second from `from` to `to`, with two samples each; all are answered.
   void add_node(std::uint32_t id, std::uint32_t boot_id, Counter counter, double from, double to,
                 const std::string& place = "", double frames_hz = 15.0) {
     const auto us = [&](double t) { return static_cast<std::uint64_t>(1e6 * counter.at(t)); };
@@ -92,7 +94,7 @@ class RecordedLab {
     }
   }
 
-  /// Fifteen requests a second with a sample each, answered and confirmed; each `lost`th is lost.
+  /// Fifteen requests a second with one sample each, answered and confirmed; each `lost`th is lost.
   void add_clockless_node(std::uint32_t id, double to, std::uint32_t lost) {
     const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.8:5005", std::to_string(id), ""};
     const std::string topic = "/imu/" + std::to_string(id);
@@ -120,10 +122,10 @@ class RecordedLab {
     }
   }
 
-  /// Lines as datagrams may have them: without an end.
+  /// The form of a Kinect's messages: binary, or lines without an end, as datagrams may have them.
   enum class KinectForm { binary, bare_lines };
-  /// Thirty frames a second of one body, `least_s` and more from the sensor to the sender, whose
-  /// clock is another one; four pings a second.
+  /// Thirty frames a second of one body. They take `least_s` and more from the sensor to the
+  /// sender, which has a clock of its own; four pings a second.
   void add_kinect(Counter sensor, Counter sender, double least_s, double to,
                   KinectForm form = KinectForm::binary) {
     const auto ticks = [](const Counter& c, double t) {
@@ -169,7 +171,7 @@ class RecordedLab {
     }
   }
 
-  /// Whatever somebody sends to a device's port.
+  /// Any bytes that somebody sends to a device's port.
   void add_datagram(const RawChannel& raw, double at, std::string bytes) {
     add(channel(to_channel("/" + raw.stream + "/raw/" + raw.sender, raw)), at, std::move(bytes));
   }
@@ -187,7 +189,8 @@ class RecordedLab {
       NoitomFrame frame;
       frame.form = form;
       frame.name = "Char01";
-      if (form == NoitomForm::new_header) frame.frame_index = 4'294'967'000U + k;  // wraps
+      /// The number wraps.
+      if (form == NoitomForm::new_header) frame.frame_index = 4'294'967'000U + k;
       frame.displacement = displacement;
       frame.values.resize(noitom_values(displacement, false));
       for (std::size_t q = 1; q < frame.values.size(); ++q) {
@@ -196,17 +199,17 @@ class RecordedLab {
       frame.values[0] = static_cast<float>(100.0 * t);
       std::vector<std::uint8_t> bytes;
       REQUIRE(append_noitom(frame, bytes));
-      last = std::max(last, t + way() / 4.0);  // no overtaking
+      last = std::max(last, t + way() / 4.0);  // no frame overtakes another
       add(frames, last, {bytes.begin(), bytes.end()});
     }
   }
 
-  /// Nobody said whose the mocap is.
+  /// Removes the mocap's skeleton, as if the lab had named none.
   void forget_skeleton() { skeleton_.clear(); }
 
-  /// A SlimeVR tracker's packets of type 23, a hundred a second: an acceleration whose x, in steps
-  /// of 1/128 m/s2, is as near to the time as that goes. `forged`: the number of one in the middle
-  /// that isn't the tracker's.
+  /// A SlimeVR tracker's packets of type 23, a hundred a second. The acceleration's x, in steps of
+  /// 1/128 m/s2, is as near to the time as that allows. `forged`: the number of a packet in the
+  /// middle that is not the tracker's.
   void add_tracker(const std::string& host, double to, std::uint64_t forged = 0,
                    std::uint8_t sensors = 1) {
     const auto channel_id = channel(
@@ -215,7 +218,7 @@ class RecordedLab {
     double last = 0.0;
     for (std::uint32_t k = 0; k < 100.0 * to; ++k) {
       const double t = 0.01 * k;
-      last = std::max(last, t + way());  // no overtaking
+      last = std::max(last, t + way());  // no packet overtakes another
       for (std::uint8_t sensor = 0; sensor < sensors; ++sensor) {
         const std::uint64_t number = std::uint64_t{k} * sensors + sensor + 1;
         add(channel_id, last, tracker_packet(number, t, sensor));
@@ -223,7 +226,7 @@ class RecordedLab {
     }
   }
 
-  /// Both clocks of the machine once a second, the wall clock set by `step_s` at `at`.
+  /// Both clocks of the machine once a second; the wall clock is set by `step_s` at `at`.
   void add_clock(double to, double at, double step_s) {
     McapChannel described;
     described.topic = host_clock_topic;
@@ -256,7 +259,7 @@ class RecordedLab {
     return bytes;
   }
 
-  /// Which of a recording's files: its messages from `from` to `to`.
+  /// One of a recording's files: its messages from `from` to `to`.
   struct Part {
     int number = 1;
     double from = -1e9, to = 1e9;
@@ -296,8 +299,8 @@ class RecordedLab {
     return file.bytes;
   }
 
-  /// Sixty samples a second of Xsens MVN's: poses and, by turns, trackers whose first
-  /// acceleration's x is the time.
+  /// Sixty samples a second of Xsens MVN: poses and trackers in turn. The first acceleration's x of
+  /// the trackers is the time.
   void add_xsens(double to) {
     const auto datagrams =
         channel(to_channel("/xsens/raw", {"xsens", "xsens", "udp", "10.0.0.4:9763", "", ""}));
@@ -315,18 +318,18 @@ class RecordedLab {
     }
   }
 
-  /// Each `each`th message, and the `before` before it, arrives `by_s` later than it was to,
-  /// overtaken by those behind it.
+  /// Delays each `each`th message, and the `before` messages before it, by `by_s`, so that later
+  /// ones overtake them.
   void hold_back(std::size_t each, double by_s, std::size_t before = 0) {
     for (std::size_t i = 0; i < messages_.size(); ++i) {
       if (i % each + before >= each - 1) messages_[i].arrival += by_s;
     }
   }
 
-  /// Exchanges that arrive from `from` to `to` say another epoch of the host than they are of.
+  /// Exchanges that arrive from `from` to `to` state another epoch of the host than theirs.
   void mistake_epoch(double from, double to) { mistaken_ = {from, to}; }
 
-  /// Messages come by twos in one, when the later one was to come.
+  /// Joins each two messages into one, which arrives with the later one.
   void join_pairs() {
     std::vector<Message> joined;
     for (std::size_t i = 1; i < messages_.size(); i += 2) {
@@ -336,7 +339,7 @@ class RecordedLab {
     messages_ = std::move(joined);
   }
 
-  /// Each message comes as two at once.
+  /// Cuts each message into two, which arrive together.
   void cut_in_two() {
     std::vector<Message> cut;
     for (const Message& one : messages_) {
@@ -348,7 +351,7 @@ class RecordedLab {
   }
 
   static HostTime host(double t) { return HostTime{Duration{host_begin + std::llround(1e9 * t)}}; }
-  /// When a moment of the recording was.
+  /// The time of a moment of the recording, s since its beginning.
   static Time utc(double t) { return utc_time(utc_begin + std::llround(1e9 * t)); }
 
  private:
@@ -356,7 +359,7 @@ class RecordedLab {
     std::uint16_t channel = 0;
     double arrival = 0.0;
     std::string data;
-    std::optional<RecordedExchange> exchange;  // its arrival and epoch are the message's
+    std::optional<RecordedExchange> exchange;  // its arrival and epoch are those of the message
   };
   std::uint16_t channel(McapChannel described) {
     described.id = static_cast<std::uint16_t>(channels_.size() + 1);
@@ -374,7 +377,7 @@ class RecordedLab {
   void add(std::uint16_t channel, const RecordedExchange& exchange, double arrival) {
     messages_.push_back({channel, arrival, "", exchange});
   }
-  /// What the recorder writes of it.
+  /// The bytes that the recorder writes for the message.
   std::string data_of(const Message& message) const {
     if (!message.exchange) return message.data;
     RecordedExchange recorded = *message.exchange;
@@ -385,15 +388,15 @@ class RecordedLab {
     recorded.exchange.h_rx = host(message.arrival);
     return to_bytes(recorded);
   }
-  /// Of a packet: 1.5 ms and more, seldom much more.
+  /// The delay of a packet, s: at least 1.5 ms, seldom much more.
   double way() { return 0.0015 + std::exponential_distribution<double>(250.0)(random_); }
 
   std::mt19937_64 random_;
   std::vector<McapChannel> channels_;
   std::vector<Message> messages_;
-  std::optional<std::uint16_t> marks_;  // their channel
+  std::optional<std::uint16_t> marks_;  // channel of the marks
   std::string skeleton_;
-  double sleep_at_s_ = 1e9;  // of the host
+  double sleep_at_s_ = 1e9;  // host time at which the machine sleeps, s
   std::pair<double, double> mistaken_{1e9, 1e9};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording of several files of which some are torn, damaged or on a bad disk, made one.
+// Recovery from a recording of several files, some torn, damaged or on a bad disk.
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
@@ -150,7 +150,7 @@ TEST_CASE("messages behind later ones of their channel are told by whoever reads
 }
 
 TEST_CASE("of two files that say one number the higher one in the name is the later") {
-  const FreshFolder folder;  // as they stand where every sync failed, and the program was killed
+  const FreshFolder folder;  // the state after every sync failed and the program was killed
   PosixFiles files;
   const std::string second = folder.write("a.part9.mcap", part_of(2, 10, 40, false));
   const std::string third = folder.write("a.part10.mcap", part_of(2, 10, 60, true));
@@ -209,7 +209,7 @@ TEST_CASE("where a disk gives a page at one reading and not at the other, recove
   const std::string a = folder.write("a.mcap", part_of(1, 0, 500, false));
   const std::string b = folder.write("a.part2.mcap", part_of(2, 200, 700, true));
   int refusals = 0, openings = 0;
-  for (;;) {  // its beginning is read, too, more than once
+  for (;;) {  // the file's beginning is read more than once, too
     BadPage files(b, 3 * BadPage::size);
     files.only_opening = ++openings;
     const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::yes);
@@ -221,7 +221,7 @@ TEST_CASE("where a disk gives a page at one reading and not at the other, recove
     CHECK(recovered->messages == 700);
     if (files.openings() < openings) break;
   }
-  CHECK(refusals == 1);  // what the first reading alone missed the second one has, once
+  CHECK(refusals == 1);  // one case: the second reading has the page that the first one missed
 }
 
 TEST_CASE("a survey of parts has each channel once, as a checksum covers it") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording of several files made one: which copy counts, in what order, and what is told.
+// Recovery from a recording of several files: which copy counts, the order, and the findings.
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
 #include "tests/recording/part_files.h"
@@ -40,7 +40,7 @@ TEST_CASE("of two files of a recording recover takes what stands in both once") 
 
   const auto named_one =
       recover_recording(files, {folder / "a.mcap"}, folder / "c.mcap", Overwrite::no);
-  REQUIRE(named_one);  // what lies beside it belongs to it
+  REQUIRE(named_one);  // the part in the same folder belongs to the recording
   CHECK(named_one->messages == 60);
   REQUIRE(named_one->findings.size() == 1);
   CHECK(named_one->findings.back().severity == Severity::note);
@@ -112,7 +112,7 @@ TEST_CASE("of a recording that ends in a file with nothing else new the end is n
   CHECK(survey_recording(files, whole)->end);
   CHECK(parts_from(files, a, {})->size() == 2);
   CHECK(parts_from(files, whole, {})->size() == 1);
-  // Nor is a file written over that was not needed.
+  // A file that was not needed is not overwritten either.
   for (const std::string& part : {a, b}) {
     const std::string before = folder.read(std::filesystem::path(part).filename().string());
     CHECK_FALSE(recover_recording(files, {whole}, part, Overwrite::yes));
@@ -226,7 +226,7 @@ TEST_CASE("what recover made of all needs no part, wherever it stands") {
     CHECK(recovered->missing == 0);
     CHECK(survey_recording(files, folder / "b.mcap")->channels.front().missing == 0);
   }
-  // In a part's place.
+  // At the place of a part.
   const std::string torn = part_of(1, 0, 30, false);
   const std::string a = folder.write("a.mcap", torn.substr(0, torn.size() - 20));
   folder.write("a.part2.mcap", part_of(1, 0, 60, true));

@@ -25,7 +25,7 @@ TEST_CASE("of a file that is cut anywhere recover makes a whole one with all tha
       const std::string path = folder.write("a.mcap", torn);
       const auto recovered = recover_recording(files, {path}, folder / "b.mcap", Overwrite::no);
       const ReadMcap before = read_mcap(torn);
-      if (!recovered) {  // cut in front of what stands before messages: metadata
+      if (!recovered) {  // cut before the records that precede messages: metadata
         CHECK(before.messages.empty());
         CHECK(cut < 200);
         CHECK(to_string(recovered.error()) ==
@@ -44,7 +44,7 @@ TEST_CASE("of a file that is cut anywhere recover makes a whole one with all tha
       }
       CHECK(recovered->messages == before.messages.size());
       CHECK((recovered->unchecked > 0) == before.unchecked);
-      CHECK(folder.read("a.mcap") == torn);  // the torn one stays as it is
+      CHECK(folder.read("a.mcap") == torn);  // the torn file is not changed
     }
   }
 }
@@ -57,8 +57,8 @@ TEST_CASE("of a damaged recording recover says how many bytes and messages are l
     const FreshFolder folder;
     PosixFiles files;
     std::string damaged = whole;
-    damaged[ends[chunk] - 250] ^= 0x10;  // in front of its indexes, which are 214 bytes and less
-    std::string unchecked = damaged;     // as of a program that makes no checksum of the summary
+    damaged[ends[chunk] - 250] ^= 0x10;  // before the chunk's indexes, which have at most 214 bytes
+    std::string unchecked = damaged;  // written by a program that makes no checksum of the summary
     unchecked.replace(unchecked.size() - mcap_magic.size() - 4, 4, 4, '\0');
     for (const std::string& bytes : {damaged, unchecked}) {
       const auto recovered = recover_recording(files, {folder.write("a.mcap", bytes)},
@@ -125,7 +125,8 @@ TEST_CASE("of a disk that can't give a page recover makes a file of the rest, an
     BadPage files(path, at);
     const auto recovered = recover_recording(files, {path}, folder / "c.mcap", Overwrite::yes);
     REQUIRE(recovered);
-    // A chunk has half a second of a minute, and a page few of them; the last one no number shows.
+    // A chunk holds half a second of a minute, and a page few chunks. The last one leaves no gap in
+    // the numbers.
     CHECK(recovered->messages > whole->messages * 9 / 10);
     CHECK(recovered->messages + recovered->missing == whole->messages);
     REQUIRE_FALSE(recovered->findings.empty());
@@ -147,7 +148,7 @@ TEST_CASE("a number that a torn end's damage made is no message, and nothing is 
     OwnedMessage garbage = nth_message(36);
     garbage.message.sequence = number;
     add(last, garbage);
-    add(last, nth_message(40));  // what breaks off
+    add(last, nth_message(40));  // the message that is cut off
     std::string bytes = part_of(1, {messages_of(0, 30), last}, false);
     bytes.resize(bytes.find(nth_message(40).data));
     const std::string path = folder.write("a.mcap", bytes);
@@ -189,7 +190,8 @@ TEST_CASE("whatever byte of a summary is damaged, recover has all messages and i
     const auto survey = survey_recording(files, folder / "a.mcap");
     REQUIRE(survey);
     CHECK(survey->messages == 60);
-    for (const ChannelSurvey& known : undamaged->channels) {  // and one without messages, perhaps
+    // And perhaps a channel without messages.
+    for (const ChannelSurvey& known : undamaged->channels) {
       CHECK(std::any_of(survey->channels.begin(), survey->channels.end(), [&](const auto& one) {
         return one.channel == known.channel && one.messages == known.messages;
       }));

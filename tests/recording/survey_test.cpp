@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recorder counted and was told stands in its file, and is found there.
+// The counts and facts of the recorder are in its file, and the survey finds them.
 #include "kinalign/recording/survey.h"
 
 #include "tests/folder.h"
@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A recording of the recorder's own channels alone.
+/// A recording that has only the recorder's own channels.
 class Told {
  public:
   Told() {

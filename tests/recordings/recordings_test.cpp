@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real recordings of others, aligned as a user would. The figures that must come out were computed
-// by the collectors of ../shared/data in NumPy and stand in its README.
+// Real recordings of other people, aligned as a user would align them. The expected figures were
+// computed in NumPy by the collectors of ../shared/data and are in its README.
 #include "tests/folder.h"
 #include "tests/shared_data.h"
 
@@ -89,8 +89,8 @@ std::vector<std::int64_t> stamps_by(const std::string& layout, const std::string
   return out;
 }
 
-/// Root mean square angle, degrees, that the best constant rotations on both sides leave between
-/// two lists: a plain alternation of eigenvector means.
+/// Root mean square angle, degrees, that remains between two lists after the best constant
+/// rotations on both sides, found by plain alternation of eigenvector means.
 double constant_rotations_leave(const std::vector<Quat>& a, const std::vector<Quat>& b) {
   Quat left = Quat::Identity(), right = Quat::Identity();
   const auto mean = [](const std::vector<Quat>& all) {
@@ -217,7 +217,7 @@ TEST_CASE("KinectMultiTrack: what is told late is late by the devices' own ticks
     for (std::size_t i = 0; i < arrived.size(); ++i) {
       if (arrived[i] <= last || arrived[i] > arrived.back()) continue;  // repeated, or wild
       surveyor.add(last = arrived[i]);
-      std::int64_t by = 0;  // how much later than the best of the next 300
+      std::int64_t by = 0;  // the lateness against the best of the next 300
       for (std::size_t j = i; j < std::min(i + 300, arrived.size()); ++j) {
         by = std::max(by, (arrived[i] - arrived[j]) - (taken[i] - taken[j]));
       }
@@ -245,7 +245,7 @@ TEST_CASE("nine IMUs, optical joints and the solved BVH of one walk come onto on
     imu.files.push_back({folder + "imu/S02-Trial-Walk-1-" + node + ".csv", node});
   }
   manifest.streams.push_back(imu);
-  // Millimetres; frame 1120 belongs to the optical row 0.
+  // Millimetres; frame 1120 is optical row 0.
   StreamOptions suit = stream("suit", folder + "xsens_S02-Trial-Walk-1.bvh", "bvh");
   suit.metres_per_unit = 0.001;
   suit.start_ns = -11'200'000'000;
@@ -271,7 +271,7 @@ TEST_CASE("nine IMUs, optical joints and the solved BVH of one walk come onto on
     }
     CHECK(constant_rotations_leave(worn, seen) < bar);
   }
-  // The suit's hips are where the optical ones are: its heights agree to some centimetres.
+  // The suit's hips are at those of the optical system: the heights agree to some centimetres.
   const auto& suit_rows = std::get<ClipRows>(take->all.rows[2]);
   const auto& optical = std::get<PointRows>(take->all.rows[0]);
   const std::size_t suit_width = suit_rows.positions.size() / 955;

@@ -26,7 +26,7 @@ RecordedLab four_streams() {
   return lab;
 }
 
-/// What aligning all of it warns of. `further`: what it went on in.
+/// The warnings from aligning the whole recording. `further`: the bytes of its second file.
 std::vector<std::string> warnings(const std::string& bytes, const std::string& further = "") {
   const FreshFolder folder;
   PosixFiles files;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of several nodes in one stream: each is judged by its own.
+// Rows of several nodes in one stream: each node is judged by its own rows.
 #include "kinalign/resample/arrival_lines.h"
 
 #include <doctest/doctest.h>

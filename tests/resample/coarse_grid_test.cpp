@@ -53,7 +53,8 @@ TEST_CASE("between them the share grows with the frequency") {
   CHECK(findings_of(10.0, 2.0, 60.0).empty());
   const auto found = findings_of(20.0, 2.0, 60.0);
   REQUIRE(found.size() == 1);
-  CHECK(found[0].what.found.starts_with("22 % of the rms"));  // of a third of the grid's rate
+  // A sine at a third of the grid's rate.
+  CHECK(found[0].what.found.starts_with("22 % of the rms"));
 }
 
 TEST_CASE("noise of the sensor's own size is no loss, nor is anything on a finer grid") {
@@ -77,7 +78,7 @@ TEST_CASE("a sine loses what the cubic between the rows can't follow, by its sha
        {Share{0.1, 0.003}, Share{0.25, 0.08}, Share{1.0 / 3.0, 0.22}, Share{0.5, 1.0}}) {
     CAPTURE(one.of_rate);
     const auto sine = [&](double t) {
-      const double at_zero = one.of_rate == 0.5 ? 0.0 : 0.4;  // half the rate: rows see nothing
+      const double at_zero = one.of_rate == 0.5 ? 0.0 : 0.4;  // at half the rate all rows are zero
       return 3.0 + std::sin(2.0 * std::numbers::pi * one.of_rate / grid_s * t + at_zero);
     };
     at.clear(), rows.clear(), times.clear(), values.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which step a device is said to have, and whether it is known well enough to tell late samples.
+// The step that is found for a device, and whether it is known well enough to find late samples.
 #include "kinalign/resample/taken_step.h"
 
 #include "tests/align/streams.h"
@@ -13,7 +13,7 @@ using namespace kinalign::test;
 
 namespace {
 
-/// Stretches of so many steps of so many ms.
+/// Stretches, each of a number of steps of some ms.
 std::vector<Time> stretches(const std::vector<std::pair<int, double>>& parts, int times = 1) {
   std::vector<Time> out{utc_time(0)};
   double t = 0.0;
@@ -35,7 +35,8 @@ TakenStep taken(const std::vector<Time>& stamps, double rate_hz = 0.0) {
   return taken_step(stream, options, Role::resampled);
 }
 
-/// Steps of a loop that finds a second sample, 0.1 ms behind, each so many reads.
+/// Stamps of a loop that reads each `read_ms`, and each `reads` reads finds a second sample, 0.1 ms
+/// later.
 std::vector<Time> polled(double read_ms, int reads) {
   return stretches({{reads, read_ms}, {1, 0.1}}, 100);
 }
@@ -59,7 +60,7 @@ TEST_CASE("a device that changes its rate and stamps that are rounded have no st
 
 TEST_CASE("a stall that is drained leaves the step steady, at any haste") {
   for (const double haste : {0.6, 0.75, 0.3}) {
-    CAPTURE(haste);  // at 30 Hz, a second each ten; 29 samples wait when the first one comes
+    CAPTURE(haste);  // at 30 Hz, a second each ten: 29 samples wait when the first one arrives
     const int drained = static_cast<int>(std::lround(29.0 / (1.0 - haste)));
     const auto stamps =
         stretches({{299 - drained, 100.0 / 3}, {1, 1000.0}, {drained, haste * 100.0 / 3}}, 6);
@@ -84,12 +85,12 @@ TEST_CASE("a stated rate that is a tenth off is not believed, one that is quite 
 TEST_CASE("of rates that swing about the stated one the median stays, and is steady within 8 %") {
   const auto seven = stretches({{930, 1000.0 / 93}, {1070, 1000.0 / 107}});
   CHECK(ms_of(taken(seven, 100.0)) == doctest::Approx(1000.0 / 107).epsilon(0.01));
-  CHECK(taken(stretches({{700, 30.0}, {300, 37.0}})).steady);        // 7 % in the mean
+  CHECK(taken(stretches({{700, 30.0}, {300, 37.0}})).steady);        // 7 % on average
   CHECK_FALSE(taken(stretches({{700, 30.0}, {300, 40.0}})).steady);  // 10 %
 }
 
 TEST_CASE("losses of 3 % beside stalls of 10 % leave no steady step, nor do rounded stamps") {
-  // a second's stall each ten, drained at 0.75, and so many ms lost
+  // A stall of one second in each ten, drained at 0.75 of the step, with samples of `lost_ms` lost.
   const auto lossy = [](double lost_ms) {
     return stretches({{183, 100.0 / 3}, {1, 1000.0 + lost_ms}, {116, 25.0}}, 6);
   };

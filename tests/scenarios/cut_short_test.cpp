@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps and sleeps of the counter that a reboot or the end cuts short, and readings of before a
-// step that are asked for behind it, as samples that waited in the node are.
+// Steps and sleeps of the counter that are cut short by a reboot or by the end. Also readings from
+// before a step that are asked for after it, like samples that waited in the node.
 #include "tests/scenarios/minutes.h"
 #include "tests/seeds.h"
 #include "tools/clock_table/judge.h"
@@ -16,7 +16,7 @@ using namespace kinalign;
 
 namespace {
 
-/// What the node's counter read at host time t: it steps once.
+/// The reading of the node's counter at host time t (s): it steps once.
 NodeTime reading(const SimulatedClock& clock, const CounterStep& step, double t) {
   const double s = clock.reading(t) + (t >= step.at ? step.by : 0.0);
   return counter_time(static_cast<std::int64_t>(s * 1e6));
@@ -27,7 +27,7 @@ bool wrong(const std::optional<ClockStamp>& stamp, double t) {
   return *stamp->earliest > arrival_time(t + 1e-6) || *stamp->latest < departure_time(t - 1e-6);
 }
 
-/// A live stamp of a sample, by when its frame arrived.
+/// The live stamp of a sample, given when its frame arrived.
 struct Given {
   HostTime heard{};
   bool wrong = false, withdrawn = false;
@@ -61,7 +61,7 @@ TEST_CASE("fault 36 sample_batch: readings of before a step are not certified be
       for (const Exchange& e : exchanges) {
         live.push(e);
         for (const double age : {0.0, 0.3, 1.5, 3.0, 8.0}) {
-          const double t = seconds_of(e.h_rx) - 0.05 - age;  // it is sent within that time
+          const double t = seconds_of(e.h_rx) - 0.05 - age;  // its frame is sent within that time
           if (t < 1.0) continue;
           const NodeTime n = reading(counter, options.steps[0], t);
           const auto stamp = live.host_from_node(e.boot, n);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live clock over simulated links, on fresh seeds each time: what it promises while its
-// assumptions hold, and what it does when they don't.
+// The live clock over simulated links, on fresh seeds each time: its promises while its assumptions
+// hold, and its behaviour when they don't.
 #include "tests/about.h"
 #include "tests/scenarios/minutes.h"
 #include "tests/seeds.h"
@@ -17,7 +17,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Seconds behind `at` until the first event of a kind; 1e9: none.
+/// Seconds from `at` to the first event of a kind after it; 1e9: there is none.
 double delay_of(const JudgedRun& run, ClockEvent::Kind kind, double at) {
   for (const ClockEvent& event : run.events) {
     if (event.kind == kind && seconds_of(event.end) >= at) return seconds_of(event.end) - at;
@@ -25,7 +25,7 @@ double delay_of(const JudgedRun& run, ClockEvent::Kind kind, double at) {
   return 1e9;
 }
 
-/// Of the last whole window of ten seconds, s, when no more than so many seconds were heard.
+/// The round trip, s, in the last whole window of ten seconds before `until` (s).
 double last_round_trip(const SimulatedExchanges& simulated, double until) {
   LiveClock clock;
   for (const Exchange& e : exchanges_of(simulated)) {
@@ -65,16 +65,18 @@ TEST_CASE("live errors stay within one and a half times the bars of each link, o
       over += figures(late).worst > tolerated * bar.worst_ms * ms ? 1 : 0;
     }
     CHECK(figures(errors).rms < tolerated * bar.pooled_ms * ms);
-    CHECK(over <= 1);  // as where a node starts into a bad state of ten seconds, on E
+    // One run may exceed it: on link E a node can start within a bad state of ten seconds.
+    CHECK(over <= 1);
   }
-  CHECK(withdrawn <= 1);  // needlessly, as on F in one of a thousand
+  CHECK(withdrawn <= 1);  // needless withdrawals: on F one in a thousand runs
 }
 
 TEST_CASE("fault 15 route_change_asym: the estimate moves no more than the change can be seen") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     ExchangeOptions options = minutes(Link::quiet, 2.0);
-    options.link.faults = {{.begin = 60.0, .end = 1e9, .extra_up = 5.0 * ms}};  // one way alone
+    // In one direction only.
+    options.link.faults = {{.begin = 60.0, .end = 1e9, .extra_up = 5.0 * ms}};
     const auto simulated = simulate_exchanges(options, seed);
     const auto run = judge_live(simulated);
     CHECK(run.lies() == 0);
@@ -82,7 +84,7 @@ TEST_CASE("fault 15 route_change_asym: the estimate moves no more than the chang
     const Floors least = floors(Link::quiet, seed);
     CHECK(last_round_trip(simulated, 60.0) == about(least.up + least.down, 0.1));
     CHECK(last_round_trip(simulated, 120.0) == about(least.up + least.down + 5.0 * ms, 0.1));
-    // What a method that halves round trips would be off by: 2.5 ms.
+    // A method that takes half the round trip would be off by 2.5 ms.
     CHECK(figures(errors_since(run, 10.0, run.asymmetry)).worst < 0.2 * ms);
   }
 }
@@ -122,12 +124,13 @@ TEST_CASE(
         const auto run = judge_live(simulate_exchanges(options, seed));
         const double found = std::min(delay_of(run, ClockEvent::Kind::step, 30.0),
                                       delay_of(run, ClockEvent::Kind::slip, 30.0));
-        late += found < bar.within ? 0 : 1;  // as when several packets are lost just then
+        late += found < bar.within ? 0 : 1;  // this happens if several packets are lost just then
         CHECK(run.lies() == 0);
         bool withdrawn = false, early = false;
         for (const ClockEvent& event : run.events) {
           const bool withdraws = event.kind == ClockEvent::Kind::withdrawn;
-          // Five seconds before the first crossing that can't be, or to where that would begin.
+          // The withdrawal covers five seconds before the first impossible crossing, or up to where
+          // that would begin.
           withdrawn |= withdraws && seconds_of(event.begin) < 30.2 &&
                        seconds_of(event.end) - seconds_of(event.begin) > 4.9;
           early |= withdraws && seconds_of(event.end) < 30.0;
@@ -138,7 +141,7 @@ TEST_CASE(
       }
     }
   }
-  CHECK(late <= 4);  // of 160; a seed that is unlucky is so in four of them
+  CHECK(late <= 4);  // 160 runs in all; an unlucky seed is late in four of them
 }
 
 TEST_CASE(
@@ -175,7 +178,7 @@ TEST_CASE("fault 5 counter_step_small: one of a millisecond, on C, is warned of"
     needless += first < 150.0 ? 1 : 0;
   }
   CHECK(needless <= 2);
-  // It is as large as the noise of its detection allows: found in four of five runs.
+  // The step is as small as the noise of its detection allows, so it is found in four of five runs.
   if (seeds.size() > 1) CHECK(warned >= 10);
 }
 
@@ -183,13 +186,14 @@ TEST_CASE("a step that the certificate cannot see shows where floors are sharp")
   int late = 0;
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
-    for (const double at : {23.0, 30.0}) {  // within a window of the log of floors, and between two
+    // Within a window of the floors' log, and between two windows.
+    for (const double at : {23.0, 30.0}) {
       CAPTURE(at);
       ExchangeOptions options = minutes(Link::quiet, 1.5);
       options.steps = {{.at = at, .by = 1.0 * ms}};  // less than both floors together
       const auto run = judge_live(simulate_exchanges(options, seed));
       const double found = delay_of(run, ClockEvent::Kind::slip, at);
-      late += found < 12.0 ? 0 : 1;  // by the windows alone, as in one of 300
+      late += found < 12.0 ? 0 : 1;  // late if only the windows show it, as in one of 300
       CHECK(found < 20.0);
       CHECK(run.lies() == 0);
     }
@@ -253,7 +257,8 @@ TEST_CASE("fault 13 loss_burst_50: the interval widens and does not lie") {
       CHECK(run.frames < 0.9 * static_cast<double>(clean.frames));
       widened += mean_half_width(run) - mean_half_width(clean);
     }
-    // Of one seed, and on the others, that lies within the chance of when the fast packets come.
+    // With a single seed, and on the other links, the difference is within the chance of when the
+    // fast packets come.
     if (static_cast<Link>(i) <= Link::quiet && seeds.size() > 1) CHECK(widened > 0.0);
   }
 }
@@ -271,10 +276,10 @@ TEST_CASE("fault 14 loss_up_only, loss_down_only: an end opens by the greatest r
       if (stamp.sent < 49.9) after = stamp.half_width;
     }
     CHECK(after > before);
-    // One end, so half of it in the half width; at 100 ppm, beside a crystal that is 20 ppm off.
+    // Only one end grows, so half of it is in the half width: 100 ppm and the crystal's 20 ppm.
     CHECK(after < before + 120e-6 * 30.0 / 2.0 + 0.05 * ms);
     options.link.faults = {{.begin = 20.0, .end = 50.0, .lost_up = 1.0}};
-    run = judge_live(simulate_exchanges(options, seed));  // nothing is heard
+    run = judge_live(simulate_exchanges(options, seed));  // no frame arrives
     CHECK(run.lies() == 0);
     CHECK(run.count(ClockEvent::Kind::new_boot) == 1);
     CHECK(run.count(ClockEvent::Kind::step) + run.count(ClockEvent::Kind::slip) == 0);
@@ -325,7 +330,7 @@ TEST_CASE("fault 11 reorder: what comes in another order tells the same within a
     options.link.reordered = 0.01;
     const auto run = judge_live(simulate_exchanges(options, seed));
     CHECK(run.lies() == 0);
-    std::map<double, double> other;  // by when a frame was sent
+    std::map<double, double> other;  // by the time at which a frame was sent
     for (const JudgedStamp& stamp : run.stamps) other[stamp.sent] = stamp.error;
     for (const JudgedStamp& stamp : clean.stamps) {
       const auto same = other.find(stamp.sent);
@@ -333,12 +338,13 @@ TEST_CASE("fault 11 reorder: what comes in another order tells the same within a
     }
   }
   CHECK(moved.size() > 700 * seeds.size());
-  // One of a hundred tells less, being late: over all runs, since one of them may be a fast one.
+  // One frame in a hundred tells less, because it is late. The limit is for all runs together,
+  // since one of these frames may be a fast one.
   CHECK(figures(moved).rms < (seeds.size() > 1 ? 1e-6 : 3e-6));
 }
 
 TEST_CASE("fault 7 light_sleep: stretches of 500 ppm leave no certified stamp that is wrong") {
-  int unseen = 0;  // by all that the host saw the clock might never have slept
+  int unseen = 0;  // nothing that the host received shows a sleep
   for (const auto seed : fresh_seeds(10)) {
     CAPTURE(seed);
     for (const double rate : {500e-6, -500e-6}) {
@@ -356,5 +362,5 @@ TEST_CASE("fault 7 light_sleep: stretches of 500 ppm leave no certified stamp th
       }
     }
   }
-  CHECK(unseen <= 1);  // as in one of a thousand
+  CHECK(unseen <= 1);  // one in a thousand runs is such a case
 }

@@ -7,7 +7,7 @@ namespace kinalign {
 
 constexpr double ms = 1e-3;
 
-/// So many minutes of exchanges over a link.
+/// The options for some minutes of exchanges over a link.
 inline ExchangeOptions minutes(Link link, double minutes) {
   ExchangeOptions options;
   options.length_s = 60.0 * minutes;

@@ -17,8 +17,8 @@ using namespace kinalign;
 
 namespace {
 
-/// Whether a frame behind a step forward arrived too early to go with a reply before it. Where none
-/// did, the host saw nothing that a counter without a step would not have shown.
+/// Whether a frame after a step forward arrived too early to fit a reply before the step. If none
+/// did, the host got nothing that a counter without a step would not have sent.
 bool is_seen(const std::vector<Exchange>& heard, double step_at) {
   for (const Exchange& behind : heard) {
     if (seconds_of(behind.h_rx) < step_at || behind.boot != heard.front().boot) continue;
@@ -34,13 +34,14 @@ bool is_seen(const std::vector<Exchange>& heard, double step_at) {
 
 }  // namespace
 
-// As live_clock_test.cpp has it: the bars themselves are judged on seeds that stay the same.
+// live_clock_test.cpp does the same: the bars themselves are judged on seeds that stay the same.
 TEST_CASE("offline errors stay within one and a half times the bars of each link, on any seeds") {
   struct Bar {
     Link link;
     double pooled_ms, each_ms, worst_ms, net_ms;
   };
-  // Promise 2, offline at 60 s, for 20 seeds; net: less (Fu - Fd) / 2, which no exchange can see.
+  // Promise 2, offline at 60 s, for 20 seeds; net: without (Fu - Fd) / 2, which no exchange can
+  // show.
   constexpr std::array bars{
       Bar{Link::wired, 0.005, 0.008, 0.012, 0.001}, Bar{Link::quiet, 0.080, 0.12, 0.13, 0.002},
       Bar{Link::paper, 0.10, 0.25, 0.45, 0.06},     Bar{Link::modem_sleep, 0.085, 0.15, 0.20, 0.02},
@@ -86,7 +87,7 @@ TEST_CASE("pieces are those of the node's lives and steps, and no stamp that sta
     options.steps = {{.at = 40.0, .by = -1.0}};
     const SimulatedExchanges exchanges = simulate_exchanges(options, seed);
     const OfflineClock clock = fit_offline_clock(exchanges_of(exchanges));
-    CHECK(clock.model.pieces.size() == 4);  // one of them the second behind the step
+    CHECK(clock.model.pieces.size() == 4);  // one of them is the second after the step
     const JudgedRun run = judge_offline(exchanges);
     CHECK(run.lies() == 0);
     CHECK(figures(errors_since(run, 42.0)).worst < 2.0 * ms);
@@ -99,7 +100,7 @@ TEST_CASE(
   int seen = 0, all = 0;
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
-    for (const double cut : {0.5, 2.0, 4.0}) {  // s behind the step
+    for (const double cut : {0.5, 2.0, 4.0}) {  // s after the step
       for (const bool reboots : {true, false}) {
         CAPTURE(cut);
         CAPTURE(reboots);
@@ -134,7 +135,7 @@ TEST_CASE("packets that find a shorter route do not look like a step") {
       CHECK(live.lies() + judge_offline(exchanges).lies() == 0);
     }
   }
-  CHECK(needless <= 1);  // as in one of 4000
+  CHECK(needless <= 1);  // one in 4000 runs is such a case
 }
 
 TEST_CASE("a clock that bends more than assumed is certified once that has shown") {
@@ -149,7 +150,7 @@ TEST_CASE("a clock that bends more than assumed is certified once that has shown
     CHECK(clock.model.pieces.back().assumptions.curvature == most_curvature);
     const JudgedRun run = judge_offline(exchanges);
     CHECK(run.lies() == 0);
-    CHECK(run.stamps.size() == run.frames);  // what is in doubt has a likeliest stamp, too
+    CHECK(run.stamps.size() == run.frames);  // a doubtful frame has a likeliest stamp, too
   }
 }
 
@@ -170,7 +171,8 @@ TEST_CASE("a stretch of doubt within a longer one does not end that") {
   using namespace std::chrono_literals;
   std::vector<Exchange> exchanges;
   for (Duration t = 0s; t < 90s; t += 100ms) {
-    const Duration stepped = t < 65s ? 0s : 1500us;  // less than both delays: the floors show it
+    // Less than both delays: the floors show the step.
+    const Duration stepped = t < 65s ? 0s : 1500us;
     const Duration lie = t == 66s ? 1s : 0s;
     exchanges.push_back({1, NodeTime{t + stepped + lie}, HostTime{t + 1ms},
                          Exchange::Echo{NodeTime{t + stepped - 50ms}, HostTime{t - 51ms}}});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults 1 and 3 to the letter (docs/faults.md): what a node's
-// new life begins with, and how soon its stamps are good.
+// Faults 1 and 3 exactly as in docs/faults.md: the start of a node's new life, and how soon its
+// stamps are good.
 #include "tests/scenarios/minutes.h"
 #include "tests/seeds.h"
 #include "tools/clock_table/judge.h"
@@ -18,7 +18,8 @@ using namespace kinalign;
 
 namespace {
 
-/// Of the frames of a life that were heard: the first arrival, and how many bounds they gave.
+/// The frames of one life of a node that were received: the first and the last arrival, and the
+/// number of bounds in each direction.
 struct HeardLife {
   HostTime first{HostTime::max()}, last{HostTime::min()};
   std::uint64_t up = 0, down = 0;
@@ -42,7 +43,7 @@ ExchangeOptions rebooting(Link link, double at) {
   return options;
 }
 
-/// When a frame of it is heard first.
+/// The time at which the first frame of the second life arrives, s.
 double second_life(const SimulatedExchanges& simulated) {
   const auto lives = lives_of(exchanges_of(simulated));
   REQUIRE(lives.size() == 2);
@@ -50,7 +51,7 @@ double second_life(const SimulatedExchanges& simulated) {
                   seconds_of(lives.rbegin()->second.first));
 }
 
-/// Seconds from then until the error stays under the limit for 10 s.
+/// Seconds from `first_heard` until the error stays under the limit for 10 s.
 double good_after(const JudgedRun& run, double first_heard, double limit) {
   double good = first_heard;
   for (const JudgedStamp& stamp : run.stamps) {
@@ -84,7 +85,7 @@ TEST_CASE("fault 1 reboot: the new piece begins with the first frame that is hea
         if (!begins) continue;
         CHECK(born->boot == e.boot);
         CHECK(born->begin == e.h_rx);
-        // Of the old model nothing is left: neither for the new counter nor for the old one.
+        // Nothing of the old model is left, neither for the new counter nor for the old one.
         CHECK(clock.piece()->origin().node == e.n_tx);
         CHECK(!clock.piece()->floors().window(0));
         if (!e.echo) CHECK(!clock.host_from_node(e.boot, e.n_tx));
@@ -98,7 +99,7 @@ TEST_CASE("fault 1 reboot: the new piece begins with the first frame that is hea
 
 TEST_CASE("fault 1 reboot: after it the bars of a start hold") {
   // Promise 4: the median of the time until the live error is good, and its 90th percentile. On E
-  // and F they are of a start in a good state, and on the first route.
+  // and F they hold for a start in a good state and on the first route.
   const auto seeds = fresh_seeds(300);
   for (const StartBars& bar : start_bars) {
     if (bar.link == Link::congested || bar.link == Link::roaming) continue;
@@ -134,7 +135,7 @@ TEST_CASE("fault 1 reboot: it is good no later than a node which is first heard 
       later += after > fresh + 1.0 ? 1 : 0;
       sooner += fresh > after + 1.0 ? 1 : 0;
     }
-    CHECK(later <= sooner + 5);  // of 1000 seeds 4 on E, at most 1 on the others
+    CHECK(later <= sooner + 5);  // 1000 seeds differ by 4 on link E, and by at most 1 on the others
   }
 }
 
@@ -143,7 +144,8 @@ TEST_CASE("fault 3 reboot_storm: each life is a piece, certified from two up and
     CAPTURE(seed);
     for (const Link link : {Link::quiet, Link::paper, Link::congested}) {
       CAPTURE(letter(link));
-      for (const double gap : {0.5, 1.8, 1.9}) {  // then it lives for 1.5 s, or for three frames
+      // Then that life lasts for 1.5 s, or for three frames.
+      for (const double gap : {0.5, 1.8, 1.9}) {
         CAPTURE(gap);
         ExchangeOptions options = minutes(link, 1.0);
         for (int i = 0; i < 10; ++i) options.reboots.push_back({.at = 20.0 + 2.0 * i, .gap = gap});

@@ -6,7 +6,7 @@
 using namespace kinalign;
 
 TEST_CASE("numbers are those of the reference, to the last bit") {
-  // The check values of the reference simulator in Python.
+  // The check values are those of the reference simulator in Python.
   CHECK(mix64(0) == 0xe220a8397b1dcdafU);
   CHECK(mix64(1) == 0x910a2dec89025cc1U);
   const RandomStream stream(1, 10);
@@ -25,7 +25,7 @@ TEST_CASE("exponential and normal numbers have the moments of their laws") {
     square += z * z / n;
     waits += stream.exponential(static_cast<std::uint64_t>(k), 2, 3.0) / n;
   }
-  // Five standard errors of each.
+  // The limits are five standard errors.
   CHECK(std::abs(mean) < 5.0 / std::sqrt(n));
   CHECK(std::abs(square - 1.0) < 5.0 * std::sqrt(2.0 / n));
   CHECK(std::abs(waits - 3.0) < 5.0 * 3.0 / std::sqrt(n));

@@ -13,8 +13,8 @@ using namespace kinalign;
 
 namespace {
 
-/// The largest n-th difference over h^n: where the n-th derivative is bounded, it stays as h
-/// shrinks; where the derivative before it jumps, it grows as 1 / h.
+/// The largest n-th difference over h^n. It stays the same as h shrinks if the n-th derivative is
+/// bounded, and grows as 1 / h if the derivative before it jumps.
 double roughest(const std::function<double(double)>& f, int order, double h) {
   double worst = 0.0;
   for (double t = -0.5; t < 1.5; t += 0.3 * h) {

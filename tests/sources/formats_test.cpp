@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which reader a file gets, and what is said where there is none.
+// Which reader is chosen for a file, and the error if there is none.
 #include "kinalign/sources/formats.h"
 
 #include "tests/faulty_files.h"
@@ -193,7 +193,7 @@ TEST_CASE("a file is opened once for its kind, and a bad disk is told as such") 
   const std::string path = folder.write("walk.bvh", "HIERARCHY\nROOT Hips\n");
   FaultyFiles counting;
   CHECK(kind_of_file(counting, path).value() == FileKind::stream);
-  CHECK(counting.calls == 4);  // open, the signature, the head, close
+  CHECK(counting.calls == 4);  // open, read the signature, read the head, close
   for (const int at : {2, 3}) {
     CAPTURE(at);
     FaultyFiles files;
@@ -211,7 +211,7 @@ TEST_CASE("select takes the sensors of an MVNX file instead of its segments") {
     StreamOptions options;
     if (!part.empty()) options.select["part"] = part;
     const auto format = KA_TRY(find_format(files, options, {"a.mvnx", ""}, "<mvnx version=\"4\">"));
-    return KA_TRY(format.make()).index();  // of AnyReader: clip, points, nodes
+    return KA_TRY(format.make()).index();  // index in AnyReader: clip, points, nodes
   };
   CHECK(made("").value() == 0);
   CHECK(made("segments").value() == 0);
@@ -243,7 +243,7 @@ TEST_CASE(
     StreamOptions options;
     if (!kind.empty()) options.select["kind"] = kind;
     const auto format = KA_TRY(find_format(files, options, {path, ""}, ""));
-    return KA_TRY(format.make()).index();  // of AnyReader: clip, points, nodes
+    return KA_TRY(format.make()).index();  // index in AnyReader: clip, points, nodes
   };
   CHECK(made("").value() == 1);
   CHECK(made("points").value() == 1);

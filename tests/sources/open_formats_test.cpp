@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of other programs, opened by what they hold: surveyed, hashed, read twice.
+// Files of other programs, recognised by their contents: surveyed, hashed, read twice.
 #include "tests/folder.h"
 #include "tests/formats/any_points.h"
 #include "tests/formats/bids/data_set.h"
@@ -28,7 +28,7 @@ RecordedStream opened(const std::string& path,
   return recording->streams.front();
 }
 
-/// Rows of a pass from front to end.
+/// The number of rows of one pass.
 std::uint64_t rows_of(const RecordedStream& stream) {
   return std::visit(
       [](const auto& input) -> std::uint64_t {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files a recording consists of, and by which names a take remembers them.
+// Which files a recording consists of, and the names by which a take refers to them.
 #include "kinalign/sources/open_recording.h"
 
 #include "tests/folder.h"
@@ -51,7 +51,7 @@ TEST_CASE("a user's layout is one of a stream's files, with its hash") {
   CHECK(first->streams[0].files[1].bytes == layout_text.size());
   folder.write("lab.toml", layout_text + "metres_per_unit = 0.5\n");
   const auto second = open_recording(files, manifest, folder.path() + "/");
-  CHECK(error_of(second) != "none");  // the key stands behind [joints]
+  CHECK(error_of(second) != "none");  // the key comes after [joints]
   folder.write("lab.toml", "metres_per_unit = 0.5\n" + layout_text);
   const auto third = open_recording(files, manifest, folder.path() + "/");
   REQUIRE_MESSAGE(third, error_of(third));
@@ -204,7 +204,7 @@ TEST_CASE("two files that a take would call by one name are refused with both pa
             "../b/p.csv: expected files that a take can tell apart by name (below the manifest's "
             "folder: by their paths), so rename one or move both there, found 'p.csv' again: " +
             base + "../p.csv");
-  folder.write("b/p.csv", "1,2,3\n");  // the same bytes: whichever `rebuild` finds is right
+  folder.write("b/p.csv", "1,2,3\n");  // the same bytes, so either is right for `rebuild`
   CHECK(error_of(open_recording(files, manifest, base)) == "none");
 }
 

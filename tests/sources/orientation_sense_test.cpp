@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node whose parts belong together is left alone; of one whose do not it is said which.
+// A node whose orientations fit its other data gives no finding; if they do not, the finding says
+// which part is wrong.
 #include "kinalign/sources/orientation_sense.h"
 
 #include "kinalign/motion/arrays.h"
@@ -22,8 +23,9 @@ Quat parts_shifted(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }  // x
 Quat other_way(const Quat& q) { return q.conjugate(); }
 Quat z_up(const Quat& q) { return Quat(std::sqrt(0.5), std::sqrt(0.5), 0, 0) * q; }
 
-/// A node that swings, `times` as far; what it felt is what its orientations make of gravity and of
-/// the turn from one to the next, what it says of them is `change` of these.
+/// A node that swings, `times` as far. Its acceleration and rates follow from its true orientations
+/// (gravity, and the turn from one to the next); the orientations that it states are changed by
+/// `change`.
 ImuSamples swinging(const Change& change, double times = 1.0) {
   const auto turn = [times](double t) {
     return Quat(Eigen::AngleAxisd(times * (0.3 + std::sin(2.0 * t)), Vec3::UnitX()) *
@@ -75,7 +77,7 @@ TEST_CASE("parts in another order, the inverse and another axis up show in gravi
   CHECK(said_of(swinging(z_up), with_gravity) ==
         "w.csv: expected gravity of 'wrist' that points up in the world, found 90 degrees from it "
         "in the mean\n");
-  CHECK(said_of(swinging(z_up), without).empty());  // without gravity any axis may be up
+  CHECK(said_of(swinging(z_up), without).empty());  // without gravity any axis may point up
 }
 
 TEST_CASE("one sample that came on the heels of the next, or one wild rate, outweighs no other") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every number of real recordings against a plain reading of the same text in Python.
+// Every number of real recordings compared with a plain reading of the same text in Python.
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"
 #include "tests/witness.h"
@@ -18,13 +18,13 @@ using namespace kinalign;
 
 namespace {
 
-/// How a file is read, by us and by the witness, and its path below ../shared/data.
+/// How a file is read, by us and by the script, and its path below ../shared/data.
 struct File {
   const char* way;
   const char* path;
 };
 
-/// What the witness found in the file of the given number.
+/// The values that the witness script real_values.py read from the file of the given number.
 class Witnessed {
  public:
   Witnessed(const FreshFolder& folder, std::size_t file) : folder_(folder), file_(file) {}
@@ -61,7 +61,7 @@ void check_stamps(const std::vector<Time>& ours, const Witnessed& found) {
   CHECK(wrong == 0);
 }
 
-/// Rows of `width` numbers; `there`: which rows we say hold something.
+/// Compares rows of `width` numbers; `there`: the rows that hold something by our reading.
 template <class There>
 void check_numbers(std::span<const double> ours, std::size_t width, const Witnessed& found,
                    const std::string& name, There there) {
@@ -70,7 +70,7 @@ void check_numbers(std::span<const double> ours, std::size_t width, const Witnes
   REQUIRE(ours.size() == theirs.size());
   std::size_t wrong = 0;
   for (std::size_t row = 0; row < ours.size() / width; ++row) {
-    // Of two quaternions that are one turn, each may be written.
+    // A quaternion and its negative are one rotation, so either may be written.
     double straight = 0.0, opposite = 0.0;
     bool known = true;
     for (std::size_t k = row * width; k < (row + 1) * width; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first pass over a recording's files, and every later one: hashes, clocks, and that a file
-// stays what it was.
+// The first pass over a recording's files, and every later one: hashes, clocks, and the check that
+// a file has not changed.
 #include "tests/folder.h"
 
 #include "kinalign/core/hash.h"
@@ -31,7 +31,7 @@ std::string rows_from(std::int64_t first, int count) {
   return text;
 }
 
-/// All rows of one pass, or its error.
+/// Reads all rows of one pass; gives their number, or the error.
 Result<std::size_t> pass_over(const RecordedStream& stream) {
   auto pass = KA_TRY(std::get<ImuInput>(stream.data).passes());
   ImuSamples block;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which units can't be right, and which are left alone.
+// Which units are recognised as wrong, and which are accepted.
 #include "kinalign/sources/value_survey.h"
 
 #include <doctest/doctest.h>
@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t rows = 40;
 
-/// Joints of someone 1.7 m tall who walks away, in a file whose unit is taken for `metres`.
+/// The findings about the joints of a person of 1.7 m who walks away, in a file whose unit is taken
+/// for `metres`.
 std::string said_of_person(double metres, std::size_t joints = 25) {
   PointFrames block;
   for (std::size_t t = 0; t < rows; ++t) {
@@ -30,7 +31,8 @@ std::string said_of_person(double metres, std::size_t joints = 25) {
   return findings.empty() ? "" : to_string(findings[0].what) + "; " + findings[0].meaning;
 }
 
-/// Nodes that read `acceleration` (m/s2, its own third up and down) and `rate` (rad/s).
+/// The findings about nodes that read `acceleration` (m/s2, up and down by a third of itself) and
+/// `rate` (rad/s).
 std::string said_of_node(double acceleration, double rate, bool gravity, double swing = 0.3) {
   ImuSamples block;
   for (std::size_t t = 0; t < rows; ++t) {
@@ -71,7 +73,8 @@ TEST_CASE("fewer points than a person has may be near to each other, not a kilom
         "1000 times too large");
 }
 
-/// Of a hip that sways along z by `hip_sways`, m, and a hand, frame by frame.
+/// The findings about a hip and a hand, frame by frame. The hip sways along z by `hip_sways` m a
+/// frame.
 template <class Hand>
 std::string said_of_hand(Hand hand, const Vec3& hip = {0.0, 0.9, 2.0}, double hip_sways = 0.0) {
   PointFrames block;

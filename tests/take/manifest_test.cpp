@@ -13,8 +13,8 @@ using namespace kinalign;
 
 namespace {
 
-/// What holds for any description: names as TOML writes them, none twice, one line each, and
-/// defaults that the description itself allows.
+/// Checks the rules of any description: names that TOML can write without quotes, no name twice, a
+/// meaning of one line for each, and defaults that the description itself allows.
 void check_description(const Fields& fields) {
   std::set<std::string> names;
   for (const Field& field : fields) {
@@ -39,7 +39,7 @@ const Field& named(const Fields& fields, const std::string& name) {
   return *std::find_if(fields.begin(), fields.end(), [&](auto& f) { return f.name == name; });
 }
 
-/// Where each described option lies, none twice and all within `options`.
+/// The addresses of all described options: no address twice, and all of them within `options`.
 template <class Options>
 std::set<const void*> described(Options& options) {
   std::set<const void*> places;
@@ -54,7 +54,7 @@ std::set<const void*> described(Options& options) {
   return places;
 }
 
-/// How many of these members have a description.
+/// The number of these members that have a description.
 template <class... Members>
 std::size_t described_of(const std::set<const void*>& places, const Members&... members) {
   return (places.count(&members) + ...);
@@ -72,7 +72,8 @@ TEST_CASE("options are described with names that differ, and defaults that are a
 }
 
 TEST_CASE("no option without a description, but for those that are more than one value") {
-  // A member put in or taken out no longer fits these names: then its description has to follow.
+  // If a member is added or removed, these names no longer fit and this does not compile: then its
+  // description must be changed, too.
   AlignOptions align;
   auto& [reference, gap, rotations, store_double] = align;
   CHECK(described_of(described(align), reference, gap, rotations, store_double) == 4);

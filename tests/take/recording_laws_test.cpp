@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any stream that lies in memory.
+// Rules for any stream in memory.
 #include "tests/seeds.h"
 
 #include "kinalign/motion/frame_arrays.h"
@@ -56,7 +56,7 @@ Clip any_clip(std::mt19937_64& random) {
           {any_stamps(n, random), numbers(3 * n, random), numbers(4 * n, random)}};
 }
 
-/// All blocks of a pass, one behind the other.
+/// All blocks of a pass, joined.
 template <class Frames>
 Frames gathered(Pass<Frames> pass) {
   Frames all, block;
@@ -90,7 +90,7 @@ void check_stream(const RecordedStream& stream, const Frames& expected) {
   CHECK(stream.survey.first == survey.first);
   CHECK(stream.survey.last == survey.last);
   CHECK(stream.survey.median_step_ns == survey.median_step_ns);
-  CHECK_FALSE(stream.step_ns);  // stamps of its own
+  CHECK_FALSE(stream.step_ns);  // the stream has stamps of its own, not a rate
   const Passes<Frames> passes = std::get<Input>(stream.data).passes;
   for (int i = 0; i < 2; ++i) {
     auto pass = passes();

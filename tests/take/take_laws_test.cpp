@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of the rows of any take, and that no array of theirs is forgotten.
+// Rules for the rows of any take, and a check that none of their arrays is forgotten.
 #include "tests/formats/take/take_samples.h"
 #include "tests/seeds.h"
 
@@ -91,7 +91,7 @@ TEST_CASE("a take cut into slabs anywhere and put together again is the take") {
       at = to;
     }
     check_same(all, whole);
-    append_rows(all, part(whole, frames, frames));  // no rows: nothing changes
+    append_rows(all, part(whole, frames, frames));  // no rows, so nothing changes
     check_same(all, whole);
   }
 }
@@ -121,7 +121,8 @@ TEST_CASE("every array that a take stores has the name of its documentation, onc
         Names{"positions", "state", "valid", "nearest_raw_ns", "time_interval_ns"});
   CHECK(columns<ImuRows>() == Names{"orientation", "acceleration", "angular_velocity", "valid",
                                     "nearest_raw_ns", "time_interval_ns"});
-  // A member put in or taken out no longer fits these names: then for_each_column has to follow.
+  // If a member is added or removed, these names no longer fit and this does not compile: then
+  // for_each_column must be changed, too.
   const auto& [places, locals, turns, clip_valid, clip_distance] = ClipRows{};
   const auto& [points, state, point_valid, point_distance] = PointRows{};
   const auto& [orientation, acceleration, rate, imu_valid, imu_distance] = ImuRows{};

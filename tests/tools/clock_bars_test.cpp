@@ -59,9 +59,9 @@ TEST_CASE("a bar is met by a figure that lies on it, and by none that is no numb
 }
 
 TEST_CASE("every column that is promised of a length is judged") {
-  // By hand from section 5. A minute: 47 of errors, 28 of coverage, 7 of other clocks, 21 of
-  // widths, 16 of starts and 15 after a reboot, 5 gains, 2 of the reference. Ten minutes: 48, 28,
-  // 21, 0, 4, 4. An hour: 43, 28, 21. Bursts: 47, 28.
+  // Numbers of bars, counted by hand in section 5. A minute: 47 for errors, 28 for coverage, 7 for
+  // other clocks, 21 for widths, 16 for starts and 15 after a reboot, 5 for gains, 2 for the
+  // reference. Ten minutes: 48, 28, 21, 0, 4, 4. An hour: 43, 28, 21. Bursts: 47, 28.
   const auto all = perfect_links();
   CHECK(verdicts({.minutes = 1.0}, all).size() == 141);
   CHECK(verdicts({.minutes = 10.0}, all).size() == 105);
@@ -78,7 +78,7 @@ TEST_CASE("a figure beyond its bar is missed, and it alone") {
   of(Link::quiet).live.certified = 969;
   of(Link::paper).over_mean_delay.least = {92.0, 71'023};
   of(Link::thin_floor).starts[0].p90 = 2.1;
-  of(Link::congested).restarts[0] = {1e-3, 1.7, 10.1};  // the median is no promise there
+  of(Link::congested).restarts[0] = {1e-3, 1.7, 10.1};  // the median is not promised there
   of(Link::roaming).outside_of_other_clocks = 1;
   using Columns = std::vector<std::string>;
   CHECK(missed({.minutes = 1.0}, all) ==
@@ -88,8 +88,8 @@ TEST_CASE("a figure beyond its bar is missed, and it alone") {
                 "5.5 E after a reboot, live under 1 ms, p90, s",
                 "5.4 F other clocks, truths outside their interval",
                 "5.5 G start, live under 5 ms, p90, s"});
-  // After an hour 0.006 ms are allowed on A; with bursts twice those of a minute, and no gain is
-  // promised.
+  // After an hour 0.006 ms are allowed on A. With bursts the bars are twice those of a minute, and
+  // no gain is promised.
   const Columns lie{"ours B live, share of frames that stay certified",
                     "5.4 E live, truths outside their interval"};
   CHECK(missed({.minutes = 60.0}, all) == lie);

@@ -42,7 +42,7 @@ std::vector<std::string> captions(const std::string& text) {
   return lines;
 }
 
-/// Of half a minute and one seed each, for what does not hang on figures.
+/// A page of half a minute and one seed for each part, for tests that do not depend on the figures.
 const PageFigures& short_page() {
   static const PageFigures page = measure({.minute = {.minutes = 0.5, .seeds = 1, .first = 1},
                                            .ten_minutes = {.minutes = 0.5, .seeds = 1, .first = 2},
@@ -81,18 +81,18 @@ TEST_CASE("each table of the page stands below what it shows, in which unit, and
                           before.find("in percent") != std::string::npos ||
                           before.find("without a unit") != std::string::npos;
     CHECK(has_unit);
-    before.clear();  // each has one of its own
+    before.clear();  // each table has a text of its own before it
   }
   CHECK(tables == 8);
 }
 
 TEST_CASE("the page's bars are those that are judged") {
   PageFigures page = short_page();
-  page.sets = page_sets(1);  // the page's own lengths: bars hang on them
+  page.sets = page_sets(1);  // the page's own lengths, on which the bars depend
   const std::string made = markdown(page);
   const auto has = [&](const char* line) { return made.find(line) != std::string::npos; };
   CHECK(has("\n| bar: kinalign, live | 0.005 / 0.005 | 0.08 / 0.09 | 0.22 / 0.14 |"));
-  CHECK(has("| 0.02 / 0.012 | 0.05 / 0.015 | none / none | 0.75 / 0.25 |\n"));  // less asymmetry
+  CHECK(has("| 0.02 / 0.012 | 0.05 / 0.015 | none / none | 0.75 / 0.25 |\n"));  // without asymmetry
   CHECK(has("\n| bar: live, p99 | 0.08 | 1.3 | 5 | 2.2 | 3.2 | 5.5 | 11 |\n"));
   CHECK(has("\n| bar: both least | none | none | 100 / 150 | none | none | none | none |\n"));
   CHECK(has("\n| bar: kinalign, live | 0.006 / 0.01 | 0.11 / 0.16 |"));  // an hour, bursts

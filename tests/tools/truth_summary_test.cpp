@@ -7,7 +7,7 @@ using namespace kinalign;
 
 namespace {
 
-/// What a live rehearsal of 4 s over link C left.
+/// The truth that a live rehearsal of 4 s over link C leaves.
 TrueRecording live_truth() {
   TrueRecording truth;
   truth.seed = 2;

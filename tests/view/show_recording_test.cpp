@@ -32,7 +32,7 @@ struct ShownMessage {
   Json json;
 };
 
-/// By topic.
+/// The shown messages by topic.
 std::map<std::string, std::vector<ShownMessage>> messages_in(const std::string& path) {
   const ReadMcap read = read_mcap(bytes_in(path));
   CHECK(read.closed);
@@ -53,7 +53,7 @@ double seconds_of(std::uint64_t log_time) {
   return 1e-9 * static_cast<double>(static_cast<std::int64_t>(log_time) - RecordedLab::utc_begin);
 }
 
-/// A recording, with the files that it went on in, as it is shown.
+/// A recording with its further files, as it is shown.
 std::map<std::string, std::vector<ShownMessage>> shown_recording(const FreshFolder& folder,
                                                                  const std::string& path) {
   PosixFiles files;
@@ -98,7 +98,7 @@ TEST_CASE("every sample of a recording is shown as JSON, at its time on UTC") {
   const ShownMessage& frame = shown["/kinect/points"].back();
   CHECK(frame.json["joints"].size() == 25);
   CHECK(frame.json["joints"]["Head"]["state"] == "tracked");
-  CHECK(!frame.json.contains("interval_ns"));  // nothing answers on the sensor's clock
+  CHECK(!frame.json.contains("interval_ns"));  // no answers carry the sensor's clock
 }
 
 TEST_CASE("skeletons are frame transforms, at most 30 a second, from the world to the last joint") {
@@ -106,7 +106,7 @@ TEST_CASE("skeletons are frame transforms, at most 30 a second, from the world t
   auto shown = shown_lab(folder);
   for (const std::string stream : {"mocap", "kinect"}) {
     const auto& messages = shown["/" + stream + "/transforms"];
-    CHECK(messages.size() >= 20 * 30 - 1);  // a Kinect's jitter costs none
+    CHECK(messages.size() >= 20 * 30 - 1);  // a Kinect's jitter must not cost frames
     CHECK(messages.size() <= 20 * 30 + 1);
     std::map<std::string, std::string> parents;
     for (const Json& one : messages.back().json["transforms"]) {
@@ -129,7 +129,7 @@ TEST_CASE("of a recording in parts the marks and clocks of all are shown, each o
     lab.add_mark(t, {Mark::Kind::text, std::to_string(t), std::nullopt, ""});
   }
   const std::string path = folder.write("take.mcap", lab.file({1, -1e9, 6.0}));
-  folder.write("take.part2.mcap", lab.file({2, 5.5, 1e9}));  // half a second stands in both
+  folder.write("take.part2.mcap", lab.file({2, 5.5, 1e9}));  // half a second is in both files
   auto shown = shown_recording(folder, path);
   REQUIRE(shown["/marks"].size() == 3);
   for (const std::size_t k : {0U, 1U, 2U}) {
@@ -159,7 +159,7 @@ TEST_CASE("a Kinect's joint hangs past a missing one, where it was") {
 
 TEST_CASE("an XDF's whole numbers and doubles are shown as they are, on the recorder's clock") {
   const FreshFolder folder;
-  const std::int64_t large = 9'007'199'254'740'993;  // no double
+  const std::int64_t large = 9'007'199'254'740'993;  // a number that no double can hold
   const double third = 1.0 / 3.0;
   const auto bits = [](auto value) { return little_text(std::bit_cast<std::uint64_t>(value)); };
   const std::string path = folder.write(

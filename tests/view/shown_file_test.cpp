@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t most_channels = 65'535;
 
-/// An XDF of `n` streams with a sample each.
+/// An XDF file of `n` streams with one sample each.
 std::string xdf_of(std::uint32_t n) {
   std::string bytes = xdf_begin;
   for (std::uint32_t id = 1; id <= n; ++id) {
@@ -27,7 +27,7 @@ std::string xdf_of(std::uint32_t n) {
   return bytes;
 }
 
-/// A file of JSON channels, a message on each: one for every number that MCAP has.
+/// A file of JSON channels with a message on each: one for every channel number of MCAP.
 std::string mcap_of_all_channels() {
   MemoryFile file;
   McapWriter writer(file.store());

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr Duration third = Duration{33'333'333};  // of 100 ms
+constexpr Duration third = Duration{33'333'333};  // a third of 100 ms
 const Time origin = utc_time(1'700'000'000'000'000'000);
 
 std::vector<Time> frames_each(Duration step, Duration length) {
@@ -32,7 +32,7 @@ std::vector<Time> shown_of(const std::vector<Time>& frames) {
   return shown;
 }
 
-/// Within any second, its beginning included and its end not.
+/// The largest number of frames within a second, its beginning included and its end not.
 std::size_t most_in_a_second(const std::vector<Time>& shown) {
   std::size_t most = 0, first = 0;
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -93,7 +93,8 @@ TEST_CASE("a 30 Hz device that jitters by a millisecond is shown whole") {
 }
 
 TEST_CASE("a Kinect whose steps are of two lengths is shown whole") {
-  std::vector<Time> frames{origin};  // seen: 32.98 and 34.03 ms, a third of them the longer one
+  // Real steps: 32.98 and 34.03 ms, a third of them the longer one.
+  std::vector<Time> frames{origin};
   for (int i = 1; i < 600; ++i)
     frames.push_back(frames.back() + (i % 3 == 0 ? 34'030us : 32'980us));
   CHECK(shown_of(frames) == frames);

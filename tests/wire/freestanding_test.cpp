@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The room is compiled freestanding, without exceptions and RTTI; this asks what it still calls.
+// kinalign/wire is compiled freestanding, without exceptions and RTTI. This tests which outside
+// functions it still calls.
 #include "tests/symbols.h"
 
 using namespace kinalign;

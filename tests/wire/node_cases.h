@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Datagrams of nodes for tests: one of any kind, and how it fares at a receiver.
+// Datagrams of nodes for tests: random ones of any kind, and a receiver's verdict on them.
 #pragma once
 
 #include "kinalign/wire/clockless.h"
@@ -16,7 +16,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 inline const MacKey counted_key{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/// Empty where it was refused.
+/// The bytes of the datagram; empty if it was refused.
 template <class Datagram>
 Bytes encoded(const Datagram& datagram, const MacKey* key) {
   Bytes out(max_node_datagram);
@@ -31,7 +31,7 @@ NodeRefusal received(const Bytes& bytes, const MacKey* key, Datagram& datagram) 
   return refusal == NodeRefusal::none ? decode(envelope, key, datagram) : refusal;
 }
 
-/// "none", or why it is refused.
+/// "none", or the reason of the refusal.
 template <class Datagram>
 std::string fate(const Bytes& bytes, const MacKey* key) {
   Datagram datagram;

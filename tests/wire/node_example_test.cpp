@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The example of docs/formats/imu_node.md, read from the page: what it shows is what we send.
+// The example of docs/formats/imu_node.md, read from the page: its bytes must be those that we
+// send.
 #include "tests/page_bytes.h"
 #include "tests/wire/node_cases.h"
 

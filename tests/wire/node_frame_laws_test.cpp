@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any datagram, with a key and without.
+// Rules for any datagram, with a key and without.
 #include "tests/seeds.h"
 #include "tests/wire/node_cases.h"
 #include "tests/witness.h"
@@ -33,7 +33,8 @@ void check_laws(const Datagram& sent, const MacKey* key) {
     const auto mask = static_cast<std::uint8_t>(1U << bit % 8);
     flipped[bit / 8] ^= mask;
     Envelope envelope;
-    CHECK(open_envelope(flipped, envelope) != NodeRefusal::none);  // found without a key
+    // The error is found without a key.
+    CHECK(open_envelope(flipped, envelope) != NodeRefusal::none);
     flipped[bit / 8] ^= mask;
   }
 }
@@ -71,7 +72,7 @@ void say(std::ostream& out, const NodeSample& sample) {
   out << '\n';
 }
 
-/// As tests/witness/node_frame.py says it of the bytes.
+/// The frame in the same words in which tests/witness/node_frame.py describes its bytes.
 std::string said(const NodeFrame& frame) {
   std::ostringstream out;
   out << frame.origin.node_id << ' ' << frame.origin.boot_id << ' ' << frame.origin.sequence << ' '

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame is refused for, cause by cause; node_frame_laws_test.cpp has what holds of any.
+// The causes for which a frame is refused, one by one; node_frame_laws_test.cpp has the rules for
+// any frame.
 #include "kinalign/wire/node_frame.h"
 
 #include "tests/wire/node_cases.h"
@@ -32,7 +33,7 @@ NodeFrame frame_of(std::size_t samples, const NodeSample& sample = sample_of_bot
   return frame;
 }
 
-/// A frame whose writer changed something before it was sealed.
+/// A frame whose bytes were changed before it was sealed.
 Bytes altered(const NodeFrame& frame, const MacKey* key,
               const std::function<void(Bytes&)>& change) {
   Bytes bytes = encoded(frame, key);
@@ -59,7 +60,7 @@ TEST_CASE("frames have the sizes that the page says") {
   whole.has_orientation = true;
   CHECK(encoded(frame_of(30, whole), nullptr).size() == 1402);
   CHECK(encoded(frame_of(30, whole), &counted_key).size() == 1410);
-  CHECK(max_node_datagram <= 1452);  // Ethernet's 1500 less the heads of IPv6 and UDP
+  CHECK(max_node_datagram <= 1452);  // Ethernet's 1500 minus the heads of IPv6 and UDP
 }
 
 TEST_CASE("a frame of more samples than fit is not written") {
@@ -79,7 +80,7 @@ TEST_CASE("each damaged or foreign part of a frame has its own cause") {
   CHECK(fate_of_byte(23, 1) == "stray_bits");      // a battery without its flag
   CHECK(fate_of_byte(47, 1) == "stray_bits");      // an echo without its flag
   CHECK(fate_of_byte(52, 1 + 2 + 16) == "stray_bits");
-  CHECK(fate_of_byte(52, 2 + 8) == "stray_bits");  // gravity in no acceleration
+  CHECK(fate_of_byte(52, 2 + 8) == "stray_bits");  // gravity flag without an acceleration
   CHECK(fate_of_byte(21, 31) == "too_many_samples");
   CHECK(fate_of_byte(21, 0) == "wrong_fields");
   CHECK(fate_of_byte(21, 2) == "wrong_fields");
@@ -114,7 +115,7 @@ TEST_CASE("each of the MAC's bytes counts") {
     Bytes bytes = encoded(frame_of(1), &counted_key);
     const std::span whole(bytes);
     const auto covered =
-        whole.first(whole.size() - node_crc_size);  // by the CRC, which stands last
+        whole.first(whole.size() - node_crc_size);  // refused by the CRC, which is last
     covered[covered.size() - node_mac_size + i] ^= 1;
     ByteWriter(whole.last(node_crc_size)).put(crc32(covered));
     CHECK(fate<NodeFrame>(bytes, &counted_key) == "wrong_mac");
@@ -129,7 +130,7 @@ TEST_CASE("fields are not looked at before the MAC is right") {
 
 TEST_CASE("of a frame that is refused for its second sample nothing is left") {
   NodeFrame arrived = frame_of(3);
-  const auto change = [](Bytes& bytes) { bytes[52 + 29] = 255; };  // that sample's flags
+  const auto change = [](Bytes& bytes) { bytes[52 + 29] = 255; };  // the flags of the second sample
   CHECK(received(altered(frame_of(2), nullptr, change), nullptr, arrived) ==
         NodeRefusal::stray_bits);
   CHECK(arrived == NodeFrame{});
@@ -158,7 +159,7 @@ TEST_CASE("numbers are not judged: they come through bit for bit and are marked"
   CHECK(faults(arrived.samples[0]).not_finite);
   CHECK(faults(arrived.samples[0]).zero_orientation);
   arrived.samples[0].has_acceleration = arrived.samples[0].has_angular_velocity = false;
-  CHECK(!faults(arrived.samples[0]).not_finite);  // of what is present
+  CHECK(!faults(arrived.samples[0]).not_finite);  // only values that are present are checked
   arrived.samples[0].orientation = {0, 0, 1e-30F, 0};
   CHECK(!faults(arrived.samples[0]).zero_orientation);
 }

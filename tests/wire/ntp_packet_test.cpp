@@ -17,7 +17,8 @@ constexpr std::int64_t era_1_s = 2'085'978'496;           // 2036-02-07 06:28:16
 constexpr std::int64_t y2106_s = 4'294'967'296;           // 2106-02-07 06:28:16: 2^32 s since 1970
 constexpr std::int64_t y2026 = 1'790'000'000 * s + 1234;  // 2026-09-21
 
-/// What chrony 4.3 sends: nothing but the first byte, poll, precision and a random transmit stamp.
+/// A request of chrony 4.3: nothing is set but the first byte, poll, precision and a random
+/// transmit stamp.
 std::vector<std::uint8_t> chrony_request() {
   std::vector<std::uint8_t> bytes(48);
   bytes[0] = 0x23;
@@ -32,7 +33,7 @@ NtpRefusal refusal_of(const std::vector<std::uint8_t>& bytes) {
   return decode_request(bytes, packet);
 }
 
-/// A request with `more` bytes behind it.
+/// A request with `more` bytes after it.
 std::vector<std::uint8_t> with(std::initializer_list<std::size_t> field_lengths, std::size_t mac,
                                unsigned first = 0x23) {
   auto bytes = chrony_request();
@@ -114,7 +115,7 @@ TEST_CASE("law: a stamp and back, and differences, for any times less than 68 ye
     const Time a = utc_time(anywhere(random));
     const Time b = a + Duration{near(random)};
     CHECK(time_from_ntp(ntp_from_time(b), a) == b);
-    // each stamp is rounded by an eighth of a nanosecond at most, the difference once more
+    // Each stamp is rounded by an eighth of a nanosecond at most, and the difference once more.
     CHECK(std::abs((ntp_difference(ntp_from_time(a), ntp_from_time(b)) - (b - a)).count()) <= 1);
   }
 }
@@ -127,8 +128,8 @@ TEST_CASE("a time that Time cannot hold is none, not another one") {
 }
 
 TEST_CASE("fault 21 era_2036: a client's offset stays right across the second") {
-  // The client is 0.25 s behind, one way takes 1 ms; requests from 2 s before to 2 s after the
-  // wrap.
+  // The client is 0.25 s behind, and each way takes 1 ms. The requests are from 2 s before the wrap
+  // to 2 s after it.
   for (const std::int64_t wrap_s : {era_1_s, y2106_s}) {
     for (std::int64_t step = -2 * s; step <= 2 * s; step += s / 8) {
       const Time sent = utc_time(wrap_s * s + step);
@@ -153,7 +154,7 @@ TEST_CASE("a short is never less than what it states and within 2^-16 s of it") 
   for (const std::int64_t ns :
        {std::int64_t{15'258}, std::int64_t{1'000'000}, 16 * s, 65'535 * s}) {
     const Duration stated = duration_from(ntp_short_from(Duration{ns}));
-    CHECK(stated.count() >= ns - 1);  // the way back rounds down to a nanosecond
+    CHECK(stated.count() >= ns - 1);  // the way back is rounded down to a nanosecond
     CHECK(stated.count() <= ns + 15'259);
   }
 }
@@ -198,7 +199,7 @@ TEST_CASE("fault 26 long: what follows is a chain of extension fields, a MAC, bo
   CHECK(refusal_of(with({12}, 28)) == NtpRefusal::wrong_trailer);  // shorter than a field
   CHECK(refusal_of(with({30}, 0)) == NtpRefusal::wrong_trailer);   // no multiple of 4
   auto beyond = with({32}, 0);
-  beyond[51] = 36;  // says more than there is
+  beyond[51] = 36;  // states more bytes than there are
   CHECK(refusal_of(beyond) == NtpRefusal::wrong_trailer);
 }
 
@@ -233,12 +234,13 @@ TEST_CASE("fault 27 kod: an answer counts only where it answers what was sent") 
     CHECK(judged({77}) == kiss);
     CHECK(judged({76}) == NtpAnswer::not_ours);
   }
-  // A kiss is one whatever else it says, as that of a server that is not synchronised.
+  // A packet with a kiss code is a kiss whatever else it says, also of a server that is not
+  // synchronised.
   packet.reference_id = ntp_code("RATE");
   packet.leap = NtpLeap::unsynchronised;
   packet.transmit = {0};
   CHECK(judged({77}) == NtpAnswer::kiss_rate);
-  CHECK(judged({0}) == NtpAnswer::not_ours);  // nothing was asked
+  CHECK(judged({0}) == NtpAnswer::not_ours);  // there was no request
   packet.leap = NtpLeap::none;
   packet.transmit = {78};
   packet.stratum = 16;
@@ -251,7 +253,7 @@ TEST_CASE("fault 27 kod: an answer counts only where it answers what was sent") 
   CHECK(judged({77}) == NtpAnswer::unsynchronised);
   packet.mode = ntp_mode_client;
   CHECK(judged({77}) == NtpAnswer::malformed);
-  packet.originate = {};  // nobody asks with 0
+  packet.originate = {};  // no request has 0
   packet.mode = ntp_mode_server;
   CHECK(judged({0}) == NtpAnswer::not_ours);
   NtpPacket read;

@@ -45,7 +45,8 @@ std::uint64_t of_openssl(const SipHashKey& key, const std::vector<std::uint8_t>&
 }  // namespace
 
 TEST_CASE("SipHash-2-4 gives the vectors of its authors") {
-  // github.com/veorq/SipHash, vectors_sip64; that of 15 bytes is appendix A of the paper
+  // github.com/veorq/SipHash, vectors_sip64; the value for 15 bytes is from appendix A of the
+  // paper.
   CHECK(of_counted_bytes(0) == 0x726fdb47dd0e0e31);
   CHECK(of_counted_bytes(1) == 0x74f839c593dc67fd);
   CHECK(of_counted_bytes(7) == 0xab0200f58b01d137);

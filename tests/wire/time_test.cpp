@@ -8,7 +8,7 @@
 
 using namespace kinalign;
 
-// Stamps of different clocks do not compile together.
+// Stamps of different clocks can't be mixed: such code does not compile.
 static_assert(!std::is_invocable_v<std::minus<>, Time, NodeTime>);
 static_assert(!std::is_invocable_v<std::minus<>, HostTime, NodeTime>);
 static_assert(!std::is_invocable_v<std::less<>, Time, HostTime>);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What libxdf (Debian's libxdf-dev) reads of an XDF file, for tests/formats/xdf/libxdf_test.cpp: a
-// line for each stream, "stream NAME CHANNELS", and one for each of its samples, the corrected
-// stamp and the values, which it keeps as floats. It puts text aside, so streams of text have no
-// samples.
+// Prints the contents of an XDF file as libxdf (Debian's libxdf-dev) reads them, for
+// tests/formats/xdf/libxdf_test.cpp: a line for each stream, "stream NAME CHANNELS", and one for
+// each of its samples, the corrected stamp and the values, which libxdf keeps as floats. It stores
+// text elsewhere, so streams of text have no samples.
 #include <xdf.h>
 
 #include <cstdio>

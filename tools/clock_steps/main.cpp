@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings in whose middle a counter steps, and what they keep of certified stamps that are
-// wrong. A line of JSON each time that one does, with all that the host saw, and one a link and
-// size of the step. For steps.py, which asks whether anything could have told.
+// Simulates recordings in whose middle a counter steps, and looks for certified stamps that are
+// wrong. Prints a line of JSON for each such recording, with all exchanges that the host received,
+// and one line for each link and size of the step. steps.py reads them and asks whether any method
+// could have noticed the step.
+//
 //   kinalign_clock_steps MINUTES SEEDS FIRST_SEED LINKS TIMES...
-// TIMES: of both least delays together; every other seed steps back, at any second of the windows
-// by which floors are judged.
+//
+// TIMES: the size of the step, as a multiple of both least delays together. Every other seed steps
+// back, at any second of the windows by which floors are judged.
 #include "tools/clock_table/judge.h"
 
 #include "kinalign/core/numbers.h"
@@ -25,7 +28,7 @@ struct Wanted {
   std::uint64_t seeds = 0, first = 0;
 };
 
-/// Bounds as [node, host] in seconds since the first frame's readings.
+/// Bounds as [node, host], in seconds since the readings of the first frame.
 std::string bounds_json(const std::vector<Exchange>& exchanges) {
   const NodeTime node = exchanges.front().n_tx;
   const HostTime host = exchanges.front().h_rx;
@@ -70,7 +73,7 @@ void judge(Link link, double times, const Wanted& wanted) {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
-  std::vector<double> numbers;  // but for the letters
+  std::vector<double> numbers;  // all arguments but the letters of the links
   for (const std::string& word : words) {
     double value = 0.0;
     if (parse_number(word, value) && value > 0.0) numbers.push_back(value);

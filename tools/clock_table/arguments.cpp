@@ -13,12 +13,13 @@ namespace kinalign {
 
 namespace {
 
-/// Two words, of which the table makes one choice (Wanted::output).
+/// Two switches from which the table makes one choice (Wanted::output).
 struct Switches {
   bool bars = false, markdown = false;
 };
 
-// Half a minute: live errors count from 10 s on, starts are watched for 30 s.
+// A recording has at least half a minute: live errors count from 10 s on, and starts are watched
+// for 30 s.
 Usage describe(Wanted& o, Switches& switches) {
   Usage usage;
   usage.flags = {{"minutes", "length of a recording", &o.minutes, 0.5, 600.0},
@@ -46,7 +47,7 @@ Result<void> check_links(const std::string& text) {
   return {};
 }
 
-/// The sets of the table in docs/performance.md are its own.
+/// Fails if flags choose the sets: the tables of docs/performance.md always have the same sets.
 Result<void> check_markdown(const Sources& given) {
   for (const auto& [name, source] : given) {
     if (name != "markdown" && name != "first") {
@@ -57,7 +58,8 @@ Result<void> check_markdown(const Sources& given) {
   return {};
 }
 
-/// Bars are stated for these lengths and of that many seeds; with bursts for a minute.
+/// Fails if no bars are stated for this length, or only for more seeds; with bursts, bars are
+/// stated for one minute.
 Result<void> check_bars(const Wanted& wanted) {
   const auto* found =
       std::find_if(least_seeds.begin(), least_seeds.end(),

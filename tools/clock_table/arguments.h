@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the words behind kinalign_clock_table ask for.
+// The options on the command line of kinalign_clock_table.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,15 +17,15 @@ struct Wanted {
   Output output = Output::tables;
   double minutes = 1.0;
   std::int64_t seeds = 20;
-  std::optional<std::int64_t> first;  // absent: seeds that nobody has seen
+  std::optional<std::int64_t> first;  // absent: a random seed, so that seeds are new in each run
   std::string links = "ABCDEFG";
   bool bursts = false;
 };
 
-/// Fails with an Error whose `file` is the flag at fault: "--minutes".
+/// Fails with an Error whose `file` is the wrong flag: "--minutes".
 Result<Wanted> wanted_from(const std::vector<std::string>& words);
 
-/// What --help prints.
+/// The text that --help prints.
 extern const std::string_view help_page;
 
 }  // namespace kinalign

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double ms = 1e3;  // figures are in s, most bars in ms
 
-/// Where the verdicts on one link are written down. Columns without a bar are left out.
+/// Collects the verdicts on one link. Columns without a bar are left out.
 struct Sheet {
   Link link;
   std::vector<Verdict>& verdicts;
@@ -22,7 +22,7 @@ struct Sheet {
   }
 };
 
-/// Of all seeds together.
+/// A figure of all seeds together, so no single seed is named.
 Extreme of_all(double value) { return {value, {}}; }
 Extreme in_ms(Extreme seconds) { return {seconds.value * ms, seconds.seed}; }
 Extreme in_ms(double seconds) { return of_all(seconds * ms); }
@@ -75,8 +75,8 @@ double certified_share(const IntervalFigures& f) {
   return static_cast<double>(f.certified) / static_cast<double>(f.frames);
 }
 
-/// Of every truth, also where a stamp was not certified or was withdrawn. A clock that says little
-/// covers no more: most frames have a stamp that stays certified.
+/// Judges all stamps, also those that were not certified or were withdrawn. Stamps that are seldom
+/// certified must not help: most frames must have a stamp that stays certified.
 void judge_coverage(const LinkFigures& f, Sheet& sheet) {
   sheet.at_least("ours", "offline, share of frames that stay certified",
                  of_all(certified_share(f.offline)), least_certified);
@@ -128,12 +128,12 @@ std::vector<Verdict> verdicts(const RunSet& set, std::span<const LinkFigures> ta
     Sheet sheet{f.link, all};
     judge_errors(set, f, sheet);
     judge_coverage(f, sheet);
-    if (set.bursts) continue;  // the rest is not promised of them
+    if (set.bursts) continue;  // sets with bursts have no further promises
     for (const GainBars& bars : gain_bars) {
       if (f.link == Link::paper && bars.minutes == set.minutes) judge_gains(bars, f, sheet);
     }
     judge_widths(f, sheet);
-    if (set.minutes == 1.0) {  // of 20 seeds: the sets of a minute
+    if (set.minutes == 1.0) {  // sets of a minute, which have 20 seeds
       judge_starts(f, sheet);
       sheet.at_most("5.4", "other clocks, truths outside their interval",
                     of_all(static_cast<double>(f.outside_of_other_clocks)), 0.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures of a set held against what is promised of it.
+// The figures of a set compared with the promises for it.
 #pragma once
 
 #include "tools/clock_table/measure.h"
@@ -11,20 +11,21 @@
 
 namespace kinalign {
 
-/// One column of one promise, on one link.
+/// The verdict on one column of one promise, on one link.
 struct Verdict {
-  std::string source;  // "5.3": the section; "reference": a figure of its that is to be beaten
+  /// "5.3": the section; "reference": a figure of the reference simulator that is to be beaten.
+  std::string source;
   Link link = Link::wired;
-  std::string column;  // with its unit
+  std::string column;  // name of the column with its unit
   Extreme measured;
   double bar = 0.0;
-  bool at_least = false;  // the bar is the least that is enough, not the most
+  bool at_least = false;  // the bar is a lower limit; false: an upper limit
 
   /// A figure that is not a number meets no bar.
   bool met() const { return at_least ? measured.value >= bar : measured.value <= bar; }
 };
 
-/// What is promised of the errors of such a set on a link: columns as in ErrorBars, ms.
+/// The promised bars for the errors of such a set on a link: columns as in ErrorBars, ms.
 std::array<Bar, 7> error_bars(const RunSet& set, Link link);
 
 /// All columns that are promised of sets like this one (promises.h), link by link.

@@ -52,7 +52,7 @@ void withdraw(const ClockEvent& event, std::vector<JudgedStamp>& stamps) {
   }
 }
 
-/// The frames behind `exchanges_of`, in the same order.
+/// The simulated frames that belong to exchanges_of(), in the same order.
 std::vector<std::size_t> heard_frames(const SimulatedExchanges& exchanges) {
   std::vector<std::size_t> frames;
   for (const Heard& heard : in_order_of_arrival(exchanges)) {

@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, methods> names{"T2 − d, each d (the pap
                                                       "**kinalign, offline**",
                                                       "… less floor asymmetry"};
 
-/// Three digits that tell, to a tenth of a microsecond.
+/// Three significant digits, but no more than a tenth of a microsecond.
 std::string shown_ms(double seconds) {
   const double value = seconds * 1e3;
   if (value >= 100.0) return fmt::format("{:.0f}", value);
@@ -44,13 +44,13 @@ std::string shown_count(std::uint64_t n) {
   return text;
 }
 
-/// In percent, never rounded up to a hundred.
+/// A share in percent; it is rounded to 100 only if it is complete.
 std::string shown_share(std::uint64_t part, std::uint64_t whole) {
   const double share = static_cast<double>(part) / static_cast<double>(whole);
   return part == whole ? "100" : fmt::format("{:.2f}", std::floor(share * 1e4) / 1e2);
 }
 
-/// Above a table: what it shows, in which unit, and what is promised.
+/// The text above a table: its content, its unit, and the promised bars.
 std::string caption(std::string_view title, std::string_view what, std::string_view bars) {
   return fmt::format("\n**{}** {} Bars: {}.\n", title, what, bars);
 }
@@ -62,7 +62,7 @@ std::string head(std::string_view title) {
       title);
 }
 
-/// A row of a cell a link: of one set, or of two, "1 min / 10 min".
+/// A row with a cell for each link: for one set, or for two, "1 min / 10 min".
 std::string row(std::string_view name, const std::function<std::string(std::size_t)>& cell) {
   std::string text = fmt::format("| {} |", name);
   for (std::size_t link = 0; link < links; ++link) text += fmt::format(" {} |", cell(link));
@@ -83,7 +83,7 @@ struct Beside {
 
 std::string shown_bar(Bar ms) { return ms ? fmt::format("{:g}", *ms) : "none"; }
 
-/// A row of promises; `column`: of ErrorBars.
+/// A row of promised bars; `column`: an index in ErrorBars.
 struct BarRow {
   std::string_view name;
   std::size_t column;

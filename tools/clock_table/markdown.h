@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The measured tables of docs/performance.md, section "Clocks": RMS, p99, worst stamp,
-// certificates, widths, gains and starts, between the two comments that stand there.
+// certificates, widths, gains and starts. They stand between the page's two comments.
 #pragma once
 
 #include "tools/clock_table/measure.h"
@@ -15,7 +15,7 @@ struct PageSets {
 };
 PageSets page_sets(std::uint64_t first);
 
-/// What was measured of them, a link each, A to G.
+/// The figures of the sets: one entry for each link, A to G.
 struct PageFigures {
   PageSets sets;
   std::vector<LinkFigures> minute, ten_minutes, hour, bursts;

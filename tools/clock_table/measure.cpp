@@ -20,7 +20,7 @@ namespace {
 
 constexpr double start_watched_s = 30.0;
 
-using Errors = std::vector<std::vector<double>>;  // s, a vector a seed
+using Errors = std::vector<std::vector<double>>;  // s, one vector for each seed
 
 /// Intervals of all seeds.
 struct Intervals {
@@ -41,12 +41,12 @@ struct Intervals {
 
 constexpr Reboot reboot{.at = 20.0, .gap = 1.0};
 
-/// What is kept of every seed.
+/// The results that are kept of all seeds.
 struct Gathered {
   std::array<Errors, methods> errors;
-  Errors each_delay_from_the_start;  // as offline's
+  Errors each_delay_from_the_start;  // errors of each_delay counted from the first frame on
   Intervals live, offline;
-  std::vector<std::vector<double>> starts, restarts;  // s, a vector a limit of the link
+  std::vector<std::vector<double>> starts, restarts;  // s, one vector for each limit of the link
   std::uint64_t outside_of_other_clocks = 0;
 };
 
@@ -58,7 +58,7 @@ std::vector<double> since(const PeerErrors& found, double begin) {
   return errors;
 }
 
-/// Seconds of a life until the error of all that follow within half a minute is small.
+/// Seconds from `begin` until the error stays within the limit for the rest of half a minute.
 double start_time(const JudgedRun& run, double begin, double limit) {
   std::optional<double> last;
   for (const JudgedStamp& stamp : run.stamps) {
@@ -106,7 +106,7 @@ std::uint64_t outside(const JudgedRun& run) {
                     [](const JudgedStamp& stamp) { return stamp.outside; }));
 }
 
-/// What is promised of more than the usual clock in its first life.
+/// Measures the promises about restarts and about other clocks than the usual one.
 void gather_others(const ExchangeOptions& usual, std::uint64_t seed, Gathered& all) {
   ExchangeOptions options = usual;
   options.reboots = {reboot};
@@ -127,7 +127,7 @@ std::vector<double> pooled(const Errors& errors) {
 }
 
 double at_share(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();  // no bar is met by that
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();  // NaN meets no bar
   std::sort(values.begin(), values.end());
   const auto n = static_cast<double>(values.size());
   return values[static_cast<std::size_t>(std::min(n - 1.0, n * share))];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every method on one link, on the same traces: what the tables print and the bars judge.
+// Measures every method on one link, on the same simulated exchanges: the tables print the figures
+// and the bars judge them.
 #pragma once
 
 #include "kinalign/simulate/nodes/link.h"
@@ -14,16 +15,17 @@
 
 namespace kinalign {
 
-constexpr double live_since_s = 10.0;  // the first seconds are those of convergence
+constexpr double live_since_s = 10.0;  // in the first seconds the clock still converges
 
-/// Recordings of so many seeds from `first` on.
+/// The recordings of `seeds` seeds from `first` on.
 struct RunSet {
   double minutes = 1.0;
   std::uint64_t seeds = 20, first = 0;
   bool bursts = false;  // half of all packets lost, 2 s at a time
 };
 
-/// Rows of a table: the peers in their order, then ours. Net: less (Fu - Fd) / 2 of the seed.
+/// The rows of a table: other methods in their order, then ours. Net: without the seed's (Fu - Fd)
+/// / 2.
 enum class Method : std::uint8_t {
   each_delay,
   mean_delay,
@@ -40,13 +42,13 @@ enum class Method : std::uint8_t {
 constexpr std::size_t methods = 11;
 constexpr bool is_ours(std::size_t row) { return row >= static_cast<std::size_t>(Method::live); }
 
-/// A figure of a set, and the seed that gave it, where one alone did: the worst.
+/// A figure of a set. If one seed alone gave it, as the worst, that seed is named.
 struct Extreme {
   double value = 0.0;
   std::optional<std::uint64_t> seed{};
 };
 
-/// Of one method over all seeds of a set, s.
+/// The errors of one method over all seeds of a set, s.
 struct MethodFigures {
   std::string name;
   double pooled = 0.0;  // RMS of all stamps
@@ -55,12 +57,12 @@ struct MethodFigures {
   Extreme worst_stamp;
 };
 
-/// Of the intervals of one clock. Widths are of certified stamps; live: after 10 s.
+/// The intervals of one clock. Widths are those of certified stamps; live: after 10 s.
 struct IntervalFigures {
-  std::uint64_t frames = 0;                       // heard
-  std::uint64_t certified = 0;                    // of their stamps, and not withdrawn
-  std::uint64_t wrong = 0;                        // certified, and the truth outside
-  std::uint64_t outside = 0;                      // the truth, certified or not
+  std::uint64_t frames = 0;     // frames that were received
+  std::uint64_t certified = 0;  // frames whose stamp is certified and was not withdrawn
+  std::uint64_t wrong = 0;      // certified frames whose true time lies outside
+  std::uint64_t outside = 0;    // frames whose true time lies outside, certified or not
   double half_width = 0.0, half_width_p99 = 0.0;  // s
 };
 
@@ -70,7 +72,7 @@ struct StartFigures {
   double median = 0.0, p90 = 0.0, worst = 0.0;
 };
 
-/// How many times less than T2 - d's the offline clock's RMS is.
+/// The ratio of the RMS of the method T2 - d to the offline clock's RMS.
 struct GainFigures {
   double median = 0.0;
   Extreme least;
@@ -82,24 +84,25 @@ struct LinkFigures {
   std::array<MethodFigures, methods> rows;
   IntervalFigures live, offline;
   std::vector<StartFigures> starts;  // in the order of start_bars
-  /// Sets of a minute without bursts: after a reboot, and what other clocks that the assumptions
-  /// allow have outside their intervals, live and offline.
+  /// Only for sets of a minute without bursts: starts after a reboot, and the number of stamps
+  /// outside their intervals, live and offline, for other clocks that the assumptions allow.
   std::vector<StartFigures> restarts;
   std::uint64_t outside_of_other_clocks = 0;
   GainFigures over_each_delay, over_mean_delay;
-  double frame_number_gain = 0.0;  // over T2 - d, each d, pooled
+  /// Ratio of the pooled RMS: T2 - d with each d, to the frame number.
+  double frame_number_gain = 0.0;
 
   const MethodFigures& of(Method method) const { return rows[static_cast<std::size_t>(method)]; }
 };
 
 LinkFigures measure(Link link, const RunSet& set);
 
-/// One of the jobs of a table.
+/// One link and set of a table.
 struct LinkRun {
   Link link = Link::wired;
   RunSet set;
 };
-/// On both processors, in the order given.
+/// Measures all, on two threads, and gives the figures in the order of `runs`.
 std::vector<LinkFigures> measure(std::span<const LinkRun> runs);
 
 }  // namespace kinalign

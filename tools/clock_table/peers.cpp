@@ -16,7 +16,7 @@ namespace kinalign {
 
 namespace {
 
-/// Frames that were heard, in the order in which they were sent.
+/// Frames that arrived, in the order in which they were sent.
 std::vector<const SimulatedFrame*> heard_frames(const SimulatedExchanges& exchanges) {
   std::vector<const SimulatedFrame*> frames;
   for (const SimulatedFrame& frame : exchanges.frames) {
@@ -27,11 +27,11 @@ std::vector<const SimulatedFrame*> heard_frames(const SimulatedExchanges& exchan
 
 double counter(const SimulatedFrame& frame) { return static_cast<double>(frame.n_tx_us) * 1e-6; }
 
-/// A whole exchange, paired: a frame whose reply was echoed by a later frame that was heard.
+/// A whole exchange: a frame whose reply was echoed by a later frame that arrived.
 struct TwoWay {
   double known_at = 0.0;  // when that later frame arrived
-  double node = 0.0;      // the counter, in the middle of the exchange
-  double offset = 0.0;    // host minus node, half of both ways
+  double node = 0.0;      // counter in the middle of the exchange, s
+  double offset = 0.0;    // s, host minus node, from half of the round trip
   double round_trip = 0.0;
 };
 
@@ -86,12 +86,12 @@ PeerErrors frame_number(const SimulatedExchanges& exchanges) {
                    stamps_by_frame_number(clockless(exchanges), exchanges.options.rate_hz).value());
 }
 
-/// A line offset + slope (node - at), in force since it was known.
+/// A line offset + slope (node - at), used from the time on at which it was known.
 struct Line {
   double known_at = 0.0, at = 0.0, offset = 0.0, slope = 0.0;
 };
 
-/// Each frame by the newest line that was known when it arrived.
+/// Stamps each frame by the newest line that was known when it arrived.
 PeerErrors by_lines(const SimulatedExchanges& exchanges, const std::vector<Line>& lines) {
   PeerErrors out;
   for (const SimulatedFrame* f : heard_frames(exchanges)) {
@@ -124,7 +124,7 @@ Line fitted(const std::vector<TwoWay>& points, const std::vector<double>& weight
   return {0.0, node, offset, squares > 0.0 ? products / squares : 0.0};
 }
 
-/// liblsl's: each five seconds the best of eight probes.
+/// liblsl's method: every five seconds the best of eight probes.
 std::vector<TwoWay> best_of_eight(const SimulatedExchanges& exchanges) {
   std::map<std::int64_t, std::vector<TwoWay>> windows;
   for (const TwoWay& e : two_way_exchanges(exchanges)) {
@@ -149,7 +149,7 @@ PeerErrors lsl_live(const SimulatedExchanges& exchanges) {
   return by_lines(exchanges, lines);
 }
 
-/// One robust line (Huber's weights) through all, as readers of XDF draw it.
+/// One robust line (Huber's weights) through all points, as readers of XDF fit it.
 PeerErrors lsl_offline(const SimulatedExchanges& exchanges) {
   const auto picked = best_of_eight(exchanges);
   std::vector<double> weights(picked.size(), 1.0);
@@ -171,7 +171,8 @@ PeerErrors lsl_offline(const SimulatedExchanges& exchanges) {
   return by_lines(exchanges, {line});
 }
 
-/// A client that asks each 16 s; a line through its last 16, by their excess round trips.
+/// A client that asks every 16 s, and fits a line through its last 16 exchanges, weighted by their
+/// excess round trips.
 PeerErrors sntp_live(const SimulatedExchanges& exchanges) {
   std::vector<TwoWay> asked;
   std::vector<Line> lines;
@@ -197,7 +198,8 @@ PeerErrors sntp_live(const SimulatedExchanges& exchanges) {
   return by_lines(exchanges, lines);
 }
 
-/// Offset and drift; measurement noise by the excess round trip, a soft gate at three deviations.
+/// A filter for offset and drift. The measurement noise follows the excess round trip; errors
+/// beyond three deviations count less.
 PeerErrors kalman_live(const SimulatedExchanges& exchanges) {
   const auto points = two_way_exchanges(exchanges);
   std::vector<Line> lines;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What others do, re-implemented on simulated exchanges: the paper, and the ideas of liblsl, of
-// SNTP clients and of a Kalman filter, each as the reference simulator in Python has it. Ours are
-// not those programs. All give the error of each frame that was heard, s, in the order of arrival;
-// frames without a stamp are left out.
+// Other methods, re-implemented on simulated exchanges: the paper's, and the ideas of liblsl, of
+// SNTP clients and of a Kalman filter, each in the form of the reference simulator in Python. They
+// are not those programs themselves. All give the error of each frame that arrived, s, in the order
+// of arrival; frames without a stamp are left out.
 #pragma once
 
 #include "kinalign/simulate/nodes/exchanges.h"
@@ -19,7 +19,7 @@ struct PeerErrors {
 
 struct Peer {
   std::string_view name;
-  bool live;  // each stamp by what had arrived until then
+  bool live;  // each stamp uses only the frames that had arrived until then
   PeerErrors (*errors)(const SimulatedExchanges& exchanges);
 };
 

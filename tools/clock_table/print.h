@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A set, or what became of its bars, for who looks at it in a terminal.
+// Prints a set, or the verdicts on its bars, to a terminal.
 #pragma once
 
 #include "tools/clock_table/bars.h"
 
 namespace kinalign {
 
-/// "1 min, 15 frames a second, seeds 5 to 24": what a run is made again from.
+/// "1 min, 15 frames a second, seeds 5 to 24": enough to repeat a run.
 std::string describe(const RunSet& set);
 
-/// A table a link, what its certificates and starts were, and all links side by side.
+/// Prints a table for each link, with its certificates and starts, and then all links side by side.
 void print_tables(const RunSet& set, std::span<const LinkFigures> tables);
 
-/// A line a column, with the seed to look at, and how many were met.
+/// Prints a line for each column, with the seed to look at, and the number of bars that were met.
 void print_verdicts(const RunSet& set, std::span<const Verdict> verdicts);
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the clocks promise, as data: the bars that this project was begun with (docs/clock.md, «The
-// promises»), by the numbers of their sections. A promise is of many seeds.
+// The promises of the clocks as data: the bars with which this project was begun (docs/clock.md,
+// «The promises»), by the numbers of their sections. A promise is about many seeds together.
 #pragma once
 
 #include "kinalign/simulate/nodes/link.h"
@@ -16,7 +16,7 @@ namespace kinalign {
 using Bar = std::optional<double>;
 inline constexpr Bar no_bar{};
 
-/// 5.1: from how many seeds on the promises of a length are meant.
+/// 5.1: the least number of seeds for the promises about a length.
 struct LeastSeeds {
   double minutes;
   std::uint64_t seeds;
@@ -24,8 +24,8 @@ struct LeastSeeds {
 inline constexpr std::array least_seeds{LeastSeeds{1.0, 20}, LeastSeeds{10.0, 8},
                                         LeastSeeds{60.0, 3}};
 
-/// 5.2, link C: RMS of T2 - d over ours, at least. Of every seed and pooled against each d and mean
-/// d alike, live and the frame number (a node without a counter) against each d.
+/// 5.2, link C: least ratio of the RMS of T2 - d to ours. every_seed and pooled: offline, against
+/// each d and mean d alike; live and frame_number (a node without a counter): against each d.
 struct GainBars {
   double minutes;
   Bar every_seed, pooled, live, frame_number;
@@ -64,7 +64,7 @@ inline constexpr ErrorBars errors_of_an_hour{{
     {{no_bar, .35, .80, .20, .45, 1.2, 3.0}},
 }};
 
-/// 5.5: with bursts of loss the bars of a minute, so many times.
+/// 5.5: with bursts of loss the bars of a minute are multiplied by this.
 inline constexpr double bursts_allow = 2.0;
 
 /// 5.4, ms, of links A to G: half widths offline, live after 10 s, and its p99.
@@ -78,8 +78,9 @@ inline constexpr std::array<std::array<double, 3>, links> width_bars{{
     {{8.7, 9.5, 11.0}},
 }};
 
-/// Ours: what section 5.4 takes for granted, of frames. The first ones have no certificate yet, and
-/// with bursts a slip that was none withdraws some.
+/// Our own bar: the share of frames that must be certified, which section 5.4 takes for granted.
+/// The first frames have no certificate yet, and with bursts of loss a slip that is found wrongly
+/// withdraws some.
 inline constexpr double least_certified = 0.97;
 
 /// 5.4: other clocks within H1 to H5, whose stamps are never outside their interval.
@@ -90,10 +91,10 @@ inline constexpr std::array other_clocks{
     NodeClockOptions{
         .frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8, .period_s = 120.0}};
 
-/// 5.5: from the first frame until the live error stays under the limit, s.
+/// 5.5: seconds from the first frame until the live error stays under the limit.
 struct StartBars {
   Link link;
-  double limit;  // s, of the error
+  double limit;  // limit of the error, s
   double median, p90;
 };
 inline constexpr std::array start_bars{
@@ -102,24 +103,25 @@ inline constexpr std::array start_bars{
     StartBars{Link::modem_sleep, 1e-3, 1.5, 3.0}, StartBars{Link::congested, 1e-3, 1.0, 10.0},
     StartBars{Link::roaming, 1e-3, 0.5, 3.0},     StartBars{Link::thin_floor, 5e-3, 0.5, 2.0}};
 
-/// After a reboot the same bars hold but for E's median, and on F while the node is on its first
-/// route (after 20 s it is). E begins in its good state both ways, and a reboot meets it in a busy
-/// one as often as not: packets that took within 1 ms of the least, which no method can do without,
-/// have come both ways after 1.6 s in the median (600 seeds).
+/// Whether the start's median bar also holds after a reboot; all other bars do, but on F not while
+/// the node is on its first route (until 20 s). On E the median does not hold: E begins in its good
+/// state both ways, and a reboot meets it in a busy one as often as not. Packets that took within 1
+/// ms of the least, without which no method works, have come both ways after 1.6 s in the median
+/// (600 seeds).
 constexpr bool median_holds_after_a_reboot(Link link) { return link != Link::congested; }
 
-/// Figures of the reference simulator that can be beaten, ms: on F those of 5.3, on C live those
-/// that its command of 5.3 prints. On C the draw of asymmetries is most of the total after ten
-/// minutes, so less asymmetry.
+/// Figures of the reference simulator that are to be beaten, ms: on F those of 5.3, on C live those
+/// that its command of 5.3 prints. On C the random asymmetries are most of the error after ten
+/// minutes, so the bars there are without asymmetry.
 struct ReferenceFigures {
   Link link;
   double minutes;
-  Bar offline, live, live_net, live_p99;  // pooled RMS but for p99
+  Bar offline, live, live_net, live_p99;  // pooled RMS, except live_p99
 };
 inline constexpr std::array reference_figures{
     ReferenceFigures{Link::paper, 1.0, no_bar, no_bar, .1381, .318},
     ReferenceFigures{Link::paper, 10.0, no_bar, no_bar, .0487, .184},
-    // Live its Kalman filter's 0.48, which it found better there than its own 0.647.
+    // 0.48 live is that of its Kalman filter, which was better there than its own clock (0.647).
     ReferenceFigures{Link::roaming, 10.0, .530, .48, no_bar, no_bar}};
 
 }  // namespace kinalign

@@ -53,13 +53,13 @@ class Builder {
   DemoBody body_;
 };
 
-/// 0 before 0, 1 behind 1, twice continuously differentiable.
+/// A step from 0 at x = 0 to 1 at x = 1, twice continuously differentiable.
 double rise(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * x * (10 + x * (6 * x - 15));
 }
 
-/// 1 between `from` and `to`, falling to 0 within 0.8 s inside.
+/// 1 inside of `from` to `to`; it rises and falls within 0.8 s inside these ends.
 double within(double t, double from, double to) {
   constexpr double ramp = 0.8;
   return rise((t - from) / ramp) * rise((to - t) / ramp);
@@ -183,10 +183,10 @@ DemoPose DemoMotion::pose(double t) const {
 
   pose.positions[0] += Vec3{4 * step * swing, 0.3 * turn(0.25, t) - 1.5 * step, 0};
   pose.positions[0].z() += 25 * step * turn(0.15, u) - 7 * bend;
-  // R = Ry Rx Rz: a turn of everything about y adds to the first angle of the root.
+  // R = Ry Rx Rz, so a turn of the whole body about y adds to the first angle of the root.
   angles(Named::hips)[0] += demo_heading_deg;
   pose.positions[0] = rotation({demo_heading_deg, 0, 0}) * pose.positions[0];
-  // The suit's own habit: legs stretch a little to keep the feet where they stand.
+  // Real suits stretch the legs a little to keep the feet in their places; so does this one.
   pose.positions[used_[Named::left_foot]].y() -= 0.8 * left;
   pose.positions[used_[Named::right_foot]].y() -= 0.8 * right;
   return pose;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The demo's person: a skeleton with the names and the hierarchy of a Perception Neuron suit, and
-// what it does at any moment, by closed formulas.
+// its motion at any time, by closed formulas.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -15,8 +15,9 @@ namespace kinalign {
 
 constexpr std::size_t demo_joints = 59;
 
-/// Where the person faces, from +z towards +x: a suit's axes are where its calibration left them,
-/// and the camera, which looks the person in the face, comes out turned by 180 degrees more.
+/// The direction that the person faces, measured from +z towards +x. A suit's axes are those of its
+/// calibration. The camera looks at the person's face, so its direction is another 180 degrees
+/// away.
 constexpr double demo_heading_deg = 58.7 - 180.0;
 
 struct DemoJoint {
@@ -35,8 +36,8 @@ struct DemoBody {
 /// `scale` 1: a person of 1.75 m.
 DemoBody demo_body(double scale);
 
-/// One moment, as a BVH row has it: R = Ry Rx Rz, degrees, and positions in cm that replace the
-/// offsets.
+/// The pose at one moment, as in a row of a BVH file: R = Ry Rx Rz, degrees, and positions in cm
+/// that replace the offsets.
 struct DemoPose {
   std::array<Vec3, demo_joints> positions;
   std::array<Vec3, demo_joints> angles;  // about y, x, z
@@ -48,7 +49,7 @@ struct DemoPlaces {
   std::array<Quat, demo_joints> rotations;
 };
 
-/// A small stream of numbers that a seed settles (SplitMix64).
+/// Random numbers from a seed (SplitMix64).
 class DemoRandom {
  public:
   explicit DemoRandom(std::uint64_t seed) : state_(seed) {}
@@ -67,7 +68,7 @@ class DemoMotion {
  public:
   DemoMotion(DemoBody body, std::uint64_t seed);
 
-  /// At `t` seconds; any t.
+  /// The pose at any time `t`, s.
   DemoPose pose(double t) const;
   DemoPlaces places(double t) const;
   const DemoBody& body() const { return body_; }

@@ -12,7 +12,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::int64_t start_ns = 1'790'000'000'000'000'000;
-constexpr double mocap_step = 0.016666667;  // s, as it stands in the file
+constexpr double mocap_step = 0.016666667;  // s, the value in the file
 constexpr double gravity = 9.80665;
 
 std::int64_t frames_of(const DemoTake& take) {
@@ -77,7 +77,8 @@ constexpr std::array<KinectJoint, 25> kinect_joints{{
     {"ThumbRight", "RightHandThumb2", "RightHandThumb3", 0.5},
 }};
 
-/// Joints at the ends of limbs are guessed for half a second in about every tenth.
+/// In each half second a joint at the end of a limb is missing in 2 % of the cases, and inferred in
+/// 8 %.
 int state_of(std::size_t joint, double t, std::uint64_t seed) {
   const bool limb_end = joint == 15 || joint == 19 || joint >= 21;
   if (!limb_end) return 2;
@@ -129,14 +130,16 @@ class KinectWriter {
   TextOut& out_;
   DemoRandom random_;
   std::array<std::size_t, 25> from_{}, to_{};
-  std::array<Vec3, 25> beside_;  // m: what this camera takes for a joint lies beside it
-  // The person looks into the camera, whose z points at the person and x to the person's right.
+  // M, offset between each joint and the place at which the camera sees it.
+  std::array<Vec3, 25> beside_;
+  // The person looks into the camera. The camera's z points at the person, and x to the person's
+  // right.
   Quat camera_from_floor_{
       Eigen::AngleAxisd(-(demo_heading_deg + 180) * std::numbers::pi / 180, Vec3::UnitY())};
   Vec3 camera_{0.21, -0.86, 2.64};  // m
 };
 
-/// Where a node is worn: it lies at one joint and turns with another.
+/// A node on the body: it lies at the joint `at` and turns with the joint `with`.
 struct DemoNode {
   std::string_view name, at, with;
 };
@@ -149,11 +152,11 @@ constexpr std::array<DemoNode, 5> nodes{{{"waist", "Hips", "Hips"},
 
 struct ImuReading {
   Quat orientation;
-  Vec3 acceleration, angular_velocity;  // in the node's space; gravity is in
+  Vec3 acceleration, angular_velocity;  // in the node's axes; the acceleration includes gravity
 };
 
 ImuReading reading_at(const DemoMotion& motion, const DemoNode& node, double t) {
-  constexpr double h = 1e-3;  // s; of central differences
+  constexpr double h = 1e-3;  // s, step of the central differences
   const std::size_t at = motion.body().find(node.at);
   const std::size_t with = motion.body().find(node.with);
   const DemoPlaces before = motion.places(t - h);
@@ -175,8 +178,8 @@ Result<void> write_imu(const DemoTake& take, const DemoMotion& motion, std::size
   const double phase = random.uniform(-0.3, -0.2);
   for (double due = phase; due < take.seconds + 0.2; due += 1 / 15.0) {
     const double t = due + random.uniform(-0.004, 0.004);
-    const double doubt = random.uniform(-0.0035, 0.0035);  // of the stamp
-    if (random.uniform(0, 1) < 0.018) continue;            // lost
+    const double doubt = random.uniform(-0.0035, 0.0035);  // error of the stamp, s
+    if (random.uniform(0, 1) < 0.018) continue;            // the sample is lost
     const ImuReading reading = reading_at(motion, nodes[n], t);
     const Quat& q = reading.orientation;
     out.integer(stamp_at(t + doubt));
@@ -256,7 +259,7 @@ Result<void> write_demo_manifest(const DemoTake& take) {
   out.text(" }\n\n[space.kinect]\nmethod = \"fit\"\njoints = { ");
   bool first = true;
   for (const KinectJoint& joint : kinect_joints) {
-    if (joint.part >= 0.5) continue;  // lies between two joints
+    if (joint.part >= 0.5) continue;  // the joint lies between two joints of the skeleton
     out.text(std::string(first ? "" : ", ") + std::string(joint.name) + " = \"" +
              std::string(joint.from) + "\"");
     first = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the demo's devices write of its motion. The layouts: docs/formats.
+// The files that the demo's devices write about its motion. The layouts: docs/formats.
 #pragma once
 
 #include "tools/demo/body.h"
@@ -31,7 +31,7 @@ Result<void> write_demo_kinect(const DemoTake& take, const DemoMotion& motion);
 /// truth.
 Result<void> write_demo_imus(const DemoTake& take, const DemoMotion& motion);
 
-/// recording.toml, which says all that align has to know.
+/// recording.toml, with all that align needs to know.
 Result<void> write_demo_manifest(const DemoTake& take);
 
 }  // namespace kinalign

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// kinalign_demo_recording OUT_DIR: what a suit, a Kinect and five nodes would have written of one
-// person who waves, bends and steps. Streams to disk: an hour needs no more memory than a minute.
+// kinalign_demo_recording OUT_DIR: writes the files that a suit, a Kinect and five nodes would
+// write about one person who waves, bends and steps. It streams to disk: an hour needs no more
+// memory than a minute.
 #include "apps/cli/command_line.h"
 #include "tools/demo/devices.h"
 

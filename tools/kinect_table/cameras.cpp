@@ -17,9 +17,10 @@ namespace kinalign {
 namespace {
 
 constexpr double distance_m = 2.7, height_m = 1.0;
-constexpr double pair_s = 0.02;        // frames further apart are no pair
-constexpr double exchange_m = 0.12;    // labels are exchanged where the distance is above …
-constexpr double exchange_gain = 0.6;  // … and falls to less than this share by exchanging
+constexpr double pair_s = 0.02;  // s; frames further apart are no pair
+// M; left and right are exchanged if the distance is above this.
+constexpr double exchange_m = 0.12;
+constexpr double exchange_gain = 0.6;  // and falls to less than this share when they are exchanged
 constexpr double far_m = 0.15;
 
 /// A camera that looks at the origin from `degrees` to the person's right of the front.
@@ -45,7 +46,7 @@ Result<KinectJointsAt> joints_of(Piece piece, std::uint64_t seed) {
   });
 }
 
-/// What a camera saw, in the world of the motion.
+/// The frames that a camera saw, in the world of the motion.
 struct Seen {
   std::vector<KinectTick> ticks;
   PointFrames frames;
@@ -64,7 +65,7 @@ Seen seen_from(double degrees, const KinectJointsAt& joints_at, const KinectIds&
 }
 
 struct Pair {
-  std::size_t side, front;  // frames
+  std::size_t side, front;  // index of the frame in each camera
 };
 
 std::vector<Pair> pairs(const Seen& side, const Seen& front) {
@@ -123,7 +124,8 @@ Result<Fitted> fitted(const Seen& side, const Seen& front) {
   return Fitted{std::sqrt(square / std::max(count, 1.0)), far / std::max(arm, 1.0)};
 }
 
-/// Frames in which exchanging left and right brings the two bodies much nearer together.
+/// The share of frames in which exchanging left and right brings the two bodies much nearer
+/// together.
 double exchanged_share(const Seen& side, const Seen& front) {
   double exchanged = 0.0;
   const std::vector<Pair> both = pairs(side, front);
@@ -145,7 +147,7 @@ double exchanged_share(const Seen& side, const Seen& front) {
   return exchanged / std::max<double>(static_cast<double>(both.size()), 1.0);
 }
 
-/// Sd of the thighs' length in percent of it, mean of both.
+/// Standard deviation of the thighs' length in percent of the length, mean of both.
 double thigh_sd(const Seen& seen) {
   double percent = 0.0;
   for (const auto& [hip, knee] : {std::pair{hip_left, knee_left}, {hip_right, knee_right}}) {
@@ -220,7 +222,8 @@ Result<CameraFigures> median_camera_figures(std::uint64_t first, std::size_t cou
     }
   }
   out.far_arm = median([](const CameraFigures& f) { return f.far_arm; });
-  for (std::size_t r = 0; r < rigs; ++r) {  // rare: the mean, not the median
+  // These events are rare, so the mean is taken, not the median.
+  for (std::size_t r = 0; r < rigs; ++r) {
     for (const auto& one : all) {
       out.exchanged[r] += one->exchanged[r] / static_cast<double>(count);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two simulated Kinects before one body that stands, steps, or walks and turns: what each says held
-// against the other, as it was measured on KinectMultiTrack.
+// Two simulated Kinects before one body that stands, steps, or walks and turns: their data are
+// compared with each other, as was done for KinectMultiTrack.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,12 +17,14 @@ inline constexpr double scenario_s = 30.0;
 
 struct CameraFigures {
   std::array<std::array<double, rigs>, scenarios> rms{};  // cm, own rigid fit over 25 joints
-  double far_arm = 0.0;                      // share > 15 cm of far elbow and wrist, 90, step
-  std::array<double, rigs> exchanged{};      // share of frames, whole body, all scenarios
-  std::array<double, scenarios> thigh_sd{};  // % of its length, frontal
+  /// Share of the far elbow and wrist that is off by more than 15 cm, at 90 degrees, step.
+  double far_arm = 0.0;
+  std::array<double, rigs> exchanged{};  // share of frames, whole body, all scenarios
+  /// Standard deviation in % of the length, frontal camera.
+  std::array<double, scenarios> thigh_sd{};
 };
 
-/// Of one person, all draws from one seed.
+/// The figures for one person; all random draws come from one seed.
 Result<CameraFigures> camera_figures(std::uint64_t seed);
 
 /// The median of each over seeds first … first + count - 1, side by side on `jobs` threads.
@@ -30,7 +32,7 @@ Result<CameraFigures> median_camera_figures(std::uint64_t first, std::size_t cou
                                             std::size_t jobs);
 
 struct StampFigures {
-  double mean_ms = 0.0, sd_ms = 0.0;  // of steps of one frame
+  double mean_ms = 0.0, sd_ms = 0.0;  // steps between neighbouring frames
 };
 StampFigures stamp_figures(std::uint64_t seed);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured of Kinect joints beside their truth: the protocol's marks (mean over
-// repetitions) and the statistics of the noise, the same for real and for simulated ones.
+// Measures of Kinect joints against their truth: the protocol's marks (mean over repetitions) and
+// the statistics of the noise. They are the same for real and for simulated joints.
 #pragma once
 
 #include "tools/kinect_table/repetitions.h"
@@ -25,7 +25,7 @@ inline constexpr std::size_t white_groups = 4;
 struct Figures {
   double mpjpe = 0.0, pa = 0.0, bone = 0.0, constancy = 0.0;  // cm
   double acceleration = 0.0, acceleration_smoothed = 0.0;     // mm/frame^2
-  double jitter = 0.0;                                        // times the truth's
+  double jitter = 0.0;                                        // ratio to the truth's jitter
   std::array<double, mapped_joints> within{};                 // cm, rms of the three axes' sd
   std::array<double, joint_rows.size()> within_row{};         // cm, likewise, both sides
   std::array<double, 3> autocorrelation{};                    // at 1, 5, 15 frames

@@ -23,8 +23,9 @@ Sequence sequence_of(const Repetition& piece) {
 
 constexpr std::size_t window = 9;
 
-/// Weights of a window of nine that give its quadratic's value at place `at` in -4 … 4 (Savitzky
-/// and Golay): from sums over k of 1, k^2 and k^4, which are 9, 60 and 708.
+/// Weights for a window of nine values that give the value at `at` in -4 … 4 of the quadratic
+/// through them (Savitzky and Golay). They follow from the sums over k of 1, k^2 and k^4, which are
+/// 9, 60 and 708.
 std::array<double, window> quadratic_weights(double at) {
   std::array<double, window> weights{};
   constexpr double s0 = 9.0, s2 = 60.0, s4 = 708.0, apart = s0 * s4 - s2 * s2;

@@ -12,11 +12,12 @@ namespace {
 
 constexpr std::int64_t pause = 150;  // frames between repetitions
 constexpr double frame_s = 1.0 / 30.0;
-// The data's zero is the floor, though it calls it the camera: feet stand at 0. How high the camera
-// stood is not said; an estimate, m.
+// Height of the camera, m, an estimate: the data do not state it. They call their origin the
+// camera, but it is the floor, because feet stand at 0.
 constexpr double camera_height = 1.0;
 
-/// From 18 joints in the data's space (z towards the camera) to 25 in a world turned to the camera.
+/// Makes 25 joints in a world turned to the camera from 18 joints in the data's space (z towards
+/// the camera).
 void all_joints(std::span<const double> known, std::span<double> joints) {
   for (std::size_t m = 0; m < mapped_joints; ++m) {
     const Vec3 p = vec3(known, m);
@@ -49,7 +50,7 @@ void put_simulated(const PointFrames& frames, std::size_t t, Repetition& piece, 
   }
 }
 
-/// The truth of a take onto its joints: one rigid transform, all repetitions together.
+/// Moves the truth of a take onto its joints by one rigid transform for all repetitions together.
 void move_truth(std::span<Repetition> take) {
   PairMoments moments;
   for (const Repetition& piece : take) {
@@ -77,7 +78,7 @@ void rehearse_take(std::span<Repetition> take, const KinectOptions& options, con
     }
     number += pause;
   }
-  std::size_t next = 0;  // joints are asked for tick by tick
+  std::size_t next = 0;  // joints are asked for in the order of ticks
   const KinectJointsAt joints_at = [&](double, std::span<double> joints) {
     const Place& place = places[next++];
     all_joints({&place.piece->truth[place.frame * 3 * mapped_joints], 3 * mapped_joints}, joints);

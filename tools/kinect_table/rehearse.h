@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a simulated Kinect would have said of UI-PRMD's truth.
+// The data that a simulated Kinect would give for UI-PRMD's truth.
 #pragma once
 
 #include "tools/kinect_table/repetitions.h"
@@ -8,8 +8,8 @@
 
 namespace kinalign {
 
-/// The same pieces with simulated joints, the truth moved onto them take by take as the protocol
-/// does it.
+/// The same repetitions with simulated joints. The truth is moved onto them take by take, as the
+/// protocol does.
 std::vector<Repetition> rehearsed(const std::vector<Repetition>& pieces, const KinectParts& parts,
                                   std::uint64_t seed);
 

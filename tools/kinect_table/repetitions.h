@@ -25,12 +25,12 @@ struct Repetition {
   std::uint32_t person = 0, movement = 0, repetition = 0;
   std::size_t frames = 0;
   std::vector<double> kinect, truth;  // [F,18,3] m
-  std::vector<std::uint8_t> valid;    // [F,18] of the truth
+  std::vector<std::uint8_t> valid;    // 1: the truth is valid, [F,18]
 };
 
 Result<std::vector<Repetition>> read_pieces(std::string_view bytes, std::string_view name);
 
-/// First and last of each person's movement: [begin, end) of the list, which is in their order.
+/// The range of each person's repetitions of a movement: [begin, end) of the list, in its order.
 struct TakeRange {
   std::size_t begin = 0, end = 0;
 };

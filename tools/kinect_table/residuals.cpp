@@ -14,7 +14,7 @@ constexpr std::size_t joints = mapped_joints;
 constexpr double far_off_m = 0.10, frame_s = 1.0 / 30.0;
 constexpr std::array<std::size_t, 3> lags{1, 5, 15};
 
-/// Rows: the person's left, up, the front.
+/// The rotation into the body's heading; its rows are the person's left, up and front.
 Eigen::Matrix3d heading_from_space(const std::vector<double>& truth, std::size_t t) {
   const std::size_t i = t * joints;
   Vec3 left = vec3(truth, i + 10) - vec3(truth, i + 14) + vec3(truth, i + 4) - vec3(truth, i + 7);
@@ -25,7 +25,7 @@ Eigen::Matrix3d heading_from_space(const std::vector<double>& truth, std::size_t
   return axes;
 }
 
-/// [F,18,3] m, in heading space.
+/// Kinect minus truth, [F,18,3] m, in heading space.
 std::vector<double> residuals(const Repetition& piece) {
   std::vector<double> out(piece.kinect.size());
   for (std::size_t t = 0; t < piece.frames; ++t) {

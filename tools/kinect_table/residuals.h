@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left between Kinect and truth inside a take: how large, how smooth, how white.
+// The differences that remain between Kinect and truth inside a take: their size, smoothness and
+// whiteness.
 #pragma once
 
 #include "tools/kinect_table/figures.h"
@@ -9,7 +10,7 @@ namespace kinalign {
 /// Standard deviations, autocorrelations and shares above 10 cm, in the body's heading space.
 void put_residuals(const std::vector<Repetition>& pieces, Figures& figures);
 
-/// The white part by the joint's true speed.
+/// The white part of the differences by the joint's true speed.
 void put_white(const std::vector<Repetition>& pieces, Figures& figures);
 
 }  // namespace kinalign

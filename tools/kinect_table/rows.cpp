@@ -31,7 +31,7 @@ Row give_or_take(std::string name, double real, double by, double simulated) {
   return {std::move(name), real, real - by, real + by, simulated};
 }
 
-// Bands: «acceptance targets» of the reference, its section 7.8.
+// The bands are those of «acceptance targets» of the reference, its section 7.8.
 void add_marks(const Figures& real, const std::vector<Figures>& all, std::vector<Row>& rows) {
   struct Mark {
     std::string_view name;

@@ -10,8 +10,8 @@
 namespace kinalign {
 
 struct Row {
-  std::string name;   // with its unit
-  double real = 0.0;  // as the reference says it of the recordings
+  std::string name;   // the statistic's name with its unit
+  double real = 0.0;  // the reference's value for the real recordings
   double least = 0.0, most = 0.0;
   double simulated = 0.0;  // mean over seeds (two cameras: median)
   bool met() const { return simulated >= least && simulated <= most; }
@@ -21,7 +21,7 @@ struct Row {
 Result<std::vector<Row>> measured_rows(const std::vector<Repetition>& real, std::size_t seeds,
                                        std::size_t jobs);
 
-/// Those of two cameras and of stamps, which need no recordings.
+/// The rows of two cameras and of stamps, which need no recordings.
 Result<std::vector<Row>> camera_rows(std::size_t seeds, std::size_t jobs);
 
 std::string plain(const std::vector<Row>& rows);

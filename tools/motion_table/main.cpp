@@ -28,13 +28,13 @@ namespace {
 
 constexpr std::size_t most_bvh_bytes = std::size_t{1} << 30U;
 
-/// Both hips stand first.
+/// The first two are the hips, whose middle is used.
 constexpr std::array<std::string_view, 12> compared{
     "HipLeft",    "HipRight",   "ShoulderLeft", "ElbowLeft", "WristLeft", "ShoulderRight",
     "ElbowRight", "WristRight", "KneeLeft",     "AnkleLeft", "KneeRight", "AnkleRight"};
 using Places = std::array<Vec3, compared.size()>;
 
-/// Places of the compared joints at a time, s from the take's first stamp.
+/// Positions of the compared joints, m, at times in s from the take's first stamp.
 struct TimedPlaces {
   std::vector<double> seconds;
   std::vector<Places> places;
@@ -49,7 +49,7 @@ double seconds_from(Time start, Time stamp) {
   return static_cast<double>(to_ns(stamp) - to_ns(start)) * 1e-9;
 }
 
-/// Where a suit's skeleton has the Kinect's joints.
+/// The positions of the Kinect's joints on a suit's skeleton.
 Result<TimedPlaces> of_suit(const Take& take, const ClipGroup& group, const ClipRows& rows) {
   const KinectMap map = KA_TRY(kinect_map(group.skeleton));
   const std::size_t joints = group.skeleton.joints();
@@ -75,7 +75,7 @@ Result<TimedPlaces> of_suit(const Take& take, const ClipGroup& group, const Clip
   return out;
 }
 
-/// The file's joint of that Kinect's name, or where a pose's body has it.
+/// The file's joint with that Kinect name, or the joint of a pose's body at the same place.
 std::optional<std::size_t> joint_of(const Skeleton& skeleton, std::string_view kinect) {
   const auto& names = skeleton.joint_names;
   auto at = std::find(names.begin(), names.end(), kinect);
@@ -119,7 +119,7 @@ struct Apart {
   double room_cm = 0.0, hips_cm = 0.0;
 };
 
-/// At the times of `other`, by the suit's nearest frame.
+/// The distances at the times of `other`, each to the suit's nearest frame.
 Apart apart_of(const TimedPlaces& suit, const TimedPlaces& other) {
   Apart out;
   double count = 0.0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a lab sends, on loopback: five nodes at 100 frames a second that echo their replies, mocap
-// at 125 (354 floats, 1480 bytes), a Kinect at 30; all of it `times` as fast. Run by
+// Sends the data of a lab on loopback: five nodes at 100 frames a second that echo their replies,
+// mocap at 125 (354 floats, 1480 bytes), a Kinect at 30; all of it `times` as fast. Run by
 // record_load.py.
 //   record_load MOCAP_PORT KINECT_PORT NODE_PORT TIMES SECONDS
-// Prints as JSON how many of each it sent, and how long the nodes waited for replies: half of them,
-// 99 of 100, all.
+// Prints as JSON the number of messages of each, and the time that the nodes waited for replies:
+// half of them, 99 of 100, all.
 #include "kinalign/protocols/kinect/binary.h"
 #include "kinalign/protocols/noitom/frame.h"
 #include "kinalign/wire/node_frame.h"
@@ -113,11 +113,11 @@ class Node {
   std::mt19937_64 random_{1};
   std::normal_distribution<float> noise_;
   std::uint64_t sent_ = 0;
-  std::array<std::uint64_t, 4096> sent_us_{};  // by sequence
+  std::array<std::uint64_t, 4096> sent_us_{};  // us, time at which each frame was sent, by sequence
   std::vector<double> waits_ms_;
 };
 
-/// Frames whose floats can't be packed.
+/// Sends Noitom frames of random floats, which can't be compressed.
 class Mocap {
  public:
   explicit Mocap(std::uint16_t port) : way_(port) {
@@ -170,7 +170,7 @@ class Kinect {
   std::uint64_t sent_ = 0;
 };
 
-/// Calls that are due, so many a second.
+/// Calls a function at a rate: each time, the calls that are due.
 class Due {
  public:
   explicit Due(double rate_hz) : rate_hz_(rate_hz) {}

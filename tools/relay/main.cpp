@@ -48,7 +48,7 @@ std::uint16_t port_of(int fd) {
   return ntohs(bound.sin_port);
 }
 
-/// A node, and the socket by which the host knows it.
+/// A node, and the socket through which the host sees it.
 struct Sender {
   sockaddr_in address{};
   int to_host = -1;
@@ -61,7 +61,8 @@ struct Packet {
   sockaddr_in to{};
   std::vector<std::uint8_t> bytes;
 
-  bool operator<(const Packet& other) const { return at > other.at; }  // the earliest on top
+  // The earliest packet comes first.
+  bool operator<(const Packet& other) const { return at > other.at; }
 };
 
 class Relay {
@@ -168,7 +169,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: kinalign_relay HOST_PORT LINK(A-G) SEED RATE_HZ\n", stderr);
     return 2;
   }
-  ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns
+  ::prctl(PR_SET_TIMERSLACK, 1000UL);  // timer slack in ns
   LinkOptions link;
   link.link = static_cast<Link>(argv[2][0] - 'A');
   Relay relay(static_cast<std::uint16_t>(std::strtoul(argv[1], nullptr, 10)), link,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of a simulated recording:  kinalign_truth_table [--summary] RECORDING TAKE TRUTH
-// RECORDING is what was aligned (recording.toml or .mcap), TAKE what came out of it, TRUTH
-// simulate's truth.json. Prints two tables, the errors of time and of values, or a summary of five
-// lines. Ends with 1 where a certified stamp lies outside its interval.
+// Compares a simulated recording with its truth:
+//   kinalign_truth_table [--summary] RECORDING TAKE TRUTH
+// RECORDING is the input of align (recording.toml or .mcap), TAKE its output, TRUTH the truth.json
+// of simulate. Prints two tables, the errors of time and of values, or a summary of five lines.
+// Ends with 1 if the truth of a certified stamp lies outside its interval.
 #include "apps/kinalign/verbs/inputs.h"
 #include "tools/truth_table/summary.h"
 
@@ -33,7 +34,7 @@ struct Names {
 
 struct Opened {
   Recording recording;
-  std::optional<RecordingFacts> facts;  // of one that was received
+  std::optional<RecordingFacts> facts;  // facts of a recording that was received over the network
 };
 
 Result<Opened> open(FileSystem& files, const std::string& path) {
@@ -52,7 +53,8 @@ Result<Opened> open(FileSystem& files, const std::string& path) {
   return opened;
 }
 
-/// Both have UTC by one reading of the host's clocks, which a slewed clock made differ since.
+/// The time from the truth's UTC to the recording's. Each got UTC by one reading of the host's
+/// clocks, and a slewed clock makes these readings differ.
 Duration shift_of(const Opened& opened, const TrueRecording& truth) {
   if (!opened.facts || !truth.host) return {};
   const ClockPair& anchor = opened.facts->anchor;
@@ -107,13 +109,13 @@ Result<Motion> true_motion(FileSystem& files, const Names& names, const TrueReco
   return motion_of(bvh.clip, {.smooth_s = 0.0});
 }
 
-/// An error of the recording's contents, which has no file of its own.
+/// An error in the recording's contents, which names no file: the recording's name is added.
 Error of_recording(const Names& names, Error error) {
   if (error.file.empty()) error.file = names.recording;
   return error;
 }
 
-/// Prints nothing where anything fails.
+/// Prints nothing if anything fails.
 Result<int> run(const Names& names) {
   PosixFiles files;
   const TrueRecording truth =

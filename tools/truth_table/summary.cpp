@@ -17,7 +17,7 @@ namespace kinalign {
 
 namespace {
 
-/// What the person does in each piece of a programme, in the order of Piece.
+/// The activity in each piece of a programme, in the order of Piece.
 constexpr std::array<std::string_view, piece_names.size()> doings{"holds a T-pose",
                                                                   "stands",
                                                                   "steps",
@@ -58,11 +58,11 @@ std::string motion_text(const TrueRecording& truth) {
   return "a person who " + listed(doing);
 }
 
-/// The devices of one stream together.
+/// The time errors of all devices of one stream together.
 struct StreamTimes {
   std::size_t devices = 0;
   std::uint64_t samples = 0, certified = 0, outside = 0;
-  double median_s = 0.0, worst_s = 0.0;  // of the device that is furthest off
+  double median_s = 0.0, worst_s = 0.0;  // s, of the device with the largest error
   double half_width_s = 0.0;
 };
 
@@ -81,8 +81,8 @@ StreamTimes times_of(const JudgedRecording& judged, const std::string& stream) {
   return all;
 }
 
-/// "nodes ± 4.8 ms guaranteed, 0.26 ms at most in fact", or how far off stamps without an interval
-/// are.
+/// "nodes ± 4.8 ms guaranteed, 0.26 ms at most in fact", or the errors of stamps without an
+/// interval.
 std::string time_text(const StreamTimes& all, std::string_view name, bool live) {
   if (all.certified > 0) {
     const std::string in_fact =
@@ -108,7 +108,7 @@ std::string centimetres(double m) { return fmt::format("{:.1f} cm", 100.0 * m); 
 
 std::string degrees(double rad) { return fmt::format("{:.2f}°/s", rad * 180.0 / std::numbers::pi); }
 
-/// The streams of the truth that the recording has.
+/// The streams of the truth that are in the recording.
 struct Devices {
   StreamTimes suit, kinect, nodes;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tables of truth_table say, in five lines for a reader who is new to them.
+// The contents of truth_table's tables in five lines, for a reader who does not know the tables.
 #pragma once
 
 #include "kinalign/simulate/rehearsal/judge_recording.h"
@@ -12,7 +12,7 @@ namespace kinalign {
 struct JudgedRecording {
   const TrueRecording& truth;
   std::vector<TimeJudgement> times;    // one per device and node
-  std::vector<ValueJudgement> values;  // as judge_values gives them
+  std::vector<ValueJudgement> values;  // in the order in which judge_values gives them
 };
 
 /// Lines "simulated", "recorded", "time", "space" and "turning". A line whose devices are not in

@@ -29,13 +29,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_bench_windows = std::size_t{4} << 30U;
-constexpr std::size_t most_bench_model = std::size_t{1} << 30U;
-constexpr std::size_t least_bench_rows = 8;
+constexpr std::size_t most_bench_windows = std::size_t{4} << 30U;  // a larger file is refused
+constexpr std::size_t most_bench_model = std::size_t{1} << 30U;    // a larger file is refused
+constexpr std::size_t least_bench_rows = 8;  // frames; shorter stretches are left out
 constexpr const char *rough_stream = "kinect", *true_stream = "mocap";
 
-/// Seconds a step with one thread, on a core that other programs used too: 150 steps on the twin of
-/// scale 0.02. An idle machine needs less.
+/// The time of a training step with one thread, s. Measured over 150 steps on the twin of scale
+/// 0.02, on a core that other programs used too; an idle machine needs less.
 struct TrainingSpeed {
   std::string_view method;
   double step_s = 0.0;
@@ -46,13 +46,13 @@ constexpr std::array<TrainingSpeed, 6> training_speeds{{{"cnn", 0.73},
                                                         {"bra-p-plain", 5.9},
                                                         {"refine", 0.24},
                                                         {"refine-linear", 0.28}}};
-constexpr std::int64_t own_steps = 1200;  // of every method that cleans
+constexpr std::int64_t own_steps = 1200;  // the default of every method that cleans
 
 std::string model_file(const CleaningOptions& o, const std::string& method) {
   return o.folder + "/models/" + method + ".safetensors";
 }
 
-/// The job of kinalign-learn. Its identity is the same wherever the files lie.
+/// The job of kinalign-learn. Its identity does not depend on where the files lie.
 Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std::string& method) {
   Json options{{"seed", o.seed}};
   if (o.steps > 0) options["steps"] = o.steps;
@@ -69,7 +69,7 @@ Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std
   return job;
 }
 
-/// Whether the model was trained by a job of that identity.
+/// True if the model was trained by a job of that identity.
 Result<bool> has_identity(const std::string& bytes, const std::string& file,
                           const std::string& identity) {
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, file));
@@ -77,7 +77,8 @@ Result<bool> has_identity(const std::string& bytes, const std::string& file,
   return training.is_object() && training.value("identity", "") == identity;
 }
 
-/// The model's file.
+/// The file of the trained model; trains it if it is missing. A model of another identity is
+/// refused without --force.
 Result<std::string> trained_method(const CleaningOptions& o, const CleaningData& data,
                                    const std::string& method, Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -108,6 +109,7 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
   return file;
 }
 
+/// The answer of a method: trained, or fitted in closed form.
 Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
                           const std::string& method, Call& call) {
   if (is_trained(method)) {
@@ -130,6 +132,7 @@ Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
   return make_answer(task, call);
 }
 
+/// Runs a method on all tested stretches, and marks each answer twice: plain, and steadied.
 CleanedTakes run_answer(const std::string& method, const Answer& answer, const CleaningData& data,
                         const DenoiseMarker& marker) {
   const Steadier steadier({}, data.layout);
@@ -146,8 +149,8 @@ CleanedTakes run_answer(const std::string& method, const Answer& answer, const C
   return out;
 }
 
-/// The same of answers that are there already. They are steadied without a mirror image, since a
-/// program is asked once.
+/// Marks answers that exist already. They are steadied without a mirror image, since a program is
+/// run once.
 CleanedTakes marked_answers(const std::string& method,
                             const std::vector<std::vector<float>>& answers,
                             const CleaningData& data, const DenoiseMarker& marker) {
@@ -165,6 +168,7 @@ CleanedTakes marked_answers(const std::string& method,
   return out;
 }
 
+/// A column of table 9.
 struct MarksColumn {
   const char *key, *title;
   int decimals;
@@ -182,7 +186,7 @@ constexpr std::array<MarksColumn, 9> marks_columns{
 
 using PersonMarks = std::array<std::optional<double>, marks_columns.size()>;
 
-/// Means over the stretches of one person; of the paper's columns weighted by frames.
+/// The means over one person's stretches; those of the paper's columns are weighted by frames.
 PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method,
                             const std::string& person, std::size_t which) {
   std::vector<ProtocolMarks> protocol;
@@ -204,7 +208,7 @@ PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method
           means.constancy_cm, means.acceleration_mm, means.jitter};
 }
 
-/// The truth's own E_s, cm: the mean over frames.
+/// E_s of the truth itself, cm: the mean over frames.
 double true_smoothness(const CleaningData& data, const CleanedTakes& method) {
   double sum = 0.0, frames = 0.0;
   for (std::size_t i = 0; i < data.tested.size(); ++i) {
@@ -221,6 +225,7 @@ std::set<std::string> people_of(const std::vector<const Pair*>& pairs) {
   return out;
 }
 
+/// A row of table 9: mean and deviation over people. `which`: 0 plain, 1 steadied.
 std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method,
                             std::size_t which) {
   std::array<std::vector<double>, marks_columns.size()> values;
@@ -300,6 +305,7 @@ Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const Cl
   return out;
 }
 
+/// Methods that share a trained part are planned once.
 std::vector<TrainingPlan> training_plan(const CleaningOptions& o) {
   std::vector<TrainingPlan> out;
   std::set<std::string> planned;

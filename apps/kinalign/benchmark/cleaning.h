@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods that clean a Kinect, each fitted to the training people of a data set and run on the
+// Methods that clean a Kinect. Each is fitted to the training people of a data set and run on the
 // takes of its test people.
 #pragma once
 
@@ -18,55 +18,56 @@
 namespace kinalign {
 
 struct CleaningOptions {
-  std::string data, split, folder;    // of the data set; of its people; of all that is made
-  std::vector<std::string> methods;   // of eval_methods()
+  std::string data, split, folder;  // the data set; the split of its people; the folder for results
+  std::vector<std::string> methods;   // names in eval_methods()
   std::vector<std::string> programs;  // NAME=PROGRAM (program_method.h)
-  std::string device = "cpu";         // where networks are trained
-  std::int64_t seed = 1, steps = 0;   // 0: each method's own number
+  std::string device = "cpu";         // for the training of networks
+  std::int64_t seed = 1, steps = 0;   // 0 steps: each method's own number
 };
 
-/// Pairs that the methods learn from, and takes that they are tested on.
+/// The pairs that methods learn from, and those that they are tested on.
 struct CleaningData {
   std::string windows, windows_hash;
   Pairs pairs;
   DenoiseLayout layout;
   std::vector<std::string> learnt;  // names of takes
-  std::vector<const Pair*> tested;  // of `pairs`
+  std::vector<const Pair*> tested;  // pointers into `pairs`
   std::size_t learnt_people = 0, tested_people = 0, tested_takes = 0;
 };
 
-/// Cuts the windows into the folder and reads them. Fails where the split has no part "train" or
-/// no part "test" with pairs.
+/// Cuts the windows into the folder and reads them. Fails if the split has no part "train" or no
+/// part "test" with pairs.
 Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call);
 
-/// A method's answers to data.tested.
+/// The answers of a method to data.tested.
 struct CleanedTakes {
   std::string method;
-  std::vector<std::vector<float>> answers;         // of each stretch [T,Jout,3] m, not steadied
-  std::vector<std::array<DenoiseMarks, 2>> marks;  // of each stretch: as it is, and steadied
+  std::vector<std::vector<float>> answers;         // each stretch [T,Jout,3] m, not steadied
+  std::vector<std::array<DenoiseMarks, 2>> marks;  // each stretch: plain, and steadied
 };
 
-/// Trains what the folder lacks (models/METHOD.safetensors), and runs all methods. A model that was
-/// trained on other takes or with other settings is refused; --force trains it again.
+/// Trains the models that the folder lacks (models/METHOD.safetensors), and runs all methods. A
+/// model trained on other takes or with other settings is refused; --force trains it again.
 Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const CleaningData& data,
                                               Call& call);
 
-/// The trainings of a run, before they are done.
+/// A training of a run, before it is done.
 struct TrainingPlan {
   std::string method;
-  bool is_there = false;
+  bool is_there = false;  // the model exists already
   std::int64_t steps = 0;
-  std::optional<double> seconds;  // on one busy core; an idle one needs less. Absent: not known
+  std::optional<double> seconds;  // on one busy core; absent: not known
 };
 std::vector<TrainingPlan> training_plan(const CleaningOptions& o);
 
 /// Table 9: the paper's three columns and the well-defined ones, mean and deviation over the test
-/// people. Two rows a method: as it is, and steadied.
+/// people. Each method has two rows: plain, and steadied.
 Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all);
-/// The same with cells "3.42 ± 1.05" for people.
+/// The same table for people, with cells like "3.42 ± 1.05".
 Table with_joined_deviations(const Table& table);
 
-/// Mean distance to the truth over the marked joints, cm, of each frame [T]. 0 where none is valid.
+/// The mean distance to the truth over the marked joints, cm, for each frame [T]. 0 if no joint is
+/// valid.
 std::vector<float> errors_over_time(const CleaningData& data, const Pair& pair,
                                     const std::vector<float>& answer);
 

@@ -26,12 +26,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr float nose_m = 0.14F, crown_m = 0.16F;  // from the head's joint, to be drawn
-constexpr double hidden_s = 3.0;                  // a limb, and the time between two
+constexpr float nose_m = 0.14F, crown_m = 0.16F;  // distances from the head's joint
+constexpr double hidden_s = 3.0;  // how long a limb is hidden, and the pause between two limbs
+/// Kinect samples further apart are not interpolated.
 constexpr double kinect_gap_s = 0.2;
 constexpr const char* true_group = "mocap";
 
-/// Where the compared joints stand among a skeleton's: a suit's by a Kinect's names, or CMU's.
+/// The indices of the compared joints in a skeleton, found by a Kinect's names or by CMU's.
 Result<std::array<std::size_t, compared_joints>> joints_among(
     const std::vector<std::string>& names) {
   const auto as_kinect = kinect_names(names);
@@ -48,7 +49,7 @@ Result<std::array<std::size_t, compared_joints>> joints_among(
   return out;
 }
 
-/// The rotation of a joint in the world.
+/// The rotation of a joint in the world's space.
 Eigen::Quaternionf turned_in_world(const Clip& clip, std::size_t t, std::size_t joint) {
   Eigen::Quaternionf out = Eigen::Quaternionf::Identity();
   for (int j = static_cast<int>(joint); j >= 0;
@@ -59,9 +60,11 @@ Eigen::Quaternionf turned_in_world(const Clip& clip, std::size_t t, std::size_t 
   return out;
 }
 
-/// The compared places of frame `t`, in the world.
+/// The compared places of all frames, in the world's space.
 using WorldPlaces = std::vector<float>;  // [T,17,3] m
 
+/// The compared places of a clip. Nose and crown lie at fixed distances from the head's joint and
+/// turn with it.
 Result<WorldPlaces> places_of(const Clip& clip) {
   const auto joints = KA_TRY(joints_among(clip.skeleton.joint_names));
   const std::size_t count = clip.skeleton.joints(), frames = clip.frames.size();
@@ -87,7 +90,7 @@ Result<WorldPlaces> places_of(const Clip& clip) {
   return out;
 }
 
-/// About the middle of the hips, x to the body's left.
+/// The places relative to the middle of the hips, with x to the body's left.
 BodyPlaces in_body(WorldPlaces places) {
   const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
   const std::size_t cells = places.size() / 3;
@@ -96,7 +99,7 @@ BodyPlaces in_body(WorldPlaces places) {
   return places;
 }
 
-/// The skeleton of a take's reference.
+/// The skeleton of a take's reference stream, "mocap".
 Result<Clip> true_clip(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const auto& groups = reader.header().groups;
@@ -122,7 +125,7 @@ Result<Clip> true_clip(FileSystem& files, const std::string& path) {
   return Failure(Error{path, 0, "a skeleton with two frames at least", "fewer"});
 }
 
-/// The row whose stamp is nearest to each frame of the grid.
+/// For each frame of the grid the row with the nearest stamp.
 std::vector<std::size_t> nearest_rows(const std::vector<Time>& stamps, const EvenSpan& span,
                                       double rate_hz) {
   std::vector<std::size_t> out;
@@ -138,6 +141,7 @@ std::vector<std::size_t> nearest_rows(const std::vector<Time>& stamps, const Eve
   return out;
 }
 
+/// The chosen rows of an array [n,width].
 std::vector<float> rows_of(const std::vector<float>& values, std::size_t width,
                            const std::vector<std::size_t>& rows) {
   std::vector<float> out;
@@ -148,9 +152,9 @@ std::vector<float> rows_of(const std::vector<float>& values, std::size_t width,
   return out;
 }
 
-/// The truth on a grid: the places, and how the head and the hips are turned in the world.
+/// The truth on a grid: the places, and the rotation of the head in the world.
 struct TrueFrames {
-  WorldPlaces places;                    // [T,17,3]
+  WorldPlaces places;                    // [T,17,3] m
   std::vector<Eigen::Quaternionf> head;  // [T]
 };
 
@@ -163,11 +167,12 @@ Result<TrueFrames> true_frames(const Clip& clip, const EvenSpan& span, double ra
   return out;
 }
 
+/// The angle of the body's left about the vertical axis, rad.
 double heading_of(const BodyFrame& frame) {
   return static_cast<double>(std::atan2(-frame.sine, frame.cosine));
 }
 
-/// By how much the truth's heading is ahead of an answer's, rad: the mean direction over all
+/// The angle by which the truth's heading is ahead of an answer's, rad: the mean direction over all
 /// frames.
 float turned_against(const WorldPlaces& truth, const WorldPlaces& answer) {
   const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
@@ -185,8 +190,8 @@ float turned_against(const WorldPlaces& truth, const WorldPlaces& answer) {
   return static_cast<float>(std::atan2(sine, cosine));
 }
 
-/// Puts a node on the head of the truth into `nodes`, as number `n`, in the world of the nodes:
-/// theirs is turned by `yaw` against the truth's.
+/// Adds a node on the truth's head to `nodes`, as number `n`. Its world is that of the nodes, which
+/// is turned by `yaw` against the truth's.
 void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size_t n,
                    NodeFrames& nodes) {
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(-yaw, Eigen::Vector3f::UnitY()));
@@ -198,7 +203,7 @@ void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size
   for (std::size_t t = 0; t < frames; ++t) {
     const std::size_t before = t == 0 ? 0 : t - 1, after = std::min(t + 1, frames - 1);
     const Eigen::Quaternionf now = turn * truth.head[t];
-    // Second differences over 67 ms, as in training, two frames to each side.
+    // The second differences span 67 ms (two frames to each side at 30 Hz), as in training.
     const std::size_t early = t < 2 ? 0 : t - 2, late = std::min(t + 2, frames - 1);
     Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();
     if (late - early == 4) {
@@ -240,12 +245,12 @@ Result<ComparedMotion> motion_of_json(const std::string& text, const std::string
     json.at("hidden").get_to(out.hidden);
     return out;
   } catch (const Json::exception&) {
-    // No number of JSON is infinite: a model that answers with none gives null.
+    // JSON has no infinite number; such an answer of a model is written as null.
     return Failure(Error{path, 0, "models that answer with numbers", "others"});
   }
 }
 
-/// Does the work in a child; errors without a file name the take's.
+/// Runs the work in a child process. Errors without a file name the take.
 Result<ComparedMotion> guarded(const ComparedTake& take,
                                const std::function<Result<ComparedMotion>()>& work) {
   const auto in_child = [&]() -> Result<std::string> {
@@ -256,6 +261,7 @@ Result<ComparedMotion> guarded(const ComparedTake& take,
   return motion_of_json(KA_TRY(run_guarded(GuardLimits{}, blame(take.path), in_child)), take.path);
 }
 
+/// The nodes of a take on the grid, calibrated for that model.
 Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, const WornWords& worn,
                              const EvenSpan& span) {
   const PosedNodes posed =
@@ -263,6 +269,8 @@ Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, co
   return on_bones(posed.calibration, posed.even.worn);
 }
 
+/// The answers of all models to a take's nodes. The heading of the head's node is found by a first
+/// answer without it.
 Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const ComparedTake& take,
                                 FileSystem& files) {
   const Clip clip = KA_TRY(true_clip(files, take.path));
@@ -290,7 +298,7 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
   return out;
 }
 
-/// The limbs that are hidden in turn, by a Kinect's names.
+/// The limbs that are hidden one after the other, by a Kinect's names.
 const std::array<std::vector<std::string>, 4>& hidden_limbs() {
   static const std::array<std::vector<std::string>, 4> all{
       {{"ElbowRight", "WristRight", "HandRight"},
@@ -300,7 +308,7 @@ const std::array<std::vector<std::string>, 4>& hidden_limbs() {
   return all;
 }
 
-/// The limb that is hidden in frame `t`; none in every second stretch.
+/// The limb that is hidden in frame `t`; absent in every second stretch.
 std::optional<std::size_t> hidden_limb_at(std::size_t t, double rate_hz) {
   const auto stretch = static_cast<std::size_t>(static_cast<double>(t) / rate_hz / hidden_s);
   if (stretch % 2 == 0) return std::nullopt;
@@ -314,6 +322,7 @@ bool is_hidden(std::size_t t, double rate_hz, const std::string& joint) {
   return std::find(joints.begin(), joints.end(), joint) != joints.end();
 }
 
+/// Hides limbs from the Kinect: their joints become missing.
 void hide_limbs(const std::vector<std::string>& joints, double rate_hz, JointFrames& kinect) {
   for (std::size_t t = 0; t < kinect.frames(); ++t) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -325,7 +334,7 @@ void hide_limbs(const std::vector<std::string>& joints, double rate_hz, JointFra
   }
 }
 
-/// The Kinect's own joints as compared places; what is missing lies where it was last.
+/// Adds the Kinect's own joints as an answer. A missing joint stays at its last place.
 void put_kinect(const FuseLayout& layout, JointFrames kinect, ComparedMotion& out) {
   const JointFrames seen = kinect;
   fill_missing(kinect, true);
@@ -341,6 +350,8 @@ void put_kinect(const FuseLayout& layout, JointFrames kinect, ComparedMotion& ou
   out.answers.push_back(in_body(std::move(places)));
 }
 
+/// The answers to the Kinect alone, to the nodes alone and to both, by one model. Nodes alone show
+/// no lengths, so their answer has the model's mean body.
 Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSystem& files) {
   const FuseLayout& layout = fuser.model().layout;
   const double rate_hz = layout.nodes.rate_hz;

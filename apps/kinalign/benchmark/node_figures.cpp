@@ -23,17 +23,21 @@ namespace kinalign {
 
 namespace {
 
+/// More takes would make the run long without changing the means much.
 constexpr std::size_t most_compared_takes = 12;
+/// Instants that a figure shows.
 constexpr std::size_t instants = 5;
 constexpr double turn_bend_deg = 180.0 / std::numbers::pi;
+/// Indices in compared_places.
 constexpr std::size_t head_place = 2, nose_place = 15;
 
-/// Joints whose distance to the truth is told together.
+/// Joints whose mean distance to the truth is one column.
 struct JointGroup {
   const char *key, *title;
   std::vector<std::size_t> places;
 };
 
+/// The first group is also the one of single frames' errors.
 const std::vector<JointGroup>& joint_groups() {
   static const std::vector<JointGroup> all{
       {"all_cm", "all, cm", {2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14}},
@@ -55,7 +59,7 @@ double distance_cm(const BodyPlaces& a, const BodyPlaces& b, std::size_t cell) {
   return 100.0 * std::sqrt(sum);
 }
 
-/// Degrees between the directions in which two heads look, in frame `t`.
+/// The angle between the directions in which two heads look in frame `t`, degrees.
 double look_apart_deg(const BodyPlaces& a, const BodyPlaces& b, std::size_t t) {
   double dot = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -71,6 +75,7 @@ double look_apart_deg(const BodyPlaces& a, const BodyPlaces& b, std::size_t t) {
   return turn_bend_deg * std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
+/// The mean distance to the truth over the first joint group in one frame, cm.
 double frame_error_cm(const ComparedMotion& motion, std::size_t answer, std::size_t t) {
   const auto& all = joint_groups().front().places;
   double sum = 0.0;
@@ -80,7 +85,7 @@ double frame_error_cm(const ComparedMotion& motion, std::size_t answer, std::siz
   return sum / static_cast<double>(all.size());
 }
 
-/// Mean over those cells of all motions that count; absent where none does.
+/// The mean over the cells of all motions for which `counts` is true; absent if there is none.
 std::optional<double> mean_distance(
     const std::vector<ComparedMotion>& motions, std::size_t answer,
     const std::vector<std::size_t>& places,
@@ -99,6 +104,7 @@ std::optional<double> mean_distance(
   return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
+/// The mean angle between the answer's and the truth's direction of look, degrees.
 double mean_look_deg(const std::vector<ComparedMotion>& motions, std::size_t answer) {
   double sum = 0.0, count = 0.0;
   for (const ComparedMotion& motion : motions) {
@@ -112,7 +118,7 @@ double mean_look_deg(const std::vector<ComparedMotion>& motions, std::size_t ans
 
 Cell cell_of(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
 
-/// Frame `t` of places, for a picture.
+/// Frame `t` as a figure for a picture.
 StickFigure figure_of(const BodyPlaces& places, std::size_t t, FigureColour colour) {
   const auto first = places.begin() + static_cast<std::ptrdiff_t>(3 * compared_count * t);
   StickFigure out{colour, false, {first, first + 3 * compared_count}, {}, {}};
@@ -120,7 +126,7 @@ StickFigure figure_of(const BodyPlaces& places, std::size_t t, FigureColour colo
   return out;
 }
 
-/// The same of the Kinect: what it lacks is left out.
+/// Frame `t` of the Kinect; missing joints are left out.
 StickFigure seen_figure_of(const ComparedMotion& motion, std::size_t t) {
   StickFigure out = figure_of(motion.answers.front(), t, FigureColour::kinect);
   const auto first = motion.states.begin() + static_cast<std::ptrdiff_t>(compared_count * t);
@@ -139,7 +145,7 @@ std::string second_of(const ComparedMotion& motion, std::size_t t) {
   return fmt::format("{:.1f} s", static_cast<double>(t) / motion.rate_hz);
 }
 
-/// Five frames, evenly over a stretch.
+/// Five frames, spread evenly over a stretch.
 std::array<std::size_t, instants> even_instants(std::size_t from, std::size_t to) {
   std::array<std::size_t, instants> out{};
   for (std::size_t i = 0; i < instants; ++i) {
@@ -148,13 +154,13 @@ std::array<std::size_t, instants> even_instants(std::size_t from, std::size_t to
   return out;
 }
 
-/// The takes that a figure is made of.
+/// The takes that a figure is made from.
 struct FigureTakes {
-  std::vector<ComparedTake> nodes, both;  // with nodes; with a Kinect too
+  std::vector<ComparedTake> nodes, both;  // with nodes; with nodes and a Kinect
   bool nodes_tested = true, both_tested = true;
 };
 
-/// Takes of test people where there are some, else all; the first ones.
+/// The first takes of test people; if test people have none, the first of all takes.
 std::vector<ComparedTake> preferred(std::vector<std::pair<ComparedTake, bool>> all,
                                     bool& are_tested) {
   are_tested = std::any_of(all.begin(), all.end(), [](const auto& one) { return one.second; });
@@ -165,6 +171,7 @@ std::vector<ComparedTake> preferred(std::vector<std::pair<ComparedTake, bool>> a
   return out;
 }
 
+/// The takes of the data set that have nodes.
 Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(o.data, call));
@@ -193,20 +200,21 @@ Result<PoseSolver> pose_solver(const std::string& path, Call& call) {
   return PoseSolver::make(KA_TRY(read_pose_model(bytes, path)));
 }
 
-/// The motions of takes that could be answered, and what kept others from it.
+/// The motions of takes that could be answered, and the reason why others could not.
 struct AnsweredTakes {
   std::vector<ComparedMotion> motions;
-  bool are_tested = true;  // takes of test people
+  bool are_tested = true;  // the takes are of test people
   std::size_t failed = 0;
-  std::string fault;  // the first one's
+  std::string fault;  // the fault of the first failed take
 
-  /// For the page: empty where all were answered.
+  /// The note for the page; empty if all takes were answered.
   std::string note() const {
     if (failed == 0) return "";
     return fmt::format("{} left out: {}.", counted(failed, "take was", "takes were"), fault);
   }
 };
 
+/// Compares all takes. A take that fails is counted, and stops no other.
 AnsweredTakes answered(const std::vector<ComparedTake>& takes, bool are_tested,
                        const std::function<Result<ComparedMotion>(const ComparedTake&)>& compare) {
   AnsweredTakes out;
@@ -234,6 +242,7 @@ const std::string how_compared =
     "answer has the body of the model's training people, so that part of the distance is a matter "
     "of lengths.";
 
+/// Figure 8: answers of a model for five nodes.
 PosePictures pose_figure(const AnsweredTakes& all) {
   const auto& motions = all.motions;
   PosePictures out;
@@ -270,7 +279,7 @@ PosePictures pose_figure(const AnsweredTakes& all) {
   return out;
 }
 
-/// Frames in which the true head looks farthest aside, one in each fifth of the take.
+/// The frames in which the true head looks farthest aside, one in each fifth of the take.
 std::array<std::size_t, instants> head_instants(const ComparedMotion& motion) {
   std::array<std::size_t, instants> out{};
   for (std::size_t i = 0; i < instants; ++i) {
@@ -290,6 +299,7 @@ std::array<std::size_t, instants> head_instants(const ComparedMotion& motion) {
   return out;
 }
 
+/// Figure 9: the head in answers without and with a node on it.
 PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   const auto& motions = all.motions;
   PosePictures out;
@@ -352,6 +362,7 @@ bool is_seen_place(const ComparedMotion& motion, std::size_t cell) {
   return motion.states[cell] != 0;
 }
 
+/// The table of figure 10: mean distances over all, hidden and seen joints.
 Table device_table(const AnsweredTakes& all) {
   const auto& motions = all.motions;
   Table table;
@@ -377,7 +388,7 @@ Table device_table(const AnsweredTakes& all) {
   return table;
 }
 
-/// From the first hidden frame to the end of that stretch; all where nothing is hidden.
+/// The first stretch in which a limb is hidden; the whole motion if nothing is hidden.
 std::pair<std::size_t, std::size_t> first_hidden(const ComparedMotion& motion) {
   const auto is_hidden_frame = [&](std::size_t t) {
     const auto first = motion.hidden.begin() + static_cast<std::ptrdiff_t>(t * compared_count);
@@ -390,6 +401,7 @@ std::pair<std::size_t, std::size_t> first_hidden(const ComparedMotion& motion) {
   return from < to ? std::pair(from, to) : std::pair(std::size_t{0}, motion.frames);
 }
 
+/// Figure 10: answers to a Kinect, to nodes and to both, while a limb is hidden.
 PosePictures device_figure(const AnsweredTakes& all) {
   const auto& motions = all.motions;
   PosePictures out;
@@ -422,7 +434,7 @@ PosePictures device_figure(const AnsweredTakes& all) {
   return out;
 }
 
-/// The path of a model; empty where none was given and none comes with the program.
+/// The path of a model: the given one, else the shipped one. Empty if neither exists.
 std::string model_or_shipped(const std::string& given, const std::string& name) {
   if (!given.empty()) return given;
   return shipped_model(name).value_or("");
@@ -433,6 +445,7 @@ PosePictures without_model(PosePictures figure, const std::string& how) {
   return figure;
 }
 
+/// Figure 10, or the note that no model is there for it.
 Result<PosePictures> make_device_figure(const NodeFigureOptions& o, const FigureTakes& takes,
                                         Call& call) {
   const std::string path = model_or_shipped(o.fuse_model, "fuse");
@@ -447,7 +460,7 @@ Result<PosePictures> make_device_figure(const NodeFigureOptions& o, const Figure
   }));
 }
 
-/// Figures 8 and 9.
+/// Figures 8 and 9, or notes that no model is there for them.
 Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
                                                     const FigureTakes& takes, Call& call) {
   const std::string path = model_or_shipped(o.pose_model, "pose");

@@ -20,17 +20,20 @@ namespace kinalign {
 
 namespace {
 
+/// A point of the error curve is the mean over this time.
 constexpr float bin_s = 0.5F;
+/// The moving bodies show this much of a take.
 constexpr double most_moving_s = 30.0;
 constexpr double half_turn_window_s = 0.25;
 
-/// The joints that say what a person does.
+/// The joints that show what a person does.
 struct ActingJoints {
   std::size_t wrist_left = 0, wrist_right = 0;
   std::array<std::size_t, 2> hips{}, shoulders{};
-  std::vector<std::size_t> all;  // of the shared joints
+  std::vector<std::size_t> all;  // all shared joints
 };
 
+/// Absent if a joint is missing.
 std::optional<ActingJoints> acting_joints(const std::vector<std::string>& outputs) {
   const auto names = kinect_names(outputs);
   std::array<std::size_t, 6> found{};
@@ -48,7 +51,7 @@ std::optional<ActingJoints> acting_joints(const std::vector<std::string>& output
   return out;
 }
 
-/// A stretch's truth, with what is asked of it frame by frame.
+/// The truth of a stretch, with the quantities by which instants are chosen.
 class TrueMotion {
  public:
   TrueMotion(const CleaningData& data, const ActingJoints& joints, const Pair& pair)
@@ -62,6 +65,7 @@ class TrueMotion {
   }
 
   std::size_t frames() const { return pair_.input.frames(); }
+  // True if all shared joints are valid.
   bool is_whole(std::size_t t) const {
     return std::all_of(joints_.all.begin(), joints_.all.end(),
                        [&](std::size_t j) { return pair_.valid[t * count_ + j] != 0; });
@@ -69,10 +73,11 @@ class TrueMotion {
   const float* place(std::size_t t, std::size_t joint) const {
     return &pair_.truth[3 * (t * count_ + joint)];
   }
+  // The mean height of two joints, m.
   double height(std::size_t t, const std::array<std::size_t, 2>& both) const {
     return 0.5 * static_cast<double>(place(t, both[0])[1] + place(t, both[1])[1]);
   }
-  /// m/s, the mean over joints and a quarter of a second to each side.
+  /// The speed, m/s: mean over joints, between a quarter of a second before and after.
   double speed(std::size_t t) const {
     const std::size_t a = earlier(t), b = later(t);
     double sum = 0.0;
@@ -82,7 +87,7 @@ class TrueMotion {
     }
     return sum / static_cast<double>(joints_.all.size()) / seconds(a, b);
   }
-  /// rad/s to the person's left.
+  /// The turning speed, rad/s, positive to the person's left.
   double turning(std::size_t t) const {
     if (frames_.empty()) return 0.0;
     const std::size_t a = earlier(t), b = later(t);
@@ -99,8 +104,8 @@ class TrueMotion {
   double seconds(std::size_t a, std::size_t b) const {
     return static_cast<double>(std::max<std::size_t>(b - a, 1)) / rate_hz_;
   }
-  /// The body's left is (cosine, 0, sine): +x at 0, and seen from above a turn to the left goes
-  /// from +x to -z.
+  /// The angle of the body's left, rad. The left is (cosine, 0, sine): +x at 0. Seen from above, a
+  /// turn to the left goes from +x to -z.
   double heading(std::size_t t) const {
     return static_cast<double>(std::atan2(-frames_[t].sine, frames_[t].cosine));
   }
@@ -112,12 +117,13 @@ class TrueMotion {
   std::vector<BodyFrame> frames_;
 };
 
-/// A column of table 8: the frame where the score is highest.
+/// A column of table 8: it shows the frame with the highest score.
 struct PoseSearch {
   const char* name;
   std::function<double(const TrueMotion&, const ActingJoints&, std::size_t)> score;
 };
 
+/// The five instants: each score is highest where the pose is clearest.
 std::vector<PoseSearch> pose_searches() {
   using Motion = const TrueMotion&;
   using Joints = const ActingJoints&;
@@ -145,11 +151,11 @@ std::vector<PoseSearch> pose_searches() {
 }
 
 struct ChosenFrame {
-  std::size_t pair = 0, frame = 0;  // of data.tested
+  std::size_t pair = 0, frame = 0;  // pair: index in data.tested
   double score = -std::numeric_limits<double>::infinity();
 };
 
-/// The best frame for each search. Frames of the first and last half second are not chosen.
+/// The best frame for each search. The first and last half second of a stretch are left out.
 std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoints& joints,
                                        const std::vector<PoseSearch>& searches) {
   std::vector<ChosenFrame> out(searches.size());
@@ -167,7 +173,7 @@ std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoi
   return out;
 }
 
-/// Where a picture's origin lies: below the truth's hips, at its lowest joint.
+/// The origin of a picture: below the truth's hips, at the height of its lowest joint.
 std::array<float, 3> origin_of(const CleaningData& data, const ActingJoints& joints,
                                const ChosenFrame& at) {
   const TrueMotion motion(data, joints, *data.tested[at.pair]);
@@ -180,7 +186,7 @@ std::array<float, 3> origin_of(const CleaningData& data, const ActingJoints& joi
   return {0.5F * (left[0] + right[0]), lowest, 0.5F * (left[2] + right[2])};
 }
 
-/// Frame `t` of [T,J,3], about the origin.
+/// Frame `t` of an array [T,J,3], relative to the origin.
 StickFigure figure_at(const std::vector<float>& positions, std::size_t t,
                       const std::vector<int>& parents, const std::array<float, 3>& origin,
                       FigureColour colour) {
@@ -202,7 +208,7 @@ StickFigure kinect_at(const CleaningData& data, const ChosenFrame& at,
   return out;
 }
 
-/// The head of a column.
+/// The second line of a column's head: person, action and time.
 std::string where_of(const CleaningData& data, const ChosenFrame& at) {
   const Pair& pair = *data.tested[at.pair];
   return fmt::format("sub-{} {}, {:.1f} s", pair.subject, pair.action,
@@ -218,12 +224,13 @@ std::size_t longest_stretch(const CleaningData& data) {
   return out;
 }
 
-/// Joints of a body that a Kinect has too, as they are drawn.
+/// The joints of a body that a Kinect has too; only these are drawn.
 struct DrawnJoints {
-  std::vector<std::size_t> joints;  // of the body
-  std::vector<int> parents;         // among `joints`
+  std::vector<std::size_t> joints;  // indices in the body
+  std::vector<int> parents;         // indices in `joints`
 };
 
+/// The joints with a Kinect's names, and their parents among themselves.
 DrawnJoints drawn_joints(const std::vector<std::string>& names) {
   DrawnJoints out;
   std::vector<std::string> kept;
@@ -239,7 +246,7 @@ DrawnJoints drawn_joints(const std::vector<std::string>& names) {
   return out;
 }
 
-/// A body without a name, from frames 0 ... frames of [T,joints,3].
+/// A body without a name from the first `frames` frames of an array [T,joints,3].
 MovingBody moving_body(const DrawnJoints& drawn, const std::vector<float>& positions,
                        std::size_t joints, std::size_t frames) {
   MovingBody out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table 8, the errors over time and the moving bodies: what the page shows of methods that clean a
+// Table 8, the errors over time and the moving bodies: the page's part about methods that clean a
 // Kinect.
 #pragma once
 
@@ -12,10 +12,10 @@
 namespace kinalign {
 
 /// Rows: the Kinect, each method (not steadied), the truth. Columns: an instant each of standing,
-/// waving, bending, turning right and turning left, which the truth of all tested takes chooses.
+/// waving, bending, turning right and turning left, chosen by the truth of all tested takes.
 PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
-/// Of the longest tested stretch: means over half a second.
+/// The errors over the longest tested stretch, as means over half a second.
 ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
 /// The first half minute of the longest tested stretch: the truth, the Kinect, each method (not

@@ -24,6 +24,7 @@ namespace kinalign {
 
 namespace {
 
+/// A larger answer is refused.
 constexpr std::size_t most_answer_bytes = std::size_t{1} << 30U;
 
 template <class T>
@@ -31,7 +32,7 @@ std::string_view bytes_of_values(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// What the program reads: positions, seen, joint_names, output_names, rate_hz.
+/// Writes the program's input: positions, seen, joint_names, output_names, rate_hz.
 Result<void> write_question(const CleaningData& data, const Pair& pair, const std::string& path,
                             Call& call) {
   const std::uint64_t frames = pair.input.frames(), joints = pair.input.joints;
@@ -51,7 +52,7 @@ Result<void> write_question(const CleaningData& data, const Pair& pair, const st
   return writer.finish();
 }
 
-/// Starts the program and waits; its output goes to stderr. The exit code.
+/// Runs the program and returns its exit code. Its output goes to stderr.
 Result<int> run_program_on(const std::string& program, std::string question, std::string answer) {
   std::string name = program;
   const std::array<char*, 4> words{name.data(), question.data(), answer.data(), nullptr};
@@ -72,7 +73,7 @@ Result<int> run_program_on(const std::string& program, std::string question, std
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// The array's numbers, where they are f32 or f64.
+/// The numbers of an array of float32 or float64; empty for another type.
 std::vector<float> floats_of(const StoredArray& array) {
   std::vector<float> out;
   if (array.type == "<f4") {
@@ -86,6 +87,8 @@ std::vector<float> floats_of(const StoredArray& array) {
   return out;
 }
 
+/// Reads "positions" from the program's NPZ. Fails for another shape and for numbers that are not
+/// finite.
 Result<std::vector<float>> read_answer(const std::string& path, std::size_t frames,
                                        std::size_t joints, Call& call) {
   const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_answer_bytes));
@@ -137,7 +140,7 @@ Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& 
         KA_TRY(read_answer(answer, pair->input.frames(), data.layout.outputs.size(), call)));
   }
   std::filesystem::remove_all(below, ignored);
-  std::filesystem::remove(folder + "/programs", ignored);  // if it is empty
+  std::filesystem::remove(folder + "/programs", ignored);  // only if it is empty
   return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A method of others: a program that is given a Kinect's joints and writes where they should be.
+// A user's own method: a program that reads a Kinect's joints and writes the corrected ones.
 #pragma once
 
 #include "apps/kinalign/benchmark/cleaning.h"
@@ -13,12 +13,13 @@ struct ProgramMethod {
   std::string name, program;
 };
 
-/// "NAME=PROGRAM". Fails for another text, and for a name that is not letters, digits, '-' and '_'.
+/// Parses "NAME=PROGRAM". Fails for another text, and if the name is not made of letters, digits,
+/// '-' and '_'.
 Result<ProgramMethod> program_method(const std::string& words);
 
-/// Its answers [T,Jout,3] m to each tested stretch. For each, PROGRAM is started with the names of
-/// two NPZ files: it reads the first (docs/benchmark.md) and writes "positions" into the second.
-/// Fails where it does not end well or writes another shape.
+/// The program's answers [T,Jout,3] m to each tested stretch. PROGRAM is started for each with the
+/// names of two NPZ files: it reads the first (docs/benchmark.md) and writes "positions" into the
+/// second. Fails if it does not end with exit code 0 or writes another shape.
 Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& method,
                                                            const std::string& folder,
                                                            const CleaningData& data, Call& call);

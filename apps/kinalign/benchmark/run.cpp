@@ -54,6 +54,7 @@ struct BenchmarkRun {
   }
 };
 
+/// The command line of `kinalign benchmark run`.
 Usage describe_benchmark_run(BenchmarkRun& o) {
   Usage usage;
   usage.positionals = {folder_word(o.data),
@@ -99,7 +100,7 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   return usage;
 }
 
-/// Fails where a page's place is taken by another file.
+/// Fails if the page's name belongs to a file that is no page of a benchmark.
 Result<void> check_page(const std::string& path, Call& call) {
   std::error_code fault;
   if (call.common.force || !std::filesystem::exists(path, fault)) return {};
@@ -110,6 +111,7 @@ Result<void> check_page(const std::string& path, Call& call) {
                        "another file"});
 }
 
+/// Prints the trainings of --dry-run with their times.
 Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
   std::string text;
   Json json = Json::array();
@@ -140,6 +142,7 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
   return 0;
 }
 
+/// Writes table 9. Deviations are joined to their means, but in CSV they keep columns of their own.
 Result<void> write_tables(const Table& table, const std::string& folder, Call& call) {
   const Table for_people = with_joined_deviations(table);
   for (const auto& [name, format] :
@@ -152,7 +155,7 @@ Result<void> write_tables(const Table& table, const std::string& folder, Call& c
   return {};
 }
 
-/// The row with the smallest number in a column, by the column's key.
+/// The row with the smallest number in the column of that key.
 const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
   std::size_t column = 0;
   while (column < table.columns.size() && table.columns[column].key != key) ++column;
@@ -172,6 +175,7 @@ double value_of(const Table& table, const std::vector<Cell>& row, const std::str
   return 0.0;
 }
 
+/// The page without its command and its figures.
 ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
                    const std::vector<CleanedTakes>& all, const Table& table) {
   ModelsPage page;
@@ -212,7 +216,7 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
   return page;
 }
 
-/// The word as a shell takes it.
+/// The word, quoted for a shell if needed.
 std::string shell_word(const std::string& word) {
   const bool is_plain = std::all_of(word.begin(), word.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -224,7 +228,7 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
-/// The command that makes the page again.
+/// The command that makes the same page again.
 std::string command_of(const BenchmarkRun& o, const CleaningOptions& cleaning) {
   std::vector<std::string> words{cleaning.data};
   words.insert(words.end(), cleaning.methods.begin(), cleaning.methods.end());
@@ -266,9 +270,10 @@ std::string figure_lines(const std::vector<PosePictures>& figures) {
   return out;
 }
 
-/// Rows of a table as JSON has them.
+/// The rows of a table as JSON.
 Json rows_of_table(const Table& table) { return Json::parse(written(table, TableFormat::json)); }
 
+/// Prints the tables as text or as JSON.
 void print_results(const Table& table, const std::vector<PosePictures>& figures,
                    const std::string& format, const std::string& page_path, Call& call) {
   Json json{{"rows", rows_of_table(table)}, {"figures", Json::object()}, {"page", page_path}};
@@ -285,6 +290,7 @@ void print_results(const Table& table, const std::vector<PosePictures>& figures,
   call.console.print(figure_lines(figures) + harmless(fmt::format("page       {}\n", page_path)));
 }
 
+/// Runs all methods and writes tables and page. Table 9 is written before the figures are made.
 Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
   const CleaningOptions cleaning = o.cleaning(call);
   const std::string page_path = cleaning.folder + "/benchmark.html";
@@ -308,6 +314,7 @@ Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign benchmark run`.
 Verb benchmark_run_verb() {
   return make_verb<BenchmarkRun>(
       {.name = "benchmark run",

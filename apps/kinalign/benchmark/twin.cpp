@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// The plan of a twin, below its folder.
 constexpr const char* plan_file = "truth/twin.json";
 constexpr std::size_t longest_plan = std::size_t{16} << 20;
 
@@ -36,6 +37,7 @@ struct TwinVerb {
   TwinOptions options() const { return {scale, static_cast<std::uint64_t>(seed)}; }
 };
 
+/// The command line of `kinalign benchmark twin`.
 Usage describe_twin(TwinVerb& o) {
   Usage usage;
   usage.flags = {
@@ -55,16 +57,16 @@ Usage describe_twin(TwinVerb& o) {
   return usage;
 }
 
-/// The input of all takes.
+/// The input for making all takes.
 struct TwinJob {
   const TwinVerb& o;
   std::string folder;
   std::vector<TwinTake> takes;
-  std::vector<std::string> motions;  // paths
-  std::string plan;                  // the text of the plan's file
+  std::vector<std::string> motions;  // paths of BVH files
+  std::string plan;                  // the content of the plan's file
 };
 
-/// The BVH files of a folder, by name. Fails where there is none.
+/// The BVH files of a folder, sorted by name. Fails if there is none.
 Result<std::vector<std::string>> motions_in(const std::string& folder) {
   std::vector<std::string> out;
   if (folder.empty()) return out;
@@ -76,7 +78,7 @@ Result<std::vector<std::string>> motions_in(const std::string& folder) {
   return Failure(Error{folder, 0, "a folder with BVH files", "none in it"});
 }
 
-/// The nearest folder above a path that is there.
+/// The nearest parent folder of a path that exists.
 fs::path folder_that_is_there(fs::path path) {
   std::error_code fault;
   path = fs::absolute(path, fault);
@@ -84,14 +86,14 @@ fs::path folder_that_is_there(fs::path path) {
   return path;
 }
 
-/// Free bytes on the disk of a folder that is there or will be; 0 if they are not known.
+/// The free bytes on the disk of a folder that may not exist yet; 0 if they are not known.
 std::uint64_t free_bytes(const std::string& folder) {
   std::error_code fault;
   const auto space = fs::space(folder_that_is_there(folder), fault);
   return fault ? 0 : space.available;
 }
 
-/// Fails where the folder holds anything but the same twin, and where the disk has no room.
+/// Fails if the folder holds anything but the same twin, or if the disk is too small.
 Result<void> check_folder(const TwinJob& job, Call& call) {
   std::error_code fault;
   const std::string path = job.folder + "/" + plan_file;
@@ -109,6 +111,8 @@ Result<void> check_folder(const TwinJob& job, Call& call) {
       Error{job.folder, 0, size_text(wanted) + " of room on the disk", size_text(there)});
 }
 
+/// Makes the folders, dataset.toml and the plan. Existing files stay, since a stopped job
+/// continues.
 Result<void> begin_folder(const TwinJob& job, FileSystem& files) {
   KA_TRY(make_folders(job.folder + "/truth"));
   KA_TRY(make_folders(job.folder + "/splits"));
@@ -122,7 +126,7 @@ Result<void> begin_folder(const TwinJob& job, FileSystem& files) {
   return is_there(path) ? Result<void>{} : write_whole(files, path, job.plan, Overwrite::no);
 }
 
-/// The result of a plan.
+/// The takes made from a plan, and those that failed.
 struct TwinMade {
   TwinCounts counts;
   std::uint64_t made = 0, were_there = 0, bytes = 0;
@@ -134,12 +138,12 @@ struct TwinMade {
   }
 };
 
-/// Makes what is missing, several takes at once. A take that fails stops no other.
+/// Makes the missing takes, several at once. A take that fails does not stop others.
 Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call& call) {
   TwinMaker maker({call.surroundings.files, job.folder, catalogue, job.motions});
   const Progress progress = call.console.progress();
   TwinMade out;
-  std::vector<std::size_t> missing;  // numbers of takes
+  std::vector<std::size_t> missing;  // indices of takes in the plan
   std::uint64_t all = 0, done = 0;   // frames
   for (std::size_t number = 0; number < job.takes.size(); ++number) {
     const TwinTake& take = job.takes[number];
@@ -180,7 +184,7 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
   return out;
 }
 
-/// The splits that a twin comes with; those that were written before stay.
+/// Writes the splits of a twin. Existing ones stay.
 Result<std::vector<std::string>> write_splits(const TwinJob& job, const DatasetIndex& index,
                                               Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -192,7 +196,7 @@ Result<std::vector<std::string>> write_splits(const TwinJob& job, const DatasetI
     const std::string name = std::string("splits/") + file + ".json",
                       path = job.folder + "/" + name;
     const auto split = make_split(takes, index.catalogue(), {.by = by, .seed = job.o.seed});
-    if (!split) continue;  // a small twin may have too few takes for a split
+    if (!split) continue;  // a small twin may have too few takes
     if (!is_there(path)) {
       KA_TRY(write_whole(files, path, split_json(*split, takes), Overwrite::no));
     }
@@ -211,7 +215,7 @@ double hours_of(std::uint64_t frames) {
   return static_cast<double>(frames) / twin_rate_hz / 3600.0;
 }
 
-/// "mocap + Kinect 13 takes, mocap + IMU 1 take, all three 10 takes".
+/// The takes by devices: "mocap + Kinect 13 takes, mocap + IMU 1 take, all three 10 takes".
 std::string pairs_text(const TwinCounts& counts) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < device_choices.size(); ++i) {
@@ -236,6 +240,7 @@ std::string tables_text(const std::vector<Table>& tables) {
   return text;
 }
 
+/// Prints the plan of --dry-run with the room that it needs.
 Result<int> show_twin_plan(const TwinJob& job, Call& call) {
   TwinCounts counts;
   for (const TwinTake& take : job.takes) count(take, take.frames, counts);
@@ -251,6 +256,7 @@ Result<int> show_twin_plan(const TwinJob& job, Call& call) {
   return 0;
 }
 
+/// Prints the tables and counts of a finished twin.
 void say_made(const TwinJob& job, const TwinMade& made, const std::vector<std::string>& splits,
               Call& call) {
   std::set<std::string> people, actions;
@@ -290,6 +296,7 @@ Result<TwinJob> job_of(const TwinVerb& o, const Call& call) {
   return job;
 }
 
+/// Makes a twin. The folder is begun only after all checks.
 Result<int> run_twin(TwinVerb& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   call.console.if_it_fails(
@@ -315,6 +322,7 @@ Result<int> run_twin(TwinVerb& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign benchmark twin`.
 Verb benchmark_twin_verb() {
   return make_verb<TwinVerb>(
       {.name = "benchmark twin",

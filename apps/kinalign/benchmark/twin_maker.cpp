@@ -25,19 +25,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double clicks_s = 1.0;  // of a motion before the suit's start and behind its stop
+constexpr double clicks_s = 1.0;  // before the suit's start and after its stop
+/// For a person whose height the catalogue does not state.
 constexpr double usual_height_cm = 175.0;
 constexpr std::size_t most_bvh_bytes = std::size_t{256} << 20;
-constexpr double skipped_frames = 2.0;  // of a file
+constexpr double skipped_frames = 2.0;  // at the beginning of a file
 constexpr double smooth_s = 0.02;       // optical files jitter more than a suit's
 
-/// s, from the first frame to the second; 0 where there is none.
+/// The time from the first frame to the second, s; 0 with fewer than two frames.
 double step_s(const ClipFrames& frames) {
   if (frames.size() < 2) return 0.0;
   return std::chrono::duration<double>(frames.stamps[1] - frames.stamps[0]).count();
 }
 
-/// A folder for the devices' files of one take, gone when the take is made or has failed.
+/// The folder for the devices' files of one take. It is removed after the take was made or has
+/// failed.
 class RawFolder {
  public:
   explicit RawFolder(std::string path) : path_(std::move(path)) { remove(); }
@@ -76,6 +78,7 @@ double TwinMaker::height_m(const TwinTake& take) const {
   return 0.01 * height_cm.value_or(usual_height_cm);
 }
 
+/// A motion of the built-in person: the action's programme, with the body of the take's person.
 Result<Motion> TwinMaker::built_in(const TwinTake& take, double length_s) const {
   const auto& actions = twin_actions();
   const auto action = std::find_if(actions.begin(), actions.end(), [&](const TwinAction& one) {
@@ -96,7 +99,7 @@ Result<Motion> TwinMaker::carried(const TwinTake& take, double length_s,
   const std::string text = KA_TRY(read_whole(place_.files, file, most_bvh_bytes));
   const BvhFile bvh = KA_TRY(read_bvh(text, file, {}));
   Motion recorded = KA_TRY(kinalign::motion_of(bvh.clip, {.smooth_s = smooth_s}).map_error(named));
-  // CMU's files by cgspeed begin with a frame in T-pose, from which the motion jumps.
+  // The BVH files of CMU by cgspeed begin with a T-pose frame, from which the motion jumps.
   const double first_s = skipped_frames * step_s(bvh.clip.frames);
   const double room_s = std::max(0.0, recorded.length_s - first_s - length_s);
   const double begin_s = first_s + room_s * RandomStream(take.seed, 133).uniform(0, 0);
@@ -107,6 +110,7 @@ Result<Motion> TwinMaker::carried(const TwinTake& take, double length_s,
   return there_and_back(std::move(carried), begin_s, end_s, length_s).map_error(named);
 }
 
+/// Every second take has the motion of a file, if there are files.
 Result<TwinMaker::Named> TwinMaker::motion_of(const TwinTake& take, std::size_t number) const {
   const double length_s = clicks_s + static_cast<double>(take.frames) / twin_rate_hz;
   const auto& motions = place_.motions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One take of a twin, by the whole chain: a motion, the devices' files, alignment, the take.
+// Makes one take of a twin by the whole chain: motion, the devices' files, alignment, take.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -14,31 +14,31 @@
 
 namespace kinalign {
 
-/// "truth/sub-03_task-S2A03_run-01.json", below the data set's folder.
+/// The truth's file below the data set's folder: "truth/sub-03_task-S2A03_run-01.json".
 std::string twin_truth_path(const TakeName& name);
 
-/// The data set and the input of its takes. `folder` has a folder truth/.
+/// The data set and the input for its takes. `folder` must contain a folder truth/.
 struct TwinPlace {
   FileSystem& files;
   const std::string& folder;
   const Catalogue& catalogue;
-  const std::vector<std::string>& motions;  // BVH files; none: the built-in person alone
+  const std::vector<std::string>& motions;  // BVH files; empty: only the built-in person
 };
 
-/// Makes takes of one data set. Several threads may make takes at once.
+/// Makes the takes of one data set. Several threads may make takes at once.
 class TwinMaker {
  public:
   explicit TwinMaker(const TwinPlace& place) : place_(place), takes_(place.files, place.folder) {}
 
-  /// The summary of a take that is there with all its bytes; else it has to be made.
+  /// The summary of a take that exists with all its bytes; absent: the take has to be made.
   std::optional<TakeSummary> known(const TwinTake& take) const;
-  /// Writes the truth, the take and its summary, in this order. The devices' files are deleted.
-  /// `number`: of the take in the plan. Every second take has a motion of a file, where there are
-  /// files, on the body of the take's person.
+  /// Writes the truth, the take and its summary, in this order, and deletes the devices' files.
+  /// `number`: the take's index in the plan. If there are motion files, every second take has the
+  /// motion of one, on the body of the take's person.
   Result<TakeSummary> make(const TwinTake& take, std::size_t number, const Progress& progress);
 
  private:
-  /// A motion, and what the truth calls it.
+  /// A motion, and its name in the truth.
   struct Named {
     Motion motion;
     std::string name;

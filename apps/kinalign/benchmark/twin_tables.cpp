@@ -8,6 +8,7 @@ namespace kinalign {
 
 namespace {
 
+/// An empty table with the columns of the paper, of the plan and of the takes made.
 Table table_with(const std::string& key, const std::string& caption) {
   Table table;
   table.caption = caption;

@@ -9,8 +9,8 @@
 
 namespace kinalign {
 
-/// Frames by people (the paper's table 6), by classes (table 7), and by devices: in the paper,
-/// asked for by the scale, and made.
+/// Frames by people (the paper's table 6), by classes (table 7) and by devices. Each table compares
+/// the paper, the scale's plan and the takes made.
 std::vector<Table> twin_tables(double scale, const TwinCounts& made);
 
 }  // namespace kinalign

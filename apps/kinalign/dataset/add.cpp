@@ -11,11 +11,12 @@ namespace kinalign {
 namespace {
 
 struct Add {
-  std::vector<std::string> folder, files;
+  std::vector<std::string> folder, files;  // folder: one
   std::string subject, action;
   bool copy = false;
-};
+};  // --copy: raw files are copied below sourcedata/
 
+/// The command line of `kinalign dataset add`.
 Usage describe_add(Add& o) {
   Usage usage;
   usage.positionals = {
@@ -28,6 +29,7 @@ Usage describe_add(Add& o) {
   return usage;
 }
 
+/// Adds each file in turn. The takes added before a failure stay added.
 Result<int> run_add(Add& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   FileSystem& files = call.surroundings.files;
@@ -53,6 +55,7 @@ Result<int> run_add(Add& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset add`.
 Verb dataset_add_verb() {
   return make_verb<Add>(
       {.name = "dataset add",

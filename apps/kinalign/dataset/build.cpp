@@ -14,9 +14,9 @@ namespace kinalign {
 namespace {
 
 struct Build {
-  std::vector<std::string> folder;
+  std::vector<std::string> folder;  // one
   bool all = false;
-  std::int64_t index_offset = 0;
+  std::int64_t index_offset = 0;  // added to the number of a job in a Slurm array
 };
 
 Usage describe_build(Build& o) {
@@ -29,6 +29,7 @@ Usage describe_build(Build& o) {
   return usage;
 }
 
+/// The reason for building a take, as printed.
 std::string_view words_of(BuildReason reason) {
   switch (reason) {
     case BuildReason::first:
@@ -47,6 +48,7 @@ std::string_view words_of(BuildReason reason) {
   return "up to date";
 }
 
+/// Prints the plan of --dry-run.
 Result<int> show_plan(const BuildPlan& plan, Call& call) {
   auto json = nlohmann::ordered_json::array();
   for (const BuildJob& job : plan.jobs) {
@@ -62,7 +64,7 @@ Result<int> show_plan(const BuildPlan& plan, Call& call) {
   return 0;
 }
 
-/// Counts the takes that were made, for lines and JSON.
+/// Counts the built takes, for the text and the JSON.
 struct Tally {
   std::size_t made = 0, failed = 0, usable = 0, bad = 0;
   nlohmann::ordered_json takes = nlohmann::ordered_json::array();
@@ -86,6 +88,7 @@ struct Tally {
   }
 };
 
+/// Builds this process's share of the takes. Only a process with the whole build updates the index.
 Result<int> run_build(Build& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
@@ -124,6 +127,7 @@ Result<int> run_build(Build& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset build`.
 Verb dataset_build_verb() {
   return make_verb<Build>(
       {.name = "dataset build",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every verb of a data set begins with its folder, and most open its index.
+// Shared by the verbs of a data set: the folder, the index, and findings.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -15,24 +15,23 @@ namespace kinalign {
 
 /// The first word of every verb: the data set's folder.
 Positional folder_word(std::vector<std::string>& folder);
-/// The folder's path without a '/' at its end; "." where that is nothing.
+/// The folder's path without a '/' at its end; "." if it is empty.
 std::string folder_of(const std::vector<std::string>& words);
 
-/// Flags of verbs that take a choice of takes: --where and --split.
+/// The flags of verbs that work on chosen takes: --where and --split.
 Field where_field(std::string& where);
 Field split_field(std::string& split);
 
-/// Opens the index and tells what is wrong with its files on stderr.
+/// Opens the index. Problems of its files are printed on stderr.
 Result<DatasetIndex> open_index(const std::string& folder, Call& call);
 
-/// A line, where some takes have no summary yet.
+/// Prints a line if some takes have no summary yet.
 Result<void> say_not_built(const DatasetIndex& index, const std::string& folder, Call& call);
 
-/// Prints the first ones, and how many more there are; whether one is an error.
+/// Prints the first findings and the number of the others. True if one is an error.
 bool print_findings(const Findings& findings, Call& call);
 
-/// Takes that are built, by name; of those alone for which a condition of SQL holds, if any is
-/// said.
+/// The built takes, sorted by name. `where`: a condition of SQL; empty: all takes.
 Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,
                                            const DatasetIndex& index, const std::string& where);
 

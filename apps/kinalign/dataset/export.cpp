@@ -19,6 +19,7 @@ namespace kinalign {
 
 namespace {
 
+/// Streams that did not fit into a format are listed up to this number of kinds.
 constexpr std::size_t shown_streams = 8;
 
 struct Export {
@@ -33,6 +34,7 @@ std::vector<std::string> format_names() {
   return out;
 }
 
+/// The command line of `kinalign dataset export`.
 Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
@@ -50,6 +52,7 @@ Usage describe_export(Export& o) {
   return usage;
 }
 
+/// The takes of the export, each with its part of the split. Takes outside the split are left out.
 Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call) {
   FileSystem& files = call.surroundings.files;
   ExportJob job{folder_of(o.folder), call.common.out, o.format, o.release, {}};
@@ -72,7 +75,7 @@ Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call)
   return job;
 }
 
-/// Names of streams and nodes, which every format writes.
+/// The names of streams and nodes, which every format writes into its files.
 std::set<std::string> names_in(const ExportJob& job) {
   std::set<std::string> out;
   for (const ExportTake& take : job.takes) {
@@ -89,7 +92,7 @@ bool has_error(const Findings& findings) {
                      [](const Finding& one) { return one.severity == Severity::error; });
 }
 
-/// A line for each reason, with the number of takes.
+/// Prints a line for each reason, with the number of takes.
 nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
   std::map<std::string, std::vector<std::string>> takes;
   for (const LeftOutStream& one : made.left_out) takes[one.why].push_back(to_string(one.name));
@@ -105,6 +108,7 @@ nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
   return takes;
 }
 
+/// Exports the takes. With --release nothing is written if a text could identify a person.
 Result<int> run_export(Export& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
@@ -153,6 +157,7 @@ std::string formats_text() {
 
 }  // namespace
 
+/// The verb `kinalign dataset export`.
 Verb dataset_export_verb() {
   return make_verb<Export>(
       {.name = "dataset export",

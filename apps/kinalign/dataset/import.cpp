@@ -19,10 +19,11 @@ namespace {
 struct Import {
   std::vector<std::string> folder, sources;
   std::string from = "auto", subject, action, up;
-  double metres_per_unit = 0.0;
+  double metres_per_unit = 0.0;  // 0: the format's own
   bool copy = false;
 };
 
+/// The command line of `kinalign dataset import`.
 Usage describe_import(Import& o) {
   std::vector<std::string> kinds{"auto"};
   for (const std::string& name : corpus_kind_names()) kinds.push_back(name);
@@ -56,7 +57,7 @@ Usage describe_import(Import& o) {
   return usage;
 }
 
-/// "10 without Vicon left out: m03_s03_e01, m03_s03_e02, m03_s03_e03, ...", a line for each reason.
+/// A line for each reason: "10 without Vicon left out: m03_s03_e01, m03_s03_e02, m03_s03_e03, ...".
 std::string left_out_lines(const std::vector<LeftOut>& all) {
   std::map<std::string, std::vector<std::string>> by_reason;
   for (const LeftOut& one : all) by_reason[one.why].push_back(one.what);
@@ -72,6 +73,7 @@ std::string left_out_lines(const std::vector<LeftOut>& all) {
   return text;
 }
 
+/// Names of the corpus, each with its id in the data set.
 using Changed = std::vector<std::pair<std::string, std::string>>;
 
 std::string changed_line(std::string_view what, const Changed& changed) {
@@ -90,6 +92,7 @@ nlohmann::ordered_json json_of(const Changed& changed) {
   return out;
 }
 
+/// Prints the result of an import as JSON.
 void print_json(const Imported& made, Console& console) {
   auto left_out = nlohmann::ordered_json::array();
   for (const LeftOut& one : made.left_out) {
@@ -114,6 +117,7 @@ void advise_to_say_it_again(Console& console) {
   });
 }
 
+/// Imports a corpus. The advice to run it again is set only once a take was added.
 Result<int> run_import(Import& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   Console& console = call.console;
@@ -145,6 +149,7 @@ Result<int> run_import(Import& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset import`.
 Verb dataset_import_verb() {
   return make_verb<Import>(
       {.name = "dataset import",

@@ -20,6 +20,7 @@ struct Init {
   std::string template_name = "empty", name;
 };
 
+/// The command line of `kinalign dataset init`.
 Usage describe_init(Init& o) {
   Usage usage;
   usage.positionals = {{"FOLDER", "the new data set, or a folder that is to be one", &o.folder}};
@@ -35,6 +36,7 @@ Usage describe_init(Init& o) {
   return usage;
 }
 
+/// Writes dataset.toml; an existing one is never overwritten.
 Result<int> run_init(Init& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   KA_TRY(make_folders(folder));
@@ -54,6 +56,7 @@ Result<int> run_init(Init& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset init`.
 Verb dataset_init_verb() {
   return make_verb<Init>(
       {.name = "dataset init",

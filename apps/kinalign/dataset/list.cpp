@@ -18,13 +18,14 @@ namespace {
 constexpr const char* usual_columns =
     "name,subject,class,action,frames,seconds,kinect,imu,residual_cm,verdict";
 
-/// Flags of both verbs.
+/// The flags that list and query share.
 struct Shown {
   std::vector<std::string> folder;
   std::string columns = usual_columns, sort, format = "text";
   std::int64_t limit = 0;
 };
 
+/// The flags that list and query share.
 Fields fields_of(Shown& o) {
   return {{"columns", "comma-separated, or all", &o.columns, 0.0, 0.0, {}, "COLUMNS"},
           {"sort",
@@ -63,7 +64,7 @@ Result<std::string> checked_column(const std::string& name, const char* flag) {
   return Failure(std::move(error));
 }
 
-/// "name, frames" of "name,frames".
+/// The columns of a flag for a SELECT: "name,frames" gives "name, frames".
 Result<std::string> chosen_columns(const std::string& text) {
   if (text == "all") return fmt::format("{}", fmt::join(column_names(), ", "));
   std::string out;
@@ -76,7 +77,7 @@ Result<std::string> chosen_columns(const std::string& text) {
   return out;
 }
 
-/// The text behind "order by". Verdicts go by how bad they are, not by the alphabet.
+/// The text after "order by". Verdicts are sorted by severity, not by the alphabet.
 Result<std::string> order_text(const std::string& sort) {
   if (sort.empty()) return std::string("name");
   const bool down = sort.ends_with('-');
@@ -88,7 +89,7 @@ Result<std::string> order_text(const std::string& sort) {
   return key + (down ? " desc" : "") + ", name";
 }
 
-/// The SELECT of these rows; `where`: empty for all.
+/// The SELECT for these rows. `where`: a condition; empty: all takes.
 Result<std::string> select_text(const Shown& o, const std::string& where) {
   std::string sql = "select " + KA_TRY(chosen_columns(o.columns)) + " from takes";
   if (!where.empty()) sql += " where " + where;
@@ -105,6 +106,7 @@ Result<int> show(const Shown& o, const DatasetIndex& index, const std::string& s
   return index.findings().empty() ? 0 : 1;
 }
 
+/// The command line of `kinalign dataset list`.
 Usage describe_list(List& o) {
   Usage usage;
   usage.positionals = {folder_word(o.shown.folder)};
@@ -131,8 +133,8 @@ std::vector<std::string> ids_of(const auto& described) {
   return ids;
 }
 
-/// A filter for an id that no take can have is a slip: an empty table would hide it. `known`: ids
-/// of dataset.toml; takes may have others.
+/// Refuses a filter for an id that neither dataset.toml nor a take has: an empty table would hide
+/// the mistake. `known`: the ids of dataset.toml; takes may have others.
 Result<void> check_id(const DatasetIndex& index, const std::string& column, const std::string& id,
                       const std::vector<std::string>& known) {
   if (id.empty() || std::find(known.begin(), known.end(), id) != known.end()) return {};
@@ -144,6 +146,7 @@ Result<void> check_id(const DatasetIndex& index, const std::string& column, cons
   return Failure(std::move(error));
 }
 
+/// Lists the takes for which all given filters hold.
 Result<int> run_list(List& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.shown.folder), call));
   if (o.subject.starts_with("sub-")) o.subject.erase(0, 4);
@@ -167,6 +170,7 @@ Result<int> run_list(List& o, Call& call) {
   return show(o.shown, index, KA_TRY(select_text(o.shown, where)), values, call);
 }
 
+/// True for a whole SELECT, false for a condition.
 bool is_select(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return false;
@@ -176,7 +180,7 @@ bool is_select(std::string_view text) {
   return word == "select" || word.starts_with("with ");
 }
 
-/// Flags that shape a SELECT of ours say nothing of one that is written out.
+/// Flags that shape the program's own SELECT have no meaning for a SELECT that the user wrote.
 Result<void> check_query(const Query& o, const Sources& given) {
   if (!is_select(o.words.front())) return {};
   for (const auto& [name, flag] : {std::pair("columns", "--columns"), std::pair("sort", "--sort"),
@@ -197,6 +201,7 @@ Usage describe_query(Query& o) {
   return usage;
 }
 
+/// Runs a query. If it fails, the advice lists the columns.
 Result<int> run_query(Query& o, Call& call) {
   const std::string& words = o.words.front();
   call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
@@ -212,6 +217,7 @@ Result<int> run_query(Query& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset list`.
 Verb dataset_list_verb() {
   return make_verb<List>(
       {.name = "dataset list",
@@ -226,6 +232,7 @@ Verb dataset_list_verb() {
       describe_list, run_list);
 }
 
+/// The verb `kinalign dataset query`.
 Verb dataset_query_verb() {
   return make_verb<Query>(
       {.name = "dataset query",

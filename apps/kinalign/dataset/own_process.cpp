@@ -17,7 +17,7 @@ namespace {
 constexpr const char* own_program = "/proc/self/exe";
 constexpr std::size_t longest_complaint = 4096;
 
-/// Everything that comes until the other end closes; only the beginning is kept.
+/// Reads until the other end closes; keeps only the beginning.
 std::string drained(int pipe) {
   std::string out;
   std::array<char, 1024> buffer{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// This program started again with other words: for verbs that fork, which no thread may do.
+// Starts this program again with other arguments, for verbs that fork, which a thread must not do.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -10,12 +10,12 @@
 namespace kinalign {
 
 struct Ended {
-  int code = 0;           // exit code; 128 and the signal's number where a signal ended it
-  std::string complaint;  // stderr, its beginning
+  int code = 0;           // exit code; 128 plus the signal's number if a signal ended it
+  std::string complaint;  // the beginning of stderr
 };
 
-/// Runs kinalign with these words behind its name, without a terminal, and waits for its end. Safe
-/// to call from several threads.
+/// Runs kinalign with these arguments, without a terminal, and waits for its end. Several threads
+/// may call it.
 Result<Ended> run_own_process(const std::vector<std::string>& words);
 
 }  // namespace kinalign

@@ -31,8 +31,9 @@ Usage describe_remove(Remove& o) {
   return usage;
 }
 
-constexpr std::size_t most_places = 5;  // of raw files that are named
+constexpr std::size_t most_places = 5;  // more raw files are only counted
 
+/// The raw files that stay because --raw was not given.
 std::string raw_left_text(const std::vector<std::string>& places) {
   std::string out;
   for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
@@ -46,6 +47,7 @@ std::string raw_left_text(const std::vector<std::string>& places) {
   return out;
 }
 
+/// The raw files that stay because they were not copied or unpacked for this take.
 std::string raw_kept_text(const std::vector<std::string>& places) {
   std::string out;
   for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
@@ -64,7 +66,7 @@ std::string raw_shared_text(const std::vector<std::string>& places) {
          (places.size() == 1 ? "\n" : ", ...\n");
 }
 
-/// The takes that go, and the raw files that stay.
+/// The takes to be removed, and the raw files that stay.
 std::string plan_text(const RemovalPlan& plan) {
   std::string out;
   for (const TakeName& name : plan.takes) out += to_string(name) + "\n";
@@ -75,7 +77,7 @@ std::string plan_text(const RemovalPlan& plan) {
          raw_shared_text(plan.raw_shared);
 }
 
-/// Asks on the terminal; any answer but y or yes is no.
+/// Asks on the terminal. Any answer but y or yes means no.
 bool agreed(Call& call) {
   call.console.complain("remove them for good? [y/N]");
   std::string answer;
@@ -83,6 +85,7 @@ bool agreed(Call& call) {
   return answer == "y" || answer == "yes";
 }
 
+/// The plan as JSON.
 nlohmann::ordered_json plan_json(const RemovalPlan& plan) {
   auto takes = nlohmann::ordered_json::array();
   for (const TakeName& name : plan.takes) takes.push_back(to_string(name));
@@ -95,6 +98,7 @@ nlohmann::ordered_json plan_json(const RemovalPlan& plan) {
           {"unknown", plan.unknown}};
 }
 
+/// Removes takes after asking. Without a terminal --yes is needed.
 Result<int> run_remove(Remove& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
@@ -131,6 +135,7 @@ Result<int> run_remove(Remove& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset rm`.
 Verb dataset_rm_verb() {
   return make_verb<Remove>(
       {.name = "dataset rm",

@@ -43,6 +43,7 @@ Result<int> show_plan(const RenamePlan& plan, Call& call) {
   return 0;
 }
 
+/// Renames a take, a person or an action. A stopped rename is finished by the same command.
 Result<int> run_rename(Rename& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder), from = o.from.front(), to = o.to.front();
@@ -76,6 +77,7 @@ Result<int> run_rename(Rename& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset rename`.
 Verb dataset_rename_verb() {
   return make_verb<Rename>(
       {.name = "dataset rename",

@@ -27,6 +27,7 @@ struct Report {
   bool pages = false, card = false;
 };
 
+/// The command line of `kinalign dataset report`.
 Usage describe_report(Report& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
@@ -48,7 +49,7 @@ Usage describe_report(Report& o) {
   return usage;
 }
 
-/// A file that this verb wrote before is replaced; another one only with --force.
+/// Writes a file. A file that this verb wrote before is replaced; any other only with --force.
 Result<void> write_over_own(const std::string& path, std::string_view mark, const std::string& text,
                             Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -63,7 +64,8 @@ Result<void> write_over_own(const std::string& path, std::string_view mark, cons
 
 // ---- the pages of takes
 
-/// By `kinalign report`; where the raw files are not those of the take any more, without them.
+/// Makes a take's page with `kinalign report`. If the raw files are not those of the take any more,
+/// the page has no raw samples.
 Result<void> make_page(const PageJob& job) {
   std::vector<std::string> words{"report", job.take,         "-o",      job.page, "--force",
                                  "--jobs", std::string("1"), "--color", "never"};
@@ -73,7 +75,7 @@ Result<void> make_page(const PageJob& job) {
     with_inputs.insert(with_inputs.end(), {"--inputs", job.inputs});
     ended = KA_TRY(run_own_process(with_inputs));
   }
-  constexpr int most_findings = 1;  // exit code 1: a stream is bad, and the page is there
+  constexpr int most_findings = 1;  // exit code 1: a stream is bad, and the page was written
   if (job.inputs.empty() || ended.code > most_findings) ended = KA_TRY(run_own_process(words));
   if (ended.code <= most_findings) return {};
   if (interrupted()) return Failure(interruption());
@@ -82,10 +84,10 @@ Result<void> make_page(const PageJob& job) {
                        first.empty() ? fmt::format("exit code {}", ended.code) : first});
 }
 
-/// The folder of the takes' pages: walks/report/ beside walks/report.html.
+/// The folder of the takes' pages: walks/report/ next to walks/report.html.
 std::string place_of_pages(const std::string& out) { return out.substr(0, out.rfind('.')) + "/"; }
 
-/// A folder's name in a relative link.
+/// A folder's name, percent-encoded for a relative link.
 std::string as_link(std::string_view name) {
   std::string out;
   for (const char c : name) {
@@ -97,6 +99,7 @@ std::string as_link(std::string_view name) {
   return out;
 }
 
+/// Links each take of the page to its own page, if that page is of the take's present bytes.
 Result<void> link_pages(const TakePages& pages, const DatasetIndex& index, const std::string& place,
                         DatasetPage& page) {
   std::map<std::string, std::string> hashes;
@@ -121,8 +124,9 @@ Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const 
   return pages.make(index, names, call.jobs, make_page, call.console.progress());
 }
 
-// ---- what is said
+// ---- text and JSON
 
+/// Prints what was written: takes by verdict, and the pages made.
 void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
          const std::optional<PagesMade>& pages, Call& call) {
   std::string text = fmt::format("{}: {}, {}: {} bad, {} usable, {} good\n", out, size_text(bytes),
@@ -157,6 +161,7 @@ void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
 
 // ---- the verb
 
+/// Writes the page of the data set, and with --pages those of its takes.
 Result<int> write_page(const std::string& folder, const DatasetIndex& index, bool with_pages,
                        Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -193,6 +198,7 @@ Result<int> run_report(Report& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset report`.
 Verb dataset_report_verb() {
   return make_verb<Report>(
       {.name = "dataset report",

@@ -10,10 +10,11 @@ namespace kinalign {
 namespace {
 
 struct Names {
-  const char *rank, *size, *least;  // `least`: taken off the rank; nullptr: nothing
+  const char *rank, *size, *least;  // `least`: the first rank of an array, subtracted from the
+                                    // rank; nullptr: 0
 };
 constexpr Names array{"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"};
-// The innermost starter first: mpirun within a step of srun starts the tasks itself.
+// The innermost starter first: mpirun inside a step of srun starts the tasks itself.
 constexpr std::array<Names, 4> steps{{{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", nullptr},
                                       {"PMI_RANK", "PMI_SIZE", nullptr},
                                       {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", nullptr},
@@ -33,7 +34,7 @@ bool is_there(const Names& names, const Variable& variable) {
   return !variable(names.rank).empty() && !variable(names.size).empty();
 }
 
-/// `shares`: wins as the size; empty: none does.
+/// The share by these variables. `shares`: replaces the size; empty: the size counts.
 Result<BuildShare> read(const Names& names, const Variable& variable, const std::string& shares,
                         std::int64_t offset) {
   const std::string rank_text = variable(names.rank);

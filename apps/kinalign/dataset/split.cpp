@@ -24,6 +24,7 @@ struct SplitVerb {
   std::string test_people, check;
 };
 
+/// The command line of `kinalign dataset split`, with the checks that need several flags.
 Usage describe_split(SplitVerb& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
@@ -60,6 +61,7 @@ Usage describe_split(SplitVerb& o) {
   return usage;
 }
 
+/// The takes, people and frames of each part.
 Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
   std::map<TakeName, std::uint64_t> frames;
   for (const SplitTake& take : takes) frames[take.name] = take.summary.frames;
@@ -80,16 +82,17 @@ Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
   return table;
 }
 
-/// Writes -o FILE, in a folder that may not be there yet.
+/// Writes the file of -o; makes its folder if needed.
 Result<void> write_split(const std::string& json, Call& call) {
   const std::string& file = call.common.out;
-  std::error_code ignored;  // creating the file says what is wrong
+  std::error_code ignored;  // creating the file reports the fault
   std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
   KA_TRY(write_whole(call.surroundings.files, file, json, call.common.overwrite()));
   call.console.wrote(file);
   return {};
 }
 
+/// Makes or checks a split. A split with leaks is not written.
 Result<int> run_split(SplitVerb& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
@@ -120,6 +123,7 @@ Result<int> run_split(SplitVerb& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset split`.
 Verb dataset_split_verb() {
   return make_verb<SplitVerb>(
       {.name = "dataset split",

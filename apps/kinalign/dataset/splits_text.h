@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits that name takes which are not there any more, for people and as JSON.
+// Reports splits that name takes which do not exist any more, as text and as JSON.
 #pragma once
 
 #include "kinalign/dataset/changes/split_files.h"
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// Lines; empty where there are none.
+/// The lines; empty without such splits.
 std::string splits_text(const std::vector<SplitFile>& splits);
 nlohmann::ordered_json splits_json(const std::vector<SplitFile>& splits);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables on stdout, as --format and --json ask for them.
+// Prints tables on stdout in the format of --format or --json.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -12,16 +12,17 @@
 
 namespace kinalign {
 
-/// --format: how a table is printed; with --json it is JSON whatever the flag says.
+/// The flag --format. With --json tables are JSON whatever the flag says.
 Field format_field(std::string& format);
-/// Prints tables one below the other as `format` says, or as members of one JSON object.
+/// A table, and its name in JSON.
 struct NamedTable {
   std::string name;
   Table table;
 };
+/// Prints tables one below the other in that format, or as members of one JSON object.
 void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call);
 
-/// Prints a table as `format` says, or as the member `name` of a JSON object.
+/// Prints a table in that format, or as the member `name` of a JSON object.
 void print_table(const Table& table, const std::string& format, const std::string& name,
                  Call& call);
 

@@ -23,6 +23,7 @@ constexpr std::array<std::pair<const char*, Make>, 4> tables{{{"subjects", table
                                                               {"modalities", table_by_modalities},
                                                               {"data_sets", table_of_data_sets}}};
 
+/// The command line of `kinalign dataset tables`.
 Usage describe_tables(Tables& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
@@ -36,6 +37,7 @@ Usage describe_tables(Tables& o) {
   return usage;
 }
 
+/// Prints one or all of the paper's tables.
 Result<int> run_tables(Tables& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
   std::string text, json;
@@ -58,6 +60,7 @@ Result<int> run_tables(Tables& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset tables`.
 Verb dataset_tables_verb() {
   return make_verb<Tables>(
       {.name = "dataset tables",

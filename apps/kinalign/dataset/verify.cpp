@@ -27,8 +27,8 @@ Usage describe_verify(Verify& o) {
   return usage;
 }
 
-/// Splits against the takes whose summaries can be read; of the others there is a finding already.
-/// A line for each split: a note where all its takes are there and only their bytes are others.
+/// Checks splits against the takes whose summaries can be read; the others have a finding already.
+/// Gives one finding for each split: a note if all its takes exist and only their bytes changed.
 void check_splits(FileSystem& files, const std::string& folder, Findings& findings) {
   const auto splits = splits_in(files, folder);
   const auto there = scan_takes(folder);
@@ -51,6 +51,7 @@ void check_splits(FileSystem& files, const std::string& folder, Findings& findin
   sort_findings(findings);
 }
 
+/// Verifies a data set and prints the findings. Notes alone give exit code 0.
 Result<int> run_verify(Verify& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   FileSystem& files = call.surroundings.files;
@@ -77,6 +78,7 @@ Result<int> run_verify(Verify& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset verify`.
 Verb dataset_verify_verb() {
   return make_verb<Verify>(
       {.name = "dataset verify",

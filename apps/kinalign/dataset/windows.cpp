@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+/// The index of a part has one byte.
 constexpr std::size_t most_parts = 255;
 constexpr std::size_t shown_takes = 5;
 
@@ -25,6 +26,7 @@ struct Windows {
   std::string split, where;
 };
 
+/// The command line of `kinalign dataset windows`.
 Usage describe_windows(Windows& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
@@ -49,7 +51,7 @@ Usage describe_windows(Windows& o) {
   return usage;
 }
 
-/// Puts each take of the split into its part; takes in no part go.
+/// Puts each take into its part of the split, and removes takes that are in no part.
 Result<void> divide(const Split& split, const std::string& file, std::vector<SplitTake>& takes,
                     WindowSource& source) {
   if (split.parts.size() > most_parts) {
@@ -70,6 +72,7 @@ Result<void> divide(const Split& split, const std::string& file, std::vector<Spl
   return {};
 }
 
+/// The takes that windows are cut from, each with its part and its class of actions.
 Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call& call) {
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder, call));
@@ -90,6 +93,7 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
   return source;
 }
 
+/// Prints the number of windows of each part, and everything that was left out.
 void print(const WindowsMade& made, const WindowSource& source, Call& call) {
   Table table;
   table.columns = {{"part", "part"}, {"windows", "windows"}};
@@ -125,6 +129,7 @@ void print(const WindowsMade& made, const WindowSource& source, Call& call) {
        left_out}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+/// Cuts the windows into one NPZ.
 Result<int> run_windows(Windows& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   const WindowSource source = KA_TRY(source_of(o, folder, call));
@@ -138,6 +143,7 @@ Result<int> run_windows(Windows& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign dataset windows`.
 Verb dataset_windows_verb() {
   return make_verb<Windows>(
       {.name = "dataset windows",

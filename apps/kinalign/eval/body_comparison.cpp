@@ -16,7 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The rows of kinalign-learn (apps/kinalign-learn/marks.h) as one array.
+/// Marks a model for poses or fusion. Returns the rows of kinalign-learn
+/// (apps/kinalign-learn/marks.h) as one array.
 Result<std::string> rows_of_trial(const Trial& trial, Call& call) {
   std::string model = trial.model;
   if (model.empty()) model = KA_TRY(trained_model(trial.training, call));
@@ -26,12 +27,12 @@ Result<std::string> rows_of_trial(const Trial& trial, Call& call) {
   return out.dump();
 }
 
-/// A mark's name in the rows, and in the table.
+/// The name of a mark in the rows of kinalign-learn, and in the table.
 struct RowMark {
   std::string_view row, table;
 };
 
-/// The marks of a pose that the table has for that state of the nodes.
+/// The marks of a pose that the table shows for this state of the nodes.
 std::vector<RowMark> pose_marks_of(const std::string& nodes) {
   if (nodes == "calibrated") {
     return {{"sip_deg", "sip_deg"},
@@ -49,7 +50,7 @@ std::vector<RowMark> pose_marks_of(const std::string& nodes) {
   return {};
 }
 
-/// Puts a row's values of each person under the names of the table.
+/// Adds each person's values of a row under the names of the table.
 void add_people(const Json& row, const std::vector<RowMark>& names, MethodMarks& out) {
   for (const auto& [person, values] : row.at("people").items()) {
     for (const RowMark& name : names) {
@@ -61,7 +62,7 @@ void add_people(const Json& row, const std::vector<RowMark>& names, MethodMarks&
   }
 }
 
-/// The row of the table for that method and variant, made where it is not there yet.
+/// The row of the table for that method and variant; added if it is missing.
 MethodMarks& row_for(const std::string& method, const std::string& variant,
                      std::vector<MethodMarks>& all) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const MethodMarks& one) {
@@ -70,7 +71,7 @@ MethodMarks& row_for(const std::string& method, const std::string& variant,
   return found != all.end() ? *found : all.emplace_back(MethodMarks{method, variant});
 }
 
-/// Mean headings of a person's nodes behind 60 s.
+/// Adds each person's mean error of the nodes' headings after 60 s.
 void add_headings(const Json& rows, const std::string& method, MethodMarks& out) {
   std::map<std::string, Mean> people;
   for (const Json& row : rows) {
@@ -82,6 +83,8 @@ void add_headings(const Json& rows, const std::string& method, MethodMarks& out)
   for (const auto& [person, mean] : people) out.marks["heading_deg"][person].add(*mean.value());
 }
 
+/// Sorts the rows of one trial into the rows of the table. Rows with "devices" are of fusion, rows
+/// with "nodes" of poses; the filter keeps its own name, since it is the same for every model.
 void add_rows(const std::string& name, const Json& rows, std::vector<MethodMarks>& out) {
   static const std::vector<RowMark> fusion{{"all_cm", "position_cm"},
                                            {"hidden_cm", "hidden_cm"},
@@ -103,6 +106,8 @@ void add_rows(const std::string& name, const Json& rows, std::vector<MethodMarks
   }
 }
 
+/// Cached texts may be damaged, so an error of JSON gives no rows, and the marks are computed
+/// again.
 std::vector<MethodMarks> sum_up_rows(const std::string& name, const std::vector<FoldMarks>& folds) {
   try {
     std::vector<MethodMarks> out;
@@ -115,6 +120,7 @@ std::vector<MethodMarks> sum_up_rows(const std::string& name, const std::vector<
   }
 }
 
+/// Each take once, with its person, action and part.
 std::vector<FoldTake> takes_of_windows(const Windows& windows) {
   std::vector<FoldTake> out;
   std::set<std::size_t> known;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eval compares methods and models of one task on folds of takes.
+// The comparison of methods and models of one task on folds of takes.
 #pragma once
 
 #include "apps/kinalign/learn/training_job.h"
@@ -22,13 +22,14 @@ struct Eval {
   bool own_root = false;
 };
 
-/// The rough stream: a Kinect's, unless the methods see none or a simulated one.
+/// The name of the rough stream. The default is a Kinect's for methods that clean one; others see
+/// none or a simulated one.
 std::string input_of(const Eval& o, Learns task);
 
 /// A method or a model on one fold, trained from one seed.
 struct Trial {
-  TrainingWanted training;          // its method is "model" where `model` is one
-  std::string model;                // the file of a finished model; empty: one is trained
+  TrainingWanted training;          // the method is "model" if `model` names a file
+  std::string model;                // a finished model's file; empty: one is trained
   std::vector<std::string> tested;  // names of takes
 };
 
@@ -37,31 +38,32 @@ struct MarkColumn {
   int decimals = 1;
 };
 
-/// Marks of a method on one fold, a text for each seed.
+/// The marks of a method on one fold, one text for each seed.
 struct FoldMarks {
   std::string fold;
   std::vector<std::string> texts;
 };
 
-/// How trials are marked, and what the table says of them.
+/// The marking of trials, and the titles of the table.
 struct Comparison {
-  std::string dataset;  // its name, as the windows state it
+  std::string dataset;  // the name of the data set in the windows
   std::vector<FoldTake> takes;
   std::vector<MarkColumn> columns;
-  std::vector<MarkColumn> joints{};  // a table of their own; empty: none
-  /// "people": a value of a row is a person's; "folds": a fold's (of a single fold a person's).
+  std::vector<MarkColumn> joints{};  // columns of a second table, one for each joint; empty: none
+  /// "people": each value of a row is one person's. "folds": each value is one fold's, or one
+  /// person's if there is a single fold.
   std::string over;
-  std::string note;  // for the caption
+  std::string note;  // added to the caption
   /// The marks of a trial as a JSON array, which the cache keeps.
   std::function<Result<std::string>(const Trial&, Call&)> mark;
-  /// Sums up all trials of a method; the table calls it `name`. Empty where a text is not such
-  /// marks.
+  /// Sums up all trials of a method; the table calls the method `name`. Empty if a text can't be
+  /// read as marks.
   std::function<std::vector<MethodMarks>(const std::string& name, const std::vector<FoldMarks>&)>
       sum_up;
 };
 
-/// Compares methods that clean a Kinect. `bytes`: of the file of windows. Fails where it lacks a
-/// stream.
+/// Compares methods that clean a Kinect. `bytes`: the content of the file of windows. Fails if a
+/// stream is missing in it.
 Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                                       const std::string& file);
 /// Compares methods for poses or for fusion.

@@ -21,12 +21,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t least_rows = 8;
+constexpr std::size_t least_rows = 8;  // stretches with fewer frames are left out
 
-/// Marks of a method on a tested stretch: of its answer as it is, and steadied.
+/// The marks of a method on a tested stretch.
 struct Marked {
   std::string take, subject;
-  std::array<DenoiseMarks, 2> marks;
+  std::array<DenoiseMarks, 2> marks;  // plain answer, steadied answer
 };
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
@@ -40,6 +40,7 @@ RadiusMarks radii_of(const Json& json) {
           json.at(3).get<std::vector<std::uint32_t>>()};
 }
 
+/// The marks as an array, for the cache. marks_of() reads the same order.
 Json marks_json(const DenoiseMarks& marks) {
   const ProtocolMarks& p = marks.protocol;
   const TableNine& t = marks.table_nine;
@@ -72,6 +73,7 @@ std::optional<double> number_of(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
 
+/// The marks that marks_json() wrote.
 DenoiseMarks marks_of(const Json& json) {
   DenoiseMarks out;
   ProtocolMarks& p = out.protocol;
@@ -107,7 +109,7 @@ std::string written_marks(const std::vector<Marked>& all) {
   return out.dump();
 }
 
-/// Nothing where the text is none of ours.
+/// The marks of a cached text; empty if it can't be read as marks.
 std::vector<Marked> read_marks(const std::string& text) {
   try {
     std::vector<Marked> out;
@@ -122,6 +124,7 @@ std::vector<Marked> read_marks(const std::string& text) {
   }
 }
 
+/// Each take once, with its person, action and part.
 std::vector<FoldTake> takes_of(const Pairs& pairs) {
   std::vector<FoldTake> out;
   std::set<std::string> known;
@@ -133,7 +136,7 @@ std::vector<FoldTake> takes_of(const Pairs& pairs) {
   return out;
 }
 
-/// All that trials are marked with.
+/// The data and the marker for methods with the same joints.
 struct Bench {
   Pairs pairs;
   DenoiseLayout layout;
@@ -145,15 +148,16 @@ Result<Bench> bench_of(Pairs pairs, DenoiseLayout layout, MarkedIn marked_in) {
   return Bench{std::move(pairs), std::move(layout), std::move(marker)};
 }
 
-/// The data, once read, and how it is marked.
+/// The data, read once, and the space in which errors are marked.
 struct BenchData {
   Windows windows;
   std::string input, truth;
   MarkedIn marked_in = MarkedIn::space;
-  Bench own;  // with the data's joints
+  Bench own;  // with the joints of the data
 };
 
-/// The data with the joints of a finished model, found by name.
+/// The data with the joints of a finished model, found by name. Fails if the rates differ by more
+/// than 1 %.
 Result<Bench> bench_of_model(const DenoiseLayout& layout, const BenchData& data) {
   if (std::abs(data.own.layout.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
     return Failure(Error{"--rate", 0, fmt::format("{:g} Hz, the model's", layout.rate_hz),
@@ -164,6 +168,8 @@ Result<Bench> bench_of_model(const DenoiseLayout& layout, const BenchData& data)
                   layout, data.marked_in);
 }
 
+/// Marks each tested stretch twice: with the plain answer, and steadied in the same way for every
+/// method.
 Result<std::string> marks_on(const Bench& bench, const Answer& answer,
                              const std::vector<std::string>& tested) {
   const Steadier steadier({}, bench.layout);
@@ -180,6 +186,8 @@ Result<std::string> marks_on(const Bench& bench, const Answer& answer,
   return written_marks(out);
 }
 
+/// Marks a method, or a finished model. A model with other joints than the data's is marked on its
+/// own joints.
 Result<std::string> marks_of_trial(const Trial& trial, const BenchData& data, Call& call) {
   if (trial.model.empty()) {
     const Answer answer =
@@ -198,7 +206,7 @@ Result<std::string> marks_of_trial(const Trial& trial, const BenchData& data, Ca
 
 using Group = std::vector<const Marked*>;
 
-/// By fold; of a single fold by person.
+/// The marks by fold; if there is a single fold, by person.
 std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
                                        const std::vector<std::vector<Marked>>& marks) {
   std::map<std::string, Group> out;
@@ -212,7 +220,8 @@ std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
 
 std::string joint_key(std::size_t joint) { return std::string(shared_joints[joint]) + "_cm"; }
 
-/// Adds the means of a group; `which`: of Marked::marks.
+/// Adds the means of a group. `which`: the index in Marked::marks. Skating is weighted by the
+/// frames in which feet stand.
 void add_group(const std::string& name, const Group& group, std::size_t which, MethodMarks& out) {
   std::vector<ProtocolMarks> marks;
   double skate = 0.0, contacts = 0.0;
@@ -265,6 +274,7 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   if (contacts > 0.0) put("skate_cm_s", skate / contacts);
 }
 
+/// Makes two rows for a method: its plain answers, and its steadied ones.
 std::vector<MethodMarks> sum_up(const std::string& name, const std::vector<FoldMarks>& folds) {
   std::vector<std::vector<Marked>> marks;
   for (const FoldMarks& fold : folds) {

@@ -28,15 +28,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+/// A larger file of windows is refused.
 constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
+/// A larger cached result is refused.
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
-/// The version of cached results: another number lets all be computed again.
+/// The version of cached results. Another number makes every result be computed again.
 constexpr int cache_version = 6;
 /// An interval over fewer people would be too narrow.
 constexpr std::size_t least_for_interval = 8;
-/// Marks beside each other in a terminal; further ones stand below.
+/// A terminal shows this number of marks in one table; the others follow in further tables.
 constexpr std::size_t most_columns = 6;
-/// More rows of tests are written to files only.
+/// If there are more rows of tests, they are only written to files.
 constexpr std::size_t most_printed_tests = 12;
 
 Learns task_of(const std::string& method) {
@@ -44,9 +46,9 @@ Learns task_of(const std::string& method) {
   return found == nullptr ? Learns::denoise : found->task;
 }
 
-/// Something that is compared, and its task.
+/// A compared method or model, and its task.
 struct Compared {
-  std::string name;  // of the method, or of the model's file
+  std::string name;  // the method's, or the model's file
   Learns task = Learns::denoise;
 };
 
@@ -66,6 +68,7 @@ Result<void> check_methods(const Eval& o, const Sources& given) {
   return {};
 }
 
+/// The command line of `kinalign eval`, with the checks that need several flags.
 Usage describe_eval(Eval& o) {
   Usage usage;
   usage.positionals = {{"METHOD",
@@ -134,7 +137,8 @@ std::vector<std::string> chosen_methods(const Eval& o) {
   return out;
 }
 
-/// The models' files are there, and of one task with the methods: that task.
+/// Checks that the models can be read and that they and the methods have one task. Returns that
+/// task.
 Result<Learns> task_of_all(const Eval& o, Call& call) {
   std::vector<Compared> all;
   for (const std::string& method : chosen_methods(o)) all.push_back({method, task_of(method)});
@@ -155,11 +159,12 @@ Result<Learns> task_of_all(const Eval& o, Call& call) {
   return all.front().task;
 }
 
-/// The file's name and its bytes.
+/// The file of windows: its name, content and SHA-256.
 struct WindowsFile {
   std::string file, bytes, hash;
 };
 
+/// The given file of windows, or one cut from the data set into the folder of results.
 Result<WindowsFile> windows_of(const Eval& o, Learns task, Call& call) {
   WindowsFile out{o.windows, "", ""};
   if (out.file.empty()) {
@@ -180,7 +185,7 @@ Result<WindowsFile> windows_of(const Eval& o, Learns task, Call& call) {
   return out;
 }
 
-/// What is compared, and on what.
+/// The compared methods, the data and the folds.
 struct EvalRun {
   const Eval& options;
   Learns task;
@@ -189,8 +194,8 @@ struct EvalRun {
   std::vector<Fold> folds;
 };
 
-/// Adds the people of that data set whom a model learnt from, and those of the model that it went
-/// on from. `training`: as the models' files have it.
+/// Adds the people of that data set whom a model learnt from, also those of the model that it went
+/// on from. `training`: the member of the model's file.
 void add_people_learnt(const Json& training, const std::string& dataset,
                        std::set<std::string>& people) {
   if (!training.is_object()) return;
@@ -203,8 +208,8 @@ void add_people_learnt(const Json& training, const std::string& dataset,
   if (training.contains("from")) add_people_learnt(training.at("from"), dataset, people);
 }
 
-/// Tested people whom finished models learnt from: their rows do not tell how well they do on
-/// others. Empty where there are none.
+/// A warning about tested people whom finished models learnt from: such rows do not show how well a
+/// model does on other people. Empty if there are none.
 Result<std::string> known_people(const Eval& o, const Comparison& comparison,
                                  const std::vector<Fold>& folds, Call& call) {
   std::set<std::string> tested;
@@ -232,6 +237,7 @@ Result<std::string> known_people(const Eval& o, const Comparison& comparison,
   return out;
 }
 
+/// Opens the run: windows, folds, and a warning if a model was trained on tested people.
 Result<EvalRun> open_run(const Eval& o, Call& call) {
   const Learns task = KA_TRY(task_of_all(o, call));
   KA_TRY(make_folders(call.common.out + "/cache"));
@@ -245,7 +251,8 @@ Result<EvalRun> open_run(const Eval& o, Call& call) {
   return EvalRun{o, task, windows.file, windows.hash, std::move(comparison), std::move(folds)};
 }
 
-/// All that the marks depend on. `model_hash`: of a finished model; empty: none.
+/// The name of a cached result: a hash of all that the marks depend on. `model_hash`: of a finished
+/// model; empty: none.
 std::string key_of(const EvalRun& run, const TrainingWanted& training, const Fold& fold,
                    const std::string& model_hash) {
   Json all{cache_version,  run.windows_hash, training.method, training.seed, training.steps,
@@ -267,7 +274,8 @@ Result<std::string> hash_of_model(const std::string& file, Call& call) {
   return hash.hex();
 }
 
-/// From the cache, or computed and put there.
+/// The marks from the cache, or computed and written there. A cached file that can't be read is
+/// computed again.
 Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std::string& key,
                               Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -286,7 +294,7 @@ Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std:
   return made;
 }
 
-/// Rows of a method, or of a model where `model` names its file.
+/// The rows of a method, or of a model if `model` names its file.
 Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& method,
                                          const std::string& model, Call& call) {
   const Eval& o = run.options;
@@ -314,7 +322,7 @@ Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& 
                   fold.tested};
       if (!o.nodes.empty()) trial.training.nodes = split_at_commas(o.nodes);
       const std::string key = key_of(run, trial.training, fold, model_hash);
-      TrainingWanted trained = trial.training;  // the same for cnn and cnn+project
+      TrainingWanted trained = trial.training;  // cnn and cnn+project share one training
       trained.method = trained_part(method);
       trial.training.folder = call.common.out + "/models/" + key_of(run, trained, fold, model_hash);
       marks.texts.push_back(KA_TRY(marks_for(run, trial, key, call)));
@@ -323,7 +331,7 @@ Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& 
   return run.comparison.sum_up(model.empty() ? method : model, folds);
 }
 
-/// People, or folds, that some row has a value of.
+/// The number of people, or folds, with a value in at least one row.
 std::size_t count_of_values(const std::vector<MethodMarks>& rows) {
   std::set<std::string> all;
   for (const MethodMarks& row : rows) {
@@ -334,7 +342,8 @@ std::size_t count_of_values(const std::vector<MethodMarks>& rows) {
   return all.size();
 }
 
-/// The mean, and the ends of its interval or, of several values, the standard deviation.
+/// Adds the mean and the ends of its interval, or the mean and, for several values, the standard
+/// deviation.
 void put_mean(const std::vector<double>& values, bool has_interval, std::vector<Cell>& row) {
   if (values.empty()) {
     row.resize(row.size() + (has_interval ? 3 : 2));
@@ -351,7 +360,7 @@ void put_mean(const std::vector<double>& values, bool has_interval, std::vector<
   }
 }
 
-/// The means of all rows in these columns.
+/// The table of these columns, with the means of all rows.
 Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows,
                std::span<const MarkColumn> columns) {
   const std::size_t count = count_of_values(rows);
@@ -382,7 +391,7 @@ Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows,
   return out;
 }
 
-/// Every row's values, one person or fold a row.
+/// The table of single values: a row for each person or fold.
 Table people_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   Table out;
   out.columns = {{"method", "method"}, {"tested", "tested"}};
@@ -408,6 +417,7 @@ Table people_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   return out;
 }
 
+/// The table of paired tests between any two methods, for each mark.
 Table tests_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   Table out;
   out.caption = "differences of two methods, with Wilcoxon's signed-rank test over " +
@@ -429,7 +439,7 @@ Table tests_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   return out;
 }
 
-/// The mean error of each joint; without rows where joints are not marked apart.
+/// The table of each joint's mean error. Without rows if joints are not marked separately.
 Table joints_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   Table out;
   out.caption = "position of each joint, cm";
@@ -449,7 +459,8 @@ Table joints_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   return out;
 }
 
-/// How well stated radii hold; without rows where no method states any.
+/// The table of stated radii and the share of errors within them. Without rows if no method states
+/// radii.
 Table radii_of(const std::vector<MethodMarks>& rows) {
   Table out;
   out.caption =
@@ -490,6 +501,8 @@ Result<void> write_tables(const EvalRun& run, const std::vector<MethodMarks>& ro
   return write_table(tests_of(run, rows), "tests", call);
 }
 
+/// Prints the tables; a text splits the marks into tables that fit a terminal. Long tables of tests
+/// are only written to files.
 void print_tables_of(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
   const std::span<const MarkColumn> columns = run.comparison.columns;
   const bool is_text = run.options.format == "text" && !call.console.prints_json();
@@ -516,7 +529,8 @@ void print_tables_of(const EvalRun& run, const std::vector<MethodMarks>& rows, C
   }
 }
 
-/// Adds rows that are not there yet: all models that fuse have the filter's beside them.
+/// Adds the rows that are not there yet: every model for fusion brings the filter's rows, which are
+/// needed once.
 void add_new(const std::vector<MethodMarks>& more, std::vector<MethodMarks>& rows) {
   for (const MethodMarks& one : more) {
     const bool known = std::any_of(rows.begin(), rows.end(), [&](const MethodMarks& row) {
@@ -526,6 +540,8 @@ void add_new(const std::vector<MethodMarks>& more, std::vector<MethodMarks>& row
   }
 }
 
+/// Compares all methods and models. The tables are written after each one, so that a stopped run
+/// leaves what it has.
 Result<int> run_eval(Eval& o, Call& call) {
   for (std::string& model : o.models) model = KA_TRY(model_named(model, ""));
   const EvalRun run = KA_TRY(open_run(o, call));
@@ -548,6 +564,7 @@ std::string input_of(const Eval& o, Learns task) {
   return o.input.empty() && task == Learns::denoise ? "kinect" : o.input;
 }
 
+/// The verb `kinalign eval`.
 Verb eval_verb() {
   return make_verb<Eval>(
       {.name = "eval",

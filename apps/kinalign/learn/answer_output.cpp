@@ -29,10 +29,11 @@ bool is_finite(const Clip& clip) {
          std::all_of(frames.local_rotations.begin(), frames.local_rotations.end(), is_number);
 }
 
+/// The statures that --body accepts, m.
 constexpr double least_stature_m = 0.5, most_stature_m = 2.6;
 constexpr std::uint64_t most_body_bytes = std::uint64_t{1} << 28U;
 
-/// m; none where the words are no number.
+/// The stature that the text states, m. Absent if the text is not one number.
 std::optional<double> stature_in(const std::string& words) {
   double out = 0.0;
   const char* end = words.data() + words.size();
@@ -68,6 +69,8 @@ Result<void> check_body(const std::string& words) {
       Error{"--body", 0, "a stature from 0.5 to 2.6 m, or a BVH of the suit", shown(words)});
 }
 
+/// The bones of --body: the model's body scaled to a stature, or with the bone lengths of a BVH
+/// file.
 Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Skeleton& body,
                                               Call& call) {
   if (words.empty()) return std::optional<Skeleton>{};

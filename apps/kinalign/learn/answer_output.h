@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer of a model on its way out: a take read in a child, whose bones the answer has, a
-// skeleton written, lines printed.
+// The answer of a model: reads a take in a child process, applies --body, writes the skeleton and
+// prints the lines about it.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -17,33 +17,35 @@ namespace kinalign {
 
 using AboutAnswer = nlohmann::ordered_json;
 
-/// What `work` says, done in a child process: a damaged take ends no more than that. Errors name
-/// the take `in`.
+/// Returns the result of `work`, which runs in a child process, so a damaged take can crash only
+/// the child. Errors name the take `in`.
 Result<AboutAnswer> in_child(const std::string& in,
                              const std::function<Result<AboutAnswer>()>& work);
 
-/// The flag body. `otherwise`: whose bones the answer has without it.
+/// The flag --body. `otherwise`: the help's words for the bones that the answer has without the
+/// flag.
 Field body_flag(std::string& words, const std::string& otherwise);
-/// Fails where the words are no stature and no name of a BVH.
+/// Fails if the text is neither a stature from 0.5 to 2.6 m nor the name of a BVH file.
 Result<void> check_body(const std::string& words);
-/// `body` with the lengths that the words ask for: a stature in metres, or a BVH of the person's
-/// suit. None where they are empty.
+/// `body` with the lengths that the text asks for: a stature in metres, or a BVH of the person's
+/// suit. Absent if the text is empty.
 Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Skeleton& body,
                                               Call& call);
-/// The member "body" of what is told. `by`: who says it, such as "the model".
+/// The member "body" of the JSON. `by`: the source of the bone lengths, such as "the model".
 AboutAnswer about_body(const Skeleton& body, const std::string& by);
-/// The line on it: "body     as of a stature of 1.75 m, by --body".
+/// The printed line about the body: "body     as of a stature of 1.75 m, by --body".
 std::string body_line(const AboutAnswer& about);
 
-/// Writes a BVH to --out. Fails where a number of the clip is not finite, and names the model.
+/// Writes a BVH to --out. Fails if a number of the clip is not finite; the error names the model.
 Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, Call& call);
 
-/// Fails before a live run where the file that it will end with can't be written. Leaves none.
+/// Fails before a live run starts if the file to be written at its end can't be created. Leaves no
+/// file.
 Result<void> keep_free(const Call& call);
 
 /// Prints `text`, a line for each warning, and the JSON.
 void print_answer(std::string text, const AboutAnswer& about, Call& call);
-/// The same of a live run: the JSON is a line, the event `ended`.
+/// Prints the same for a live run; the JSON is one line, the event `ended`.
 void print_live(std::string text, const AboutAnswer& about, Call& call);
 
 }  // namespace kinalign

@@ -34,8 +34,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_gap_s = 0.2;     // between samples that are joined by a line
-constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is told
+constexpr double longest_gap_s = 0.2;     // samples further apart are not interpolated
+constexpr double longest_unseen_s = 2.0;  // a joint missing for longer gets a warning
 
 struct Denoise {
   std::vector<std::string> in;
@@ -44,6 +44,8 @@ struct Denoise {
   LiveWords live;
 };
 
+/// The command line of `kinalign denoise`. A live run may end without a file; a run on a file may
+/// not.
 Usage describe_denoise(Denoise& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in, 0}};
@@ -78,7 +80,7 @@ Usage describe_denoise(Denoise& o) {
   return usage;
 }
 
-/// The denoised joints, and what is to be said of them.
+/// The denoised joints with their input, and the JSON about them.
 struct Cleaned {
   EvenFrames input;
   Denoised answer;
@@ -91,7 +93,8 @@ double mean_of(const std::vector<double>& values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// How far seen joints were moved, m: from the input to the answer's joint of that name.
+/// The distances, m, by which the model moved joints that the Kinect tracked. An output joint is
+/// compared with the input joint of the same name.
 std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
   std::vector<double> out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
@@ -108,8 +111,8 @@ std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
   return out;
 }
 
-/// The stated spread, m, where the input joint that stands for the output was seen: a network does
-/// not know how far off a guess is.
+/// The stated standard deviations, m, of output joints whose input joint was seen. Others are left
+/// out: a network does not know how far off a guess is.
 std::vector<double> spread_of_seen(const DenoiseModel& model, const Cleaned& cleaned) {
   std::vector<double> out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
@@ -123,7 +126,8 @@ std::vector<double> spread_of_seen(const DenoiseModel& model, const Cleaned& cle
   return out;
 }
 
-/// Joints of the input that were missing for long, each with its longest time, s.
+/// The input joints that were missing for `longest_unseen_s` or longer, each with its longest time,
+/// s.
 Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
   Json out = Json::object();
   const std::size_t joints = model.layout.inputs.size();
@@ -139,9 +143,10 @@ Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
   return out;
 }
 
+/// A warning that concerns more joints states their number instead of their names.
 constexpr std::size_t most_named = 4;
 
-/// A warning for each time: joints that go together stand in one.
+/// One warning for all joints that were missing for the same time.
 std::vector<std::string> missing_warnings(const Json& long_missing) {
   std::map<std::string, std::vector<std::string>> joints;
   for (const auto& [joint, seconds] : long_missing.items()) {
@@ -158,7 +163,7 @@ std::vector<std::string> missing_warnings(const Json& long_missing) {
   return out;
 }
 
-/// `warnings`: of what went in.
+/// The JSON about an answer. `warnings`: those about the input.
 Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string& stream,
            std::vector<std::string> warnings) {
   const auto& seen = cleaned.input.body.seen;
@@ -183,14 +188,14 @@ Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string&
   return out;
 }
 
-/// The joints that a model sees.
+/// The joints that a model gets as input.
 struct SeenJoints {
   std::string stream;
   EvenFrames frames;
   std::vector<std::string> warnings{};
 };
 
-/// Errors name the file `in`.
+/// Brings the joints to the model's grid. Errors name the file `in`.
 Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> points,
                                const std::string& in) {
   const NamedPoints named = KA_TRY(std::move(points));
@@ -208,7 +213,7 @@ Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> 
   return Failure(error);
 }
 
-/// The same of a take, read in a child process.
+/// Does the same for a take, which is read in a child process.
 Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::string& in,
                                        const std::string& stream, Call& call) {
   const auto work = [&]() -> Result<std::string> {
@@ -237,7 +242,8 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::s
   return out;
 }
 
-/// The model's answer, brought to meet constraints, then steadied as all are. `path`: its file.
+/// The model's answer, projected onto constraints, then steadied like every answer. `path`: the
+/// model's file.
 Result<Denoised> clean_with_constraints(const DenoiseModel& model, const std::string& path,
                                         const JointFrames& body, Json& about, Call& call) {
   const auto projected = KA_TRY(projected_answers(path, model.layout, {body}, call));
@@ -247,6 +253,7 @@ Result<Denoised> clean_with_constraints(const DenoiseModel& model, const std::st
   return steadier.steadied(projected.answer, body, projected.answer(body));
 }
 
+/// Writes the joints as points. Frame t is stamped t / rate after the first frame.
 Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
                        const Common& common) {
   TextOut out = KA_TRY(TextOut::create(files, common.out, common.overwrite()));
@@ -267,6 +274,7 @@ Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Clean
   return out.commit();
 }
 
+/// Writes the joints as a BVH, whose bones have constant lengths.
 Result<void> write_skeleton(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
                             const Common& common) {
   OutputFile file = KA_TRY(OutputFile::create(files, common.out, common.overwrite()));
@@ -284,6 +292,8 @@ Result<void> write_cleaned(FileSystem& files, const DenoiseModel& model, const C
                                       : write_skeleton(files, model, cleaned, common);
 }
 
+/// Prints the summary: frames, joints, missing input, stated spread and, with --project,
+/// constraints before and after.
 void print(const Json& about, const std::string& out, Call& call) {
   std::string text = fmt::format(
       "{}: {} frames at {:g} Hz, {} joints\ncleaned  joints moved by {:.1f} cm on average, bones "
@@ -321,7 +331,7 @@ Result<SeenJoints> seen_joints_of_file(const DenoiseLayout& layout, const Denois
   return seen_joints(layout, points_of_file(in, o.stream, call), in);
 }
 
-/// The same of what record receives now. A file is written where one is wanted.
+/// Denoises the samples that a running record receives. Writes a file if -o names one.
 Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
   const LiveJob job{o.live, "", o.stream, {}};
   KA_TRY(keep_free(call));
@@ -344,6 +354,7 @@ Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
   return about.at("warnings").empty() ? 0 : 1;
 }
 
+/// Denoises one file and writes the result. The exit code is 1 if there were warnings.
 Result<int> run_denoise(Denoise& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   o.model = KA_TRY(model_named(o.model, "denoise"));
@@ -369,6 +380,7 @@ Result<int> run_denoise(Denoise& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign denoise`.
 Verb denoise_verb() {
   return make_verb<Denoise>(
       {.name = "denoise",

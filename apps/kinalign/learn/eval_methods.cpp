@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view projects = "+project";
 
-/// The base joints after a filter of the input.
+/// An answer without a model: the base joints of the filtered input.
 Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrames&)>& filter) {
   return [&layout, filter](const JointFrames& body) {
     JointFrames copy = body;
@@ -27,6 +27,7 @@ Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrame
   };
 }
 
+/// The pairs of the takes that the method learns from.
 std::vector<const Pair*> learnt_of(const EvalTask& task) {
   std::vector<const Pair*> out;
   for (const Pair& pair : task.pairs) {
@@ -36,6 +37,8 @@ std::vector<const Pair*> learnt_of(const EvalTask& task) {
   return out;
 }
 
+/// The inputs of the takes that the method does not learn from; projection computes their answers
+/// ahead.
 std::vector<JointFrames> tested_of(const EvalTask& task) {
   std::vector<JointFrames> out;
   for (const Pair& pair : task.pairs) {
@@ -49,6 +52,8 @@ std::vector<JointFrames> tested_of(const EvalTask& task) {
 
 }  // namespace
 
+/// Methods without training first, then the trained ones; those with a hidden space also with
+/// projection.
 const std::vector<EvalMethod>& eval_methods() {
   static const std::vector<EvalMethod> all = [] {
     std::vector<EvalMethod> out{{"raw", "the Kinect as it is"},
@@ -84,8 +89,8 @@ std::string trained_part(const std::string& method) {
 Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
   DenoiseLayout out =
       KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz, pairs.parents));
-  // Steadied bones lead from one joint that a Kinect has to the next: a suit's joints in between
-  // are answered by no filter. Where the Kinect has none of the joints, the suit's own bones count.
+  // For the steadying, bones join only joints that a Kinect has: no filter answers the suit's
+  // joints in between. If the Kinect has none of the joints, the suit's own bones count.
   auto bones = kinect_parents_of(kinect_names(out.outputs));
   const bool known = std::any_of(bones.begin(), bones.end(), [](int one) { return one >= 0; });
   if (known) out.parents = std::move(bones);

@@ -15,30 +15,30 @@ namespace kinalign {
 
 struct EvalMethod {
   std::string name, summary;
-  bool trained = false;  // by kinalign-learn
+  bool trained = false;  // by kinalign-learn, from the pairs
 };
 const std::vector<EvalMethod>& eval_methods();
 
-/// Whether it is trained by kinalign-learn.
+/// True for methods that kinalign-learn trains.
 bool is_trained(const std::string& method);
-/// The method that is trained for it: "cnn" of "cnn+project", else itself.
+/// The name of the method that is trained: "cnn" for "cnn+project", else the method itself.
 std::string trained_part(const std::string& method);
 
-/// What methods see and answer on these pairs. Fails as denoise_layout().
+/// The input and output joints of methods on these pairs. Fails like denoise_layout().
 Result<DenoiseLayout> eval_layout(const Pairs& pairs);
 
-/// All that a method is made from.
+/// The data and the training that a method is made from.
 struct EvalTask {
   const DenoiseLayout& layout;
   const std::vector<Pair>& pairs;
-  TrainingWanted training;  // its takes are learnt from by every method, trained or not
+  TrainingWanted training;  // every method learns from its takes, trained or not
 };
 
 /// Fits or trains the method of `task.training`. `task.layout` and `task.pairs` must live longer.
 Result<Answer> make_answer(const EvalTask& task, Call& call);
 
-/// The answer of a method whose trained part is the model in `file`. `bodies`: those that it will
-/// be asked for, which matter where it is brought to meet constraints.
+/// The answer of a method whose trained part is the model in `file`. `bodies`: the inputs that it
+/// will be asked for; projection computes all of them ahead.
 Result<Answer> trained_answer(const std::string& method, const std::string& file,
                               const DenoiseLayout& layout, const std::vector<JointFrames>& bodies,
                               Call& call);

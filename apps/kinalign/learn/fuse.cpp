@@ -25,8 +25,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double most_unsure_deg = 10.0;  // of a node's heading, 1 sigma
-constexpr double most_turned_deg = 40.0;  // by the Kinect, of a node that is worn where it is named
+constexpr double most_unsure_deg = 10.0;  // a node's heading, 1 sigma; more gives a warning
+constexpr double most_turned_deg = 40.0;  // a heading correction by the Kinect; more means a node
+                                          // worn elsewhere
 
 struct FuseWords {
   std::vector<std::string> in;
@@ -35,6 +36,7 @@ struct FuseWords {
   LiveWords live;
 };
 
+/// The command line of `kinalign fuse`. A live run may end without a file.
 Usage describe_fuse(FuseWords& o) {
   Usage usage;
   usage.positionals = {
@@ -75,7 +77,8 @@ Usage describe_fuse(FuseWords& o) {
   return usage;
 }
 
-/// What the Kinect says of each node's heading, at the end; and warnings where it says little.
+/// Adds each node's heading correction at the end of the run, and warnings where the Kinect
+/// corrects it by much or can't find it.
 void tell_headings(const std::vector<std::string>& names, const std::vector<HeadingState>& states,
                    Json& about) {
   Json found = Json::object();
@@ -99,6 +102,8 @@ void tell_headings(const std::vector<std::string>& names, const std::vector<Head
   about["found_headings"] = std::move(found);
 }
 
+/// Fuses both devices and writes the answer. The bones have the lengths of --body, else those that
+/// the Kinect saw, else the model's.
 Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call& call) {
   const FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
   const PoseLayout& layout = fuser.model().layout.nodes;
@@ -114,7 +119,8 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
   return about;
 }
 
-/// What a source says of its stream, with the flag that chooses it here.
+/// The stream, or its error with `flag` in place of --stream: this verb chooses each device's
+/// stream by its own flag.
 template <class Stream>
 Result<Stream> by_flag(Result<Stream> stream, const std::string& flag) {
   if (stream) return stream;
@@ -125,7 +131,7 @@ Result<Stream> by_flag(Result<Stream> stream, const std::string& flag) {
   return Failure(std::move(error));
 }
 
-/// Fuses and writes; errors without a file name `in`.
+/// Fuses and writes. Errors without a file name `in`.
 Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNodes> nodes,
                         const FuseWords& o, Call& call) {
   BothDevices both;
@@ -136,7 +142,7 @@ Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNo
   return about;
 }
 
-/// The same of a take, in a child process.
+/// Does the same for a take, in a child process.
 Result<Json> fuse_take(Fuser& fuser, const FuseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& in = o.in.front();
@@ -147,6 +153,7 @@ Result<Json> fuse_take(Fuser& fuser, const FuseWords& o, Call& call) {
   return in_child(in, work);
 }
 
+/// The printed summary. Each node's heading correction stands with 1 sigma, both in degrees.
 std::string fuse_text(const Json& about, const std::string& out) {
   std::string found;
   for (const auto& [name, one] : about.at("found_headings").items()) {
@@ -164,7 +171,7 @@ std::string fuse_text(const Json& about, const std::string& out) {
          fmt::format("turned   by the Kinect, deg: {}\n", found);
 }
 
-/// The same of what record receives now. A file is written where one is wanted.
+/// Fuses the samples that a running record receives. Writes a file if -o names one.
 Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
   LiveJob job{o.live, o.nodes, o.kinect, {}};
   job.worn = KA_TRY(live_options(o.worn));
@@ -183,6 +190,7 @@ Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
   return about.at("warnings").empty() ? 0 : 1;
 }
 
+/// Fuses one file and writes the result. The exit code is 1 if there were warnings.
 Result<int> run_fuse(FuseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   o.model = KA_TRY(model_named(o.model, "fuse"));
@@ -202,6 +210,7 @@ Result<int> run_fuse(FuseWords& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign fuse`.
 Verb fuse_verb() {
   return make_verb<FuseWords>(
       {.name = "fuse",

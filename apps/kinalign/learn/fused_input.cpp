@@ -15,9 +15,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr double longest_kinect_gap_s = 0.2;  // between samples that are joined by a line
+constexpr double longest_kinect_gap_s = 0.2;  // samples further apart are not interpolated
 
-/// From the first stamp of either device to the last one.
+/// The grid from the first stamp of either device to the last one.
 EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double rate_hz) {
   Time first = both.kinect.frames.stamps.front(), last = both.kinect.frames.stamps.back();
   for (const auto& node : choice) {

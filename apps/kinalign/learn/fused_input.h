@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kinect and nodes of one recording as a model that fuses them is given both: one grid, nodes on
+// The input of a model that fuses a Kinect and nodes of one recording: both on one grid, nodes on
 // their bones, one heading.
 #pragma once
 
@@ -15,29 +15,30 @@
 
 namespace kinalign {
 
-/// Both devices as they came.
+/// Both devices as their files state them.
 struct BothDevices {
   NamedPoints kinect;
   NamedNodes nodes;
 };
 
-/// What a network is given, and where it comes from.
+/// The input of a network, and its sources.
 struct FusedInput {
   FuseInput input;
   Time start{};
-  std::string kinect;  // its stream
-  NamedNodes nodes;    // names alone
+  std::string kinect;  // the name of its stream
+  NamedNodes nodes;    // names only, no tracks
   PosedNodes posed;
-  Skeleton body;                        // the model's, as long as the Kinect sees the person
-  bool is_sized = true;                 // else the Kinect saw too little, and `body` is the model's
-  std::vector<std::string> warnings{};  // of the Kinect
+  Skeleton body;         // the model's, as long as the Kinect sees the person
+  bool is_sized = true;  // false: the Kinect saw too little of the legs, so `body` has the model's
+                         // size
+  std::vector<std::string> warnings{};  // about the Kinect's stream
 };
 
-/// Fails where the Kinect has fewer than two frames, nodes do not fit, or both devices are never
-/// seen together for a second. Errors may have no file's name.
+/// Fails if the Kinect has fewer than two frames, if nodes do not fit, or if both devices never see
+/// the person together for a second. Errors may have no file's name.
 Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn);
 
-/// What there is to be said of it: the members of about_nodes() and of both streams.
+/// The JSON about the input: the members of about_nodes() and those of both streams.
 nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& given);
 
 }  // namespace kinalign

@@ -25,6 +25,7 @@ struct Export {
   std::string network = "net";
 };
 
+/// The command line of `kinalign model export`.
 Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {{"MODEL", "the model's file", &o.model}};
@@ -47,11 +48,12 @@ struct Parts {
   std::map<std::string, Tensor> tensors;
 };
 
-/// y = factor x + offset, channel by channel.
+/// A linear map of each channel: y = factor x + offset.
 struct Scaling {
   std::vector<float> factor, offset;
 };
 
+/// Adds the scaling as a linear layer: a diagonal weight matrix and a bias.
 void put_scaling(const Scaling& scaling, const std::string& path,
                  std::map<std::string, Tensor>& out) {
   const std::size_t n = scaling.factor.size();
@@ -61,7 +63,7 @@ void put_scaling(const Scaling& scaling, const std::string& path,
   out[path + ".bias"] = {{n}, scaling.offset};
 }
 
-/// The network with its scales in front and behind, as linear layers.
+/// The network with the scalings of its input and its output as linear layers.
 Parts scaled(const Parts& network, const Scaling& before, const Scaling& after) {
   Parts out{network.architecture, {}};
   auto& layers = out.architecture.layers;
@@ -76,7 +78,7 @@ Parts scaled(const Parts& network, const Scaling& before, const Scaling& after) 
   return out;
 }
 
-/// A network with the tensors that its layers use: a file may hold others.
+/// A network with only those tensors that its layers use: a file may hold others.
 Parts parts_of(const Architecture& architecture, const std::map<std::string, Tensor>& tensors,
                const std::string& name) {
   Parts out{architecture, {}};
@@ -86,7 +88,7 @@ Parts parts_of(const Architecture& architecture, const std::map<std::string, Ten
   return out;
 }
 
-/// From channels as they are to mean 0 and deviation 1.
+/// The scaling from raw channels to mean 0 and deviation 1.
 Scaling standardising(const std::vector<float>& mean, const std::vector<float>& scale) {
   Scaling out;
   for (std::size_t c = 0; c < mean.size(); ++c) {
@@ -96,7 +98,7 @@ Scaling standardising(const std::vector<float>& mean, const std::vector<float>& 
   return out;
 }
 
-/// From features as they are to metres and logarithms of centimetres.
+/// The network from raw features to corrections in metres and logarithms of centimetres.
 Parts whole_network(const DenoiseModel& model) {
   Scaling after;
   after.factor.assign(model.layout.answers(), static_cast<float>(model.answer_scale));
@@ -109,7 +111,8 @@ Parts whole_network(const DenoiseModel& model) {
                 standardising(model.input_mean, model.input_scale), after);
 }
 
-/// Of `bones` rotations: the identity stands in the six numbers.
+/// The scaling that adds the identity's six numbers to each bone's rotation: networks answer the
+/// difference from it.
 Scaling onto_identity(std::size_t bones) {
   Scaling out;
   out.factor.assign(6 * bones, 1.0F);
@@ -119,6 +122,8 @@ Scaling onto_identity(std::size_t bones) {
   return out;
 }
 
+/// The metadata of the ONNX file: it says in words what each channel means. `second`: the network
+/// behind the first.
 std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool second) {
   const DenoiseLayout& layout = model.layout;
   Json bases = Json::array();
@@ -144,7 +149,7 @@ std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool s
           {"kinalign.training", model.facts.training}};
 }
 
-/// What a model's graph holds, and what is said of it.
+/// The network to be exported, and its metadata.
 struct Exported {
   Parts parts;
   std::map<std::string, std::string> metadata;
@@ -160,6 +165,7 @@ Result<Exported> exported_denoise(const std::string& bytes, const std::string& p
   return Exported{std::move(parts), metadata_of(model, second)};
 }
 
+/// The metadata of models for poses and fusion.
 std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const PoseLayout& layout,
                                                  const std::string& output) {
   return {{"kinalign.task", facts.task},
@@ -172,6 +178,8 @@ std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const 
           {"kinalign.training", facts.training}};
 }
 
+/// The network of a pose model. Models that this program can't use are refused before anything is
+/// written.
 Result<Exported> exported_pose(const std::string& bytes, const std::string& path) {
   const PoseModel model = KA_TRY(read_pose_model(bytes, path));
   KA_TRY(check_usable(PoseSolver::make(model), path));
@@ -183,6 +191,8 @@ Result<Exported> exported_pose(const std::string& bytes, const std::string& path
                                 "orthonormal")};
 }
 
+/// The network of a fusion model. Its last three answers are a place, in units of
+/// fuse_place_unit_m.
 Result<Exported> exported_fuse(const std::string& bytes, const std::string& path) {
   const FuseModel model = KA_TRY(read_fuse_model(bytes, path));
   KA_TRY(check_usable(Fuser::make(model), path));
@@ -199,6 +209,7 @@ Result<Exported> exported_fuse(const std::string& bytes, const std::string& path
   return out;
 }
 
+/// Chooses the export by the model's task. Only a denoising model can have a second network.
 Result<Exported> exported(const std::string& bytes, const std::string& path,
                           const std::string& network) {
   const std::string task = KA_TRY(task_of_model(bytes, path));
@@ -210,6 +221,7 @@ Result<Exported> exported(const std::string& bytes, const std::string& path,
   return task == "fuse" ? exported_fuse(bytes, path) : exported_denoise(bytes, path, second);
 }
 
+/// Writes the ONNX file and prints its numbers of channels.
 Result<int> run_export(Export& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string &in = o.model.front(), &out = call.common.out;
@@ -231,6 +243,7 @@ Result<int> run_export(Export& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign model export`.
 Verb model_export_verb() {
   return make_verb<Export>(
       {.name = "model export",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What denoise and pose open that is no take.
+// Opens the inputs of denoise and pose that are not takes.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -14,8 +14,8 @@ namespace kinalign {
 /// stream's file.
 Result<Input> open_motion(const std::string& path, Call& call);
 
-/// What the reader found amiss in a stream that was read to its end: a line for each warning or
-/// error, as `kinalign check` says it.
+/// The warnings and errors that the reader found in a stream that was read to its end, one line
+/// each, in the words of `kinalign check`.
 std::vector<std::string> warnings_of(const RecordedStream& stream);
 
 }  // namespace kinalign

@@ -14,8 +14,10 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_samples = std::size_t{1} << 26U;  // of all nodes
+constexpr std::size_t most_samples = std::size_t{1} << 26U;  // all nodes together, for memory
 
+/// The error of a stream that does not exist or is not the only one. `known`: the streams that
+/// exist.
 Failure no_nodes(const std::string& path, const std::string& wanted, const std::string& known) {
   const std::string expected = wanted.empty() ? "one stream of inertial nodes (--stream NAME)"
                                               : "a stream of inertial nodes \"" + wanted + "\"";
@@ -26,13 +28,14 @@ void add_known(std::string& all, const std::string& name) {
   all += (all.empty() ? "" : ", ") + name;
 }
 
-/// n samples of S nodes; empty arrays: not measured.
+/// n samples of S nodes. An empty array was not measured.
 struct NodeBlock {
   const std::vector<Time>& stamps;
   const std::vector<double>&orientation, &acceleration, &angular_velocity;
   const std::vector<std::uint8_t>& valid;
 };
 
+/// Appends row i of an array [n,width]; does nothing if the array was not measured.
 void append_numbers(const std::vector<double>& from, std::size_t i, std::size_t width,
                     std::vector<double>& to) {
   if (from.empty()) return;
@@ -40,7 +43,8 @@ void append_numbers(const std::vector<double>& from, std::size_t i, std::size_t 
   to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
 }
 
-/// Appends a block to the tracks from `first` on.
+/// Appends a block to the tracks from `first` on. Invalid samples, and stamps that do not rise, are
+/// left out.
 Result<void> append_block(const NodeBlock& block, std::size_t first, NamedNodes& out) {
   if (block.stamps.empty()) return {};
   const std::size_t nodes = block.valid.size() / block.stamps.size();
@@ -59,8 +63,8 @@ Result<void> append_block(const NodeBlock& block, std::size_t first, NamedNodes&
   return {};
 }
 
-/// Tracks for nodes that are added. A node with a stated mounting (sensor_from_bone) is `worn` as
-/// it says.
+/// Adds empty tracks for nodes. `worn`: the stated mounting (sensor_from_bone) of each node, absent
+/// if none is stated.
 void add_tracks(const std::vector<std::string>& names, const ImuContent& content,
                 const std::vector<std::optional<Quat>>& worn, NamedNodes& out) {
   for (const std::string& name : names) {
@@ -71,6 +75,8 @@ void add_tracks(const std::vector<std::string>& names, const ImuContent& content
   out.worn.insert(out.worn.end(), worn.begin(), worn.end());
 }
 
+/// The stated mountings of nodes. `is_applied`: the take's rows are turned already, so the mounting
+/// is the identity.
 std::vector<std::optional<Quat>> worn_by(const StreamOptions& options,
                                          const std::vector<std::string>& names, bool is_applied) {
   std::vector<std::optional<Quat>> out;
@@ -84,6 +90,7 @@ std::vector<std::optional<Quat>> worn_by(const StreamOptions& options,
   return out;
 }
 
+/// The take's only group of nodes, or the one with the wanted name.
 Result<std::size_t> node_group_of(const TakeHeader& header, const std::string& path,
                                   const std::string& wanted) {
   std::optional<std::size_t> found;
@@ -100,7 +107,7 @@ Result<std::size_t> node_group_of(const TakeHeader& header, const std::string& p
   return *found;
 }
 
-/// Streams of nodes with the wanted name; with the only one there is where none is wanted.
+/// The streams of nodes with the wanted name. If no name is given, all streams must have one name.
 Result<std::vector<const RecordedStream*>> node_streams(const Recording& recording,
                                                         const std::string& path,
                                                         const std::string& wanted) {
@@ -118,6 +125,7 @@ Result<std::vector<const RecordedStream*>> node_streams(const Recording& recordi
   return out;
 }
 
+/// Reads all samples of a stream, with stamps on the take's clock.
 Result<void> read_nodes(const RecordedStream& stream, const ImuInput& input, std::size_t first,
                         NamedNodes& out) {
   const auto pass = KA_TRY(input.passes());
@@ -152,6 +160,7 @@ Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
   return out;
 }
 
+/// Several streams of one name make one set of nodes: each device sends its own nodes.
 Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& stream, Call& call) {
   const Input input = KA_TRY(open_motion(path, call));
   const auto streams = KA_TRY(node_streams(input.recording, path, stream));

@@ -17,7 +17,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_values = std::size_t{1} << 29U;  // of all frames and joints
+constexpr std::size_t most_values = std::size_t{1} << 29U;  // frames x joints, for memory
 
 Failure no_stream(const std::string& path, const std::string& wanted, const std::string& known) {
   const std::string expected = wanted.empty() ? "one stream of joints (--stream NAME)"
@@ -29,7 +29,7 @@ void add_name(std::string& all, const std::string& name) {
   all += (all.empty() ? "" : ", ") + name;
 }
 
-/// Appends rows whose stamps rise.
+/// Appends the rows whose stamps rise, and counts the others.
 Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
                     const std::vector<double>& positions, const std::vector<Tracking>& state) {
   const std::size_t joints = out.joints.size();
@@ -52,6 +52,8 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
   return {};
 }
 
+/// States for a skeleton, which has none of its own: each joint is tracked in valid rows and
+/// missing in others.
 std::vector<Tracking> all_tracked(std::size_t rows, std::size_t joints,
                                   const std::vector<std::uint8_t>& valid) {
   std::vector<Tracking> out(rows * joints, Tracking::tracked);
@@ -69,7 +71,7 @@ std::vector<Tracking> where_valid(const PointRows& rows) {
   return out;
 }
 
-/// Position of the wanted group; the only one of points where none is named.
+/// The index of the wanted group. If no name is given, the only group of points.
 Result<std::size_t> group_of(const TakeHeader& header, const std::string& path,
                              const std::string& wanted) {
   std::optional<std::size_t> found;
@@ -87,6 +89,7 @@ Result<std::size_t> group_of(const TakeHeader& header, const std::string& path,
   return *found;
 }
 
+/// Reads all frames of a stream of points, with stamps on the take's clock.
 Result<void> read_points(const TimeModel& clock, const PointInput& input, NamedPoints& out) {
   out.joints = input.joint_names;
   const auto pass = KA_TRY(input.passes());
@@ -98,6 +101,7 @@ Result<void> read_points(const TimeModel& clock, const PointInput& input, NamedP
   return {};
 }
 
+/// Reads all frames of a skeleton as the global positions of its joints.
 Result<void> read_clip(const TimeModel& clock, const ClipInput& input, NamedPoints& out) {
   out.joints = input.skeleton.joint_names;
   const auto pass = KA_TRY(input.passes());
@@ -136,6 +140,8 @@ Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
   return out;
 }
 
+/// If no name is given, the only stream of points is read, or the only stream there is, even if it
+/// is a skeleton.
 Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call) {
   const Input input = KA_TRY(open_motion(path, call));
   std::string known;

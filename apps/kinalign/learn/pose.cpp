@@ -31,6 +31,7 @@ struct PoseWords {
   LiveWords live;
 };
 
+/// The command line of `kinalign pose`. A live run may end without a file.
 Usage describe_pose(PoseWords& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in, 0}};
@@ -76,12 +77,14 @@ bool has_head(const NamedNodes& nodes) {
   return head && nodes.tracks[*head].stamps.size() > 1;
 }
 
-/// The model that was asked for; else the shipped one, with a node on the head where the stream has
-/// one.
+/// The model of --model. Without the flag: the shipped model with a node on the head if the stream
+/// has one, else the shipped model without.
 Result<std::string> model_for(const NamedNodes& nodes, const PoseWords& o) {
   return model_named(o.model, has_head(nodes) ? "pose_head" : "pose");
 }
 
+/// Solves the pose and writes it. The model depends on the stream's nodes, so it is loaded after
+/// them.
 Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
   const std::string path = KA_TRY(model_for(nodes, o));
   PoseSolver solver = KA_TRY(solver_of(path, o, call));
@@ -99,14 +102,14 @@ Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
   return about;
 }
 
-/// Solves and writes; errors without a file name `in`.
+/// Solves and writes. Errors without a file name `in`.
 Result<Json> solve_named(Result<NamedNodes> nodes, const PoseWords& o, Call& call) {
   auto about = solve_into(KA_TRY(std::move(nodes)), o, call);
   if (!about && about.error().file.empty()) about.error().file = o.in.front();
   return about;
 }
 
-/// The same of a take, in a child process.
+/// Does the same for a take, in a child process.
 Result<Json> solve_take(const PoseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& in = o.in.front();
@@ -120,7 +123,7 @@ std::string pose_text(const Json& about, const std::string& out) {
          body_line(about) + node_lines(about);
 }
 
-/// The same of what record receives now. A file is written where one is wanted.
+/// Solves the samples that a running record receives. Writes a file if -o names one.
 Result<int> solve_live(const PoseWords& o, Call& call) {
   const std::string path = KA_TRY(model_named(o.model, "pose"));
   PoseSolver solver = KA_TRY(solver_of(path, o, call));
@@ -138,6 +141,7 @@ Result<int> solve_live(const PoseWords& o, Call& call) {
   return about.at("warnings").empty() ? 0 : 1;
 }
 
+/// Solves one file and writes the result. The exit code is 1 if there were warnings.
 Result<int> run_pose(PoseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (!o.live.live.empty()) return solve_live(o, call);
@@ -153,6 +157,7 @@ Result<int> run_pose(PoseWords& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign pose`.
 Verb pose_verb() {
   return make_verb<PoseWords>(
       {.name = "pose",

@@ -20,9 +20,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_projected_bytes = std::size_t{4} << 30U;
 
-/// Answers by the positions of their bodies.
+/// Computed answers, found by the positions of the body.
 using KnownAnswers = std::map<std::vector<float>, std::vector<float>>;
 
+/// The bodies as a SafeTensors file for kinalign-learn: "0.positions" [T,J,3] m and "0.seen" [T,J],
+/// and so on.
 std::string written_bodies(const std::vector<JointFrames>& bodies) {
   TensorFile file;
   for (std::size_t i = 0; i < bodies.size(); ++i) {

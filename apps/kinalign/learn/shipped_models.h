@@ -8,12 +8,13 @@
 
 namespace kinalign {
 
-/// The file of the shipped model of that name ("denoise", "pose"): in ../share/kinalign/models
-/// beside the program's folder, or in the tree that it was built from. Fails where there is none.
+/// The file of the shipped model with that name ("denoise", "pose"). Searches
+/// ../share/kinalign/models from the program's folder, then the tree that the program was built
+/// from. Fails if neither has it.
 Result<std::string> shipped_model(const std::string& name);
 
-/// The model that --model names: a file, or a shipped one by its name ("pose_head") where no file
-/// is called that. `usual`: the shipped one where `given` is empty.
+/// The model that --model names: a file, or the name of a shipped model ("pose_head") if no file
+/// has that name. `usual`: the shipped model if `given` is empty.
 Result<std::string> model_named(const std::string& given, const std::string& usual);
 
 /// The folder of this program.

@@ -38,14 +38,16 @@ struct Train {
   bool resume = false, prepare = false;
 };
 
-/// The choices of the command line are those methods.
+/// The method of the command line, which accepts only known ones.
 const TrainedMethod& method_of(const Train& o) { return *find_trained(o.method.front()); }
 
-/// The rough stream: a Kinect's, unless the method sees none or a simulated one.
+/// The name of the rough stream. The default is a Kinect's for methods that clean one; others see
+/// none or a simulated one.
 std::string input_of(const Train& o) {
   return o.input.empty() && method_of(o).task == Learns::denoise ? "kinect" : o.input;
 }
 
+/// The command line of `kinalign train`, with the checks that need several flags.
 Usage describe_train(Train& o) {
   Usage usage;
   usage.positionals = {{"METHOD", "what is trained", &o.method}};
@@ -120,11 +122,12 @@ Usage describe_train(Train& o) {
   return usage;
 }
 
-/// The folder of a run, beside its model: "m.training" of "m.safetensors".
+/// The folder of a run, in the same folder as its model: "m.training" for "m.safetensors".
 std::string run_folder(const std::string& model) {
   return model.substr(0, model.rfind('.')) + ".training";
 }
 
+/// The SHA-256 of a file, in hexadecimal digits.
 Result<std::string> hash_of(FileSystem& files, const std::string& path) {
   InputFile in = KA_TRY(InputFile::open(files, path));
   Sha256 hash;
@@ -135,7 +138,9 @@ Result<std::string> hash_of(FileSystem& files, const std::string& path) {
   }
 }
 
-/// `hash`, `from_hash`: of the windows, and of the model that it goes on from.
+/// The job file's JSON. `hash` is the windows' SHA-256; `from_hash` that of the model that the
+/// training goes on from. The identity covers what changes the result, so that --resume refuses
+/// another training.
 Json job_of(const Train& o, const std::string& windows, const std::string& hash,
             const std::string& from_hash, Call& call) {
   const std::string folder = run_folder(call.common.out);
@@ -165,16 +170,16 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   return job;
 }
 
-/// The processes of this training that run here.
+/// The processes of one training, and those of them that run here.
 struct Places {
   std::size_t first = 0, here = 1, all = 1;  // ranks first ... first + here of `all`
-  std::string address, interface {};         // of the process 0, empty where it is alone
+  std::string address, interface {};         // process 0's; empty if it is alone
   std::int64_t port = 0;
 
   bool is_first() const { return first == 0; }
 };
 
-constexpr std::int64_t usual_port = 29500;  // PyTorch's
+constexpr std::int64_t usual_port = 29500;  // PyTorch's default
 
 Result<std::int64_t> port_of(const std::string& text) {
   if (text.empty()) return usual_port;
@@ -185,7 +190,8 @@ Result<std::int64_t> port_of(const std::string& text) {
   return Failure(Error{"MASTER_PORT", 0, "a TCP port", shown(text)});
 }
 
-/// By --processes, or by what srun, mpirun or torchrun say in the environment.
+/// The processes that --processes asks for, or those that srun, mpirun or torchrun state in the
+/// environment.
 Result<Places> places_of(const Train& o, Call& call) {
   const auto& variable = call.surroundings.variable;
   const BuildShare step = KA_TRY(step_share_of(variable));
@@ -212,7 +218,7 @@ Result<Places> places_of(const Train& o, Call& call) {
                 KA_TRY(port_of(variable("MASTER_PORT")))};
 }
 
-/// A job file for each process.
+/// Writes a job file for each process that runs here, and returns their names.
 Result<std::vector<std::string>> write_jobs(Json job, const Places& places, Call& call) {
   const std::string folder = run_folder(call.common.out);
   job["threads"] = std::max<std::size_t>(call.jobs / places.here, 1);
@@ -231,7 +237,7 @@ Result<std::vector<std::string>> write_jobs(Json job, const Places& places, Call
   return out;
 }
 
-/// `last`: what the program that trains said at its end.
+/// `last`: the last line of kinalign-learn.
 void print_trained(const Train& o, const Json& last, Call& call) {
   std::string text =
       fmt::format("{}: trained, loss {:.4g}", o.method.front(), last.value("loss", 0.0));
@@ -244,7 +250,7 @@ void print_trained(const Train& o, const Json& last, Call& call) {
   call.console.print_json(last.dump(1));
 }
 
-/// What the other machine needs, and what is done there.
+/// Prints the files that the other machine needs, and the command to run there.
 void print_prepared(const std::vector<std::string>& jobs, const std::string& windows, Call& call) {
   std::string text = harmless(windows) + ": windows\n";
   for (const std::string& job : jobs) text += harmless(job) + ": a job\n";
@@ -254,7 +260,7 @@ void print_prepared(const std::vector<std::string>& jobs, const std::string& win
   call.console.print_json(Json{{"windows", windows}, {"jobs", jobs}}.dump(1));
 }
 
-/// The file of windows: the given one, or one that is cut of the data set into the run's folder.
+/// The file of windows: the given one, or one cut from the data set into the run's folder.
 Result<std::string> windows_of(const Train& o, const std::string& folder) {
   if (!o.windows.empty()) return o.windows;
   std::string file = folder + "/windows.npz";
@@ -268,7 +274,8 @@ Result<std::string> windows_of(const Train& o, const std::string& folder) {
   return file;
 }
 
-/// Trains, and returns the last line of the program that does. The first process's job stays.
+/// Runs kinalign-learn on the jobs and returns its last line. Removes all job files but the first
+/// process's.
 Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
   const WorkerWatch watch{.progress = call.console.progress(),
                           .warn = [&](const std::string& text) {
@@ -282,8 +289,8 @@ Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
   return last;
 }
 
-/// Keeps other trainings out of the folder while it lives. The system frees it when this program
-/// ends, however it does.
+/// Holds a lock on the folder, so that no other training uses it. The system frees the lock when
+/// this program ends, even if it crashes.
 class FolderLock {
  public:
   static Result<FolderLock> take(const std::string& folder) {
@@ -313,7 +320,7 @@ class FolderLock {
   std::string path_;  // while it is held
 };
 
-/// The run's folder, locked by the first of the processes, which share it.
+/// Makes the run's folder, which all processes share. The first process locks it.
 Result<std::optional<FolderLock>> open_folder(const Train& o, const std::string& folder,
                                               const Places& places, Call& call) {
   KA_TRY(make_folders(folder));
@@ -327,6 +334,8 @@ Result<std::optional<FolderLock>> open_folder(const Train& o, const std::string&
   return out;
 }
 
+/// Trains a model. Only the first of several processes prints the result and removes the windows it
+/// cut.
 Result<int> run_train(Train& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& out = call.common.out;
@@ -356,6 +365,7 @@ Result<int> run_train(Train& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign train`.
 Verb train_verb() {
   return make_verb<Train>(
       {.name = "train",

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double pose_windows_hz = 60.0;  // nodes are simulated from it
+constexpr double pose_windows_hz = 60.0;  // the windows' rate; nodes are simulated from them
 
 struct TaskWords {
   Learns task;
@@ -29,7 +29,7 @@ constexpr std::array<TaskWords, 3> task_words{
      {Learns::pose, "pose", "answers nodes with a pose"},
      {Learns::fuse, "fuse", "answers a Kinect and nodes with a pose"}}};
 
-/// What every job says.
+/// The members that every job has.
 Json begun_job(const TrainingWanted& wanted, Call& call) {
   Json out{{"schema", "kinalign.training_job/1"},
            {"method", wanted.method},
@@ -102,6 +102,7 @@ Field truth_field(std::string& truth) {
   return {"truth", "the precise stream", &truth, 0.0, 0.0, {}, "NAME"};
 }
 
+/// The flag --nodes, for methods that get nodes.
 Field nodes_field(std::string& nodes) {
   return {"nodes",
           "of poses and fusion: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "

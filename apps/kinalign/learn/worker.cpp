@@ -25,8 +25,11 @@ namespace kinalign {
 
 namespace {
 
+/// Output without a line's end is limited to this number of bytes.
 constexpr std::size_t longest_line = std::size_t{1} << 20U;
 
+/// The path of kinalign-learn: in the program's folder when installed, in a sibling folder in the
+/// build tree.
 Result<std::string> worker_program() {
   const std::filesystem::path own = program_folder();
   for (const auto& file : {own / "kinalign-learn", own / "../kinalign-learn/kinalign-learn"}) {
@@ -41,12 +44,15 @@ Result<std::string> worker_program() {
 /// One process of kinalign-learn.
 struct Child {
   pid_t id = 0;
-  int out = -1;            // its stdout; -1: it has ended
-  std::string held, last;  // output without a line's end; the last object but warnings
-  int code = 0;            // exit code; 128 and the signal's number where a signal ended it
+  int out = -1;            // its stdout; -1 after its end
+  std::string held, last;  // output without a line's end yet; the last JSON object that is no
+                           // warning
+  int code = 0;            // exit code; 128 plus the signal's number if a signal ended it
   bool was_ended = false;  // by this program
 };
 
+/// Starts kinalign-learn with a job file. Its stdout is a pipe; its stderr is dropped, since errors
+/// come as JSON on stdout.
 Result<Child> start(const std::string& program, const std::string& job) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -70,6 +76,7 @@ Result<Child> start(const std::string& program, const std::string& job) {
   return Failure(Error{program, 0, "a program that can be started", std::strerror(fault)});
 }
 
+/// Closes the pipe and waits until the child has ended.
 void wait_for(Child& child) {
   ::close(child.out);
   child.out = -1;
@@ -79,7 +86,8 @@ void wait_for(Child& child) {
   child.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// Reads what is there; at its end the child is waited for. The whole lines.
+/// Reads the available output and returns its whole lines. At the end of the output it waits for
+/// the child.
 std::vector<std::string> read_lines(Child& child) {
   std::array<char, 4096> buffer{};
   const ssize_t got = ::read(child.out, buffer.data(), buffer.size());
@@ -108,7 +116,7 @@ class Workers {
   explicit Workers(const WorkerWatch& watch) : watch_(watch) {}
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
-  /// Nothing that this program has started goes on without it.
+  /// Kills all children that still run, so that none outlives this program.
   ~Workers() {
     end_all(SIGKILL);
     for (Child& child : children_) {
@@ -121,7 +129,8 @@ class Workers {
     return {};
   }
 
-  /// Until all have ended. After the first failure the others have some seconds.
+  /// Runs until all children have ended. After the first failure or a cancel, the others get
+  /// SIGTERM after 3 s and SIGKILL after 6 s.
   void run() {
     std::optional<Clock::time_point> failed;
     while (poll_all()) {
@@ -145,9 +154,10 @@ class Workers {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds grace{3};
-  static constexpr int lost_another = 4;  // exit code of kinalign-learn where another one ended
+  static constexpr int lost_another = 4;  // exit code of kinalign-learn after another process was
+                                          // lost
 
-  /// Reads from all that have something to say. False: all have ended.
+  /// Reads from all children with output, for at most 200 ms. False: all have ended.
   bool poll_all() {
     std::vector<pollfd> waits;
     std::vector<Child*> whose;
@@ -165,6 +175,8 @@ class Workers {
     return true;
   }
 
+  // Handles one line of JSON: a warning, a progress report, a row or the result. Only the first
+  // child's lines are reported.
   void take(Child& child, const std::string& line) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object()) return;
@@ -193,7 +205,8 @@ class Workers {
     }
   }
 
-  /// By itself: not ended from here, and not since another one was gone.
+  /// The child that caused the failure: if possible one that neither this program nor the loss of
+  /// another process ended.
   const Child* first_to_fail() const {
     const Child* out = nullptr;
     for (const Child& child : children_) {
@@ -207,6 +220,7 @@ class Workers {
     return out;
   }
 
+  // The error that the child reported, else its exit code or signal.
   Error error_of(const Child& child) const {
     const auto json = nlohmann::json::parse(child.last, nullptr, false);
     if (json.is_object() && json.contains("error")) return told_error(json.at("error"));

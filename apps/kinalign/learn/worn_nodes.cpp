@@ -18,13 +18,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_lost_s = 2.0;  // a node that is lost longer is told
-constexpr double most_left_m_s2 = 3.0;  // of a node that rests
+constexpr double longest_lost_s = 2.0;  // a node lost for longer gets a warning
+constexpr double most_left_m_s2 = 3.0;  // left of a resting node's acceleration
+/// A sample repeated for longer gives a warning.
 constexpr double longest_frozen_s = 1.0;
-/// Beyond it a node is surely not worn as docs/pose.md says.
+/// A node tilted by more is surely not worn as docs/pose.md says.
 constexpr double sure_tilt_deg = 60.0;
 
-/// "START,END" in seconds; absent where the text is empty.
+/// "START,END" in seconds; absent if the text is empty.
 Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
   if (text.empty()) return std::optional<TPoseSeconds>();
   const std::size_t comma = text.find(',');
@@ -36,6 +37,7 @@ Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
   return Failure(Error{"--tpose", 0, "START,END in seconds, such as 1.5,4", shown(text)});
 }
 
+/// The frames of the T-pose: the wanted seconds, else the first second in which no node turns.
 Result<ChosenTPose> choose_t_pose(const std::string& wanted, const WornFrames& worn,
                                   double rate_hz) {
   ChosenTPose out;
@@ -71,6 +73,7 @@ struct NodePresence {
   double valid = 0.0, longest_lost_s = 0.0;
 };
 
+/// Counts the frames in which the node is valid.
 NodePresence presence_of(const NodeFrames& nodes, std::size_t node, double rate_hz) {
   std::size_t run = 0, longest = 0, valid = 0;
   for (std::size_t t = 0; t < nodes.frames(); ++t) {
@@ -83,7 +86,7 @@ NodePresence presence_of(const NodeFrames& nodes, std::size_t node, double rate_
           static_cast<double>(longest) / rate_hz};
 }
 
-/// Of a node: its warning, if there is one.
+/// The most serious warning about a node; empty if there is none.
 std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::size_t node,
                        const NodePresence& presence) {
   const std::string& name = layout.nodes[node];
@@ -120,7 +123,8 @@ double frozen_s(const NodeTrack& track) {
   return 1e-9 * static_cast<double>(longest);
 }
 
-/// By how much the root's node sends less long than others, s.
+/// The time, s, at the start or the end of a stream in which other nodes send and the root's node
+/// does not.
 double lost_with_root_s(const std::vector<NodeTrack>& tracks) {
   std::int64_t out = 0;
   const auto& root = tracks.back().stamps;
@@ -132,7 +136,8 @@ double lost_with_root_s(const std::vector<NodeTrack>& tracks) {
   return 1e-9 * static_cast<double>(out);
 }
 
-/// Of samples that repeat, and of times without the root's node where it bounds the frames.
+/// Warnings about samples that repeat and, if the root's node bounds the frames, about times
+/// without it.
 std::vector<std::string> sample_warnings(const PoseLayout& layout,
                                          const std::vector<NodeTrack>& tracks, bool root_bounds) {
   std::vector<std::string> out;
@@ -161,13 +166,13 @@ std::string restless_nodes(const PoseLayout& layout, const NodeCalibration& cali
   return out;
 }
 
-/// Nodes that have changed places, and headings that are not shared. `headings`: as they were asked
-/// for.
+/// Warnings about nodes that are worn in each other's place, and about headings that are not
+/// shared. `headings`: the value of --heading.
 std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibration& calibration,
                                      const std::string& headings) {
   std::string names, tilts;
   std::size_t as_told = 0, off = 0;
-  bool arms_alone = true;  // which hang, as far as anybody can tell
+  bool arms_alone = true;  // hanging arms tilt in the same way
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const auto& worn = calibration.nodes[n];
     if (worn && worn->tilt_deg <= most_tilt_deg) ++as_told;
@@ -204,6 +209,8 @@ std::string heading_line(const Json& about) {
                                       : "one for all nodes, by how they are worn";
 }
 
+/// The printed line about the T-pose: its seconds, the fastest turn and, where they are checked,
+/// the tilts of the forearms.
 std::string t_pose_line(const Json& about) {
   const Json& t_pose = about.at("t_pose");
   std::string out = fmt::format("{:.1f} to {:.1f} s{}, no node turned faster than {:.0f} deg/s",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes of a stream as a model wants them: chosen by name, on its grid, calibrated by a T-pose, and
-// what is to be said of them. What pose and fuse share.
+// The nodes of a stream in the form that a model needs: chosen by name, on its grid, calibrated by
+// a T-pose. Also the text and JSON about them. Used by pose and fuse.
 #pragma once
 
 #include "apps/kinalign/learn/node_source.h"
@@ -21,22 +21,23 @@ struct WornWords {
 
 /// The flags tpose and heading.
 std::vector<Field> worn_flags(WornWords& o);
-/// Fails where the T-pose's seconds are none.
+/// Fails if --tpose states no interval of seconds.
 Result<void> check(const WornWords& o);
-/// The same for a live run. Fails where the T-pose lies too late for it, too.
+/// The same options for a live run. Also fails if the T-pose lies beyond the time that a live run
+/// waits for it.
 Result<LiveWornOptions> live_options(const WornWords& o);
 
-/// The model's nodes in a stream: [N] which of the stream's, absent where it has none.
+/// [N] the stream's index of each of the model's nodes; absent if the stream lacks it.
 using NodeChoice = std::vector<std::optional<std::size_t>>;
 
-/// Fails without the root and two others.
+/// Fails without the root's node and two others that have samples.
 Result<NodeChoice> choose(const PoseLayout& layout, const NamedNodes& nodes);
 
-/// What the T-pose was taken from.
+/// The frames of the T-pose.
 struct ChosenTPose {
   TPose frames;
   double from_s = 0.0, to_s = 0.0;
-  bool found = false;  // by itself
+  bool found = false;  // true: found by the program, not stated in --tpose
 };
 
 /// The nodes on the model's grid, calibrated.
@@ -45,19 +46,20 @@ struct PosedNodes {
   EvenNodes even;
   ChosenTPose t_pose;
   NodeCalibration calibration;
-  std::vector<std::string> warnings{};  // of how all of them are worn
+  std::vector<std::string> warnings{};  // about how the nodes are worn together, and of the file's
+                                        // reader
 };
 
-/// `span`: the grid, in place of the root's. Fails as choose() does, too.
+/// `span`: the grid; absent: the one of the root's samples. Fails like choose(), too.
 Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& body,
                                     NamedNodes nodes, const WornWords& o,
                                     std::optional<EvenSpan> span = std::nullopt);
 
-/// The members valid, nodes, t_pose, headings and so on, and warnings. `nodes`: calibrated.
+/// The members valid, nodes, t_pose, headings and so on, and warnings. `nodes`: after calibration.
 nlohmann::ordered_json about_nodes(const PoseLayout& layout, const PosedNodes& posed,
                                    const NodeFrames& nodes, const NamedNodes& named);
 
-/// The lines nodes, T-pose and heading.
+/// The printed lines nodes, T-pose and heading.
 std::string node_lines(const nlohmann::ordered_json& about);
 
 }  // namespace kinalign

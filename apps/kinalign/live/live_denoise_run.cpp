@@ -19,8 +19,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is told
+constexpr double longest_unseen_s = 2.0;  // a joint missing for longer gets a warning
 
+/// Runs `denoise --live`: puts the Kinect's frames on the model's grid and answers each frame once
+/// its later frames have come.
 class LiveDenoiseRun {
  public:
   LiveDenoiseRun(Denoiser& denoiser, const LiveJob& job, LiveSession& session)
@@ -39,6 +41,7 @@ class LiveDenoiseRun {
                                                           {"look_ahead", cleaner_.look_ahead()}});
   }
 
+  // Answers frames as soon as they are ready. Fails if two Kinects send and none was chosen.
   Result<void> take(const LiveNews& news) {
     for (const LiveKinectRow& row : news.rows) {
       KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
@@ -50,11 +53,13 @@ class LiveDenoiseRun {
     return check_live_frames(answered_);
   }
 
+  // The status that a person reads: what is waited for, or frames and latency.
   std::string status() const {
     if (!joints_.begin()) return "waiting for the Kinect's frames";
     return fmt::format("{} frames; {}", answered_, session_.latency_text());
   }
 
+  // Answers the rest of the frames after the stream's end, without latencies.
   Result<void> finish() {
     while (joints_.begin() && time_of(made_) <= *joints_.newest()) {
       KA_TRY(make_frame(std::nullopt));
@@ -63,6 +68,8 @@ class LiveDenoiseRun {
     return {};
   }
 
+  // The whole answer as a clip and as JSON. Frames after the Kinect's last row are left out, as for
+  // a file.
   Result<Json> answer(Clip& clip) const {
     if (answered_ == 0) return no_live_frames(status());
     const std::size_t frames = answered_ - std::min(answered_ - 1, behind_newest_);
@@ -95,6 +102,7 @@ class LiveDenoiseRun {
   }
 
  private:
+  // The stamp of a frame of the grid, which begins at the Kinect's first row.
   Time time_of(std::size_t frame) const {
     const double ns = static_cast<double>(frame) * 1e9 / model_.layout.rate_hz;
     return *joints_.begin() + Duration(std::llround(ns));
@@ -105,6 +113,7 @@ class LiveDenoiseRun {
                               model_.layout.rate_hz);
   }
 
+  // Makes every frame that is due and whose row has come. `now`: on the axis of the stamps.
   Result<void> advance(Time now) {
     while (joints_.begin() && time_of(made_) <= now && joints_.is_ready(time_of(made_), now)) {
       KA_TRY(make_frame(now));
@@ -119,7 +128,8 @@ class LiveDenoiseRun {
     return {};
   }
 
-  /// Frames behind the Kinect's last row count once a further row has come: a file would end there.
+  /// Counts missing joints. Frames after the Kinect's newest row count only once a further row has
+  /// come: a file would end there.
   void count(const JointFrames& frame) {
     ++behind_newest_;
     if (time_of(made_ - 1) > *joints_.newest()) return;
@@ -134,6 +144,7 @@ class LiveDenoiseRun {
     }
   }
 
+  // Prints an answered frame, and the skeleton before the first one.
   Result<void> take_answer(const std::vector<float>& joints, std::optional<Time> needed) {
     const Clip one = KA_TRY(skeleton(joints, time_of(answered_)));
     if (answered_ == 0) {
@@ -155,10 +166,11 @@ class LiveDenoiseRun {
   bool is_chosen_;
   LiveJoints joints_;
   LiveCleaner cleaner_;
-  std::size_t made_ = 0, answered_ = 0;  // frames
-  std::size_t behind_newest_ = 0;        // of these, behind the Kinect's newest row
-  std::array<std::size_t, 3> seen_{};    // joints of frames, by Tracking
-  std::vector<Unseen> unseen_;           // [Jin]
+  std::size_t made_ = 0, answered_ = 0;  // made_: frames given to the cleaner; answered_: frames it
+                                         // answered
+  std::size_t behind_newest_ = 0;        // frames made after the Kinect's newest row
+  std::array<std::size_t, 3> seen_{};    // joints of all frames, by Tracking
+  std::vector<Unseen> unseen_;           // [Jin] for each input joint
 };
 
 }  // namespace

@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Runs `fuse --live`: calibrates the nodes by a T-pose, then gives frames of nodes and Kinect to
+/// the fuser.
 class LiveFuseRun {
  public:
   LiveFuseRun(Fuser& fuser, const LiveJob& job, LiveSession& session)
@@ -40,6 +42,7 @@ class LiveFuseRun {
                        {"parents", model_.body.skeleton.parents}});
   }
 
+  // Takes marks, Kinect rows and samples of nodes, and answers the frames that are ready.
   Result<void> take(const LiveNews& news) {
     for (const LiveMark& mark : news.marks) report_.take(mark);
     for (const LiveKinectRow& row : news.rows) {
@@ -51,6 +54,7 @@ class LiveFuseRun {
     return check_live_frames(poses_.size());
   }
 
+  // The status that a person reads: what is waited for, or frames, latency and nodes.
   std::string status() const {
     std::string waits = report_.waits_for();
     if (!waits.empty()) return waits;
@@ -60,6 +64,7 @@ class LiveFuseRun {
                        report_.names().text());
   }
 
+  // Answers the rest of the frames after the stream's end, without latencies.
   void finish() {
     std::vector<LiveWornFrame> ready;
     std::vector<FusedFramePose> answered;
@@ -69,12 +74,15 @@ class LiveFuseRun {
     for (FusedFramePose& pose : answered) take_answer(std::move(pose), std::nullopt);
   }
 
+  // The whole answer as a clip and as JSON.
   Result<Json> answer(Clip& clip) {
     if (poses_.empty()) return no_live_frames(status());
     std::vector<Turn> rotations;
     std::vector<Eigen::Quaternionf> root;
     for (std::size_t t = 0; t < poses_.size(); ++t) {
-      if (answered_[t].stamp > *worn_.nodes().newest_of_root()) break;  // as a file's frames end
+      if (answered_[t].stamp > *worn_.nodes().newest_of_root())
+        break;  // a file's frames end there
+                // too
       report_.count(answered_[t].valid);
       rotations.insert(rotations.end(), poses_[t].rotations.begin(), poses_[t].rotations.end());
       root.push_back(poses_[t].root);
@@ -86,11 +94,13 @@ class LiveFuseRun {
   }
 
  private:
+  // Puts the root's place into frame t; joint 0 is the root.
   void put_place(const FusedFramePose& pose, std::size_t t, ClipFrames& frames) const {
     vec3(frames.local_positions, t * model_.body.skeleton.joints()) = pose.place.cast<double>();
   }
 
-  /// Frames that waited for the T-pose or the Kinect have no latency.
+  /// Answers the frames that are ready. Frames that waited for the T-pose or for the Kinect get no
+  /// latency.
   void advance(Time now) {
     std::vector<LiveWornFrame> ready;
     std::vector<FusedFramePose> answered;
@@ -107,6 +117,8 @@ class LiveFuseRun {
     }
   }
 
+  // Gives a frame to the fuser. Frames that the fuser forgets before its first answer are forgotten
+  // here, too.
   void take_frame(const LiveWornFrame& frame) {
     FuseInput input{frame.nodes, joints_.frame(frame.stamp)};
     for (const std::uint8_t seen : input.kinect.seen) ++seen_[seen];
@@ -117,6 +129,7 @@ class LiveFuseRun {
     pending_.erase(pending_.begin() + static_cast<std::ptrdiff_t>(fuser_.unanswered()));
   }
 
+  // Prints an answered frame and stores it for the file.
   void take_answer(FusedFramePose pose, std::optional<Time> needed) {
     Pending pending = std::move(pending_.front());
     pending_.pop_front();
@@ -161,16 +174,16 @@ class LiveFuseRun {
   const FuseModel& model_;
   const PoseLayout& nodes_;
   LiveSession& session_;
-  std::string stream_;  // of the Kinect
+  std::string stream_;  // the Kinect's stream
   bool is_chosen_;
   LiveWorn worn_;
   LiveWornReport report_;
   LiveJoints joints_;
   LiveFuser fuser_;
-  std::deque<Pending> pending_;  // frames that went to the fuser and have no answer yet
+  std::deque<Pending> pending_;  // frames given to the fuser without an answer yet
   std::vector<Pending> answered_;
   std::vector<FusedFramePose> poses_;
-  std::array<std::size_t, 3> seen_{};  // joints of frames, by Tracking
+  std::array<std::size_t, 3> seen_{};  // joints of all frames, by Tracking
 };
 
 }  // namespace

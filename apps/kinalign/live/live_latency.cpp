@@ -8,6 +8,7 @@ namespace kinalign {
 
 namespace {
 
+/// The value below which that share of the newest values lies.
 double value_at(const std::vector<float>& all, double share, std::size_t newest) {
   const auto count = static_cast<std::ptrdiff_t>(std::min(newest, all.size()));
   if (count == 0) return 0.0;

@@ -16,6 +16,8 @@ LiveNodeNames::LiveNodeNames(const PoseLayout& layout, std::string stream)
       is_chosen_(!stream_.empty()),
       called_(layout.nodes.size()) {}
 
+/// Remembers each node's result, so that a name is looked up once. The first node at a place keeps
+/// it.
 Result<std::optional<std::size_t>> LiveNodeNames::find(const RawChannel& node) {
   const auto known = found_.find(&node);
   if (known != found_.end()) return known->second;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which nodes of a live stream are those of a model.
+// Assigns the nodes of a live stream to the nodes of a model.
 #pragma once
 
 #include "kinalign/models/pose/pose_features.h"
@@ -14,23 +14,24 @@ namespace kinalign {
 
 class LiveNodeNames {
  public:
-  /// `stream`: whose nodes; empty: the first stream that sends any.
+  /// `stream`: the stream of the nodes; empty: the first stream that sends any.
   LiveNodeNames(const PoseLayout& layout, std::string stream);
 
-  /// The layout's node that this one is, by its place or id; absent: none, or another one has the
-  /// place already. Fails where no stream was chosen and a second one sends nodes.
+  /// The layout's node that this one is, by its place or id. Absent if the layout has no such node,
+  /// or another node has the place already. Fails if no stream was chosen and a second stream sends
+  /// nodes.
   Result<std::optional<std::size_t>> find(const RawChannel& node);
 
   const std::string& stream() const { return stream_; }
-  /// [N] the stream's name for each; empty: it has not come.
+  /// [N] the stream's name for each node; empty: nothing came from it yet.
   const std::vector<std::string>& called() const { return called_; }
-  /// "4 of 5 nodes, ankle_left has not come".
+  /// "4 of 5 nodes; not yet: ankle_left".
   std::string text() const;
-  /// Nodes that are none of the model's: "imu 7".
+  /// The nodes that the model does not use: "imu 7".
   const std::vector<std::string>& others() const { return others_; }
 
  private:
-  std::vector<std::string> names_;  // [N] of the layout
+  std::vector<std::string> names_;  // [N] the layout's names
   std::string stream_;
   bool is_chosen_;
   std::vector<std::string> called_, others_;

@@ -13,6 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Runs `pose --live`: calibrates the nodes by a T-pose, then solves frame by frame.
 class LivePoseRun {
  public:
   LivePoseRun(const PoseSolver& solver, const LiveJob& job, LiveSession& session)
@@ -30,6 +31,7 @@ class LivePoseRun {
                                                {"parents", model_.body.skeleton.parents}});
   }
 
+  // Takes marks and samples, and answers the frames that are ready.
   Result<void> take(const LiveNews& news) {
     for (const LiveMark& mark : news.marks) report_.take(mark);
     for (const LiveNodeSample& sample : news.samples) {
@@ -39,6 +41,7 @@ class LivePoseRun {
     return check_live_frames(frames_.size());
   }
 
+  // The status that a person reads: what is waited for, or frames, latency and nodes.
   std::string status() const {
     std::string waits = report_.waits_for();
     if (!waits.empty()) return waits;
@@ -46,18 +49,22 @@ class LivePoseRun {
                        report_.names().text());
   }
 
+  // Answers the rest of the frames after the stream's end, without latencies.
   void finish() {
     std::vector<LivePoseFrame> answered;
     pose_.finish(answered);
     for (LivePoseFrame& frame : answered) take_answer(std::move(frame), std::nullopt);
   }
 
+  // The whole answer as a clip and as JSON.
   Result<Json> answer(Clip& clip) {
     if (frames_.empty()) return no_live_frames(report_.waits_for());
     std::vector<Turn> rotations;
     std::vector<Eigen::Quaternionf> root;
     for (const LivePoseFrame& frame : frames_) {
-      if (frame.stamp > *pose_.worn().nodes().newest_of_root()) break;  // as a file's frames end
+      if (frame.stamp > *pose_.worn().nodes().newest_of_root())
+        break;  // a file's frames end there
+                // too
       report_.count(frame.valid);
       rotations.insert(rotations.end(), frame.pose.rotations.begin(), frame.pose.rotations.end());
       root.push_back(frame.pose.root);
@@ -73,7 +80,7 @@ class LivePoseRun {
   }
 
  private:
-  /// Frames that waited for the T-pose have no latency.
+  /// Answers the frames that are ready. Frames that waited for the T-pose get no latency.
   void advance(Time now) {
     std::vector<LivePoseFrame> answered;
     pose_.advance(now, answered);
@@ -83,6 +90,7 @@ class LivePoseRun {
     }
   }
 
+  // Prints an answered frame and stores it for the file.
   void take_answer(LivePoseFrame frame, std::optional<Time> needed) {
     session_.tell_frame(
         model_.body.skeleton,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `pose --live`, `denoise --live` and `fuse --live`, from the connection to the last frame. Each
-// returns what is to be said at the end, as the verb says it of a file, with latencies; `clip` gets
-// all frames. Each fails where nobody serves, where the stream is none, and where no frame was
-// answered.
+// returns the JSON that the verb has for a file, with latencies; `clip` gets all frames. Each fails
+// if no server answers, if the stream is not one of record, or if no frame was answered.
 #pragma once
 
 #include "apps/kinalign/live/live_words.h"
@@ -17,7 +16,7 @@
 
 namespace kinalign {
 
-/// Frames that an answer waits for where nobody says.
+/// The frames that an answer waits for without --look-ahead.
 inline constexpr std::size_t usual_look_ahead = 2;
 
 struct LiveJob {
@@ -37,7 +36,7 @@ Result<nlohmann::ordered_json> run_live_denoise(Denoiser& denoiser, const LiveJo
 Result<nlohmann::ordered_json> run_live_fuse(Fuser& fuser, const LiveJob& job, Clip& clip,
                                              Call& call);
 
-/// "live     9 ms after ...": the line that ends a live run, behind those of the verb.
+/// The last line of a live run, after those of the verb: "live     9 ms after ...".
 std::string live_lines(const nlohmann::ordered_json& about);
 
 }  // namespace kinalign

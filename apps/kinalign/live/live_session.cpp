@@ -24,16 +24,16 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr Duration one_turn = 100ms;
-constexpr Duration between_statuses = 500ms;
-constexpr Duration most_quiet = 5s;  // record sends something each second
+constexpr Duration one_turn = 100ms;          // how long a turn waits for data
+constexpr Duration between_statuses = 500ms;  // between two updates of the status on a terminal
+constexpr Duration most_quiet = 5s;           // record sends at least one message each second
 
 std::string own_host() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// "[[0.10000,0.90000,0.00000],...]" of rows of so many numbers.
+/// Appends rows of `width` numbers: "[[0.10000,0.90000,0.00000],...]".
 void append_rows(std::string& out, std::span<const double> numbers, std::size_t width) {
   out += '[';
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -41,13 +41,14 @@ void append_rows(std::string& out, std::span<const double> numbers, std::size_t 
     if (std::isfinite(numbers[i])) {
       fmt::format_to(std::back_inserter(out), "{:.5f}", numbers[i]);
     } else {
-      out += "null";  // JSON has no other word for it
+      out += "null";  // JSON has no NaN and no infinity
     }
     if (i % width == width - 1) out += ']';
   }
   out += ']';
 }
 
+/// The event "frame" with global positions, m, and local rotations w,x,y,z.
 std::string frame_json(const Skeleton& skeleton, const ClipFrames& one) {
   std::vector<double> positions(3 * skeleton.joints());
   forward_kinematics(skeleton, one, positions);
@@ -79,7 +80,7 @@ Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::s
 
 Result<LiveSession> LiveSession::open(const LiveWords& words, Call& call) {
   call.console.never_wait();
-  (void)call.console.progress();  // Ctrl-C is only noted from here on
+  (void)call.console.progress();  // from here on Ctrl-C is only noted
   std::optional<LiveDatagrams> datagrams;
   if (!words.send.empty()) {
     datagrams = KA_TRY(LiveDatagrams::open(KA_TRY(parse_endpoint(words.send, "--send"))));
@@ -98,6 +99,7 @@ LiveSession::LiveSession(LiveConnection connection, std::optional<LiveDatagrams>
       clocks_(std::make_unique<SystemClocks>()),
       piece_came_(clocks_->raw()) {}
 
+/// The anchor of the recording links both clocks of this machine.
 Time LiveSession::now() {
   const HostTime raw = clocks_->raw();
   if (is_own_host_.value_or(false)) {
@@ -107,7 +109,7 @@ Time LiveSession::now() {
   return stream_->now().value_or(Time{}) + (raw - piece_came_);
 }
 
-/// Whether the stream goes on.
+/// Receives one piece of the stream and hands it on. False at the stream's end.
 Result<bool> LiveSession::turn(const LiveWork& work) {
   const auto came = connection_.wait(one_turn);
   piece_came_ = came == LiveConnection::Came::bytes ? clocks_->raw() : piece_came_;
@@ -129,7 +131,8 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
   return came != LiveConnection::Came::end;
 }
 
-/// Once, of a connection from which nothing has come for so long.
+/// Warns once about a connection without data for `most_quiet`. Fails if it never sent a message of
+/// record.
 Result<void> LiveSession::tell_quiet(Duration silence) {
   if (is_quiet_ || silence <= most_quiet) return {};
   is_quiet_ = true;
@@ -192,6 +195,7 @@ void LiveSession::describe(Json& about) const {
   about["ended"] = broke_ ? "broke" : stream_->closed() ? "record" : "stopped";
 }
 
+/// The warnings about the stream: broken off, messages lost, samples left out.
 std::vector<std::string> LiveSession::warnings() const {
   std::vector<std::string> out;
   if (broke_) out.emplace_back("the stream broke off: record ended without its end, or was killed");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verb that works live: it reads what record serves, hands it on, and tells what comes of it.
+// The session of a verb that works live: reads the stream of record, hands it on, and reports
+// answers.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -18,48 +19,50 @@
 
 namespace kinalign {
 
-/// Frames that are kept for a file at most: nine hours at 30 Hz.
+/// The most frames that are kept for a file: nine hours at 30 Hz.
 inline constexpr std::size_t most_live_frames = 1'000'000;
 
-/// Fails where a run has become too long.
+/// Fails if a run has reached the most frames.
 Result<void> check_live_frames(std::size_t frames);
-/// A run that answered nothing. `waited_for`: the status at its end.
+/// The failure of a run without an answered frame. `waited_for`: the status at its end.
 Failure no_live_frames(const std::string& waited_for);
-/// The stream of a Kinect; without a chosen one the first that sends. Fails where there are two.
+/// Chooses the stream of a Kinect: the chosen one, else the first that sends. Fails if two send and
+/// none was chosen.
 Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::string& stream);
 
-/// What becomes of the stream.
+/// The callbacks for the stream.
 struct LiveWork {
-  /// A piece of the stream has come. Fails where nothing can be made of it.
+  /// Called for each piece of the stream. Fails if the piece can't be used.
   std::function<Result<void>(const LiveNews& news)> take;
-  /// Twice a second, of a person's interest: "waiting for a T-pose".
+  /// The status for a person, asked twice a second: "waiting for a T-pose".
   std::function<std::string()> status;
 };
 
 class LiveSession {
  public:
-  /// Connects. `words`: checked.
+  /// Connects. `words`: after check().
   static Result<LiveSession> open(const LiveWords& words, Call& call);
 
-  /// Until the stream ends, Ctrl-C, or a failure.
+  /// Runs until the stream ends, Ctrl-C is pressed, or a callback fails.
   Result<void> run(const LiveWork& work);
 
   const LiveStream& stream() const { return *stream_; }
-  /// Now, on the axis of the stream's stamps. Of another machine's stream: when the newest message
-  /// arrived there, and how long it has been here since.
+  /// The present time on the axis of the stream's stamps. For a stream of another machine: the
+  /// arrival of the newest message there, plus the time since it came here.
   Time now();
 
-  /// A frame of joints has its answer: on stdout with --json, and as a datagram with --send. `one`:
-  /// one frame; `needed`: arrival of the newest message that it waited for; absent: it is of
-  /// before the answers began, and its latency is none.
+  /// Reports an answered frame: on stdout with --json, as a datagram with --send. `one`: a single
+  /// frame. `needed`: the arrival of the newest message that the answer needed; absent: the frame
+  /// is older than the first answer and gets no latency.
   void tell_frame(const Skeleton& skeleton, const ClipFrames& one, std::optional<Time> needed);
-  /// A line for people and an object for programs.
+  /// Prints a line for people and an object for programs.
   void tell(const std::string& line, const nlohmann::ordered_json& event);
 
-  /// "9 ms after the samples (p99 21), 402 ms behind the motion (p99 440)", of the newest frames.
+  /// The latencies of the newest frames: "9 ms after the samples (p99 21), 402 ms behind the motion
+  /// (p99 440)".
   std::string latency_text() const;
-  /// Members that all verbs have at the end: latencies, messages lost, how the stream ended; and
-  /// warnings of these, behind those that are there.
+  /// Adds the members that all verbs have at the end: latencies, lost messages, the way the stream
+  /// ended. Appends warnings about these.
   void describe(nlohmann::ordered_json& about) const;
 
  private:
@@ -73,12 +76,12 @@ class LiveSession {
   Call* call_;
   std::unique_ptr<LiveStream> stream_;
   std::unique_ptr<SystemClocks> clocks_;
-  std::optional<bool> is_own_host_;
-  HostTime piece_came_;  // by our clock
+  std::optional<bool> is_own_host_;  // record runs on this machine; absent: not known yet
+  HostTime piece_came_;              // by this machine's clock
   HostTime next_status_ = HostTime::min();
   LiveLatency latency_;
-  bool is_quiet_ = false;
-  bool broke_ = false;
+  bool is_quiet_ = false;  // the pause was reported
+  bool broke_ = false;     // the stream ended without record's end
 };
 
 }  // namespace kinalign

@@ -22,7 +22,7 @@ std::string text_of_code(int code) {
   return std::strerror(code);
 }
 
-/// errno of a connection in the making, once it is made or has failed.
+/// Waits until a connection is made or has failed; returns its errno, 0 for success.
 int result_of(int fd) {
   pollfd waiting{fd, POLLOUT, 0};
   if (::poll(&waiting, 1, connect_patience_ms) != 1) return ETIMEDOUT;
@@ -32,7 +32,7 @@ int result_of(int fd) {
   return fault;
 }
 
-/// A socket that is connected, with a failure of `flag`.
+/// A connected socket. Errors name `flag`.
 Result<Handle> connected(const Endpoint& at, int type, const char* flag, const char* expected) {
   const std::string where = endpoint_text(at.host, at.port);
   const auto fail = [&](std::string found) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sockets of a verb that works live: a connection to record, and datagrams of frames.
+// The sockets of a verb that works live: a connection to record, and datagrams for frames.
 #pragma once
 
 #include "apps/kinalign/live/live_words.h"
@@ -16,13 +16,13 @@ namespace kinalign {
 
 class LiveConnection {
  public:
-  /// Waits five seconds at most. Fails where nobody serves there.
+  /// Waits at most five seconds. Fails if no server listens there.
   static Result<LiveConnection> open(const Endpoint& at);
 
   enum class Came { bytes, nothing, end };
-  /// Waits so long at most. Of a connection that broke and of one that ended the end is told alike.
+  /// Waits at most that time. A connection that broke and one that ended both give Came::end.
   Came wait(Duration patience);
-  /// What came last; until the next wait().
+  /// The bytes of the last wait(); valid until the next one.
   std::string_view bytes() const { return {buffer_.data(), size_}; }
 
  private:
@@ -34,7 +34,7 @@ class LiveConnection {
   std::size_t size_ = 0;
 };
 
-/// Datagrams to one address. What nobody takes is lost.
+/// Datagrams to one address. A datagram that no program receives is lost.
 class LiveDatagrams {
  public:
   static Result<LiveDatagrams> open(const Endpoint& to);

@@ -14,7 +14,7 @@ bool parse_port(std::string_view text, std::uint16_t& port) {
   return fault == std::errc{} && end == text.data() + text.size() && port != 0;
 }
 
-/// "::1" of "[::1]".
+/// The host without brackets: "[::1]" gives "::1".
 std::string without_brackets(const std::string& host) {
   const bool has = host.size() > 2 && host.front() == '[' && host.back() == ']';
   return has ? host.substr(1, host.size() - 2) : host;

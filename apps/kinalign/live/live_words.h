@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of verbs that work live from what record receives.
+// The flags of verbs that work live with the data that record receives.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -12,25 +12,25 @@
 namespace kinalign {
 
 struct LiveWords {
-  std::string live;  // "[HOST:]PORT" of record --live-port; empty: not live
-  std::string send;  // "HOST:PORT" that gets each frame as a datagram; empty: none
+  std::string live;                        // "[HOST:]PORT" of record --live-port; empty: not live
+  std::string send;                        // "HOST:PORT" for a datagram of each frame; empty: none
   std::optional<std::int64_t> look_ahead;  // frames
 };
 
 /// The flags live, look_ahead and send.
 std::vector<Field> live_flags(LiveWords& o);
 
-/// An address in numbers, and a port.
+/// A numeric address and a port.
 struct Endpoint {
   std::string host;
   std::uint16_t port = 0;
 };
 
-/// "7040", "127.0.0.1:7040", "[::1]:7040". `flag`: whose it is, for errors.
+/// Accepts "7040", "127.0.0.1:7040", "[::1]:7040". `flag`: named in errors.
 Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag);
 
-/// Fails where the flags do not go together with the input, or are none. `in`: the words that are
-/// files.
+/// Fails if flags contradict each other or the input, or if an endpoint can't be read. `in`: the
+/// input files.
 Result<void> check(const LiveWords& o, const std::vector<std::string>& in);
 
 }  // namespace kinalign

@@ -13,8 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_lost_s = 2.0;  // a node that is lost longer is told
+constexpr double longest_lost_s = 2.0;  // a node lost for longer gets a warning
 
+/// The sample in the form that calibration uses, with a normalised orientation.
 NodeReadings readings_of(const LiveNodeSample& one) {
   const NodeSample& sample = one.sample;
   NodeReadings out{one.stamp, one.arrival, {}, {}, {}, true};
@@ -66,6 +67,7 @@ void LiveWornReport::take(const LiveMark& mark) {
   session_->tell("T-pose marked: hold it for two seconds", Json{{"event", "t_pose_marked"}});
 }
 
+/// Reports a refused T-pose; the same reason only once in a row.
 void LiveWornReport::tell_refusal(const std::string& why) {
   if (why == refusal_) return;
   refusal_ = why;
@@ -121,6 +123,7 @@ std::string LiveWornReport::waits_for() const {
                      refusal_.empty() ? "" : "; " + refusal_);
 }
 
+/// The members about the calibration, named like those of about_nodes().
 Json LiveWornReport::calibration() const {
   const LiveCalibration& found = *worn_->calibration();
   return {{"t_pose",
@@ -163,6 +166,7 @@ Json LiveWornReport::about() const {
   return out;
 }
 
+/// The most serious warning about a node; empty if there is none.
 std::string LiveWornReport::warning_of(std::size_t node) const {
   const std::string& name = layout_->nodes[node];
   const Presence& one = presence_[node];

@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-/// "3 min", "2.5 h", "12 d": with as many digits as a forecast deserves.
+/// The time in words: "3 min", "2.5 h", "12 d". A forecast deserves no more digits.
 std::string minutes_text(double minutes) {
   if (minutes < 120) return fmt::format("{:.0f} min", minutes);
   if (minutes < 48 * 60) return fmt::format("{:.1f} h", minutes / 60);
@@ -25,13 +25,13 @@ std::string minutes_text(double minutes) {
 void DiskForecast::look(HostTime now, std::uint64_t written, std::uint64_t free) {
   constexpr Duration window = std::chrono::seconds(30);
   constexpr Duration lately = std::chrono::seconds(5);
-  constexpr double least_s = 2.0;  // of a rate that means something
+  constexpr double least_s = 2.0;  // a rate over less time is not used
   free_ = free;
   looks_.push_back({now, written});
   while (now - looks_.front().at > window) looks_.pop_front();
   const auto before = std::find_if(
       looks_.rbegin(), std::prev(looks_.rend()),
-      [&](const Look& look) { return now - look.at >= lately; });  // else the first of all
+      [&](const Look& look) { return now - look.at >= lately; });  // else the oldest look
   const double s = seconds(now - before->at);
   rate_ = 0.0;
   if (s >= least_s && written > before->written) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a disk still takes what is recorded, from how much has come lately.
+// Forecasts the time until the disk is full, from the bytes written lately.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -13,37 +13,37 @@ namespace kinalign {
 
 class DiskForecast {
  public:
-  /// What is left free: the rest of the recording, its index, and the machine's own needs.
+  /// Bytes that stay free: for the rest of the recording, its index, and the machine's own needs.
   static constexpr std::uint64_t reserve = std::uint64_t{64} << 20;
 
-  /// Once a second or so. `written`: all bytes so far; `free`: what the disk still takes.
+  /// Called about once a second. `written`: all bytes so far; `free`: the free bytes of the disk.
   void look(HostTime now, std::uint64_t written, std::uint64_t free);
 
-  /// Absent: nobody has looked.
+  /// Absent before the first look.
   std::optional<std::uint64_t> free() const { return free_; }
-  /// Nothing but the reserve is left: the recording has to end.
+  /// Only the reserve is left: the recording has to end.
   bool full() const { return free_ && *free_ <= reserve; }
-  /// Until only the reserve is left, at the rate of the fastest five seconds of the last half
-  /// minute: who begins counts soon, and who sends by fits and starts is not forgotten between
-  /// them. Absent: nothing comes.
+  /// The time until only the reserve is left, at the fastest five seconds of the last half minute.
+  /// A device that has just started thus counts soon, and one that sends in bursts still counts
+  /// between them. Absent if nothing is written.
   std::optional<double> minutes_left() const;
-  /// Whether to warn now: at 10, 5, 2 and 1 minutes left, each once.
+  /// True if a warning is due: at 10, 5, 2 and 1 minutes left, once each.
   bool take_warning();
 
  private:
   struct Look {
     HostTime at{};
     std::uint64_t written = 0;
-    double rate = 0.0;  // bytes/s over the five seconds before; 0: nobody had looked for so long
+    double rate = 0.0;  // bytes/s over the five seconds before; 0: no look is that old
   };
-  std::deque<Look> looks_;  // of the last half minute
-  double rate_ = 0.0;       // bytes/s
+  std::deque<Look> looks_;  // the looks of the last half minute
+  double rate_ = 0.0;       // bytes/s, the fastest of looks_
   std::optional<std::uint64_t> free_;
-  double warned_ = 1e9;  // at so many minutes
+  double warned_ = 1e9;  // minutes left at the last warning
 };
 
-/// "disk  12 h left at this rate, 120.5 GB; 34.2 MB in takes/03_S1A02_01.mcap": what may be cut off
-/// on a narrow terminal stands last. `bytes`: in the file.
+/// "disk  12 h left at this rate, 120.5 GB; 34.2 MB in takes/03_S1A02_01.mcap". The least important
+/// part stands last, since a narrow terminal cuts it off. `bytes`: written to the file.
 std::string disk_text(const DiskForecast& forecast, std::uint64_t bytes, const std::string& path);
 
 }  // namespace kinalign

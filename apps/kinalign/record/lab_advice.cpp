@@ -29,6 +29,7 @@ std::array<MarkFlag, 2> mark_flags(const Port& marks, const Port& trigger) {
   return {{{"marks", "--marks-port", marks}, {"trigger", "--trigger-port", trigger}}};
 }
 
+/// The device's port with the flag, or the key of the settings file, that states it.
 WantedPort wanted_by(const DeviceOptions& device, const LabSources& sources) {
   WantedPort wanted{static_cast<std::uint16_t>(device.port), "", "",
                     !is_datagrams(device.transport)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to do about a lab that can't be recorded as it is: where it is said otherwise.
+// Advice for a lab that can't be recorded as stated: it names the flag or file to change.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -13,24 +13,24 @@
 
 namespace kinalign {
 
-/// What is said of a lab, and where.
+/// The places that state the lab.
 struct LabSources {
-  std::string file;               // with tables [device.NAME]; empty: none
-  std::set<std::string> by_flag;  // devices that --device says where to find
+  std::string file;               // the file with tables [device.NAME]; empty: none
+  std::set<std::string> by_flag;  // devices that a --device flag states
 };
 
-/// Fails where a device's UDP port is one of those for marks: `marks`, `trigger` and, where they
-/// are absent or 0, none.
+/// Fails if a device's UDP port is also a port for marks. `marks`, `trigger`: those ports; absent
+/// or 0: no fixed port.
 Result<void> check_mark_ports(const Lab& lab, const std::optional<std::int64_t>& marks,
                               const std::optional<std::int64_t>& trigger);
 
-/// On a port of the lab's that could not be opened: an error that begins with the device's name,
+/// Advice for a port of the lab that could not be opened. The error's file is the device's name,
 /// "marks" or "trigger".
 Advice lab_port_advice(const Lab& lab, const LabSources& sources,
                        const std::optional<std::int64_t>& marks,
                        const std::optional<std::int64_t>& trigger);
 
-/// "skeleton of [device.mocap] in lab.toml names it": on a file that could not be read.
+/// "skeleton of [device.mocap] in lab.toml names it": for a file that could not be read.
 std::string named_by(const std::string& key, const DeviceOptions& device,
                      const LabSources& sources);
 

@@ -16,7 +16,7 @@ namespace kinalign {
 
 namespace {
 
-/// A sender in whose place another is heard is shown for so long.
+/// A silent sender that another sender of its device has replaced is shown for this time.
 constexpr Duration forgotten_after = std::chrono::seconds(30);
 
 enum Column : std::size_t {
@@ -35,10 +35,11 @@ enum Column : std::size_t {
 constexpr std::size_t columns = 11;
 using Cells = std::array<std::string, columns>;
 
-/// Where there is no room, what --json and the end say as well goes first.
+/// If the terminal is narrow, these columns are left out in this order: --json and the final lines
+/// state them too.
 constexpr std::array<Column, 7> worth_least{link, recorded, twice, late, drift, battery, offset};
 
-/// One line, not laid out: cells, or a text behind the device.
+/// One line before layout: cells, or the device and a text.
 struct Row {
   Cells cells;
   std::optional<std::string> text{};
@@ -50,7 +51,7 @@ Row head() {
            "recorded", "link"}};
 }
 
-/// Host minus device, and half the certified interval: "-1000.0031 s ± 1.04 ms".
+/// The clock offset (host minus device) and half the certified interval: "-1000.0031 s ± 1.04 ms".
 std::string offset_cell(const std::optional<SenderClock>& clock) {
   if (!clock) return "";
   if (!clock->half_interval) return "not locked";
@@ -63,15 +64,15 @@ std::string rate_cell(const StreamStatus& stream, double nominal_hz) {
   return nominal_hz > 0 ? fmt::format("{} of {:g}", hz, nominal_hz) : hz;
 }
 
-/// "0.1 s", "silent 12 s": to be told apart without colours, too.
+/// "0.1 s", "silent 12 s": readable without colours, too.
 std::string heard_cell(const StreamStatus& stream, HostTime now) {
   const double ago = seconds(now - stream.heard);
   return is_silent(stream, now) ? fmt::format("silent {:.0f} s", ago)
                                 : fmt::format("{:.1f} s", ago);
 }
 
-/// Whether another sender of the same device is heard: a program that was started again has
-/// another port. Nodes stand each for itself.
+/// True if another sender of the same device sends now: a program that was restarted has another
+/// port. Each node is a sender of its own.
 bool is_replaced(const StreamStatus& stream, const LabStatus& status) {
   return stream.node.empty() &&
          std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& other) {
@@ -79,6 +80,7 @@ bool is_replaced(const StreamStatus& stream, const LabStatus& status) {
          });
 }
 
+/// The cells of a sender's row.
 Cells cells_of(const StreamStatus& stream, const DeviceOptions& options, const LabStatus& status) {
   const auto clock = clock_of(stream, node_of(stream, status.nodes));
   const SequenceCounts& order = stream.counts.order;
@@ -108,6 +110,8 @@ void add_losses(const std::string& port, const LabStatus& status, std::vector<Ro
   }
 }
 
+/// Adds a row for each sender of a device, for each node or device that has sent nothing yet, and
+/// for losses at its port.
 void add_device(const DeviceOptions& options, const LabStatus& status, std::vector<Row>& rows) {
   for (const StreamStatus& stream : status.streams) {
     if (stream.stream != options.name) continue;
@@ -126,17 +130,18 @@ void add_device(const DeviceOptions& options, const LabStatus& status, std::vect
   add_losses(options.name, status, rows);
 }
 
-using Widths = std::array<std::size_t, columns>;  // of each column; 0: it is left out
+using Widths = std::array<std::size_t, columns>;  // width of each column; 0: left out
 
-/// While nobody is heard; a head would say nothing.
+/// True while no sender has a row; column heads would then head nothing.
 bool only_devices(const Widths& wide) {
   return std::all_of(wide.begin() + 1, wide.end(), [](std::size_t places) { return places == 0; });
 }
 
+/// The widths of the columns; the least important ones are dropped until the row fits.
 Widths widths_of(const std::vector<Row>& rows, std::size_t width) {
   Widths wide{};
   for (const Row& row : rows) {
-    if (&row == &rows.front()) continue;  // a head alone is no reason for a column
+    if (&row == &rows.front()) continue;  // a head alone needs no column
     for (std::size_t i = 0; i < columns; ++i) wide[i] = std::max(wide[i], places(row.cells[i]));
   }
   if (only_devices(wide)) return wide;
@@ -153,6 +158,7 @@ Widths widths_of(const std::vector<Row>& rows, std::size_t width) {
   return wide;
 }
 
+/// The row as text. A text behind the device takes the place of all other cells.
 std::string line_of(const Row& row, const Widths& wide) {
   std::string line;
   for (std::size_t i = 0; i < columns; ++i) {
@@ -166,7 +172,7 @@ std::string line_of(const Row& row, const Widths& wide) {
   return line;
 }
 
-/// The last line that is as bad as that, else none.
+/// The last line of that kind, `bad` or not, except the head; the end if there is none.
 std::vector<TableLine>::iterator last_of(std::vector<TableLine>& table, bool bad) {
   const auto found = std::find_if(table.rbegin(), table.rend(), [bad](const TableLine& line) {
     return !line.head && line.bad == bad;
@@ -192,7 +198,7 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::s
 
 std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows) {
   if (table.size() <= rows) return table;
-  if (rows < 3 && table.front().head) {  // of more worth than a head is what it stands above
+  if (rows < 3 && table.front().head) {  // the lines below a head are worth more than the head
     table.erase(table.begin());
     return fitted(std::move(table), rows);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table that `record` shows of a lab on a terminal. Pure.
+// The table about a lab that `record` shows on a terminal. Pure functions.
 #pragma once
 
 #include "apps/kinalign/text/record_text.h"
@@ -10,21 +10,21 @@
 
 namespace kinalign {
 
-/// A line of the table; `bad` lines are of what is missing and required, and of what is lost.
+/// A line of the table. `bad`: something required is missing, or something was lost.
 struct TableLine {
   std::string text;
   bool bad = false;
   bool head = false;
 };
 
-/// Head, where there is a column but the device's, and a line for each sender, each device of which
-/// nothing comes, and each port where something was lost before it could be recorded. Columns that
-/// nobody has anything for are left out, and of the others as many as do not fit into `width`
-/// places; what else is wider stays so.
+/// The table: a head if there are columns besides the device, and a line for each sender, each
+/// device that has sent nothing, and each port that lost data. Columns without a value are left
+/// out; then less important ones until the lines fit into `width` columns of the terminal. Lines
+/// that are still wider stay so.
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::size_t width);
 
-/// As much of a table as has room in so many rows: from below good lines are left out first, then
-/// bad ones, the head last; the last row then says how many.
+/// The table cut to `rows` lines. Good lines are left out first, from the bottom, then bad ones,
+/// the head last. The last line then states their number.
 std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows);
 
 }  // namespace kinalign

@@ -10,12 +10,12 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_text = 500;  // as of a call: docs/formats/marks.md
+constexpr std::size_t most_text = 500;  // the same limit as for a call: docs/formats/marks.md
 constexpr char escape = 0x1b, backspace = 0x08, del = 0x7f;
 
 bool is_enter(char key) { return key == '\n' || key == '\r'; }
 
-/// The last character, which may have several bytes.
+/// Removes the last character, which may have several bytes (UTF-8).
 void erase_last(std::string& text) {
   while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) {
     text.pop_back();
@@ -32,7 +32,7 @@ std::optional<Mark::Kind> kind_of(char key) {
 
 }  // namespace
 
-/// ECMA-48: Esc [, parameters below 0x40, a last character; Esc O and one character.
+/// ECMA-48: Esc [, parameters below 0x40, a last character; or Esc O and one character.
 std::string single_keys(std::string_view sent) {
   std::string keys;
   for (std::size_t i = 0; i < sent.size(); ++i) {
@@ -99,7 +99,7 @@ std::string Keyboard::read() {
   if (!fd() || ::poll(&waiting, 1, 0) <= 0) return {};
   std::array<char, 64> keys{};
   const ssize_t got = ::read(STDIN_FILENO, keys.data(), keys.size());
-  if (got <= 0) before_.reset();  // the terminal is gone
+  if (got <= 0) before_.reset();  // the terminal was closed
   return {keys.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))};
 }
 

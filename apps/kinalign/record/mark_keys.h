@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marks from the keyboard while a take is recorded: s start, e stop, t T-pose; Enter begins a text
-// and ends it, which is stamped when it was begun. Esc gives it up.
+// Marks from the keyboard while a take is recorded: s start, e stop, t T-pose. Enter begins a text
+// and ends it; the mark's stamp is that of the first Enter. Esc drops the text.
 #pragma once
 
 #include "kinalign/protocols/marks/mark.h"
@@ -17,14 +17,15 @@ namespace kinalign {
 inline constexpr const char* mark_keys_text =
     "s start  e stop  t T-pose  Enter a text  Ctrl-C ends";
 
-/// Of what a terminal sent at once the single keys: an arrow, say, is Esc and more, and none.
+/// The single keys among the bytes that a terminal sent. Keys that send several bytes, such as an
+/// arrow (Esc and more), are left out.
 std::string single_keys(std::string_view sent);
 
 class MarkKeys {
  public:
-  /// What a key that was pressed at `now` completes, and its stamp.
+  /// The mark that a key pressed at `now` completes, with its stamp; absent if it completes none.
   std::optional<std::pair<Mark, HostTime>> take(char key, HostTime now);
-  /// The text so far, while one is typed.
+  /// The text typed so far; absent if none is typed.
   std::optional<std::string> typed() const;
 
  private:
@@ -35,8 +36,8 @@ class MarkKeys {
   std::optional<Text> text_;
 };
 
-/// The keys of this program's terminal one by one, not shown. None where stdin is no terminal, or
-/// another program's at the moment.
+/// The keys of this program's terminal one by one, not echoed. No keys come if stdin is no
+/// terminal, or if another program is in its foreground.
 class Keyboard {
  public:
   Keyboard();
@@ -44,15 +45,15 @@ class Keyboard {
   Keyboard& operator=(const Keyboard&) = delete;
   ~Keyboard() { leave(); }
 
-  /// To wait for; absent: no keys come.
+  /// The descriptor to poll; absent: no keys come.
   std::optional<int> fd() const;
-  /// The terminal is as it was before, and no keys come any more.
+  /// Restores the terminal; no keys come any more.
   void leave();
-  /// What was pressed since.
+  /// The bytes since the last call.
   std::string read();
 
  private:
-  std::optional<termios> before_;  // to be restored
+  std::optional<termios> before_;  // the mode to be restored
 };
 
 }  // namespace kinalign

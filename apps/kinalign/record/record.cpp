@@ -22,9 +22,10 @@ namespace kinalign {
 
 namespace {
 
-// What waits for a slow disk, before the program grows.
+// Memory for messages that wait for a slow disk, taken before the recording begins.
 constexpr std::size_t waiting_room = std::size_t{16} << 20;
 
+/// The command line of `kinalign record`, with the checks that need several flags.
 Usage describe_record(RecordJob& o) {
   Usage usage;
   usage.flags = {
@@ -58,7 +59,7 @@ Usage describe_record(RecordJob& o) {
     if (o.repeat && !o.wait) {
       return Failure(Error{"--repeat", 0, "--wait beside it: takes need a start", "none"});
     }
-    RecordJob flags = o;  // ports of marks are looked at beside the file's devices, too
+    RecordJob flags = o;  // ports of marks are checked later, together with the devices of the file
     flags.marks_port.reset();
     flags.trigger_port.reset();
     KA_TRY(lab_of(flags, {}));
@@ -67,7 +68,7 @@ Usage describe_record(RecordJob& o) {
   return usage;
 }
 
-/// With those that it is in.
+/// Makes the folder and its parent folders.
 Result<void> make_folder(const std::string& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
@@ -76,13 +77,13 @@ Result<void> make_folder(const std::string& folder) {
   return Failure(Error{folder, 0, "a folder for the files", why});
 }
 
-/// Of a disk that stands still, and with which somebody has lost patience. Its threads work on with
-/// what main() has made, so nothing of that may end before the process does.
+/// Ends the process while the disk does not answer and the user has given up. The disk's threads
+/// still use the objects of main(), so the process ends without destroying them.
 [[noreturn]] void leave(Call& call, RecordingSession& session, Stage& stage,
                         std::shared_ptr<SessionTake> take) {
   for (; take; take = session.next_take()) {
     const DiskStatus disk = take->disk.status();
-    if (disk.finished && !disk.refused) continue;  // the disk has all of it
+    if (disk.finished && !disk.refused) continue;  // the whole take is on the disk
     const auto& paths = disk.paths;
     call.console.report(Error{paths.empty() ? call.common.out : paths.front(), 0,
                               paths.empty() ? "a disk that begins the take's file"
@@ -94,7 +95,7 @@ Result<void> make_folder(const std::string& folder) {
   std::_Exit(failed);
 }
 
-/// Whether the disk has all of a take, as an exit code.
+/// The exit code of a take: 0 if all of it is on the disk and nothing was wrong.
 int written(const SessionTake& take, Call& call, RecordHerald& herald) {
   const DiskStatus disk = take.disk.status();
   const bool warned = herald.take_warned();
@@ -106,7 +107,7 @@ int written(const SessionTake& take, Call& call, RecordHerald& herald) {
   return whole && herald.unheard_required().empty() && !warned ? 0 : 1;
 }
 
-/// A take: whether nothing of it is amiss, as an exit code.
+/// Records one take and returns its exit code.
 int record_take(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage,
                 const std::shared_ptr<SessionTake>& take) {
   RecordHerald& herald = stage.herald();
@@ -131,7 +132,7 @@ int record_take(const RecordJob& o, Call& call, RecordingSession& session, Stage
   return written(*take, call, herald);
 }
 
-/// What --repeat ends with: which of the takes have something amiss, as was told of each.
+/// The last line of --repeat: the number of takes, and the takes whose exit code was not 0.
 void tell_takes(Console& console, std::size_t takes, std::vector<std::string> amiss, int worst) {
   constexpr std::size_t most_named = 8;
   std::string text = fmt::format("kinalign record: {} take{}", takes, takes == 1 ? "" : "s");
@@ -147,10 +148,11 @@ void tell_takes(Console& console, std::size_t takes, std::vector<std::string> am
   console.note(harmless(text));
 }
 
-/// One take, or with --repeat one after another. The worst exit code of all.
+/// Records one take, or with --repeat one after another. Returns the worst exit code.
 int record_takes(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage) {
   const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
-    (void)make_folder(folder);  // somebody may have removed it; what it lacks, the file will say
+    (void)make_folder(folder);  // the folder may have been removed; if it can't be made, opening
+                                // the file fails
     return free_take_path(folder, subject, action);
   };
   const TakePlan plan{free_path, o.subject, o.action};
@@ -179,6 +181,8 @@ int record_takes(const RecordJob& o, Call& call, RecordingSession& session, Stag
   return 1;
 }
 
+/// Records until the end. From its beginning on signals are only noted, so that Ctrl-C ends
+/// a recording in order.
 Result<int> run(RecordJob& o, Call& call) {
   Console& console = call.console;
   console.never_wait();
@@ -196,12 +200,13 @@ Result<int> run(RecordJob& o, Call& call) {
   Stage stage(*session, herald, o.seconds);
   const int code = record_takes(o, call, *session, stage);
   session->end_live();
-  take_signals();  // nothing has to be closed in order any more
+  take_signals();  // from here on a signal may end the program at once
   return code;
 }
 
 }  // namespace
 
+/// The verb `kinalign record`.
 Verb record_verb() {
   return make_verb<RecordJob>(
       {.name = "record",

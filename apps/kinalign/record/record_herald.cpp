@@ -40,7 +40,7 @@ std::string ports_text(const RecordingSession& session) {
   return text;
 }
 
-/// The event's members that say where devices are heard, and where clients get them live.
+/// Adds the ports of devices and of live clients to an event.
 Json with_ports(Json event, const RecordingSession& session) {
   event["ports"] = ports_of(session);
   if (session.live() != nullptr) event["live_port"] = session.live()->port();
@@ -54,14 +54,15 @@ void add_live(const RecordingSession& session, Json& event) {
       {"clients", counts.clients}, {"turned_away", counts.turned_away}, {"lost", counts.lost}};
 }
 
-/// Empty: no client lost anything.
+/// The line about messages that slow clients did not get. Empty if no client lost any.
 std::string live_line(const RecordingSession& session) {
   if (session.live() == nullptr || session.live()->counts().lost == 0) return "";
   return fmt::format("  live: slow clients did not get {} messages\n",
                      grouped(session.live()->counts().lost));
 }
 
-/// The first one ends recording, where it goes on.
+/// The keys that give up waiting. `ends`: recording ends anyway; else the first Ctrl-C only ends
+/// it.
 std::string_view to_give_up(bool ends) { return ends ? "another Ctrl-C" : "Ctrl-C pressed twice"; }
 
 }  // namespace
@@ -85,7 +86,8 @@ LabStatus RecordHerald::lab_status() const {
   return status;
 }
 
-/// Of the take: what came while its rest was written is the next one's.
+/// The status at the end of the take. Data that came while the rest was written belongs to the next
+/// take.
 LabStatus RecordHerald::status_at_end() const {
   const TakeEnd& end = *take_->end;
   return {end.at, begun_, end.streams, end.nodes, end.ports};
@@ -120,6 +122,7 @@ void RecordHerald::tell(const HeardMark& heard) {
   console_.flush();
 }
 
+/// Prints marks at once, news ten times a second, and the status and the table once a second.
 void RecordHerald::look(const std::optional<std::string>& typed) {
   if (!ports_told_) return;
   for (const HeardMark& heard : session_.take_marks()) tell(heard);
@@ -141,7 +144,7 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
   show(status, typed);
 }
 
-/// Each as soon as it is there, once.
+/// Reports each event once, as soon as it is known.
 void RecordHerald::tell_news() {
   for (SessionTake* take : {take_.get(), session_.newest_take().get()}) {
     if (take == nullptr) continue;
@@ -152,7 +155,8 @@ void RecordHerald::tell_news() {
   if (NodeReceiver* nodes = session_.nodes()) tell_news_of(*nodes);
 }
 
-/// Who falls silent and who comes back is told of all devices alike: tell_who_is_silent().
+/// Silent and returned nodes are left out here: tell_who_is_silent() reports them for all devices
+/// alike.
 void RecordHerald::tell_news_of(NodeReceiver& nodes) {
   using Kind = NodeEvent::Kind;
   for (const NodeEvent& event : nodes.take_node_events()) {
@@ -168,7 +172,7 @@ void RecordHerald::tell_news_of(NodeReceiver& nodes) {
   for (const std::string& line : clock_news_.lines(now)) console_.note(line);
 }
 
-/// At once, and then each time that it has doubled.
+/// Reports lost messages at once, and then each time the number has doubled.
 void RecordHerald::tell_dropped(std::uint64_t dropped) {
   if (dropped == 0 || dropped < 2 * dropped_told_) return;
   dropped_told_ = dropped;
@@ -179,6 +183,8 @@ void RecordHerald::tell_dropped(std::uint64_t dropped) {
   console_.ring();
 }
 
+/// Updates the forecast of the disk, ends the take if the disk is full, and warns before. Bytes
+/// that still wait in memory count as written.
 void RecordHerald::look_at_disk(HostTime now) {
   const auto& newest = session_.newest_take();
   if (watched_.lock() != newest) {
@@ -205,7 +211,7 @@ void RecordHerald::look_at_disk(HostTime now) {
   }
 }
 
-/// Once, when devices had time to come.
+/// Reports devices that have sent nothing, once, 5 s after the start.
 void RecordHerald::tell_who_lacks(const LabStatus& status) {
   if (status.now - status.begun < 5s || std::exchange(lacks_told_, true)) return;
   const auto ports = session_.ports();
@@ -215,7 +221,7 @@ void RecordHerald::tell_who_lacks(const LabStatus& status) {
   }
 }
 
-/// Each that falls silent, with a bell, or comes back.
+/// Reports each sender that falls silent, with a bell, or comes back.
 void RecordHerald::tell_who_is_silent(const LabStatus& status) {
   for (const auto& [stream, silent] : silence_news_.changes(status)) {
     if (silent) console_.ring();
@@ -231,7 +237,7 @@ void RecordHerald::tell_who_is_silent(const LabStatus& status) {
 
 void RecordHerald::tell(const Finding& finding) {
   std::string lines = finding_lines({finding}, console_);
-  lines.pop_back();  // the line end, which complain() has
+  lines.pop_back();  // complain() adds the line end
   console_.complain(lines);
   warned_ = warned_ || finding.severity != Severity::note;
   console_.print_json(json_text(Json{{"event", "finding"},
@@ -286,6 +292,7 @@ void RecordHerald::tell_never_begun(const DiskStatus& disk) {
   console_.print_json(json_text(Json{{"event", "never_begun"}, {"dropped", disk.dropped}}));
 }
 
+/// The event "status" for programs.
 void RecordHerald::tell_status(const LabStatus& status) {
   Json event{{"event", "status"}};
   if (const auto& take = session_.newest_take()) {
@@ -308,6 +315,7 @@ void RecordHerald::tell_status(const LabStatus& status) {
   console_.print_json(json_text(event));
 }
 
+/// The line about the disk, or what recording waits for.
 std::string RecordHerald::disk_line() const {
   if (take_ && take_->end) {
     const DiskStatus ended = take_->disk.status();
@@ -321,9 +329,10 @@ std::string RecordHerald::disk_line() const {
   return disk_text(forecast_, disk.bytes, disk.paths.back());
 }
 
+/// Draws the table with the disk's line and the line of keys below it.
 void RecordHerald::show(const LabStatus& status, const std::optional<std::string>& typed) {
   if (!console_.shows()) return;
-  constexpr std::size_t below = 2;  // the disk's line and the keys'
+  constexpr std::size_t below = 2;  // the disk's line and the line of keys
   std::vector<std::pair<std::string, Colour>> lines;
   const std::size_t rows = console_.rows() - std::min(below, console_.rows());
   for (const TableLine& line :
@@ -336,6 +345,7 @@ void RecordHerald::show(const LabStatus& status, const std::optional<std::string
   console_.show(lines);
 }
 
+/// Prints the end of a take: files, losses, senders, ports and refused nodes.
 void RecordHerald::tell_end() {
   tell_news();
   const LabStatus status = status_at_end();

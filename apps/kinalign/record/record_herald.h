@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells what happens while a lab is recorded: a table on a terminal, lines of JSON for programs.
+// Reports on a recording while it runs: a table on a terminal, lines of JSON for programs.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -22,38 +22,38 @@ namespace kinalign {
 class NodeReceiver;
 class RecordingSession;
 
+/// Reports what a RecordingSession does. The session calls nothing here; look() polls it.
 class RecordHerald {
  public:
   RecordHerald(RecordingSession& session, Console& console);
 
-  /// Ports are open, and a start is waited for.
+  /// The ports are open, and the session waits for a start.
   void tell_waiting();
-  /// The take that is told of from now on.
+  /// The take that is reported from now on.
   void follow(std::shared_ptr<SessionTake> take);
   void tell_start(const std::string& path);
-  /// Asked after each turn, it tells of marks at once and looks ten times a second at all else, as
-  /// soon as it has told what it waits for or that a take has begun. `typed`: a text that is being
-  /// typed.
+  /// Called after each turn. Reports marks at once and everything else ten times a second, once
+  /// tell_waiting() or tell_start() was called. `typed`: the text that is being typed.
   void look(const std::optional<std::string>& typed);
   /// The disk failed, or does not begin a take's file.
   void tell(const PartFailure& failure);
-  /// The disk does not take the end of a take. `ends`: no other is to come, so that one Ctrl-C is
-  /// enough to give it up.
+  /// The disk refuses the end of a take. `ends`: no further take will come, so a single Ctrl-C
+  /// gives it up.
   void tell_refused(const Error& why, bool ends);
-  /// Nor does it refuse it: so many bytes wait.
+  /// The disk neither takes nor refuses the end of a take; `waiting_bytes` wait.
   void tell_slow(std::uint64_t waiting_bytes, bool ends);
-  /// Nor does it begin its file.
+  /// The disk does not begin a take's file.
   void tell_slow_begin();
-  /// A take is given up before it had a file.
+  /// The take was given up before it had a file.
   void tell_never_begun(const DiskStatus& disk);
   /// The take is over and written.
   void tell_end();
 
-  /// The disk has nothing left but its reserve: the take has to end.
+  /// The disk has only its reserve left: the take has to end.
   bool disk_full() const { return disk_full_; }
-  /// Something of what devices send can't be used, and was told since this was asked last.
+  /// True if a warning about unusable data was reported since the last call.
   bool take_warned() { return std::exchange(warned_, false); }
-  /// Required devices and nodes of which nothing came in the take that is over.
+  /// The required devices and nodes from which nothing came in the take that is over.
   std::vector<std::string> unheard_required() const;
 
  private:
@@ -75,8 +75,9 @@ class RecordHerald {
   RecordingSession& session_;
   Console& console_;
   NodeNames names_;
-  std::shared_ptr<SessionTake> take_;         // nullptr: none has begun
-  std::weak_ptr<const SessionTake> watched_;  // the newest, for which both that follow are
+  std::shared_ptr<SessionTake> take_;         // nullptr before the first take
+  std::weak_ptr<const SessionTake> watched_;  // the newest take; dropped_told_ and forecast_ belong
+                                              // to it
   std::uint64_t dropped_told_ = 0;
   DiskForecast forecast_;
   ClockNews clock_news_;

@@ -23,7 +23,8 @@ namespace kinalign {
 
 namespace {
 
-/// Of a lab that can't be recorded as it is said. What a flag is blamed for may stand in a file.
+/// Refuses a lab that can't be recorded as stated. An error about a flag may be about the same
+/// setting in a file; then it names the file and line.
 Failure refuse_lab(Error error, Call& call) {
   for (const char* name : {"marks_port", "trigger_port"}) {
     if (error.file != flag_of(name)) continue;
@@ -40,11 +41,12 @@ Failure refuse_lab(Error error, Call& call) {
   return refused;
 }
 
-/// A file of settings that says which devices there are; of others nothing.
+/// The settings file if it has devices; without devices the text is empty.
 struct LabFile {
   std::string text;
   std::vector<DeviceOptions> devices;
 };
+/// Reads the project's settings file, if there is one. Faults in its devices are wrong use.
 Result<LabFile> read_lab_file(Call& call) {
   constexpr std::size_t most_bytes = std::size_t{1} << 20;
   const std::string path = project_settings(call.surroundings, call.common.config);
@@ -74,8 +76,8 @@ std::string without_skeleton(const std::string& device) {
       device, toml_key(device));
 }
 
-/// Of the nodes' device, unless a flag or setting names another. `named`: what does, where that is
-/// the device.
+/// Reads the lab's key. The key of the nodes' device counts unless a flag or setting names another.
+/// `named`: the device's key of the settings file for the error; empty for a flag.
 Result<void> read_key(Call& call, const std::string& path, const std::string& named,
                       RecordingSession::Options& options) {
   call.console.if_it_fails([named](const Error& error) {
@@ -96,7 +98,7 @@ Result<void> read_skeleton(Call& call, const DeviceOptions& device, const std::s
   return {};
 }
 
-/// The files that the devices need beside lab.toml.
+/// Reads the files that the devices need besides lab.toml.
 Result<void> read_files(const RecordJob& job, Call& call, RecordingSession::Options& options) {
   const LabSources sources = sources_of(job, call);
   if (!job.lab_key.empty()) KA_TRY(read_key(call, job.lab_key, "", options));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is to be recorded: the flags of `record` and the lab's file become a session's options.
+// Turns the flags of `record` and the lab's file into the options of a session.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -24,13 +24,15 @@ struct RecordJob {
   RecordOptions options;
 };
 
-/// What --device says, over the devices of a lab.toml.
+/// The lab of the devices in a lab.toml. --device changes where the data of a device comes from, or
+/// adds a device.
 Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file);
 
-/// Where the lab that is to be recorded is said.
+/// The files and flags that state the lab.
 LabSources sources_of(const RecordJob& job, const Call& call);
 
-/// With all files read that the devices need. What is wrong with the lab the console refuses.
+/// The options with all files read that the devices need. Problems of the lab are refused by the
+/// console (exit code 2).
 Result<RecordingSession::Options> session_options(const RecordJob& job, Call& call);
 
 }  // namespace kinalign

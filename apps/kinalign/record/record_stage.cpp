@@ -11,12 +11,13 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr Duration one_turn = 50ms;
-constexpr Duration waiting_turn = 5ms;  // for the disk
+constexpr Duration one_turn = 50ms;     // how long a turn waits for data
+constexpr Duration waiting_turn = 5ms;  // the same while the disk is waited for
 
 }  // namespace
 
-/// What comes within that time. Whether to go on.
+/// One turn: receives for at most that time, handles keys and Ctrl-C, reports. False: recording
+/// ends.
 bool Stage::turn(Duration patience) {
   session_.turn(patience, keyboard_.fd());
   for (const char key : single_keys(keyboard_.read())) {
@@ -34,6 +35,7 @@ bool Stage::turn(Duration patience) {
   return !ends();
 }
 
+/// Ends the take when its seconds are over or recording ends.
 void Stage::end_what_is_over() {
   if (ends()) session_.obey_no_start();
   if (!session_.recording()) return;
@@ -50,6 +52,8 @@ std::shared_ptr<SessionTake> Stage::next_take() {
   return take;
 }
 
+/// Waits until the take's file is begun. A refusal is reported; without `tries_again` it ends the
+/// take.
 void Stage::begin(SessionTake& take, bool tries_again) {
   const HostTime begun = session_.now();
   bool slow = false, refused = false;
@@ -73,13 +77,13 @@ void Stage::record(SessionTake& take) {
   while (!take.end) turn(one_turn);
 }
 
-/// What the disk refuses is tried again for half a minute: somebody may make room. Devices go on
-/// meanwhile, and so do keys, what is told, and the next take. False: it does not even refuse, and
-/// somebody has lost patience: with another Ctrl-C after that was told.
+/// Waits until the rest of a take is written. A refused write is tried again for 30 s, since the
+/// user may make room. Receiving, keys, reports and the next take go on meanwhile. False: the disk
+/// neither writes nor refuses, and the user gave up with another Ctrl-C after that was reported.
 bool Stage::write_rest(SessionTake& take) {
   const HostTime begun = session_.now();
   std::optional<HostTime> refused;
-  bool slow = false;  // and told to be
+  bool slow = false;  // reported as slow
   for (DiskStatus disk = take.disk.status(); !disk.finished; disk = take.disk.status()) {
     const HostTime now = session_.now();
     if (disk.refused && !refused) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices, keyboard and marks while takes are awaited and recorded. Takes are told of one after
-// another, also where the next one began while the disk still wrote the end of the last.
+// Runs the session while takes are awaited and recorded. Takes are reported one after another, even
+// if the next one began while the disk still wrote the end of the last.
 #pragma once
 
 #include "apps/kinalign/record/mark_keys.h"
@@ -13,29 +13,30 @@ namespace kinalign {
 
 class Stage {
  public:
-  /// `seconds`: each take ends by itself after so long.
+  /// `seconds`: each take ends after this time, s.
   Stage(RecordingSession& session, RecordHerald& herald, std::optional<double> seconds)
       : session_(session), herald_(herald), seconds_(seconds) {}
 
-  /// Waits for a take to begin; nullptr: somebody ended it first.
+  /// Waits for a take to begin. nullptr: recording ended first.
   std::shared_ptr<SessionTake> next_take();
 
-  /// Until its file is begun or given up, or the take has ended without one; what comes meanwhile
-  /// is in it. `tries_again`: what the disk refuses is told, and tried until somebody ends it.
+  /// Waits until the take's file is begun or given up, or the take has ended without one. Data that
+  /// comes meanwhile is in the take. `tries_again`: a refusal of the disk is reported, and the file
+  /// is tried until the user ends it.
   void begin(SessionTake& take, bool tries_again);
 
-  /// Until a mark, its length, somebody or a full disk has ended it.
+  /// Records until a mark, the take's length, the user or a full disk ends the take.
   void record(SessionTake& take);
 
-  /// Until all of one that has ended is written or given up. False: the disk stands still, and
-  /// somebody has lost patience with it; then nothing may wait for it.
+  /// Waits until the whole ended take is written or given up. False: the disk does not answer and
+  /// the user gave up; then nothing may wait for the disk.
   bool write_rest(SessionTake& take);
 
-  /// No take is to begin any more.
+  /// No further take begins.
   void end() { ends_ = true; }
 
   RecordHerald& herald() { return herald_; }
-  /// Its program ends without ending it: the terminal is as it was before.
+  /// Restores the terminal before the process ends without destructors.
   void leave() { keyboard_.leave(); }
 
  private:
@@ -49,7 +50,7 @@ class Stage {
   Keyboard keyboard_;
   MarkKeys keys_;
   bool ends_ = false;
-  bool pressed_again_ = false;  // Ctrl-C, where it had ended before
+  bool pressed_again_ = false;  // another Ctrl-C after the one that ended recording
 };
 
 }  // namespace kinalign

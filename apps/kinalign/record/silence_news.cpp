@@ -14,7 +14,7 @@ std::string key_of(const StreamStatus& stream) {
   return name_of(stream) + " from " + stream.sender;
 }
 
-/// By the stream's name: the key of who said most.
+/// The key of the sender with the most messages, by the stream's name.
 std::map<std::string, std::string> loudest_of(const std::vector<StreamStatus>& streams) {
   std::map<std::string, const StreamStatus*> loudest;
   for (const StreamStatus& stream : streams) {

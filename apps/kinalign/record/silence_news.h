@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who falls silent while a lab is recorded, and who comes back: each told once.
+// Reports senders that fall silent or come back, each change once.
 #pragma once
 
 #include "apps/kinalign/text/record_text.h"
@@ -15,14 +15,14 @@ class SilenceNews {
   struct Change {
     StreamStatus stream;
     bool silent = false;  // else it is back
-  };
-  /// Since this was asked last. Anybody's datagram or two on a device's port make no sender whose
-  /// silence is told: of those who said little, that one alone who said most of the stream.
+  };                      // false: it is back
+  /// The changes since the last call. A stray datagram or two on a device's port make no sender
+  /// whose silence matters: among senders with few messages only the one with the most counts.
   std::vector<Change> changes(const LabStatus& status);
 
  private:
-  std::set<std::string> known_;   // who once said more than a little
-  std::set<std::string> silent_;  // who was told to be
+  std::set<std::string> known_;   // senders that once had more than a few messages
+  std::set<std::string> silent_;  // senders reported as silent
 };
 
 }  // namespace kinalign

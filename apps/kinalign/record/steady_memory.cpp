@@ -8,16 +8,17 @@
 
 namespace kinalign {
 
-// mallopt(3). One arena: memory that one thread frees serves the others, too.
+// mallopt(3). With one arena, memory that one thread frees serves the others, too.
 void keep_memory(std::size_t bytes) {
-  constexpr int largest_mapped = 32 << 20;  // glibc takes no more: below, all comes from the heap
+  constexpr int largest_mapped = 32 << 20;  // the largest value glibc accepts; smaller blocks come
+                                            // from the heap
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, largest_mapped);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   const std::unique_ptr<void, decltype(&std::free)> room(std::malloc(bytes), &std::free);
   if (room == nullptr) return;
   std::memset(room.get(), 1, bytes);
-  // Or the compiler sees that nobody reads it.
+  // Without this the compiler may remove the memset, whose result is never read.
   asm volatile("" : : "r"(room.get()) : "memory");
 }
 

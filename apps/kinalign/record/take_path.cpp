@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-/// What of a text may stand in a file's name.
+/// The text with every character that may not stand in a file's name replaced by '-'.
 std::string in_name(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -21,7 +21,8 @@ std::string in_name(const std::string& text) {
   return out;
 }
 
-/// "take_01" of "take_01.part2.mcap". A folder that can't be listed has none.
+/// The names of takes that have further parts: "take_01" for "take_01.part2.mcap". Empty if the
+/// folder can't be listed.
 std::set<std::string> names_with_parts(const std::string& folder) {
   std::set<std::string> names;
   std::error_code fault;

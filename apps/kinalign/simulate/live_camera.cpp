@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 122 of the seed: by the frame's number, lane 0 how long the sender's program takes; a seed
-// mixed with 122 has its clock.
+// Stream 122 of the seed draws the delay of the sender's program: counter the frame's number, lane
+// 0. A seed mixed with 122 draws the sender's clock.
 #include "apps/kinalign/simulate/live_camera.h"
 
 #include "apps/kinalign/simulate/live_suit.h"
@@ -17,10 +17,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration hello_period = 1s, ping_period = 200ms;
-constexpr std::uint64_t body_id = 72'057'594'037'927'936 + 1;  // of the SDK's size: above 2^53
+constexpr Duration hello_period = 1s, ping_period = 200ms;     // docs/formats/kinect_stream.md
+constexpr std::uint64_t body_id = 72'057'594'037'927'936 + 1;  // above 2^53, as the SDK's ids
 
-/// What the sensor saw; nobody, where no joint was found.
+/// The body that the sensor saw; absent if no joint was found.
 std::optional<KinectBody> body_of(const PointFrames& frames, std::size_t frame) {
   KinectBody body;
   body.id = body_id;
@@ -69,12 +69,14 @@ HostTime LiveCamera::next() const {
   return next;
 }
 
+/// The time at which the next frame is sent: its measurement and the delay of the program.
 HostTime LiveCamera::frame_due() const {
   if (frame_ >= rehearsal_.ticks.size()) return HostTime::max();
   const double s = rehearsal_.ticks[frame_].seconds + program_delay_s(random_, frame_);
   return start_ + Duration{static_cast<std::int64_t>(s * 1e9)};
 }
 
+/// Takes the pongs; the next ping echoes the latest one.
 void LiveCamera::hear() {
   std::array<std::uint8_t, 64> room{};  // a pong has 36 bytes
   for (std::size_t size = socket_.receive(room); size > 0; size = socket_.receive(room)) {
@@ -88,6 +90,7 @@ void LiveCamera::hear() {
   }
 }
 
+/// Sends the next frame; without a body if none was seen.
 void LiveCamera::send_frame() {
   const KinectTick& tick = rehearsal_.ticks[frame_];
   KinectFrame frame;

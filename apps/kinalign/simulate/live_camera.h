@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kinect's sender that sends live: docs/formats/kinect_stream.md, binary, over UDP, with a clock
-// of its own beside the sensor's.
+// The sender of a Kinect, live: docs/formats/kinect_stream.md, binary, over UDP. It has a clock of
+// its own besides the sensor's.
 #pragma once
 
 #include "apps/kinalign/simulate/live_socket.h"
@@ -17,8 +17,8 @@ namespace kinalign {
 struct LiveCameraOptions {
   std::uint64_t seed = 1;
   std::uint32_t session = 0;
-  HostTime start{};       // of time 0 of the motion
-  double length_s = 0.0;  // of the motion
+  HostTime start{};       // time 0 of the motion
+  double length_s = 0.0;  // the motion's, s
 };
 
 class LiveCamera {
@@ -26,12 +26,14 @@ class LiveCamera {
   LiveCamera(const Rehearsal& rehearsal, const LiveCameraOptions& options, ClockReader& clock,
              LiveSocket socket);
 
-  /// Hears pongs, and sends the frames, hellos and pings that are due.
+  /// Takes pongs, and sends the frames, hellos and pings that are due.
   void work();
+  /// The time of the next frame, hello or ping.
   HostTime next() const;
   int fd() const { return socket_.fd(); }
   std::uint64_t sent() const { return sent_; }  // frames
   LiveTraffic traffic() { return socket_.traffic(); }
+  /// The longest delay of a frame by this machine.
   Duration worst_late() const { return worst_late_; }
 
  private:

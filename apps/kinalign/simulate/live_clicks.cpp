@@ -24,7 +24,8 @@ LiveClicks::LiveClicks(const MocapRun& mocap, std::uint64_t run, HostTime start,
   add(Mark::Kind::stop, id + "-stop", start + click_time(mocap.stop_click_s));
 }
 
-/// Twice, as docs/formats/marks.md advises: a lost datagram costs the mark, a repeat nothing.
+/// Adds the call twice, as docs/formats/marks.md advises: a lost datagram would cost the mark, and
+/// a repeat is ignored.
 void LiveClicks::add(Mark::Kind kind, const std::string& id, HostTime at) {
   const std::string text = encode_mark_call({kind, "", click_time(click_latency_s), id});
   calls_.push_back({at, text});

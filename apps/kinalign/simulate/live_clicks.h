@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who clicks on a suit's program, live: each click is told to the recorder as a mark, as a program
-// that controls the lab would.
+// The clicks on a suit's program, live: each click is sent to the recorder as a mark, like from a
+// program that controls the lab.
 #pragma once
 
 #include "apps/kinalign/simulate/live_socket.h"
@@ -16,10 +16,10 @@ namespace kinalign {
 
 class LiveClicks {
  public:
-  /// `run`: another in each run, so that its marks are not taken for an earlier one's.
+  /// `run`: differs in each run, so that its marks are not taken for repeats of an earlier run's.
   LiveClicks(const MocapRun& mocap, std::uint64_t run, HostTime start, LiveSocket socket);
 
-  /// Sends what is due, and takes what is answered. Whether anybody hears it is his own affair.
+  /// Sends the calls that are due, and takes the answers, which are only counted.
   void work(HostTime now);
   LiveTraffic traffic() { return socket_.traffic(); }
   HostTime next() const { return sent_ < calls_.size() ? calls_[sent_].at : HostTime::max(); }
@@ -32,7 +32,7 @@ class LiveClicks {
   void add(Mark::Kind kind, const std::string& id, HostTime at);
 
   LiveSocket socket_;
-  std::vector<Call> calls_;  // in their order
+  std::vector<Call> calls_;  // in the order of their times
   std::size_t sent_ = 0;
 };
 

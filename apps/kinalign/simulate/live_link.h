@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One way of a simulated link: datagrams wait in it until they arrive, or are lost.
+// One direction of a simulated link: datagrams wait in it until they arrive, or are lost.
 #pragma once
 
 #include "kinalign/simulate/nodes/packet_fates.h"
@@ -26,14 +26,14 @@ class LiveLink {
       }
     }
   }
-  /// The earliest of those that have arrived by now.
+  /// The earliest datagram that has arrived by `now`; absent if there is none.
   std::optional<std::vector<std::uint8_t>> take(HostTime now) {
     if (waiting_.empty() || waiting_.top().at > now) return std::nullopt;
     auto datagram = waiting_.top().datagram;
     waiting_.pop();
     return datagram;
   }
-  /// When the next one arrives.
+  /// The arrival of the next datagram.
   HostTime next() const { return waiting_.empty() ? HostTime::max() : waiting_.top().at; }
 
  private:

@@ -19,6 +19,7 @@ NodeSettings settings_of(const LiveNodeOptions& options) {
 
 }  // namespace
 
+/// A clockless node sends each sample in a request of its own; both kinds run the firmware's logic.
 LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, ClockReader& clock,
                    LiveSocket socket)
     : samples_(node),
@@ -35,6 +36,9 @@ LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, Cl
   }
 }
 
+/// Runs the node: arrived datagrams, due samples, the firmware's poll, and datagrams at the end of
+/// the link. While a sample is taken, counter_us() gives the sample's own time, so waking up late
+/// does not shift it.
 void LiveNode::work() {
   std::array<std::uint8_t, max_node_datagram> room{};
   while (const std::size_t size = socket_.receive(room)) {
@@ -54,6 +58,7 @@ void LiveNode::work() {
   while (const auto datagram = up_.take(clock_.raw())) (void)socket_.send(*datagram);
 }
 
+/// The earliest time at which work() has something to do.
 HostTime LiveNode::next() const {
   const std::uint64_t now_us = counter_at(clock_.raw());
   HostTime next = std::min(up_.next(), down_.next());
@@ -66,6 +71,7 @@ HostTime LiveNode::next() const {
   return next;
 }
 
+/// The counts of either kind of node. A request of a clockless node has one sample.
 LiveNodeCounts LiveNode::counts() {
   LiveNodeCounts counts;
   if (auto* counting = std::get_if<Node>(&node_)) {
@@ -85,7 +91,7 @@ std::uint64_t LiveNode::counter_at(HostTime t) const {
   return static_cast<std::uint64_t>(counter_.reading(seconds(t - start_)) * 1e6);
 }
 
-/// Not before the counter stands there.
+/// The host's time of a counter value, with 1 us added, so that the counter has reached it.
 HostTime LiveNode::host_at(std::uint64_t counter_us) const {
   const double s = counter_.host(static_cast<double>(counter_us) * 1e-6);
   return start_ + Duration{static_cast<std::int64_t>(s * 1e9) + 1000};

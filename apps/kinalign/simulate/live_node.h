@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node that is sent live: the firmware's own logic (firmware/node) over samples that were made
-// beforehand, a counter made of the host's clock, and a radio both ways. Samples are taken at the
-// very instants for which they were made, however late this program wakes up: on a board a timer
+// A live node: the firmware's own logic (firmware/node) with samples made beforehand, a counter
+// made of the host's clock, and a radio in both directions. Each sample has exactly the time for
+// which it was made, however late this program wakes up: on a board a timer of higher priority
+// takes the samples.
 // of higher priority takes them.
 #pragma once
 
@@ -20,15 +21,15 @@ namespace kinalign {
 struct LiveNodeOptions {
   std::uint32_t id = 1, boot_id = 1;
   Link link = Link::paper;
-  bool clockless = false;  // no counter: each sample in a request of its own (wire/clockless.h)
-  HostTime start{};        // of time 0 of the motion
-  double length_s = 0.0;   // of the motion
+  bool clockless = false;  // no counter: a request for each sample (wire/clockless.h)
+  HostTime start{};        // time 0 of the motion
+  double length_s = 0.0;   // the motion's, s
 };
 
-/// Of either kind of node.
+/// The counts of either kind of node.
 struct LiveNodeCounts {
-  std::uint64_t sent = 0, samples = 0;  // frames or requests, and what was in them
-  std::uint64_t answered = 0;           // by the host, as far as it reached the node
+  std::uint64_t sent = 0, samples = 0;  // frames or requests, and the samples in them
+  std::uint64_t answered = 0;           // answers of the host that reached the node
 };
 
 class LiveNode final : public Board {
@@ -39,9 +40,9 @@ class LiveNode final : public Board {
   LiveNode& operator=(const LiveNode&) = delete;
   ~LiveNode() = default;
 
-  /// All that is due.
+  /// Does everything that is due.
   void work();
-  /// When something is due, should no datagram arrive.
+  /// The time of the next work, if no datagram arrives before.
   HostTime next() const;
   int fd() const { return socket_.fd(); }
   LiveNodeCounts counts();
@@ -53,7 +54,7 @@ class LiveNode final : public Board {
   bool receive(std::span<std::uint8_t> room, std::size_t& size) override;
   bool read_battery(std::uint16_t&) override { return false; }
   void show(const Lights&) override {}
-  void lock() override {}  // one thread
+  void lock() override {}  // one thread needs no lock
   void unlock() override {}
 
  private:
@@ -71,7 +72,9 @@ class LiveNode final : public Board {
   LiveSocket socket_;
   LiveLink up_, down_;
   std::variant<std::monostate, Node, ClocklessNode> node_;
+  /// The next sample to take.
   std::size_t next_sample_ = 0;
+  /// True while a sample is taken; counter_us() then gives its time.
   bool sampling_ = false;
 };
 

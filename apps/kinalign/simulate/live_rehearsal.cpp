@@ -12,12 +12,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration behind = 500ms, longest_wait = 100ms;
+constexpr Duration behind = 500ms,
+                   longest_wait = 100ms;  // time after the motion for datagrams on their way; the
+                                          // longest wait between two calls of go_on
 
 Duration duration(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
 constexpr std::size_t noitom_joints = 59;
 
-/// Both clocks at once, and so much later on both.
+/// The present time on both clocks, plus `wait`. The raw clock is read before and after UTC; the
+/// mean belongs to it.
 ClockPair begin_after(ClockReader& clock, Duration wait) {
   const HostTime before = clock.raw();
   const Time utc = clock.utc();
@@ -58,7 +61,7 @@ LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
       start_(begin_after(clock, duration(options.begin_in_s))),
       length_s_(motion.length_s) {
   const HostTime start = start_.raw;
-  // New in each run, as a device draws them at each start.
+  // These ids are new in each run, as a device draws them at each start.
   const std::uint64_t run = mix64(static_cast<std::uint64_t>(start.time_since_epoch().count()));
   suit_ = std::make_unique<LiveSuit>(motion, rehearsal.mocap, options.seed, start,
                                      std::move(sockets.mocap));
@@ -79,10 +82,11 @@ LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
   }
 }
 
+/// Runs all devices in one thread until the motion's end.
 double LiveRehearsal::run(const std::function<bool()>& go_on) {
-  ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns: the standard 50 us would make delays longer
+  ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns; the default of 50 us would lengthen delays
   const HostTime end = start_.raw + duration(length_s_) + behind;
-  while (clock_->raw() < start_.raw) {  // a node's counter says nothing before
+  while (clock_->raw() < start_.raw) {  // a node's counter is not defined before
     if (!go_on()) return 0.0;
     wait(std::min(start_.raw, clock_->raw() + longest_wait));
   }
@@ -100,7 +104,7 @@ double LiveRehearsal::run(const std::function<bool()>& go_on) {
   return length_s_;
 }
 
-/// Or until a datagram arrives.
+/// Waits until that time or until a datagram arrives.
 void LiveRehearsal::wait(HostTime until) const {
   std::vector<pollfd> heard{{camera_->fd(), POLLIN, 0}};
   for (const auto& node : nodes_) heard.push_back({node->fd(), POLLIN, 0});
@@ -110,6 +114,7 @@ void LiveRehearsal::wait(HostTime until) const {
   ::ppoll(heard.data(), heard.size(), &timeout, nullptr);
 }
 
+/// The sums over all devices.
 LiveCounts LiveRehearsal::counts() const {
   LiveCounts counts;
   counts.mocap_frames = suit_->sent();
@@ -128,11 +133,12 @@ LiveCounts LiveRehearsal::counts() const {
   return counts;
 }
 
+/// The truth of a live rehearsal, with stamps on the axes of the devices.
 TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start,
                          std::optional<double> clockless_hz) {
   TrueRecording truth = truth_of(rehearsal, motion, start.utc);
   truth.host = TrueHost{start.raw.time_since_epoch().count(), to_ns(start.utc)};
-  // From the stamps of a file, which the host made, back to the device's own.
+  // Moves the stamps of a file, which the host made, to the device's own axis.
   const auto begin_at = [](TrueClock& clock, std::int64_t first) {
     if (clock.stamps_ns.empty()) return;
     const std::int64_t shift = first - clock.stamps_ns.front();

@@ -46,8 +46,8 @@ LiveSocket::~LiveSocket() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-/// An answer that nobody listens there waits in the socket for the next call, be it of sending or
-/// of receiving, which then does nothing else: it is taken out before each.
+/// Reads and counts a pending refusal (ICMP: no program listens there). The kernel keeps it in the
+/// socket, and the next send or receive would fail with it and do nothing else.
 void LiveSocket::hear_refusal() {
   int refusal = 0;
   socklen_t size = sizeof refusal;

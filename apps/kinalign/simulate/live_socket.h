@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's UDP socket, as `simulate --live` has one for each: sends to one port, hears it alone.
+// A device's UDP socket for `simulate --live`: sends to one port and receives from that port only.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -10,23 +10,23 @@
 
 namespace kinalign {
 
-/// Datagrams of one socket or of several.
+/// The datagrams of one socket, or of several.
 struct LiveTraffic {
-  std::uint64_t sent = 0;  // by the program, taken or not
-  std::uint64_t refused =
-      0;                    // of these: nobody listens there, as far as he is told, or no way there
-  std::uint64_t heard = 0;  // from there
+  std::uint64_t sent = 0;  // given to send(), accepted or not
+  /// The datagrams that the system or, by ICMP, the host refused: no route, or no program there.
+  std::uint64_t refused = 0;
+  std::uint64_t heard = 0;  // received from the host
 
   LiveTraffic& operator+=(const LiveTraffic& more);
 };
 
-/// Fails where `host` is no address of IPv4 or IPv6: a name is none.
+/// Fails if `host` is not a numeric address of IPv4 or IPv6; names are not looked up.
 Result<void> check_live_address(const std::string& host);
 
 class LiveSocket {
  public:
-  /// From a port that the system chooses. `host`: an address, IPv4 or IPv6. Fails where it is none,
-  /// and where this machine knows no way to it.
+  /// A socket on a port that the system chooses. `host`: a numeric address, IPv4 or IPv6. Fails if
+  /// it is none, or if this machine has no route to it.
   static Result<LiveSocket> connected_to(const std::string& host, std::uint16_t port);
 
   LiveSocket(LiveSocket&& other) noexcept;
@@ -35,12 +35,12 @@ class LiveSocket {
   LiveSocket& operator=(const LiveSocket&) = delete;
   ~LiveSocket();
 
-  /// False where the system did not take it. That nobody listens is told after it was sent:
-  /// traffic() has it.
+  /// False if the system did not accept the datagram. A port without a listener is known only after
+  /// sending: see traffic().
   bool send(std::span<const std::uint8_t> datagram);
-  /// The next datagram, cut to `room`; nothing (0 bytes) where there is none.
+  /// The next datagram, cut to `room`; 0 bytes if there is none.
   std::size_t receive(std::span<std::uint8_t> room);
-  /// Up to now.
+  /// The counts up to now.
   const LiveTraffic& traffic();
   int fd() const { return fd_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 121 of the seed: by the frame's number, lane 0 how long the suit's program takes.
+// Stream 121 of the seed draws the delay of the suit's program: counter the frame's number, lane 0.
 #include "apps/kinalign/simulate/live_suit.h"
 
 #include "kinalign/protocols/noitom/frame.h"
@@ -8,6 +8,7 @@
 
 namespace kinalign {
 
+/// Plans the first frame, so that next() is right before work().
 LiveSuit::LiveSuit(const Motion& motion, const MocapRun& run, std::uint64_t seed, HostTime start,
                    LiveSocket socket)
     : motion_(motion),
@@ -28,6 +29,7 @@ void LiveSuit::work(HostTime now) {
   }
 }
 
+/// Sets the time at which the next frame is sent.
 void LiveSuit::plan() {
   if (frame_ >= run_.frames) {
     next_ = HostTime::max();
@@ -37,6 +39,7 @@ void LiveSuit::plan() {
   next_ = start_ + Duration{static_cast<std::int64_t>(s * 1e9)};
 }
 
+/// The next frame as Noitom's binary stream, with the positions of all joints.
 std::vector<std::uint8_t> LiveSuit::datagram() {
   motion_.pose_at(run_.frame_s(frame_), pose_);
   const std::size_t joints = motion_.skeleton.joints();
@@ -52,7 +55,7 @@ std::vector<std::uint8_t> LiveSuit::datagram() {
   frame.displacement = true;
   for (const double value : row) frame.values.push_back(static_cast<float>(value));
   std::vector<std::uint8_t> bytes;
-  // Fails for another number of joints alone, which check_live refuses first.
+  // This fails only for another number of joints, which check_live refuses before.
   if (!append_noitom(frame, bytes)) bytes.clear();
   return bytes;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A suit's program that broadcasts live: Noitom's binary stream with displacement, over UDP.
+// The program of a suit that broadcasts live: Noitom's binary stream with displacement, over UDP.
 #pragma once
 
 #include "apps/kinalign/simulate/live_socket.h"
@@ -10,8 +10,9 @@
 
 namespace kinalign {
 
-/// What a device's own program takes from the measurement to the socket: 2 ms, and 1 ms more in the
-/// mean. Estimates on the kind side: it cannot be seen from the host, and a real one takes more.
+/// The delay, s, of a device's own program from the measurement to the socket: 2 ms, plus an
+/// exponential part of 1 ms in the mean. These are low estimates: the host can't see the delay, and
+/// real programs take longer.
 inline double program_delay_s(const RandomStream& random, std::uint64_t frame) {
   return 0.002 + random.exponential(frame, 0, 0.001);
 }
@@ -26,7 +27,7 @@ class LiveSuit {
   HostTime next() const { return next_; }
   std::uint64_t sent() const { return sent_; }
   LiveTraffic traffic() { return socket_.traffic(); }
-  /// How late a frame left at the worst.
+  /// The longest delay of a frame by this machine.
   Duration worst_late() const { return worst_late_; }
 
  private:

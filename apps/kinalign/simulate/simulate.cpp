@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view built_in = "built-in";
 constexpr double usual_s = 60.0, most_s = 3600.0;
 constexpr std::size_t most_bvh = std::size_t{256} << 20;
-// Simulated recordings begin then, so that the same seed gives the same bytes.
+// Simulated recordings begin at this time, so that the same seed gives the same bytes.
 constexpr std::int64_t start_ns = 1'790'000'000'000'000'000;
 
 struct Simulate {
@@ -40,11 +40,13 @@ struct Simulate {
   bool clockless = false;
 };
 
+/// Fails with the error if the flag was given.
 Result<void> refuse(const Sources& given, const char* name, const Error& error) {
   return given.contains(name) ? Result<void>(Failure(error)) : Result<void>{};
 }
 
-/// Two devices on one port can't be told apart, and no recorder opens one for both.
+/// Refuses two devices on one port: they could not be told apart, and a recorder opens one port for
+/// one device.
 Result<void> check_live_ports(const Simulate& o) {
   std::map<std::int64_t, const char*> flags;
   for (const auto& [port, flag] :
@@ -58,6 +60,7 @@ Result<void> check_live_ports(const Simulate& o) {
   return {};
 }
 
+/// Checks flags against each other: most of them need --live.
 Result<void> check_simulate(const Simulate& o, const Common& common, const Sources& given) {
   if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
   if (o.live) {
@@ -76,6 +79,7 @@ Result<void> check_simulate(const Simulate& o, const Common& common, const Sourc
   return {};
 }
 
+/// The command line of `kinalign simulate`.
 Usage describe_simulate(Simulate& o) {
   Usage usage;
   usage.positionals = {{"MOTION",
@@ -112,6 +116,7 @@ Usage describe_simulate(Simulate& o) {
   return usage;
 }
 
+/// The built-in motion, or that of a BVH, which --seconds may shorten.
 Result<Motion> motion_of(const Simulate& o, Call& call) {
   const std::string& name = o.motion.front();
   if (name == built_in) {
@@ -130,7 +135,7 @@ Result<Motion> motion_of(const Simulate& o, Call& call) {
   return motion;
 }
 
-/// Says of a truth what only the verb knows.
+/// Adds to a truth the members that only the verb knows.
 TrueRecording named(TrueRecording truth, const Simulate& o) {
   truth.seed = static_cast<std::uint64_t>(o.seed);
   truth.motion = o.motion.front() == built_in ? built_in : file_name(o.motion.front());
@@ -138,7 +143,7 @@ TrueRecording named(TrueRecording truth, const Simulate& o) {
   return truth;
 }
 
-/// All that a rehearsal is made from.
+/// The parts that a rehearsal is made from.
 struct Job {
   const Simulate& o;
   RehearsalFolder folder;
@@ -146,6 +151,7 @@ struct Job {
   const Rehearsal& rehearsal;
 };
 
+/// Writes the files of all devices, the manifest and the truth.
 Result<int> write_files(const Job& job, Call& call) {
   const Simulate& o = job.o;
   TrueRecording truth = named(truth_of(job.rehearsal, job.motion, utc_time(start_ns)), o);
@@ -157,6 +163,7 @@ Result<int> write_files(const Job& job, Call& call) {
   return done;
 }
 
+/// The options of --live, from the flags.
 LiveOptions live_options(const Simulate& o) {
   return {.to = o.to,
           .mocap_port = static_cast<std::uint16_t>(o.mocap_port),
@@ -175,6 +182,8 @@ bool is_there(FileSystem& files, const std::string& path) {
   return fd >= 0;
 }
 
+/// Writes the recorder's files and the truth before it sends, so that a recorder can be started
+/// meanwhile.
 Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   const Simulate& o = job.o;
   const LiveOptions options = live_options(o);
@@ -200,7 +209,7 @@ Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   return sent.unanswered() ? findings : done;
 }
 
-/// All that can be wrong of the motion and of the way to the host is found before a folder is made.
+/// Checks the motion and the route to the host before it makes a folder.
 Result<int> run(Simulate& o, Call& call) {
   const std::string& name = o.motion.front();
   const Motion motion = KA_TRY(motion_of(o, call));
@@ -234,6 +243,7 @@ Result<int> run(Simulate& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign simulate`.
 Verb simulate_verb() {
   return make_verb<Simulate>(
       {.name = "simulate",

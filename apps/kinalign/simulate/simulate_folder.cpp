@@ -18,9 +18,9 @@ namespace {
 constexpr double motion_rate_hz = 120.0;
 constexpr int bvh_decimals = 6;
 constexpr Link arrival_link = Link::paper;
-constexpr double arrival_delay_ms = 33.2;  // of that link in the mean, time-sync.md 3.4
+constexpr double arrival_delay_ms = 33.2;  // mean delay of that link: time-sync.md 3.4
 
-/// In blocks: an hour of a body is a gigabyte of numbers.
+/// Writes a clip as BVH, in blocks of frames: an hour of a body is a gigabyte of numbers.
 Result<void> write_clip(const RehearsalFolder& folder, const std::string& name,
                         const Motion& motion, const MocapRun& run) {
   constexpr std::size_t block = 1024;
@@ -28,7 +28,7 @@ Result<void> write_clip(const RehearsalFolder& folder, const std::string& name,
       KA_TRY(OutputFile::create(folder.files, folder.path + "/" + name, Overwrite::no));
   const BvhChannels channels(motion.skeleton, BvhChannels::Positions::of_all);
   BvhHierarchy hierarchy = channels.hierarchy(run.frames, 1.0 / run.rate_hz);
-  // An hour's last frame within 0.1 ms.
+  // With nine decimals an hour's last frame is right within 0.1 ms.
   hierarchy.frame_time = fmt::format("{:.9f}", 1.0 / run.rate_hz);
   BvhWriter writer(hierarchy, run.frames, bvh_decimals,
                    [&](std::string_view text) { return out.write(text); });
@@ -57,7 +57,8 @@ Result<TextOut> table(const RehearsalFolder& folder, const std::string& name) {
 
 std::string node_file_name(const std::string& node) { return "imu_" + node + ".csv"; }
 
-/// Hundredths of a millisecond, up.
+/// The half-interval of a device's clock after that time, rounded up to hundredths of a
+/// millisecond.
 double interval_ms(double length_s) {
   return std::ceil(1e5 * (most_drift * length_s + 1e-5) - 1e-6) / 100.0;
 }
@@ -69,6 +70,8 @@ StreamOptions stream_of(std::string name, std::vector<StreamFile> files) {
   return stream;
 }
 
+/// The manifest that align needs for the files. Clicks, intervals and the mean delay are known from
+/// the simulation.
 Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   Manifest manifest;
   manifest.subject = fmt::format("simulated_{}", truth.seed);
@@ -103,6 +106,8 @@ Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   return manifest;
 }
 
+/// Writes a file for each node. Stamps of arrival replace the truth's clock, since the file has no
+/// other.
 Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehearsal,
                          NodeStamps stamps, TrueRecording& truth) {
   const Time zero = utc_time(truth.start_ns);

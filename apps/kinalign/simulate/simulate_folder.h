@@ -12,8 +12,8 @@
 
 namespace kinalign {
 
-/// What nodes' samples are stamped by: each node's own clock, or their arrival over a link.
-/// `received`: by their own clocks, without the samples that the link loses.
+/// The stamps of nodes' samples: by each node's own clock, or by their arrival over a link.
+/// `received`: by the node's own clock, without the samples that the link loses.
 enum class NodeStamps { own, arrival, received };
 
 /// The devices that recorded together with the suit.
@@ -24,32 +24,32 @@ struct DeviceChoice {
 
 struct RehearsalFolder {
   FileSystem& files;
-  std::string path;  // is there, and has a folder truth/ in it
+  std::string path;  // exists, and contains a folder truth/
 };
 
-/// truth/motion.bvh, 120 Hz: enough that a spline through it is within micrometres.
+/// Writes truth/motion.bvh at 120 Hz; a spline through its frames is then right within micrometres.
 Result<void> write_motion(const RehearsalFolder& folder, const Motion& motion);
 
-/// suit.bvh, one frame: what the suit's program exports, since its stream has no skeleton.
+/// Writes suit.bvh with one frame, as exported by the suit's program, whose stream has no skeleton.
 Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion);
 
-/// lab.toml for `record`: the devices, where they send to, what they are called.
+/// Writes lab.toml for `record`: the devices, their ports and names.
 Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options,
                        const Rehearsal& rehearsal);
 
-/// As `record` names the first take in a folder, where no flag says otherwise.
+/// The name that `record` gives the first take in a folder without flags for it.
 inline constexpr const char* live_take_name = "take_01.mcap";
 
-/// recording.toml for `align`, of the first take that `record` makes in the folder. `clockless_hz`:
-/// the rate of nodes without a counter.
+/// Writes recording.toml for `align`, for the first take that `record` makes in the folder.
+/// `clockless_hz`: the rate of nodes without a counter.
 Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal& rehearsal,
                                  std::optional<double> clockless_hz);
 
-/// truth/truth.json.
+/// Writes truth/truth.json.
 Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& truth);
 
-/// mocap.bvh, kinect.csv, imu_<node>.csv and recording.toml. `truth` gets the clocks that the
-/// files' stamps have, and loses nodes that were not there.
+/// Writes mocap.bvh, kinect.csv, imu_<node>.csv and recording.toml. `truth` gets the clocks of the
+/// files' stamps, and loses nodes that did not record.
 Result<void> write_devices(const RehearsalFolder& folder, const Rehearsal& rehearsal,
                            const Motion& motion, const DeviceChoice& devices, TrueRecording& truth);
 

@@ -14,8 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double same_s = 0.005;  // lengths are shown in hundredths
+constexpr double same_s = 0.005;  // lengths are printed in hundredths of a second
 
+/// The members about a rehearsal that files and live runs share.
 Json json_of(const ToldRehearsal& told) {
   std::uint64_t samples = 0;
   for (const SimulatedNode& node : told.rehearsal.nodes) samples += node.samples.size();
@@ -28,6 +29,7 @@ Json json_of(const ToldRehearsal& told) {
           {"node_samples", samples}};
 }
 
+/// The first line, and a note if the motion is shorter than --seconds.
 std::string head_lines(const ToldRehearsal& told) {
   const TrueRecording& truth = told.truth;
   std::string text = fmt::format("{}: {} of {}, seed {}\n", told.folder,
@@ -57,7 +59,7 @@ std::vector<Port> ports_of(const SentRehearsal& sent) {
           {"marks", options.marks_port, sent.counts.clicks}};
 }
 
-/// Of those ports that did not take all.
+/// The ports that did not accept every datagram.
 std::string refused_line(const SentRehearsal& sent) {
   std::string list;
   for (const Port& port : ports_of(sent)) {
@@ -69,6 +71,7 @@ std::string refused_line(const SentRehearsal& sent) {
   return list.empty() ? "" : "  datagrams that nobody took: " + list + "\n";
 }
 
+/// The advice if no datagram came back from the host.
 std::string nobody_line(const SentRehearsal& sent) {
   std::string ports;
   bool taken = false;
@@ -124,7 +127,7 @@ SentText sent_text(const SentRehearsal& sent) {
   text.sent += fmt::format("  {} replies reached nodes; a frame left {:.1f} ms late at the worst\n",
                            grouped(counts.replies), 1e3 * seconds(counts.worst_late));
   text.nobody = refused_line(sent);
-  // Who was stopped at once can't have been answered yet.
+  // A rehearsal that was stopped at once can't have got an answer yet.
   const bool judged = sent.whole() || counts.all().refused > 0;
   if (sent.unanswered() && judged) text.nobody += nobody_line(sent);
   if (!sent.whole() || sent.unanswered()) return text;
@@ -138,6 +141,7 @@ SentText sent_text(const SentRehearsal& sent) {
   return text;
 }
 
+/// Prints the end of a live rehearsal.
 void tell_end(const SentRehearsal& sent, Console& console) {
   const SentText text = sent_text(sent);
   console.print(harmless(text.sent));

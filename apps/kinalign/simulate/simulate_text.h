@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `simulate` says of a rehearsal: lines for people, objects for programs.
+// The text of `simulate` about a rehearsal: lines for people, objects for programs.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -14,29 +14,29 @@ struct ToldRehearsal {
   const TrueRecording& truth;
   const Rehearsal& rehearsal;
   std::string folder{};
-  std::optional<double> asked_s;  // of a motion that may have less
+  std::optional<double> asked_s;  // --seconds; the motion may be shorter
 };
 
-/// Files were written.
+/// Reports the written files.
 void tell_files(const ToldRehearsal& told, Console& console);
 
-/// What is sent is said before it is, for the recorder to be started.
+/// Reports the rehearsal before it is sent, so that the recorder can be started.
 void tell_start(const ToldRehearsal& told, const LiveOptions& options, Console& console);
 
 struct SentRehearsal {
   LiveCounts counts{};
   LiveOptions options{};
   std::string folder{};
-  double length_s = 0.0, sent_s = 0.0;  // of the motion; sent_s: less where it was stopped
-  bool recorded_there = false;          // the file that recording.toml names
+  double length_s = 0.0, sent_s = 0.0;  // the motion's; sent_s is less if it was stopped
+  bool recorded_there = false;          // the file that recording.toml names exists
 
   bool whole() const { return sent_s >= length_s; }
-  /// No datagram came back, of nodes' replies, a recorder's to the Kinect, or for a mark.
+  /// No datagram came back: no reply to a node or to the Kinect, no answer to a mark.
   bool unanswered() const { return counts.all().heard == 0; }
 };
 
-/// Lines for people: what was sent, who was not there, what comes next. `nobody` is bad news and
-/// stands by itself; empty: there is none.
+/// The lines for people: what was sent, ports without a receiver, the next step. `nobody` is
+/// printed as a warning; it may be empty.
 struct SentText {
   std::string sent, nobody, next;
 };

@@ -5,6 +5,7 @@
 
 namespace kinalign {
 
+/// Only errors that a person can act on get advice.
 std::vector<std::string> port_advice(const Error& error, const WantedPort& wanted) {
   if (error.kind == ErrorKind::port_taken) {
     return {

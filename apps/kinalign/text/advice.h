@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Advice where a port can't be opened or a key can't be read.
+// Advice for a port that can't be opened and for a key that can't be read.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -10,18 +10,18 @@
 
 namespace kinalign {
 
-/// A port that is to be served on, and what says so.
+/// A port that the program wants to open, and the flags or settings that name it.
 struct WantedPort {
   std::uint16_t port = 0;
-  std::string port_from;     // "--port"
-  std::string address_from;  // "--listen"
+  std::string port_from;     // the flag or setting: "--port"
+  std::string address_from;  // the flag or setting: "--listen"
   bool tcp = false;
 };
 
-/// `error`: of opening it. Empty: nothing is known that would help.
+/// Advice on the error of opening the port. Empty if no advice is known.
 std::vector<std::string> port_advice(const Error& error, const WantedPort& wanted);
 
-/// What to do where --lab-key could not be read.
+/// Advice if --lab-key could not be read.
 std::vector<std::string> key_advice(const Error& error);
 
 }  // namespace kinalign

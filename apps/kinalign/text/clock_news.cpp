@@ -14,13 +14,17 @@ namespace {
 
 using EventKind = ClockEvent::Kind;
 
+/// Three steps within this time mean a clock that contradicts the assumptions.
 constexpr Duration steps_within = std::chrono::seconds(10);
+/// Such a clock is trusted again after this time without an event.
 constexpr Duration quiet = std::chrono::minutes(1);
+/// A withdrawal without a cause is printed after this time.
 constexpr Duration patience = std::chrono::seconds(1);
 
 bool is_step(EventKind kind) { return kind == EventKind::step || kind == EventKind::slip; }
 
-/// What a clock says that contradicts the assumptions, and what follows from that.
+/// True for events that contradict the assumptions about clocks, and for those that follow from
+/// one.
 bool is_trouble(EventKind kind) {
   return is_step(kind) || kind == EventKind::withdrawn || kind == EventKind::violator ||
          kind == EventKind::settled || kind == EventKind::relaxed || kind == EventKind::uneasy;
@@ -28,7 +32,7 @@ bool is_trouble(EventKind kind) {
 
 }  // namespace
 
-/// A stream may be another node's now.
+/// The stream's clock. A stream may have passed to another node; then the clock starts anew.
 ClockNews::Clock& ClockNews::clock_of(std::size_t stream, std::uint32_t node_id) {
   Clock& clock = clocks_[stream];
   if (clock.node_id != node_id) {
@@ -53,6 +57,8 @@ void ClockNews::hear(std::size_t stream, std::uint32_t node_id, const ClockEvent
   if (!text.empty()) lines_.push_back(text);
 }
 
+/// Keeps the last three steps. From the third step within `steps_within` on, one line replaces the
+/// lines for single steps.
 void ClockNews::take_step(Clock& clock, const ClockEvent& event) {
   std::rotate(clock.steps.begin(), clock.steps.begin() + 1, clock.steps.end());
   clock.steps.back() = event.end;
@@ -68,8 +74,8 @@ void ClockNews::take_step(Clock& clock, const ClockEvent& event) {
       names_.name(clock.node_id), contradiction));
 }
 
-/// Stretches that overlap are one; what is withdrawn as the clock settles was withdrawn before, or
-/// not certified.
+/// Collects withdrawn stretches; overlapping ones become one. A stretch withdrawn right after the
+/// clock settled is not printed if it was printed before.
 void ClockNews::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
   const bool known =
       clock.told && event.begin >= clock.told->begin && event.begin <= clock.told->end;
@@ -82,6 +88,7 @@ void ClockNews::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
   clock.waiting->end = std::max(clock.waiting->end, event.end);
 }
 
+/// Prints the collected withdrawal as one line, and remembers it.
 void ClockNews::tell_waiting(Clock& clock) {
   if (!clock.waiting) return;
   const ClockEvent whole{EventKind::withdrawn, 0, clock.waiting->begin, clock.waiting->end};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people are told of the nodes' clocks while the server runs: the cause first, what it costs
-// behind it, and of a clock that never agrees with the assumptions one line. Programs get every
+// The lines about the nodes' clocks that people read while the server runs: the cause first, then
+// its effect. A clock that never agrees with the assumptions gets a single line. Programs get every
 // event (--json).
 #pragma once
 
@@ -20,7 +20,8 @@
 
 namespace kinalign {
 
-/// Of such a clock, behind "node 7: " or "not locked: ".
+/// The reason printed for a clock that contradicts the assumptions, after "node 7: " or "not
+/// locked: ".
 inline constexpr std::string_view contradiction =
     "its clock keeps contradicting the assumptions (more than 100 ppm off, or asleep)";
 
@@ -28,29 +29,29 @@ class ClockNews {
  public:
   explicit ClockNews(NodeNames names = {}) : names_(std::move(names)) {}
 
-  /// In the order of the events; `now`, of the host's raw clock, is when they are told.
+  /// Takes the events in their order. `now`, of the host's raw clock, is the time of the call.
   void hear(std::size_t stream, std::uint32_t node_id, const ClockEvent& event, HostTime now);
-  /// Lines to be told now. A withdrawal waits for its cause, but not longer than a second.
+  /// The lines to print now. A withdrawal waits for its cause, at most a second.
   std::vector<std::string> lines(HostTime now);
-  /// At the end: those that still wait, too.
+  /// The lines to print at the end, also those that still wait.
   std::vector<std::string> last_lines() { return lines(HostTime::max()); }
 
-  /// Its node's clock contradicts the assumptions again and again, and did so within the last
-  /// minute.
+  /// True if the clock of the stream's node contradicts the assumptions again and again, and did so
+  /// within the last minute.
   bool contradicts(std::size_t stream, std::uint32_t node_id, HostTime now) const;
 
  private:
   struct Stretch {
     HostTime begin{}, end{};
-    HostTime since{};  // when it was heard of
+    HostTime since{};  // the time of the first event about it
   };
   struct Clock {
     std::uint32_t node_id = 0;
-    std::array<HostTime, 3> steps{HostTime::min(), HostTime::min(), HostTime::min()};  // the last
+    std::array<HostTime, 3> steps{HostTime::min(), HostTime::min(), HostTime::min()};  // latest
     bool contradicts = false;
-    HostTime troubled = HostTime::min();   // last
-    std::optional<Stretch> waiting, told;  // withdrawn
-    bool settled = false;                  // what is withdrawn next was not certified any more
+    HostTime troubled = HostTime::min();   // the latest event of trouble
+    std::optional<Stretch> waiting, told;  // withdrawn stretches, not yet printed and printed
+    bool settled = false;                  // the next withdrawn stretch is no longer certified
   };
   Clock& clock_of(std::size_t stream, std::uint32_t node_id);
   void take_step(Clock& clock, const ClockEvent& event);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts and sizes as several verbs print them.
+// The counts and sizes that several verbs print.
 #pragma once
 
 #include <cstdint>

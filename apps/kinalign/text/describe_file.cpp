@@ -24,6 +24,7 @@ Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can re
 
 namespace {
 
+/// The kind and the parts of a stream in words, with the names of its joints or nodes.
 using Json = nlohmann::ordered_json;
 
 struct Contents {
@@ -42,6 +43,8 @@ Contents contents(const std::vector<std::string>& joints) {
   return {"points", counted(joints.size(), "joint"), joints};
 }
 
+/// The quantities that nodes measure. After `root_node` is used, gravity stays in the root's
+/// acceleration only.
 Contents contents(const ImuGroup& group) {
   const ImuContent& content = group.content;
   std::string parts = counted(group.node_names.size(), "node") + ":";
@@ -90,7 +93,8 @@ double seconds_of(const StampSurvey& survey) {
   return 1e-9 * static_cast<double>((survey.last - survey.first).count());
 }
 
-/// " (25 on the whole)" where the median step is not what comes of all.
+/// " (25 on the whole)" if the mean rate differs from the median step's rate by 10 % or more, as
+/// with bursts or gaps.
 std::string mean_rate_text(const RecordedStream& s) {
   const double length = seconds_of(s.survey), rate = rate_hz(s);
   if (!(length > 0.0)) return "";
@@ -98,6 +102,8 @@ std::string mean_rate_text(const RecordedStream& s) {
   return std::abs(mean - rate) < 0.1 * rate ? "" : fmt::format(" ({:.4g} on the whole)", mean);
 }
 
+/// The lines about a stream: samples, rate, first and last stamp, names, and stamps that do not
+/// rise.
 std::string stream_lines(const RecordedStream& s, const Contents& c, Names names) {
   const bool one_node = c.kind == "imu" && c.names.size() == 1;
   const std::string who = one_node ? shown(c.names.front().get<std::string>()) : c.kind;
@@ -118,6 +124,7 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
   return line;
 }
 
+/// The JSON about a stream.
 Json stream_json(const RecordedStream& s, const Contents& c, const Findings& findings) {
   return {{"name", s.name},
           {"kind", c.kind},
@@ -135,7 +142,7 @@ Json stream_json(const RecordedStream& s, const Contents& c, const Findings& fin
           {"findings", Json::parse(findings_json(findings))}};
 }
 
-/// In the child: everything about a take as one JSON text.
+/// Everything about a take as one JSON text. Runs in the child process.
 Result<std::string> take_facts(FileSystem& files, const std::string& path) {
   const TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const TakeHeader& header = reader.header();
@@ -173,6 +180,7 @@ std::string read_as(const RecordedStream& stream) {
                      stream.survey.samples);
 }
 
+/// Describes every stream. The findings of a file that several streams share are listed once.
 Description describe_recording(const std::string& path, const Recording& recording, Names names) {
   Json out{{"file", path},
            {"kind", "recording"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a file, as lines for people and as JSON.
+// The content of a file, as lines for people and as JSON.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -17,15 +17,15 @@ struct Description {
   std::string json;  // an object
 };
 
-/// Whether every joint's and node's name stands there: --verbose.
+/// Names::yes lists every joint's and node's name: --verbose.
 enum class Names { no, yes };
 
 Description describe_recording(const std::string& path, const Recording& recording, Names names);
 
-/// Of a recorder's file.
+/// Describes a recording.
 Description describe_survey(const std::string& path, const RecordingSurvey& survey,
                             const RecordingParts& parts);
-/// What is wrong with it: damage, a missing end, messages that its own numbers miss.
+/// The problems of a recording: damage, a missing end, messages missing in its own numbering.
 Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
 
 /// "points, 25 joints"
@@ -37,11 +37,11 @@ std::string read_as(const RecordedStream& stream);
 /// Opens the take in a child process.
 Result<Description> describe_take(FileSystem& files, const std::string& path, Names names);
 
-/// The file and the expectation of an error about a take that HDF5 can't read.
+/// The file and the expectation for an error about a take that HDF5 can't read.
 Error blame(const std::string& path);
 
-/// "warning walk.bvh:12: expected ...": lines of what was found, worst first, harmless and in the
-/// console's colours.
+/// The findings as lines, the most severe first: "warning walk.bvh:12: expected ...". Control
+/// characters are removed; colours are the console's.
 std::string finding_lines(Findings findings, const Console& console);
 
 }  // namespace kinalign

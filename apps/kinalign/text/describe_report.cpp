@@ -22,12 +22,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// ns; 0 where none stands, or none that a take can have.
+/// A stamp, ns. 0 if the member is missing or out of a take's range.
 std::int64_t stamp_at(const Json& json, const char* key) {
   return whole_at(json, key, 9'200'000'000'000'000'000);
 }
 
-/// The take's span; devices without a calendar count from near zero.
+/// The take's span in time. Devices without a calendar count from near zero, so no date is printed
+/// for them.
 std::string span_text(const Json& report) {
   const std::int64_t begin = stamp_at(report, "begin_ns"), end = stamp_at(report, "end_ns");
   if (!is_date(begin) || end < begin) {
@@ -37,6 +38,7 @@ std::string span_text(const Json& report) {
   return fmt::format("  from {} to {} UTC\n", date_text(begin), date_text(end));
 }
 
+/// The first lines about a take: software, frames, rate, length, subject and action.
 std::string head_text(const Json& take, const Json& report) {
   const double rate = number_at(report, "rate_hz");
   const std::uint64_t frames = count_at(take, "frames");
@@ -57,7 +59,7 @@ std::string head_text(const Json& take, const Json& report) {
   return text + span_text(report);
 }
 
-/// ", 97.8 % valid, 1.6 % inferred"; of a skeleton that was not resampled nothing.
+/// ", 97.8 % valid, 1.6 % inferred". Empty for a skeleton that was not resampled.
 std::string marks_text(const Json& s) {
   const std::uint64_t samples = count_at(s, "samples");
   if (samples == 0) return "";
@@ -103,6 +105,7 @@ std::vector<std::string> texts_at(const Json& json, const char* key) {
   return out;
 }
 
+/// The lines about a stream of a take: files, and the quality of each device or node.
 std::string stream_text(const Json& stream, const Json& report, Names names) {
   const std::string name = text_at(stream, "name");
   std::string text =
@@ -122,6 +125,7 @@ std::string stream_text(const Json& stream, const Json& report, Names names) {
   return text;
 }
 
+/// The lines about a stream that was moved into another's space, with the residual of each joint.
 std::string space_text(const Json& space) {
   std::string text =
       fmt::format("  space    {} on {}, {}: {:.1f} cm rms (before: {:.1f})\n",
@@ -135,7 +139,7 @@ std::string space_text(const Json& space) {
   return text;
 }
 
-/// Against the take's first frame: what was said before it is negative.
+/// A mark with its time since the take's first frame. Earlier marks have negative times.
 std::string mark_text(const Json& mark, std::int64_t begin_ns) {
   const double at_s =
       1e-9 * (static_cast<double>(stamp_at(mark, "time_ns")) - static_cast<double>(begin_ns));

@@ -21,7 +21,7 @@ double seconds_of(const ChannelSurvey& channel) {
   return static_cast<double>(channel.last - channel.first) / 1e9;
 }
 
-/// Over the whole channel; 0 of a single message.
+/// The mean rate over the whole channel, Hz; 0 for a single message.
 double rate_of(const ChannelSurvey& channel) {
   const double s = seconds_of(channel);
   return s > 0.0 ? static_cast<double>(channel.messages - 1) / s : 0.0;
@@ -54,7 +54,7 @@ std::string mark_text(const RecordedMark& mark, double at_s) {
   return mark_words(kinalign::name_of(mark.mark.kind), mark.mark.text, at_s, mark.source) + latency;
 }
 
-/// What the recorder counted and was told.
+/// Adds the marks, and the counts of senders and ports that the recorder wrote.
 void add_told(const RecordingSurvey& survey, Json& json) {
   json["marks"] = json["senders"] = json["ports"] = Json::array();
   for (const auto& [mark, log_time] : survey.marks) {
@@ -70,6 +70,7 @@ void add_told(const RecordingSurvey& survey, Json& json) {
   }
 }
 
+/// The text about a recording. Times of marks count from its first message.
 std::string text_of(const std::string& path, const RecordingSurvey& survey,
                     const RecordingParts& parts) {
   std::string text = fmt::format("{}\n", path);
@@ -93,7 +94,7 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
                      static_cast<double>(channel.bytes) / 1e6));
   }
   for (const CountedSender& one : survey.senders) {
-    // the recorder tells its counts once a second, and the last time as it ends
+    // the recorder writes its counts once a second, and a last time at its end
     line("sender", name_of(one, survey) + ": " + counts_text(one.counts) +
                        (survey.facts && !survey.end ? "; counted up to 1 s before the end" : ""));
   }
@@ -109,6 +110,7 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
   return text;
 }
 
+/// The JSON about a recording.
 Json json_of(const std::string& path, const RecordingSurvey& survey, const RecordingParts& parts) {
   Json json{{"file", path},
             {"closed", survey.torn.empty()},

@@ -30,6 +30,8 @@ std::string stamps_text(const XdfStreamSurvey& one) {
   return text;
 }
 
+/// The clock of a stream's sender: offset, drift and largest residual of the last line. A reset
+/// clock has several lines.
 std::string stream_clock_text(const XdfStreamSurvey& one) {
   if (one.clock.empty()) return "no clock offsets";
   double residual = 0.0;
@@ -43,6 +45,7 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
   return text;
 }
 
+/// The lines about a stream of an XDF file.
 std::string stream_lines(const XdfStreamSurvey& one, Names names) {
   const XdfStream& s = one.stream;
   std::string text;
@@ -65,6 +68,7 @@ std::string stream_lines(const XdfStreamSurvey& one, Names names) {
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
+/// The JSON about a stream, with a line for each piece of its clock.
 Json json_of(const XdfStreamSurvey& one) {
   const XdfStream& s = one.stream;
   Json json{{"id", s.id},
@@ -125,7 +129,7 @@ Description describe_xdf(const std::string& path, const XdfSurvey& survey, Names
 
 namespace {
 
-/// What is told of streams of one file.
+/// Collects the findings about the streams of one file.
 class Judge {
  public:
   Judge(const std::string& path, Findings& out) : path_(path), out_(out) {}

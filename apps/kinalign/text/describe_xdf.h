@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in an XDF file, and what is wrong with it.
+// Describes the content of an XDF file, and its problems.
 #pragma once
 
 #include "apps/kinalign/text/describe_file.h"
@@ -8,10 +8,11 @@
 
 namespace kinalign {
 
-/// With `names` every channel's label and unit stands there.
+/// With Names::yes the text lists every channel's label and unit.
 Description describe_xdf(const std::string& path, const XdfSurvey& survey, Names names);
 
-/// Damage, stamps that are none or step back, clocks that began anew, what is absent.
+/// The findings: damage, stamps that are no numbers or step back, clocks that were reset, missing
+/// streams, samples or clock offsets.
 Findings judge_xdf(const std::string& path, const XdfSurvey& survey);
 
 }  // namespace kinalign

@@ -18,7 +18,8 @@ namespace kinalign {
 
 namespace {
 
-/// "mocap", "imu waist", "imu 7" of what topics begin with: "mocap", "imu/7".
+/// The name for people of a sender's topic prefix: "mocap" gives "mocap", "imu/7" gives "imu waist"
+/// or "imu 7".
 std::string name_of(const std::string& beginning, const RecordingSurvey& survey) {
   const std::size_t end = beginning.find('/');
   if (end == std::string::npos) return beginning;
@@ -26,11 +27,11 @@ std::string name_of(const std::string& beginning, const RecordingSurvey& survey)
   return sender_name(stream, node, survey);
 }
 
-/// Those that the lab wanted, and that the file has nothing of: as their topics begin.
+/// The topic prefixes of devices that the lab requires and of which the file has no message.
 std::vector<std::string> unheard(const RecordingSurvey& survey) {
   std::vector<std::string> names;
   for (const auto& [name, required] : survey.expected) {
-    const std::string begins = "/" + name + "/";  // of nodes any one's
+    const std::string begins = "/" + name + "/";  // for nodes: of any node
     const bool heard =
         std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
           return one.channel.topic.starts_with(begins) && one.messages > 0;
@@ -40,8 +41,9 @@ std::vector<std::string> unheard(const RecordingSurvey& survey) {
   return names;
 }
 
-/// Of a topic: of what the recorder counted before it wrote the last counts, what is neither there
-/// nor between two that are. Counts of a later part begin with the recording, not with the file.
+/// The messages of a topic that the recorder counted and that are neither in the file nor missing
+/// between two that are. Only the first part of a recording can be checked: the counts of later
+/// parts begin with the recording, not with the file.
 std::uint64_t uncovered(const CountedSender& counted, const RecordingSurvey& survey) {
   std::uint64_t known = 0;
   for (const ChannelSurvey& channel : survey.channels) {
@@ -51,8 +53,8 @@ std::uint64_t uncovered(const CountedSender& counted, const RecordingSurvey& sur
   return whole && counted.counts.messages > known ? counted.counts.messages - known : 0;
 }
 
-/// What reached the recorder and is not in the file: its numbers are left out, or, at either end of
-/// a topic, its own counts say so.
+/// Errors for messages that reached the recorder and are not in the file. A gap in the recorder's
+/// own numbering shows them; at the ends of a topic the counts do.
 Findings gone(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   const auto tell = [&](std::string expected, std::uint64_t lacks) {
@@ -73,8 +75,7 @@ Findings gone(const std::string& path, const RecordingSurvey& survey) {
   return findings;
 }
 
-/// By the devices' own numbers: what they sent and what never reached the recorder, and their
-/// lives.
+/// Notes by the devices' own numbers: frames that never reached the recorder, and restarts.
 Findings numbered(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   for (const CountedSender& one : survey.senders) {
@@ -99,7 +100,7 @@ Findings numbered(const std::string& path, const RecordingSurvey& survey) {
   return findings;
 }
 
-/// What came to a port of devices and could not be recorded.
+/// The warning about data that reached a device's port and could not be recorded.
 Finding port_loss(const std::string& path, const CountedPort& port, const std::string& lost) {
   return {Severity::warning,
           {path, 0, "everything that came to the port of " + port.stream, lost},
@@ -107,8 +108,8 @@ Finding port_loss(const std::string& path, const CountedPort& port, const std::s
           "see what else it does while it records"};
 }
 
-/// Whoever finds a port of marks may send what is none, without harm; but a mark that somebody
-/// meant may be among it.
+/// The note about datagrams at a port of marks that are not marks. Any program of the network may
+/// send such datagrams without harm, but one may have been meant as a mark.
 Finding no_marks(const std::string& path, const CountedPort& port) {
   return {Severity::note,
           {path, 0, "marks alone at the port of " + port.stream,
@@ -117,7 +118,8 @@ Finding no_marks(const std::string& path, const CountedPort& port) {
           "docs/formats/marks.md says how a mark is sent"};
 }
 
-/// A node without the lab's key, say; the kernel keeps back, and counts, what is no frame at all.
+/// The note about refused frames of nodes, for example of a node without the lab's key. The
+/// kernel's filter drops and counts datagrams that are no frames at all.
 Finding no_nodes(const std::string& path, const CountedPort& port) {
   return {Severity::note,
           {path, 0, "frames alone of the lab's nodes at the port of " + port.stream,
@@ -126,7 +128,8 @@ Finding no_nodes(const std::string& path, const CountedPort& port) {
           "record said of which node, and why"};
 }
 
-/// Another device that sent there, say: record warned of it from as many on.
+/// The finding about datagrams at a nodes' port that are no frames, for example of another device.
+/// Many of them are a warning; `record` uses the same limit.
 Finding strays_at(const std::string& path, const CountedPort& port, std::uint64_t strays) {
   return {are_many(strays) ? Severity::warning : Severity::note,
           {path, 0, "frames of nodes alone at the port of " + port.stream,
@@ -136,12 +139,12 @@ Finding strays_at(const std::string& path, const CountedPort& port, std::uint64_
           "see which port and protocol each device sends to"};
 }
 
-/// The recorder's own ports; no device has such a name.
+/// True for the recorder's own ports; no device can have such a name.
 bool is_of_marks(const CountedPort& port) {
   return port.stream == "marks" || port.stream == "trigger";
 }
 
-/// What came and is not in it, by port.
+/// The findings about data that came to a port and is not in the recording.
 Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   for (const CountedPort& one : survey.ports) {
@@ -162,7 +165,8 @@ Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
   return findings;
 }
 
-/// What came to the port of a device of which nothing is there; empty: nothing did.
+/// The text about datagrams at the port of a device of which nothing was recorded. Empty if none
+/// came.
 std::string came_unheard(const std::string& device, const RecordingSurvey& survey) {
   const bool heard = std::any_of(survey.senders.begin(), survey.senders.end(),
                                  [&](const CountedSender& one) { return one.stream == device; });
@@ -172,6 +176,7 @@ std::string came_unheard(const std::string& device, const RecordingSurvey& surve
   return unheard_but_came(port->counts, "to its port");
 }
 
+/// Warnings about required devices that are missing in the recording.
 Findings lacking(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   for (const std::string& name : unheard(survey)) {
@@ -188,7 +193,7 @@ Findings lacking(const std::string& path, const RecordingSurvey& survey) {
   return findings;
 }
 
-/// Of a suit over UDP whose pieces don't tell which frame they are of.
+/// The warning about a suit over UDP: pieces of its frames do not state the frame they belong to.
 Finding hardly_read(const std::string& path, const std::string& name, const SenderCounts& counts) {
   return {Severity::warning,
           {path, 0, "frames that can be read in what " + name + " sent",
@@ -197,8 +202,8 @@ Finding hardly_read(const std::string& path, const std::string& name, const Send
           "prefer TCP, which loses and mixes no pieces of frames"};
 }
 
-/// Of what no rows can be made: the recorder saw none of the protocol's frames in it, or nothing
-/// says whose body moves.
+/// Findings about streams that can't become rows: the messages are not of the stated protocol, most
+/// frames are refused, or no skeleton is known.
 Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   std::set<std::string> without_skeleton;
@@ -237,7 +242,7 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
   return findings;
 }
 
-/// That recover may give what it makes of the file.
+/// A name for the recovered file that differs from the damaged one's.
 std::string new_name(const std::string& path) {
   return path == "whole.mcap" ? "recovered.mcap" : "whole.mcap";
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A switch, so that the compiler tells of a kind that is new.
+/// The name of the kind in JSON. A switch, so that the compiler warns about a missing kind.
 const char* name_of(ClockEvent::Kind kind) {
   using Kind = ClockEvent::Kind;
   switch (kind) {
@@ -50,6 +50,7 @@ const char* name_of(HostClockEvent::Kind kind) {
   return kind == HostClockEvent::Kind::backwards ? "backwards" : "wall_stepped";
 }
 
+/// The event in words, without the node's name.
 std::string what_happened(const NodeEvent& event, const NodeNames& names) {
   using Kind = NodeEvent::Kind;
   switch (event.kind) {
@@ -75,12 +76,13 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
     case Kind::too_many:
       return fmt::format("warning: not taken in, there are {} already", NodeTable::most_streams);
     case Kind::wrong_key:
-      break;  // wrong_key_text
+      break;  // see wrong_key_text()
   }
   return {};
 }
 
-/// What is refused for its MAC may be anybody, whatever node it says it is.
+/// The text about a frame refused for its MAC. The stated node id proves nothing: any program may
+/// have sent the frame.
 std::string wrong_key_text(const NodeEvent& event, const NodeNames& names) {
   const bool no_key = event.refusal == NodeRefusal::no_key;
   const char* what = no_key ? "with a MAC, and there is no --lab-key"
@@ -109,7 +111,7 @@ std::string event_json(const NodeEvent& event) {
   Json json{{"event", "node_event"},
             {"kind", kinalign::name_of(event.kind)},
             {"warning", is_warning(event.kind)}};
-  const bool unheard = event.kind == NodeEvent::Kind::wrong_key;  // it has no stream
+  const bool unheard = event.kind == NodeEvent::Kind::wrong_key;  // a refused node has no stream
   if (!unheard) json["stream"] = event.stream;
   json["node_id"] = event.node_id;
   json["boot_id"] = event.boot_id;
@@ -121,10 +123,11 @@ std::string event_json(const NodeEvent& event) {
   return json_text(json);
 }
 
+/// The event in words. Kinds that need no action give an empty text.
 std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names) {
   using Kind = ClockEvent::Kind;
   const auto says = [&](const std::string& what) { return names.name(node_id) + ": " + what; };
-  const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // which way is not always known
+  const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // the direction is not always known
   if (event.kind == Kind::step && !event.by) {
     return says("warning: its counter stepped, or its crystal bends more than was assumed");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happened to a node, to its clock or to this machine: a line for people, a JSON object for
+// An event of a node, of its clock or of this machine: a line for people, a JSON object for
 // programs.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace kinalign {
 std::string event_text(const NodeEvent& event, const NodeNames& names = {});
 std::string event_json(const NodeEvent& event);
 
-/// `node_id`: whose clock. Empty where people need not be told.
+/// `node_id`: the node that the clock belongs to. Empty for events that people need not read.
 std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names = {});
 std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id);
 

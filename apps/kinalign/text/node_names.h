@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people read for a node: its device and where it is worn, else its id. What they type, and
-// programs read, is the id, or "imu/7" as topics begin.
+// The names of nodes for people: the device and the place where the node is worn, else its id.
+// Users type, and programs read, the id, or "imu/7" as in topics.
 #pragma once
 
 #include "kinalign/recording/survey.h"
@@ -12,19 +12,19 @@
 
 namespace kinalign {
 
-/// "imu waist", "imu 7"; of a sender that is no node "mocap".
+/// "imu waist", "imu 7"; "mocap" for a sender that is no node.
 std::string sender_name(const std::string& stream, const std::string& node,
                         const std::string& place);
 
-/// Likewise, the place as a recording has it.
+/// The same, with the place that the recording states.
 std::string sender_name(const std::string& stream, const std::string& node,
                         const RecordingSurvey& survey);
 /// "mocap from 192.168.7.5:51234", "imu waist from 192.168.7.21:4000"
 std::string name_of(const CountedSender& sender, const RecordingSurvey& survey);
 
 struct NodeNames {
-  std::string device = "node";                  // where no lab says what they are
-  std::map<std::string, std::string> places{};  // by id
+  std::string device = "node";                  // the name if there is no lab file
+  std::map<std::string, std::string> places{};  // by id: "7" gives "waist"
 
   /// "waist", "7".
   std::string short_name(std::uint32_t id) const;
@@ -32,7 +32,7 @@ struct NodeNames {
   std::string name(std::uint32_t id) const { return device + " " + short_name(id); }
 };
 
-/// Of a lab's nodes.
+/// The names of a lab's nodes.
 NodeNames node_names(const Lab& lab);
 
 }  // namespace kinalign

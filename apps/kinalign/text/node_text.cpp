@@ -30,12 +30,13 @@ const char* certainty_name(Certainty certainty) {
   return certainty == Certainty::one_sided ? "one_sided" : "doubtful";
 }
 
-/// A clock that is far off may make the least round trip nothing, or less: then it says nothing.
+/// False if the least round trip is not positive, which a clock with a large drift can cause; then
+/// it says nothing.
 bool has_round_trip(const NodeStatus& status) {
   return status.round_trip && *status.round_trip > Duration{0};
 }
 
-/// "15.0/s", or what stands there instead.
+/// "15.0/s", or the text for a node that is silent or has just sent its first frame.
 std::string pace_text(const NodeStatus& status, const ClockPair& now) {
   if (status.silent) return "silent since " + utc_text(now.utc - (now.raw - status.heard));
   return status.rate_hz ? fmt::format("{:.1f}/s", *status.rate_hz) : "just heard";
@@ -47,13 +48,15 @@ std::string_view why_not_locked(const NodeStatus& status) {
   return "its exchanges contradict the assumptions";
 }
 
-/// "wrong mac"
+/// The refusal in words: "wrong mac".
 std::string words(NodeRefusal refusal) {
   std::string name = refusal_name(refusal);
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
 
+/// Adds the members about the clock: drift, round trip, and the latest stamp with its certified
+/// interval.
 void add_clock(Json& json, const NodeStatus& status) {
   json["counter_ns"] = status.n->time_since_epoch().count();
   json["drift_ppm"] = 1e6 * status.drift;
@@ -92,6 +95,7 @@ std::string status_text(const NodeStatus& status, const ClockPair& now, std::str
   return text;
 }
 
+/// The JSON event about one node.
 std::string status_json(const NodeStatus& status) {
   Json json{{"event", "node"},
             {"stream", status.stream},
@@ -137,6 +141,8 @@ std::string refused_text(const NodeCounts& counts) {
   return text;
 }
 
+/// Groups the stated ids by the cause of the refusal. Ids are what a frame states; they are not
+/// proved.
 std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts,
                                      const NodeNames& names) {
   std::map<NodeRefusal, std::set<std::uint32_t>> claimed;
@@ -163,6 +169,7 @@ std::string refused_lines(const NodeReceiver& receiver, const NodeNames& names) 
   return lines;
 }
 
+/// Counts every datagram once in "received"; the other members say what became of it.
 std::string node_counts_json(const NodeReceiver& receiver) {
   const NodeCounts& counts = receiver.counts();
   Json json{

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Its nodes that have places and that were never heard.
+/// The names of the device's nodes that have a place and have never sent.
 std::vector<std::string> unheard_nodes(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names;
   for (const auto& node : device.nodes) {  // clang 14 can't hand a structured binding on
@@ -49,7 +49,7 @@ void forget_unheard(LabStatus& status) {
                 [](const StreamStatus& stream) { return stream.counts.messages == 0; });
 }
 
-/// What a port of nodes, or the kernel before it, let nothing of in.
+/// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
 std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
   if (!counts.sifted) return "dropped by the kernel";
   const std::uint64_t least = strays(counts, frames_lost);
@@ -58,13 +58,13 @@ std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
   return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
 }
 
-/// Of a device that nothing was heard of; empty: nothing has come to its port.
+/// The text about datagrams at the port of a device that has never sent. Empty if none came.
 std::string came_unheard(const DeviceOptions& device, const LabStatus& status, std::uint16_t port) {
   if (is_heard(device, status)) return "";
   return unheard_but_came(counts_of(device, status), fmt::format("to port {}", port));
 }
 
-/// Of a device of which nothing has come.
+/// The text about a device from which nothing has come yet.
 std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
   const bool linked = counts.links > 0;
   const auto transport = find_transport(device.transport);
@@ -166,6 +166,8 @@ std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& statu
   return lines;
 }
 
+/// A device is missing if none of its senders sends now; a node with a place also if only this
+/// node is silent.
 std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> names;
   for (const DeviceOptions& device : lab.devices) {
@@ -200,6 +202,7 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
   return newest;
 }
 
+/// Counts that are 0 are left out.
 std::string counts_text(const SenderCounts& counts) {
   std::string text =
       fmt::format("{} messages, {:.1f} MB", grouped(counts.messages), megabytes(counts.bytes));
@@ -230,6 +233,8 @@ std::string port_line(const std::string& name, const PortCounts& counts,
   return text.empty() ? "" : fmt::format("  port of {}: {}\n", name, text);
 }
 
+/// A node's clock comes from the receiver of nodes; members that the stream states already are
+/// removed from it.
 Json json_of(const StreamStatus& stream, const LabStatus& status) {
   Json json = Json::parse(
       to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));

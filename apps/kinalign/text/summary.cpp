@@ -15,13 +15,15 @@ namespace kinalign {
 
 namespace {
 
-/// The report's streams of one name: a device, or all nodes.
+/// The streams of the report with one name: a device, or all nodes.
 struct Group {
-  StreamReport sum;                 // counts of all
-  std::vector<StreamReport> parts;  // one, or one a node's file
+  StreamReport sum;                 // the sums over all parts
+  std::vector<StreamReport> parts;  // one, or one for each node's file
   std::size_t nodes = 0;
 };
 
+/// Adds a part's counts. The group's interval is the worst of its parts, and unknown if one is
+/// unknown.
 void add(Group& group, const StreamReport& s) {
   StreamReport& sum = group.sum;
   sum.gaps += s.gaps;
@@ -41,6 +43,7 @@ void add(Group& group, const StreamReport& s) {
   group.parts.push_back(s);
 }
 
+/// Groups the streams of the report by name; nodes of one stream are neighbours in it.
 std::vector<Group> groups_of(const AlignmentReport& report) {
   std::vector<Group> groups;
   for (const StreamReport& s : report.streams) {
@@ -60,12 +63,13 @@ std::string name_of(const Group& group) {
   return fmt::format("{} ({} node{})", group.sum.stream, group.nodes, group.nodes == 1 ? "" : "s");
 }
 
-/// Half-widths in order of doubt: an unknown one is the largest.
+/// Orders streams by the half-width of their interval in time: an unknown one is the largest.
 std::int64_t doubt(const StreamReport& s) { return s.worst_interval_ns.value_or(INT64_MAX); }
 
+/// The samples that a user should not trust: invalid or interpolated over loss.
 std::uint64_t harm(const StreamReport& s) { return s.invalid + s.bridged; }
 
-/// ", worst node: wrist_left" where the nodes differ in `measure`.
+/// ", worst node: wrist_left" if the nodes differ in `measure`.
 template <class Measure>
 std::string worst_node(const Group& group, Measure measure) {
   const auto less = [measure](const auto& a, const auto& b) { return measure(a) < measure(b); };
@@ -84,6 +88,7 @@ std::string time_text(const Group& group, const Console& console) {
   return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
 }
 
+/// The line about time: the least certain stream first. The reference is left out.
 std::string time_line(std::vector<Group> groups, const std::string& reference,
                       const Console& console) {
   std::stable_sort(groups.begin(), groups.end(),
@@ -96,6 +101,8 @@ std::string time_line(std::vector<Group> groups, const std::string& reference,
   return text.empty() ? "" : text + "\n";
 }
 
+/// The line about a stream that was moved into another's space, with the joint of the largest
+/// residual.
 std::string space_line(const SpaceReport& s) {
   const Eigen::AngleAxisd turn(s.transform.rotation);
   std::string how = "root onto root in every frame";
@@ -113,6 +120,7 @@ std::string space_line(const SpaceReport& s) {
   return text + "\n";
 }
 
+/// The line about a stream's gaps and doubtful samples. Empty if there are none.
 std::string gap_line(const Group& group) {
   const StreamReport& s = group.sum;
   if (s.gaps == 0 && harm(s) == 0 && s.inferred == 0) return "";
@@ -132,6 +140,7 @@ std::string gap_line(const Group& group) {
   return text + worst_node(group, harm) + "\n";
 }
 
+/// The lines about gaps, the stream with the largest share of doubtful samples first.
 std::string gap_lines(std::vector<Group> groups) {
   const auto part = [](const Group& g) {
     return static_cast<double>(harm(g.sum)) / std::max(1.0, static_cast<double>(g.sum.samples));
@@ -143,7 +152,7 @@ std::string gap_lines(std::vector<Group> groups) {
   return text;
 }
 
-/// The worst findings, a line each; a hundred of them are for `info`.
+/// The most severe findings, a line each. Longer lists are left to `kinalign info`.
 std::string note_lines(const Findings& findings, const Console& console) {
   constexpr std::size_t most = 5;
   std::string text;

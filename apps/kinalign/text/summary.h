@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What alignment did, in the few lines that people read first: the worst stands first.
+// The result of an alignment in the few lines that people read first, the worst first.
 #pragma once
 
 #include "kinalign/take/report.h"

@@ -44,7 +44,7 @@ nlohmann::ordered_json event_json(const std::string& event, const nlohmann::orde
   return json;
 }
 
-/// What the clients' own settings are to say.
+/// The settings that clients need.
 std::string client_lines(const ServedPort& served) {
   const std::string host = served.reachable.empty() ? "ADDRESS" : served.reachable.front();
   if (served.port != 123) {
@@ -93,6 +93,7 @@ std::string start_lines(const ServedPort& served, const NtpServerState& state) {
                      clock_text(state), client_lines(served), node_lines(served));
 }
 
+/// The event "started" with the addresses, the ports and the state of the clock.
 std::string start_json(const ServedPort& served, const NtpServerState& state) {
   nlohmann::ordered_json json = event_json(
       "started",

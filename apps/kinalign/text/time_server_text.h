@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the time server says of itself: lines for people, members of JSON objects for programs.
+// The text about the time server itself: lines for people, members of JSON objects for programs.
 #pragma once
 
 #include "kinalign/capture/ntp/ntp_responder.h"
@@ -12,16 +12,16 @@
 
 namespace kinalign {
 
-/// Where it serves, as clients have to know it.
+/// The addresses and ports of the server.
 struct ServedPort {
-  std::vector<std::string> addresses;  // that it listens on: "0.0.0.0", "::1"
-  std::vector<std::string> reachable;  // of this host, for clients
+  std::vector<std::string> addresses;  // addresses that it listens on: "0.0.0.0", "::1"
+  std::vector<std::string> reachable;  // addresses of this host, for clients
   std::uint16_t port = 123;
   std::optional<std::uint16_t> node_port{};  // for inertial nodes
-  bool keyed = false;                        // these have keys
+  bool keyed = false;                        // the nodes have keys
 };
 
-/// What it begins with: where, how good the clock is, what a client is to be told.
+/// The first lines: addresses, the quality of the clock, the settings for clients.
 std::string start_lines(const ServedPort& served, const NtpServerState& state);
 std::string start_json(const ServedPort& served, const NtpServerState& state);
 
@@ -32,12 +32,13 @@ std::string clock_json(const NtpServerState& state);
 /// "2026-11-22T17:38:23Z"
 std::string utc_text(Time t);
 
-/// "2026-11-22T17:38:23Z kinalign time-server: node 7: joined", as chronyd dates its lines.
+/// "2026-11-22T17:38:23Z kinalign time-server: node 7: joined", dated like the lines of chronyd.
 std::string live_line(Time now, std::string_view what);
 
-/// "1,234 NTP requests answered, 5 limited": of the rest, what there was none of is left out.
+/// "1,234 NTP requests answered, 5 limited". Outcomes that did not occur are left out, but for
+/// answered ones.
 std::string counts_text(const NtpCounts& counts);
-/// `event`: "counts" while it serves, "stopped" at the end.
+/// `event`: "counts" while the server runs, "stopped" at its end.
 std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s);
 
 }  // namespace kinalign

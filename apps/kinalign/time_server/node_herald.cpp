@@ -22,6 +22,7 @@ std::string NodeHerald::operator()() {
   return nodes_text(receiver_.status());
 }
 
+/// Reports events of this machine, of nodes and of their clocks.
 void NodeHerald::tell_events() {
   for (const HostClockEvent& event : receiver_.take_host_events()) {
     tell_live(console_, event_text(event));
@@ -51,7 +52,8 @@ void NodeHerald::tell_status() {
   console_.print_json(node_counts_json(receiver_));
 }
 
-/// Once a second; what can't be read, half written or gone, leaves the keys as they are.
+/// Reads the key file once a second. A file that can't be read, is half written or is missing
+/// leaves the keys as they are.
 void NodeHerald::look_at_key() {
   if (lab_.path.empty()) return;
   const auto key = read_lab_key(files_, lab_.path);
@@ -63,7 +65,7 @@ void NodeHerald::look_at_key() {
   console_.print_json(R"({"event": "key_replaced"})");
 }
 
-/// Each trouble once, as long as it lasts.
+/// Reports a fault of the key file once, as long as it lasts.
 void NodeHerald::tell_key_trouble(const std::string& trouble) {
   if (trouble == key_trouble_) return;
   key_trouble_ = trouble;
@@ -79,6 +81,7 @@ std::string NodeHerald::summary_of(const NodeStatus& status) const {
   return status_text(status, now, bad ? contradiction : "");
 }
 
+/// Reports the last events, each node's status, and refused nodes.
 void NodeHerald::tell_end() {
   tell_events();
   tell_clocks(clock_news_.last_lines());

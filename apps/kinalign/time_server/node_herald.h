@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells what happens on the nodes' port while the time server serves, and takes a new lab key when
-// its file is replaced.
+// Reports events on the nodes' port while the time server runs, and takes a new lab key if its file
+// is replaced.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -17,22 +17,22 @@
 
 namespace kinalign {
 
-/// A lab's key and the file that it was read from; neither where nodes have no keys.
+/// A lab's key and its file; both are empty if nodes have no keys.
 struct LabKeyFile {
   std::string path;
   std::optional<LabKey> key;
 };
 
-/// A message of a server that runs for days, on stderr with the time of day.
+/// Prints a message of a server that runs for days, on stderr with date and time.
 void tell_live(Console& console, std::string_view what);
 
 class NodeHerald {
  public:
-  /// `lab`: as the receiver has it.
+  /// `lab`: the key that the receiver has.
   NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files, LabKeyFile lab)
       : receiver_(receiver), console_(console), files_(files), lab_(std::move(lab)) {}
 
-  /// Some times a second. Its status in a few words: "3 nodes, 2 locked".
+  /// Called several times a second. Returns a short status: "3 nodes, 2 locked".
   std::string operator()();
   void tell_end();
 
@@ -52,7 +52,7 @@ class NodeHerald {
   FileSystem& files_;
   LabKeyFile lab_;
   ClockNews clock_news_;
-  std::string key_trouble_;  // that was told, and still stands
+  std::string key_trouble_;  // the fault that was reported and still lasts
   Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
   int counts_in_s_ = 10;
 };

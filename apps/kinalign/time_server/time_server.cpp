@@ -38,8 +38,8 @@ Result<std::vector<AddressBlock>> networks_of(const std::vector<std::string>& te
   return networks;
 }
 
-/// Two addresses of which one is in the other's way, which the system would put down to another
-/// program.
+/// Refuses two addresses of which one covers the other. The system would report that another
+/// program has the port.
 Result<void> check_pair(const std::string& one, const std::string& other) {
   if (one == other) {
     return Failure(Error{"--listen", 0, "each address once", one + " twice"});
@@ -52,7 +52,7 @@ Result<void> check_pair(const std::string& one, const std::string& other) {
   return {};
 }
 
-/// As the system writes them.
+/// The addresses in the system's spelling.
 Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& texts) {
   std::vector<std::string> addresses;
   for (const std::string& text : texts) {
@@ -64,11 +64,11 @@ Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& te
   return addresses;
 }
 
-/// Flags that forbid one another, or need one another.
+/// Checks flags that exclude or need each other.
 Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
   KA_TRY(addresses_of(o.listen));
   KA_TRY(networks_of(o.exempt));
-  if (given.contains("lab_key") && o.lab_key.empty()) {  // an unset variable is no wish for none
+  if (given.contains("lab_key") && o.lab_key.empty()) {  // an unset shell variable is not "no key"
     return Failure(Error{"--lab-key", 0, "a file's name", "nothing"});
   }
   if (!o.node_port && !o.lab_key.empty()) {
@@ -81,6 +81,7 @@ Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
   return {};
 }
 
+/// The command line of `kinalign time-server`.
 Usage describe_time_server(TimeServerFlags& o) {
   Usage usage;
   usage.flags = {
@@ -109,7 +110,7 @@ Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
   return options;
 }
 
-/// On a port that could not be opened. `flag`: the one that names it.
+/// Advice for a port that could not be opened. `flag`: the flag that names it.
 Advice advice_on_port(const std::string& flag, std::int64_t port) {
   const WantedPort wanted{static_cast<std::uint16_t>(port), flag, "--listen", false};
   return [wanted](const Error& error) { return port_advice(error, wanted); };
@@ -124,7 +125,7 @@ Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {
   return lab;
 }
 
-/// Absent where no port for nodes is wanted.
+/// The receiver of nodes; absent without --node-port.
 Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
                                                const std::optional<LabKey>& lab_key,
                                                ClockReader& clocks) {
@@ -137,6 +138,7 @@ Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
   return KA_TRY(NodeReceiver::open(options, clocks));
 }
 
+/// The addresses and ports that clients need.
 ServedPort served_port(const TimeServer& server, const std::optional<NodeReceiver>& nodes,
                        const TimeServerFlags& flags) {
   ServedPort served;
@@ -148,7 +150,7 @@ ServedPort served_port(const TimeServer& server, const std::optional<NodeReceive
   return served;
 }
 
-/// Tells what changes while the server serves.
+/// Reports changes while the server runs.
 class Herald {
  public:
   Herald(const TimeServer& server, std::optional<NodeHerald>& nodes, Console& console)
@@ -158,7 +160,7 @@ class Herald {
         progress_(console.progress()),
         told_(server.state()) {}
 
-  /// Whether to go on.
+  /// Reports what changed since the last call. False: the server has to stop.
   bool operator()() {
     tell_clock();
     tell_strays();
@@ -187,7 +189,7 @@ class Herald {
     console_.print_json(clock_json(now));
     console_.flush();
   }
-  /// Once: the count goes on telling it.
+  /// Reports nodes at the NTP port once; the count goes on.
   void tell_strays() {
     if (strays_told_ || server_.counts()[NtpOutcome::from_node] == 0) return;
     strays_told_ = true;
@@ -195,7 +197,8 @@ class Herald {
               "warning: a node sends to the NTP port; nodes are received on another one, "
               "--node-port");
   }
-  /// Each trouble with stdout once, as long as it lasts: nobody else may notice for hours.
+  /// Reports each fault of stdout once, as long as it lasts: otherwise nobody may notice it for
+  /// hours.
   void tell_trouble() {
     const std::string trouble = console_.out_trouble();
     if (std::exchange(out_trouble_, trouble) == trouble) return;
@@ -217,7 +220,7 @@ class Herald {
   Console& console_;
   Progress progress_;
   NtpServerState told_;
-  std::string out_trouble_;  // that was told, and still stands
+  std::string out_trouble_;  // the fault that was reported and still lasts
   Clock::time_point began_ = Clock::now();
   int counts_told_ = 0;
   bool strays_told_ = false;
@@ -253,6 +256,7 @@ Result<int> run(TimeServerFlags& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign time-server`.
 Verb time_server_verb() {
   return make_verb<TimeServerFlags>(
       {.name = "time-server",

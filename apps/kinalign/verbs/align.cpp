@@ -29,14 +29,16 @@ namespace kinalign {
 
 namespace {
 
-/// What to align, and what overrides a manifest.
+/// The input of align, and the options that override a manifest.
 struct AlignVerb {
   std::vector<std::string> manifest;  // at most one
-  AlignOptions options;
-  bool slerp = false;
+  AlignOptions options;               // the options of alignment
+  bool slerp = false;                 // the same as --rotations slerp
   QuickFlags quick;
 };
 
+/// Checks flags against each other: a manifest excludes the flags of single files, and one of both
+/// is needed.
 Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& given) {
   const bool quick = !o.quick.mocap.empty();
   if (!o.manifest.empty()) KA_TRY(refuse_beside(o.manifest.front(), given));
@@ -57,6 +59,7 @@ Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& 
   return {};
 }
 
+/// The command line of `kinalign align`.
 Usage describe_verb_options(AlignVerb& o) {
   Usage usage;
   usage.positionals = {
@@ -76,13 +79,14 @@ Usage describe_verb_options(AlignVerb& o) {
   return usage;
 }
 
-/// The manifest to align by. `recording` is set where a recording was opened to make the manifest.
+/// The manifest to align by. `recording` is set if a recording was opened to make the manifest.
 struct ToAlign {
   Manifest manifest;
   std::shared_ptr<RecordingSource> recording{};
 };
 
-/// What a file is instead that is neither a recording nor named as a manifest.
+/// The error for a file that is neither a recording nor a manifest; the error states what the file
+/// is.
 Result<Error> no_recording(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   const std::string_view head = KA_TRY(file.next());
@@ -98,7 +102,7 @@ Result<Error> no_recording(FileSystem& files, const std::string& path) {
                "another ending"};
 }
 
-/// As it stands in a file or follows from flags, with the options of the call.
+/// The manifest of a file, or one made from the flags, with the options of the call.
 Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
   ToAlign wanted;
   Manifest& manifest = wanted.manifest;
@@ -128,7 +132,7 @@ Result<ToAlign> wanted_of(AlignVerb& o, const Call& call) {
   return wanted;
 }
 
-/// What can be told only once the manifest is read.
+/// Checks --reference, which needs the names of the manifest's streams.
 Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const Sources& given) {
   const auto source = given.find("reference");
   if (source == given.end() || source->second != Source::flag) return {};
@@ -146,7 +150,8 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
   return {};
 }
 
-/// The start that lays a skeleton or points beside the others, where none of it overlaps them.
+/// Advice for a skeleton or points that do not overlap the other streams in time: the start with
+/// which both would begin together.
 std::string start_advice(const AlignVerb& o, const Recording& recording, const Manifest& manifest) {
   for (const RecordedStream& s : recording.streams) {
     Time first = Time::min(), last = Time::max();
@@ -174,7 +179,7 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
   return "";
 }
 
-/// `path`: of the manifest, if any.
+/// The lines after an error. `path`: the manifest's path; empty if there is none.
 std::vector<std::string> advice(const std::string& path, const Error& error) {
   std::vector<std::string> lines{"nothing was written"};
   const bool named = !path.empty() && error.file == path;
@@ -196,6 +201,7 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
   return lines;
 }
 
+/// Opens all files. Files given by flags are checked for their kind.
 Result<Recording> open_files(const AlignVerb& o, const ToAlign& wanted, const std::string& base,
                              Call& call) {
   Recording recording =
@@ -208,6 +214,8 @@ Result<Recording> open_files(const AlignVerb& o, const ToAlign& wanted, const st
   return recording;
 }
 
+/// Aligns a recording. An input is never overwritten, and a sibling file of a recording is an
+/// input, too.
 Result<int> run(AlignVerb& o, Call& call) {
   const std::string path = o.manifest.empty() ? "" : o.manifest.front();
   call.console.if_it_fails([path](const Error& error) { return advice(path, error); });
@@ -243,6 +251,7 @@ Result<int> run(AlignVerb& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign align`.
 Verb align_verb() {
   return make_verb<AlignVerb>(
       {.name = "align",

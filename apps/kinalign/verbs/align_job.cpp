@@ -14,7 +14,7 @@ namespace kinalign {
 
 Result<AlignmentReport> align_to_file(const Call& call, const Recording& recording,
                                       const Manifest& manifest, const TakeTarget& target) {
-  malloc_trim(0);  // what opening the recording has freed goes back to the system
+  malloc_trim(0);  // returns the memory freed after opening the recording to the system
   std::optional<TakeWriter> writer;
   TakeSink sink;
   sink.begin = [&](const TakeHeader& header) -> Result<void> {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alignment from files to a file: what `align` does and `rebuild` does again.
+// Alignment from files to a file, for `align` and `rebuild`.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// Where a take is to go; without a path nowhere.
+/// The file of a new take. Without a path the take is computed and not written.
 struct TakeTarget {
   std::string path;
   Overwrite overwrite = Overwrite::no;

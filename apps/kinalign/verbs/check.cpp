@@ -33,6 +33,7 @@ struct Check {
   StreamFlags stream;
 };
 
+/// The command line of `kinalign check`.
 Usage describe_check(Check& o) {
   Usage usage;
   usage.positionals = {{"FILE",
@@ -46,7 +47,7 @@ Usage describe_check(Check& o) {
   return usage;
 }
 
-/// Reads every row of a take, in the child; its report.
+/// Reads every row of a take and returns its report. Runs in the child process.
 Result<std::string> read_through(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   TakeSlab slab;
@@ -59,8 +60,7 @@ Result<std::string> read_through(FileSystem& files, const std::string& path) {
   return reader.report_json();
 }
 
-/// What alignment would refuse or remark before it touches a sample: joints, nodes, the common
-/// span.
+/// Problems that alignment would report before it reads a sample: joints, nodes, the common span.
 Findings check_plan(const std::string& path, const Input& input) {
   const auto judged = [&input]() -> Result<Findings> {
     const AlignPlan plan = KA_TRY(plan_alignment(input.recording, *input.manifest));
@@ -74,14 +74,14 @@ Findings check_plan(const std::string& path, const Input& input) {
   return {{Severity::error, std::move(error), "kinalign align makes no take of it", repair}};
 }
 
-/// A flag that the file has no use for is wrong use.
+/// Refuses the call (exit code 2) if a flag does not apply to the file.
 Result<void> check_flags(const Check& o, const std::string& path, const RecordedStream* stream,
                          Call& call) {
   auto used = o.stream.check_use(path, stream, call.sources);
   return used ? Result<void>{} : call.console.refuse(std::move(used).error());
 }
 
-/// What is wrong with how many files.
+/// The findings, and the number of files they are about.
 struct Checked {
   Findings findings;
   std::size_t files = 1;
@@ -93,20 +93,22 @@ Result<Checked> check_take(const Check& o, const std::string& path, Call& call) 
   const std::string report =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
   Checked out{KA_TRY(report_findings(report, path))};
-  for (Finding& finding : out.findings) {  // of several takes: which one's input
+  for (Finding& finding : out.findings) {  // several takes may be checked, so the take is named too
     std::string& file = finding.what.file;
     file = file.empty() ? path : fmt::format("{}: {}", path, file);
   }
   return out;
 }
 
-/// A take knows an input by its name below the manifest, a user of one file by its path.
+/// Replaces a file's name in the findings by the path that the user typed. A take names inputs
+/// relative to the manifest.
 void name_as_typed(const std::string& path, const RecordedStream& stream, Findings& findings) {
   for (Finding& finding : findings) {
     if (finding.what.file == stream.files.front().name) finding.what.file = path;
   }
 }
 
+/// Checks a recording: its messages, its parts, and sibling files that share its name.
 Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
   KA_TRY(check_flags(o, path, nullptr, call));
   FileSystem& files = call.surroundings.files;
@@ -124,7 +126,7 @@ Result<Checked> check_xdf(const Check& o, const std::string& path, Call& call) {
       judge_xdf(path, KA_TRY(survey_xdf(call.surroundings.files, path, call.console.progress())))};
 }
 
-/// A stream's file that is named as something else is.
+/// A note about a stream's file whose ending is that of another format.
 Findings judge_name(const std::string& path, const RecordedStream& stream) {
   const bool misnamed = path.ends_with(".mcap") || path.ends_with(".xdf") || path.ends_with(".h5");
   if (!misnamed) return {};
@@ -133,7 +135,7 @@ Findings judge_name(const std::string& path, const RecordedStream& stream) {
            "it was read and checked as that", "give it the ending of what it is"}};
 }
 
-/// Reads all streams side by side. The findings are about stamps, arrivals and values.
+/// Reads all streams in parallel. The findings are about stamps, arrivals and values.
 Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   const Recording& recording = input.recording;
   const std::string reference = input.manifest ? reference_name(recording, *input.manifest) : "";
@@ -163,7 +165,7 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   return out;
 }
 
-/// A stream's file, or a manifest with all of its streams.
+/// Checks a stream's file, or a manifest with all of its streams.
 Result<Checked> check_input(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
@@ -181,7 +183,7 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
   return out;
 }
 
-/// A folder of BIDS; a data set of ours has a verb of its own.
+/// Checks a folder of BIDS. A kinalign data set is checked by `kinalign dataset verify`.
 Result<Checked> check_folder(const Check& o, const std::string& path, Call& call) {
   namespace fs = std::filesystem;
   KA_TRY(check_flags(o, path, nullptr, call));
@@ -209,8 +211,8 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
       return check_take(o, path, call);
     case FileKind::manifest:
     case FileKind::stream:
-    case FileKind::model:    // no motion: opening it says so
-    case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
+    case FileKind::model:    // contains no motion: opening it fails with that message
+    case FileKind::unknown:  // opening it fails with the reason, unless --layout states its format
       break;
   }
   return check_input(o, path, call);
@@ -227,7 +229,7 @@ Result<int> run(Check& o, Call& call) {
       files += found->files;
     } else if (o.files.size() == 1 || call.console.refused() || interrupted()) {
       return Failure(std::move(found).error());
-    } else {  // one file that can't be read must not hide what is wrong with the others
+    } else {  // an unreadable file must not hide problems of the others
       usable = false;
       all.push_back({Severity::error, std::move(found).error(), "the file can't be used", ""});
     }
@@ -243,6 +245,7 @@ Result<int> run(Check& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign check`.
 Verb check_verb() {
   return make_verb<Check>(
       {.name = "check",

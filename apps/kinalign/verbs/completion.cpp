@@ -24,6 +24,7 @@ Result<int> run(Completion& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign completion`.
 Verb completion_verb() {
   return make_verb<Completion>(
       {.name = "completion",

@@ -17,13 +17,14 @@ namespace {
 
 struct Config {};
 
-/// One setting in force.
+/// A setting in force: its verb, name and value, and the place that sets it.
 struct InForce {
   std::string verb, name, value, whence;
 };
 
 Usage describe(Config&) { return {}; }
 
+/// The place that sets a value: a variable, a settings file, a flag, or "standard" for the default.
 std::string whence(const std::string& name, Source source, const std::vector<SettingsFile>& files) {
   if (source == Source::environment) return variable_of(name);
   for (const SettingsFile& file : files) {
@@ -41,6 +42,7 @@ void list(const Fields& fields, const std::string& verb, const Sources& sources,
   }
 }
 
+/// Adds a verb's settings, as its own call would find them.
 Result<void> list_verb(const Verb& verb, const Call& call, const std::vector<SettingsFile>& files,
                        std::vector<InForce>& all) {
   Result<void> result;
@@ -58,6 +60,7 @@ Result<void> list_verb(const Verb& verb, const Call& call, const std::vector<Set
   return result;
 }
 
+/// All settings in force: those that all verbs share, then each verb's own.
 Result<std::vector<InForce>> all_in_force(const Call& call) {
   const auto files =
       KA_TRY(parse_settings(KA_TRY(find_settings(call.surroundings, call.common.config))));
@@ -71,6 +74,7 @@ Result<std::vector<InForce>> all_in_force(const Call& call) {
   return all;
 }
 
+/// Prints all settings in aligned columns, or as JSON.
 Result<int> run(Config&, Call& call) {
   const auto all = KA_TRY(all_in_force(call));
   auto settings = nlohmann::ordered_json::array();
@@ -95,6 +99,7 @@ Result<int> run(Config&, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign config`.
 Verb config_verb() {
   return make_verb<Config>(
       {.name = "config",

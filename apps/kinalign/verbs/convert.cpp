@@ -29,11 +29,12 @@ namespace kinalign {
 namespace {
 
 struct Convert {
-  std::vector<std::string> from, to;  // one each
-  bool store_double = false;
+  std::vector<std::string> from, to;  // one of each
+  bool store_double = false;          // 8-byte numbers in an NPZ
   StreamFlags stream;
 };
 
+/// The command line of `kinalign convert`. The ending of the new file decides its format.
 Usage describe_convert(Convert& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, or a stream's file", &o.from},
@@ -61,7 +62,7 @@ struct Job {
   bool store_double = false;
 };
 
-/// Rows of a stream as a take would hold them.
+/// The rows of a stream in the form that a take stores.
 ClipRows rows_of(const ClipInput& input, ClipFrames& block) {
   return own_rows(input.skeleton, std::move(block));
 }
@@ -80,6 +81,7 @@ ClipGroup group_of(const ClipInput& input) { return {input.skeleton}; }
 PointGroup group_of(const PointInput& input) { return {input.joint_names}; }
 ImuGroup group_of(const ImuInput& input) { return {input.node_names, input.content, ""}; }
 
+/// Writes all rows of a stream to an NPZ, block by block.
 template <class Input, class Frames>
 Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::uint64_t frames,
                         const Progress& progress, TakeNpzWriter& writer) {
@@ -96,6 +98,7 @@ Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::u
   return writer.finish();
 }
 
+/// Writes one stream's file as an NPZ. The stream's own names are kept without a prefix.
 Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const Progress& progress) {
   TakeHeader header;
   header.frames = stream.survey.samples;
@@ -110,7 +113,7 @@ Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const P
       stream.data);
 }
 
-/// `write(sink)` into a new file; what it found.
+/// Runs `write(sink)` into a new file and returns its findings.
 template <class Write>
 Result<Findings> put_bvh(const Job& job, const Write& write) {
   OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
@@ -119,8 +122,9 @@ Result<Findings> put_bvh(const Job& job, const Write& write) {
   return findings;
 }
 
-// The two for takes run in a child process.
+// take_to_npz and take_to_bvh read HDF5 and run in a child process.
 
+/// Writes all streams of a take into one NPZ; names of arrays begin with the stream's.
 Result<void> take_to_npz(const Job& job) {
   TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
   TakeHeader header = reader.header();
@@ -132,7 +136,7 @@ Result<void> take_to_npz(const Job& job) {
   return writer.finish();
 }
 
-/// What was found comes out of the child as a report's JSON.
+/// Converts a take in a child process, which returns its findings as a report's JSON.
 Result<Findings> convert_in_child(const Job& job) {
   const auto work = [&job]() -> Result<std::string> {
     Findings findings;
@@ -147,7 +151,7 @@ Result<Findings> convert_in_child(const Job& job) {
   return report_findings(KA_TRY(run_guarded(GuardLimits{}, blame(job.from), work)), job.from);
 }
 
-/// A flag that the input has no use for is wrong use.
+/// Refuses the call (exit code 2) if a flag does not apply to the input.
 Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& call) {
   auto used = o.stream.check_use(o.from.front(), stream, call.sources);
   return used ? Result<void>{} : call.console.refuse(std::move(used).error());
@@ -170,7 +174,8 @@ Findings findings_of(const Recording& recording) {
   return all;
 }
 
-/// All devices of a recording of which rows can be made, and what it says itself.
+/// Converts all devices of a recording whose data can be read as rows, and the recording's own
+/// marks.
 Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call) {
   const Progress progress = call.console.progress();
   if (!job.to.ends_with(".mcap")) {
@@ -200,6 +205,7 @@ Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
       .findings;
 }
 
+/// Converts the file of a single stream.
 Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   const Input input = KA_TRY(open_input(job.files, job.from, o.stream, call.console.progress()));
   const RecordedStream& stream = input.recording.streams.front();
@@ -219,6 +225,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   return stream.findings;
 }
 
+/// Chooses the conversion by the kind of the input.
 Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
   switch (KA_TRY(kind_of_file(job.files, job.from))) {
     case FileKind::recording:
@@ -230,13 +237,14 @@ Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
     case FileKind::manifest:
       return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
     case FileKind::stream:
-    case FileKind::model:    // no motion: opening it says so
-    case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
+    case FileKind::model:    // contains no motion: opening it fails with that message
+    case FileKind::unknown:  // opening it fails with the reason, unless --layout states its format
       break;
   }
   return convert_stream(job, o, call);
 }
 
+/// Converts a file. The sibling files of a recording are inputs, too, and never overwritten.
 Result<int> run(Convert& o, Call& call) {
   call.console.if_it_fails(
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
@@ -255,6 +263,7 @@ Result<int> run(Convert& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign convert`.
 Verb convert_verb() {
   return make_verb<Convert>(
       {.name = "convert",

@@ -32,6 +32,7 @@ std::string counted(std::size_t n, std::string_view word) {
   return fmt::format("{} {}{}", grouped(n), word, n == 1 ? "" : "s");
 }
 
+/// The number of trained values of a network.
 std::size_t parameters_of(const Architecture& architecture) {
   std::size_t sum = 0;
   for (const Parameter& parameter : parameters(architecture)) {
@@ -42,7 +43,7 @@ std::size_t parameters_of(const Architecture& architecture) {
   return sum;
 }
 
-/// "conv 128, kernel 5, dilation 2, causal"
+/// A layer in words: "conv 128, kernel 5, dilation 2, causal".
 std::string layer_text(const Layer& layer) {
   const LayerKind kind = layer.kind;
   std::string text(row_of(kind).name);
@@ -57,6 +58,7 @@ std::string layer_text(const Layer& layer) {
   return text;
 }
 
+/// The layers, one a line; branches stand below their layer, indented.
 std::string layer_lines(const std::vector<Layer>& layers, std::size_t indent) {
   std::string text;
   for (const Layer& layer : layers) {
@@ -73,7 +75,8 @@ std::string frames_text(const std::optional<std::size_t>& frames, std::string_vi
   return frames ? fmt::format("{} {}", *frames, way) : fmt::format("all {}", way);
 }
 
-/// A network: "net: 147 in, 84 out, 166,228 parameters; a frame sees 17 before and 17 after it".
+/// A network in words: "net: 147 in, 84 out, 166,228 parameters; a frame sees 17 before and 17
+/// after it".
 std::string network_lines(const std::string& name, const Architecture& architecture) {
   const std::string about =
       fmt::format("{}: {} in, {} out, {}; a frame sees {} and {} it", name, architecture.inputs,
@@ -99,8 +102,8 @@ std::string joint_lines(std::string_view name, const std::vector<std::string>& j
   return line(name, fmt::format("{}: {}", counted(joints.size(), "joint"), names));
 }
 
-/// A text member of an object that any program may have written, on one line; empty where it is
-/// none.
+/// A text member of an object from a file that any program may have written, on one line. Empty if
+/// the member is no text.
 std::string text_of(const Json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_string()) return "";
@@ -115,6 +118,8 @@ std::string number_of(const Json& object, const char* key) {
                                                      : "";
 }
 
+/// The data sets that a model was trained on. A missing licence is stated, since it limits the use
+/// of the model.
 std::string data_lines(const Json& data) {
   std::string text;
   for (const Json& one : data.is_array() ? data : Json::array()) {
@@ -130,6 +135,7 @@ std::string data_lines(const Json& data) {
   return text;
 }
 
+/// The lines about a training, and about the model that it went on from.
 std::string training_lines(const Json& training) {
   std::string text = data_lines(training.value("data", Json::array()));
   std::string how;
@@ -170,7 +176,7 @@ Json smoothing_json(const Smoothing& how) {
   return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
 }
 
-/// Height of a body at rest, from its lowest joint to its highest, m.
+/// The height of a body at rest, m, from its lowest joint to its highest.
 double height_at_rest(const Skeleton& skeleton) {
   std::vector<double> heights;
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
@@ -197,7 +203,7 @@ std::string model_line(const ModelFacts& facts) {
   return line("model", fmt::format("{}, method {}", shown(facts.task), shown(facts.method)));
 }
 
-/// The body that a model answers on.
+/// The lines about the output, the body and the network of a model for poses or fusion.
 std::string body_lines(const PoseBody& body, bool smoothing, const Architecture& network) {
   return line("output", fmt::format("rotations of {}", counted(body.bones.size(), "bone"))) +
          line("body", fmt::format("{}, {:.2f} m from the lowest to the highest at rest",
@@ -250,6 +256,7 @@ Json fuse_json(const FuseModel& model) {
           {"networks", {{"net", network_json(model.architecture)}}}};
 }
 
+/// The text about a model that cleans a Kinect.
 std::string denoise_text(const DenoiseModel& model) {
   std::string text = model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", model.layout.rate_hz));
@@ -265,6 +272,7 @@ std::string denoise_text(const DenoiseModel& model) {
                                        steadying.bones ? ", bones of constant length" : ""));
 }
 
+/// The JSON about a model that cleans a Kinect.
 Json denoise_json(const DenoiseModel& model) {
   Json networks{{"net", network_json(model.architecture)}};
   if (model.second) networks["second"] = network_json(*model.second);
@@ -283,13 +291,13 @@ Json denoise_json(const DenoiseModel& model) {
         {"bones", model.steadying.bones}}}};
 }
 
-/// Members that every model has.
+/// The members that every model has.
 Json facts_json(const std::string& path, std::string_view bytes, const ModelFacts& facts) {
   return {{"file", path},       {"kind", "model"},        {"bytes", bytes.size()},
           {"task", facts.task}, {"method", facts.method}, {"software", facts.software}};
 }
 
-/// A model in words and as JSON. `text` and `members`: of its task.
+/// A model as text and as JSON. `text` and `members`: the parts that depend on its task.
 Description described(const std::string& path, std::string_view bytes, const ModelFacts& facts,
                       const std::string& text, const Json& members) {
   const Json training = parsed_object(facts.training), metrics = parsed_object(facts.metrics);

@@ -19,6 +19,7 @@ struct Info {
   StreamFlags stream;
 };
 
+/// The command line of `kinalign info`.
 Usage describe_info(Info& o) {
   Usage usage;
   usage.positionals = {{"FILE",
@@ -36,6 +37,7 @@ Usage describe_info(Info& o) {
   return usage;
 }
 
+/// Describes a manifest or a stream's file, after reading it to the end.
 Result<Description> describe_input(const Info& o, Call& call, const std::string& path,
                                    Names names) {
   const Input input =
@@ -48,6 +50,8 @@ Result<Description> describe_input(const Info& o, Call& call, const std::string&
   return describe_recording(path, input.recording, names);
 }
 
+/// Chooses the description by the kind of the file. Files that describe themselves take no flags of
+/// a stream.
 Result<Description> describe(const Info& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.file.front();
@@ -72,7 +76,7 @@ Result<Description> describe(const Info& o, Call& call) {
       return describe_model(path, KA_TRY(read_whole(files, path, most_model_bytes)));
     case FileKind::manifest:
     case FileKind::stream:
-    case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
+    case FileKind::unknown:  // opening it fails with the reason, unless --layout states its format
       break;
   }
   return describe_input(o, call, path, names);
@@ -87,6 +91,7 @@ Result<int> run(Info& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign info`.
 Verb info_verb() {
   return make_verb<Info>(
       {.name = "info",

@@ -45,6 +45,7 @@ Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::str
   });
 }
 
+/// Options of alignment are left out: verbs that read a single stream do not align it.
 Fields StreamFlags::fields() {
   constexpr std::array<std::string_view, 5> of_alignment{"clock", "offset_ms", "drift_ppm",
                                                          "interval_ms", "root_node"};
@@ -91,6 +92,7 @@ Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths)
   return out;
 }
 
+/// Opens a manifest's recording, or a single stream's file as a recording of one stream.
 Result<Input> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
                          const Progress& progress) {
   Input input;
@@ -131,7 +133,7 @@ std::string name_advice(const Error& error) {
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b) {
   InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));
-  std::string_view p, q;  // what is left of both pieces, which may differ in length
+  std::string_view p, q;  // the unread rest of both pieces, whose lengths may differ
   for (std::uint64_t at = 0;;) {
     if (p.empty()) p = KA_TRY(one.next());
     if (q.empty()) q = KA_TRY(other.next());
@@ -158,17 +160,17 @@ Result<void> keep_inputs(const std::string& out, const std::vector<std::string>&
 
 namespace {
 
-/// The one spelling of a path: its folder's, without links, and the file's own name, which may be a
-/// link. A folder that is not there is only brought into order.
+/// The one spelling of a path: its folder without links, and the file's own name, which may be a
+/// link. A folder that does not exist is only normalised.
 std::string place_of(const std::string& path) {
   std::error_code fault;
   const std::filesystem::path whole = std::filesystem::absolute(path, fault);
-  if (fault) return path;  // called from a folder that is gone
+  if (fault) return path;  // the current folder was removed
   const auto parent = std::filesystem::canonical(whole.parent_path(), fault);
   return ((fault ? whole.parent_path().lexically_normal() : parent) / whole.filename()).string();
 }
 
-/// As seen from where the program was called: "demo/"; "" for that folder itself.
+/// The folder relative to the current one: "demo/"; "" for the current folder itself.
 std::string from_here(const std::string& folder) {
   std::error_code fault;
   const auto here = std::filesystem::canonical(".", fault);
@@ -193,7 +195,7 @@ std::string cut_common_folder(Manifest& manifest) {
       common = folder(common);
     }
   }
-  // Of files that share nothing a take remembers the names alone: no path of a machine's.
+  // Files without a common folder are named alone: a take must not contain paths of one machine.
   if (common == "/") return "";
   for (std::string* path : paths) path->erase(0, common.size());
   return relative ? from_here(common) : common;

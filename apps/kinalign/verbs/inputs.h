@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the verbs know of their input files: flags that describe a stream, and takes that may only
-// be opened in a child process.
+// The input files of verbs: the flags that describe a stream, opening, and checks of file names.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -19,60 +18,61 @@
 
 namespace kinalign {
 
-/// "name=value" in two; fails without '=' or without a name.
+/// Splits "name=value" in two. Fails without '=' or without a name.
 Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
                                                        std::string_view expected);
 
-/// Options of a single stream as flags: those of describe(StreamOptions) that its reader uses, and
-/// --select COLUMN=VALUE.
+/// The options of a single stream as flags: those members of describe(StreamOptions) that its
+/// reader uses, and --select COLUMN=VALUE.
 struct StreamFlags {
   StreamOptions options;
-  std::vector<std::string> select;
+  std::vector<std::string> select;  // COLUMN=VALUE
 
   Fields fields();
-  /// The failure of a flag that the file has no use for: of a stream, or (nullptr) of a take or a
-  /// manifest.
+  /// Fails if a flag does not apply to the file. `stream`: the file's stream; nullptr for a take or
+  /// a manifest.
   Result<void> check_use(const std::string& path, const RecordedStream* stream,
                          const Sources& given) const;
   /// The options with their files and selections.
   Result<StreamOptions> stream(const std::vector<std::string>& paths) const;
 };
 
-/// Reads a recording.toml; `unsaid`: what its [align] leaves open.
+/// Reads a recording.toml. `unsaid`: the values of options that its [align] does not state.
 Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
                                const AlignOptions& unsaid = {});
 
-/// Of the recording that begins in `path`, which it names as its folder has it.
+/// The manifest of the recording that begins in `path`. It names the file relative to its folder.
 Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::string& path);
 
-/// A manifest's recording, or a single stream's file as one.
+/// The recording of a manifest, or of a single stream's file.
 struct Input {
   Recording recording;
-  std::optional<Manifest> manifest;
+  std::optional<Manifest> manifest;  // absent for a single stream's file
 };
 Result<Input> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
                          const Progress& progress);
 
-/// The exit code of a job that was done: 1 where a warning or an error was found, notes are none.
+/// The exit code of a job that was done: 1 if there is a warning or an error, 0 if there are only
+/// notes.
 int code_of(const Findings& findings);
 
-/// Fails where a take would get the ending of another format.
+/// Fails if a take would get the ending of another format.
 Result<void> check_take_name(const std::string& out);
 
-/// Where the names stand, for an error about a joint or a node that is not there; else empty.
+/// Advice on where to look up names, for an error about an unknown joint or node; else empty.
 std::string name_advice(const Error& error);
 
-/// Byte of the first difference; nothing where two files are the same.
+/// The position of the first byte that differs; absent if two files are the same.
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b);
 
-/// Fails where `out` is one of `inputs`, under whatever name: no --force replaces what was measured
-/// by what is made of it.
+/// Fails if `out` is the same file as one of `inputs`, also under another name. Even --force must
+/// not replace a measurement by a file made from it.
 Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs);
 
-/// The folder that all paths of a manifest share, "" or ending in '/'; they become relative to it,
-/// so that a take does not depend on where the program was called from, nor on how a path is spelt.
-/// Where they share nothing they become absolute.
+/// The folder that all paths of a manifest share: "" or ending in '/'. The paths become relative to
+/// it, so that a take depends neither on the current folder nor on the spelling of a path. If they
+/// share no folder they become absolute.
 std::string cut_common_folder(Manifest& manifest);
 
 /// Every file that a manifest names; relative paths are relative to `folder`.

@@ -14,7 +14,7 @@ struct NodeKeyFlags {
   std::optional<std::int64_t> node;
 };
 
-/// An unset variable is no file's name.
+/// Refuses an empty file name, which an unset shell variable gives.
 Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
   const bool drawn = given.contains("new_lab_key") && o.new_lab_key.empty();
   const bool read = given.contains("lab_key") && o.lab_key.empty();
@@ -22,7 +22,7 @@ Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
   return Failure(Error{drawn ? "--new-lab-key" : "--lab-key", 0, "a file's name", "nothing"});
 }
 
-/// Of a lab's key: nothing else is to be said.
+/// --new-lab-key makes the lab's key only, so no other flag may be given.
 Result<void> check_drawn(const NodeKeyFlags& o, const Common& common) {
   if (!common.out.empty()) {
     return Failure(Error{"--out", 0, "none beside --new-lab-key, which names the new file itself",
@@ -35,6 +35,7 @@ Result<void> check_drawn(const NodeKeyFlags& o, const Common& common) {
                        "both"});
 }
 
+/// A node's key needs the lab's key and the node's id.
 Result<void> check_node(const NodeKeyFlags& o) {
   if (o.lab_key.empty() && !o.node) {
     return Failure(Error{"", 0,
@@ -51,6 +52,7 @@ Result<void> check_node(const NodeKeyFlags& o) {
       Error{"--node", 0, "--lab-key FILE beside it, of which a node's key is made", "none"});
 }
 
+/// The command line of `kinalign node-key`.
 Usage describe_node_key(NodeKeyFlags& o) {
   Usage usage;
   usage.flags = {{"new_lab_key", "draw a lab key, and write it into this new file", &o.new_lab_key},
@@ -63,6 +65,7 @@ Usage describe_node_key(NodeKeyFlags& o) {
   return usage;
 }
 
+/// Makes the lab's key, or derives a node's key from it and prints or writes it.
 Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (!o.new_lab_key.empty()) {
@@ -85,6 +88,7 @@ Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign node-key`.
 Verb node_key_verb() {
   return make_verb<NodeKeyFlags>(
       {.name = "node-key",

@@ -15,7 +15,8 @@ namespace kinalign {
 
 namespace {
 
-/// What a manifest says in a flag's place, and the flag it means nothing without.
+/// The key of a manifest that means the same as a flag, and the flag without which that flag has no
+/// meaning.
 struct Twin {
   std::string_view flag, key, needs;
 };
@@ -51,6 +52,7 @@ Result<std::pair<std::string, std::string>> pair_of(const std::string& flag,
   });
 }
 
+/// Two streams of one name could not be told apart in the take.
 Result<void> check_stream_names(const Manifest& manifest) {
   std::vector<std::string> names;
   for (const StreamOptions& stream : manifest.streams) {
@@ -62,6 +64,7 @@ Result<void> check_stream_names(const Manifest& manifest) {
   return {};
 }
 
+/// The options of --space with the pairs of --joint.
 Result<SpaceOptions> space_of(const QuickFlags& flags) {
   SpaceOptions space = flags.space;
   for (const std::string& joint : flags.joints) {
@@ -74,6 +77,7 @@ Result<SpaceOptions> space_of(const QuickFlags& flags) {
   return space;
 }
 
+/// All nodes make one stream, "imu", with a file for each.
 Result<StreamOptions> nodes_of(const QuickFlags& flags) {
   StreamOptions nodes;
   nodes.name = "imu";
@@ -86,17 +90,17 @@ Result<StreamOptions> nodes_of(const QuickFlags& flags) {
   return nodes;
 }
 
-/// Kinds of streams, as in RecordedStream::data, and their names in messages.
+/// The kinds of streams, as indices of RecordedStream::data.
 constexpr std::size_t clip = 0, points = 1, nodes = 2;
 
-/// What a flag's file has to be.
+/// The kind of content that a flag's file must have. `expected`: its name in messages.
 struct Wanted {
   std::string flag, path;
   std::vector<std::size_t> kinds;
   std::string expected;
 };
 
-/// In the order of quick_manifest's files.
+/// The files of all flags, in the order in which quick_manifest() lists them.
 std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
   const std::vector<std::size_t> bodies{clip, points};
   std::vector<Wanted> out{{"--mocap", flags.mocap, bodies, "a skeleton's file or points"}};
@@ -113,6 +117,7 @@ std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
 
 }  // namespace
 
+/// --space is "fit" without the flag; a manifest has another default.
 Fields QuickFlags::fields() {
   space.method = "fit";
   return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quick case of align: files named by flags, without a recording.toml.
+// The flags of `align` that name single files, in place of a recording.toml.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -18,24 +18,25 @@ struct QuickFlags {
   std::vector<std::string> imu;     // NODE=FILE
   std::string kinect_layout, points_layout, imu_layout, root_node;
   StreamOptions mocap_options;
-  SpaceOptions space;
-  std::vector<std::string> joints;  // JOINT=JOINT
+  SpaceOptions space;               // the Kinect's
+  std::vector<std::string> joints;  // KINECT=MOCAP
 
-  Fields fields();  // and sets what --space is without a word: fit
+  Fields fields();  // also sets the default of --space: fit
 };
 
-/// Fails where one of these flags stands beside the manifest `path`, with the key that says it
-/// there.
+/// Fails if one of these flags is given with the manifest `path`. The error names the manifest's
+/// key for it.
 Result<void> refuse_beside(const std::string& path, const Sources& given);
 
-/// Fails where a flag is given without the file it is for, or with another --space's.
+/// Fails if a flag is given without the file that it describes, or with a method of --space that
+/// does not use it.
 Result<void> refuse_alone(const QuickFlags& flags, const Sources& given);
 
-/// Fails where a value is not NAME=VALUE or a stream's name is given twice; the error's file is the
-/// flag.
+/// The manifest that the flags describe. Fails if a value is not NAME=VALUE or a stream's name is
+/// given twice; the error's file is the flag.
 Result<Manifest> quick_manifest(const QuickFlags& flags);
 
-/// Fails where a file is of another kind than its flag says.
+/// Fails if a file's content is of another kind than its flag requires.
 Result<void> check_kinds(const QuickFlags& flags, const Recording& recording);
 
 }  // namespace kinalign

@@ -27,6 +27,7 @@ struct Rebuild {
   bool verify = false;
 };
 
+/// The command line of `kinalign rebuild`.
 Usage describe_rebuild(Rebuild& o) {
   Usage usage;
   usage.positionals = {{"TAKE", "a take that kinalign wrote", &o.take}};
@@ -46,14 +47,17 @@ Usage describe_rebuild(Rebuild& o) {
   return usage;
 }
 
-/// What --verify found; all empty: the same bytes from the same inputs.
+/// The result of --verify. Without difference and failure: the take was made again with the same
+/// bytes.
 struct Comparison {
   std::optional<std::uint64_t> difference;  // the first byte that differs
-  std::optional<Error> failure;             // why it can't be made again
-  std::vector<std::string> changed;         // inputs
+  std::optional<Error> failure;             // the reason why the take can't be made again
+  std::vector<std::string> changed;         // inputs with other bytes than in the take
   bool same() const { return !difference && !failure; }
 };
 
+/// Makes the take again in a temporary folder and compares the bytes. A failure that comes from the
+/// inputs is a result; one of this machine is an error.
 Result<Comparison> compare(const std::string& take, const Result<Recording>& recording,
                            const Origin& origin, Call& call) {
   Comparison out;
@@ -80,6 +84,7 @@ std::string changed_line(const std::string& name) {
   return harmless(name + " is not the file that the take was made from");
 }
 
+/// Prints the result of --verify and returns the exit code.
 int say(const std::string& take, const Comparison& found, const Origin& origin, Call& call) {
   nlohmann::ordered_json json{{"take", take},
                               {"same", found.same()},
@@ -105,6 +110,7 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
   return found.same() ? 0 : 1;
 }
 
+/// Makes the take again and writes it. Changed inputs are warnings.
 Result<int> write_again(const Recording& recording, const Origin& origin, Call& call) {
   const std::string& out = call.common.out;
   const std::vector<std::string> changed = changed_inputs(origin, recording);
@@ -135,7 +141,7 @@ Result<int> run(Rebuild& o, Call& call) {
                         "that kinalign info {} shows: copy or link them into one",
                         count, take)};
       });
-  // An input that is not there is no difference: nothing can be said.
+  // A missing input is an error, not a difference: the comparison would say nothing about the take.
   for (const std::string& input : inputs) KA_TRY(InputFile::open(files, input));
   Result<Recording> recording =
       open_recording(files, origin.parameters, base, {call.console.progress(), call.jobs});
@@ -145,6 +151,7 @@ Result<int> run(Rebuild& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign rebuild`.
 Verb rebuild_verb() {
   return make_verb<Rebuild>(
       {.name = "rebuild",

@@ -23,6 +23,7 @@ struct Recover {
   std::vector<std::string> files;
 };
 
+/// The command line of `kinalign recover`.
 Usage describe_recover(Recover& o) {
   Usage usage;
   usage.positionals = {
@@ -36,7 +37,8 @@ Usage describe_recover(Recover& o) {
   return usage;
 }
 
-/// What stands in the new file and, below, what was in the old ones and does not.
+/// The first lines of the text: the messages in the new file, and those of the old files that are
+/// not in it.
 std::string head_line(const std::string& out, const Recovered& done) {
   const std::string of =
       done.missing > 0 ? " of at least " + grouped(done.messages + done.missing) : "";
@@ -53,6 +55,8 @@ std::string head_line(const std::string& out, const Recovered& done) {
   return text;
 }
 
+/// Recovers a recording and prints the counts. The exit code is 1 if anything is missing or
+/// damaged.
 Result<int> run(Recover& o, Call& call) {
   call.console.if_it_fails([](const Error&) {
     return std::vector<std::string>{"nothing was written; the old files are as they were"};
@@ -87,6 +91,7 @@ Result<int> run(Recover& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign recover`.
 Verb recover_verb() {
   return make_verb<Recover>(
       {.name = "recover",

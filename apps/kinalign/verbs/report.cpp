@@ -26,8 +26,9 @@ namespace kinalign {
 
 namespace {
 
+/// The length of the part for which the page shows raw samples.
 constexpr double detail_length_s = 60.0;
-constexpr double no_detail_s = -1.0;  // the verb chooses
+constexpr double no_detail_s = -1.0;  // not given: the verb chooses the place
 
 struct Report {
   std::vector<std::string> take;
@@ -36,6 +37,7 @@ struct Report {
   bool open = false;
 };
 
+/// The command line of `kinalign report`.
 Usage describe_report(Report& o) {
   Usage usage;
   usage.positionals = {{"TAKE", "a take that kinalign wrote", &o.take}};
@@ -56,9 +58,9 @@ Usage describe_report(Report& o) {
   return usage;
 }
 
-// ---- in a child process: what HDF5 reads
+// ---- in a child process: everything that reads HDF5
 
-/// Calls use(reader, report) of the take.
+/// Calls use(reader, report) on the take.
 template <class Use>
 Result<std::string> with_take(FileSystem& files, const std::string& path, Use use) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
@@ -67,8 +69,8 @@ Result<std::string> with_take(FileSystem& files, const std::string& path, Use us
   return use(reader, report);
 }
 
-/// JSON with the begin of the detail of a long take ("begin_s"), the first row's stamp, and
-/// the names of the streams of points and of nodes.
+/// JSON with the first row's stamp, the begin of the detail of a long take ("begin_s"), and the
+/// names of the streams of points and of nodes.
 Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& report) {
   nlohmann::json out{{"begin_ns", to_ns(report.begin)}, {"begin_s", 0.0}};
   out["points"] = out["nodes"] = nlohmann::json::array();
@@ -86,7 +88,7 @@ Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& repo
   return json_text(out);
 }
 
-/// A line of JSON about the page, then the page.
+/// One line of JSON about the page, then the page.
 Result<std::string> page_text(const std::string& path, TakeReader& reader,
                               const AlignmentReport& report, const TakeFigureOptions& options) {
   TakeFigures figures(reader.header(), report, options);
@@ -113,9 +115,10 @@ Result<std::string> page_text(const std::string& path, TakeReader& reader,
 
 // ---- the raw samples of figures 4, 11 and 12
 
+/// The facts about a take that the reading of raw samples needs.
 struct Outline {
   Time begin{};
-  double detail_begin_s = 0.0;
+  double detail_begin_s = 0.0;             // s from the first row
   std::vector<std::string> points, nodes;  // names of streams
 };
 
@@ -131,7 +134,7 @@ Result<Outline> outline_of(FileSystem& files, const std::string& path, double wa
       return outline_json(reader, report);
     });
   }));
-  try {  // what a child says is not trusted
+  try {  // a child process that read a damaged file is not trusted
     const auto json = nlohmann::json::parse(text);
     Outline out;
     out.begin = utc_time(json.at("begin_ns").get<std::int64_t>());
@@ -144,7 +147,7 @@ Result<Outline> outline_of(FileSystem& files, const std::string& path, double wa
   }
 }
 
-/// The samples of a stream within the detail, stamps on the take's axis.
+/// The samples of a stream of points within the detail, with stamps on the take's axis.
 Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outline) {
   const auto& input = std::get<PointInput>(stream.data);
   const std::size_t joints = input.joint_names.size();
@@ -169,7 +172,7 @@ Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outlin
   return out;
 }
 
-/// The samples of each node of a stream within the detail, stamps on the take's axis.
+/// The samples of each node of a stream within the detail, with stamps on the take's axis.
 Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outline& outline) {
   const auto& input = std::get<ImuInput>(stream.data);
   const std::size_t worn = input.node_names.size();
@@ -197,8 +200,8 @@ Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outli
   return out;
 }
 
-/// The raw samples of all streams of points and nodes. Fails if an input is missing or is not the
-/// take's.
+/// The raw samples of all streams of points and nodes. Fails if an input is missing or has other
+/// bytes than the take's input.
 Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& outline,
                             const std::string& base) {
   Manifest manifest = origin.parameters;
@@ -236,7 +239,7 @@ std::string size_text(std::size_t bytes) {
   return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
 }
 
-/// The lines that a user reads: file, size, verdicts, the worst things.
+/// The printed text: file, size, verdicts, the most serious concerns.
 std::string said(const std::string& out, std::size_t bytes, const nlohmann::ordered_json& about,
                  Call& call) {
   std::string streams;
@@ -256,7 +259,7 @@ std::string said(const std::string& out, std::size_t bytes, const nlohmann::orde
   return text;
 }
 
-/// Starts xdg-open; the page is there whatever becomes of it.
+/// Opens the page with xdg-open. If that fails, it is only noted: the page is written already.
 void show(const std::string& out, Call& call) {
   std::string program = "xdg-open", path = out;
   char* words[] = {program.data(), path.data(), nullptr};
@@ -274,11 +277,13 @@ void show(const std::string& out, Call& call) {
   }
 }
 
+/// The page's size, and the JSON about it.
 struct Written {
   std::size_t bytes = 0;
   nlohmann::ordered_json about;
 };
 
+/// Makes the page in a child process and writes it.
 Result<Written> write_page(const std::string& take, const TakeFigureOptions& options, Call& call) {
   FileSystem& files = call.surroundings.files;
   OutputFile out = KA_TRY(OutputFile::create(files, call.common.out, call.common.overwrite()));
@@ -295,7 +300,7 @@ Result<Written> write_page(const std::string& take, const TakeFigureOptions& opt
   return written;
 }
 
-/// Text and JSON of what was written; the exit code.
+/// Prints the text and the JSON about the page, and returns the exit code.
 int say(const Written& written, bool has_raw, Call& call) {
   const std::string& out = call.common.out;
   call.console.wrote(out);
@@ -310,7 +315,8 @@ int say(const Written& written, bool has_raw, Call& call) {
   return any_bad ? 1 : 0;
 }
 
-/// The raw samples that can be read. Without --inputs, a take whose inputs are elsewhere has none.
+/// The raw samples that can be read. Without --inputs, a take whose inputs lie elsewhere has none,
+/// which is no error.
 Result<RawSamples> find_raw(const Report& o, Call& call, const Origin& origin,
                             const Outline& outline, const std::string& base) {
   auto raw = read_raw(call, origin, outline, base);
@@ -319,6 +325,7 @@ Result<RawSamples> find_raw(const Report& o, Call& call, const Origin& origin,
   return raw;
 }
 
+/// Makes the page of a take.
 Result<int> run(Report& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& take = o.take.front();
@@ -351,6 +358,7 @@ Result<int> run(Report& o, Call& call) {
 
 }  // namespace
 
+/// The verb `kinalign report`.
 Verb report_verb() {
   return make_verb<Report>(
       {.name = "report",

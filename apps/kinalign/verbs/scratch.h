@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder for files between two programs.
+// A temporary folder, for files that one program writes and another reads.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// A folder that goes with everything in it.
+/// A temporary folder that is removed with its content at the end of the object's life.
 class Scratch {
  public:
   static Result<Scratch> make() {

@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+/// The take's software, parameters and input hashes as JSON. Runs in the child process.
 Result<std::string> origin_json(FileSystem& files, const std::string& path) {
   const TakeReader reader = KA_TRY(TakeReader::open(files, path));
   nlohmann::json out{{"software", reader.software()},
@@ -32,7 +33,7 @@ Result<std::string> origin_json(FileSystem& files, const std::string& path) {
 Result<Origin> origin_of(FileSystem& files, const std::string& path) {
   const std::string text =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); }));
-  try {  // what a child says is not trusted either
+  try {  // a child process that read a damaged file is not trusted
     const auto json = nlohmann::json::parse(text);
     Origin origin;
     origin.software = json.at("software").get<std::string>();

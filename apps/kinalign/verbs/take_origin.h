@@ -14,13 +14,13 @@ namespace kinalign {
 struct Origin {
   std::string software;
   Manifest parameters;
-  std::vector<InputFacts> files;  // without their sizes
+  std::vector<InputFacts> files;  // names and hashes only, no sizes
 };
 
-/// Reads the take in a child process.
+/// Reads the take's origin in a child process.
 Result<Origin> origin_of(FileSystem& files, const std::string& path);
 
-/// Inputs whose bytes are not those of the take's making.
+/// The names of inputs whose bytes differ from those that the take was made from.
 std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording);
 
 }  // namespace kinalign

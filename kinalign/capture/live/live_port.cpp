@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* own_machine = "127.0.0.1";
 
-/// Messages are small and wanted at once: the kernel must not wait for more of them.
+/// Sends small messages immediately: without this option the kernel waits for more data.
 void send_at_once(int fd) {
   const int yes = 1;
   ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
@@ -52,7 +52,7 @@ void LivePort::accept() {
     if (socket.fd() < 0) return;
     if (clients_.size() == most_clients) {
       ++counts_.turned_away;
-      continue;  // which closes it
+      continue;  // the handle closes the connection
     }
     send_at_once(socket.fd());
     ++counts_.clients;
@@ -60,6 +60,7 @@ void LivePort::accept() {
   }
 }
 
+// A slow client loses whole messages, so that its stream stays valid.
 void LivePort::add(const McapSchema* schema, const McapChannel& channel,
                    const McapMessage& message) {
   for (Client& client : clients_) {
@@ -79,7 +80,7 @@ void LivePort::add(const McapSchema* schema, const McapChannel& channel,
   }
 }
 
-/// A client has nothing to say. One that does took this port for another one.
+/// A client never sends anything. One that does has mistaken this port for another.
 bool LivePort::is_silent(const Client& client) {
   char byte = 0;
   const ssize_t got = ::recv(client.socket.fd(), &byte, 1, MSG_DONTWAIT);
@@ -87,7 +88,7 @@ bool LivePort::is_silent(const Client& client) {
   return got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
 }
 
-/// Whether the connection is still there.
+/// Sends waiting bytes. Returns false if the connection is broken.
 bool LivePort::send(Client& client) {
   if (client.waiting.empty()) return true;
   const std::string_view rest = std::string_view(client.waiting).substr(client.sent);
@@ -95,7 +96,8 @@ bool LivePort::send(Client& client) {
       ::send(client.socket.fd(), rest.data(), rest.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent < 0) return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
   client.sent += static_cast<std::size_t>(sent);
-  // Moving the rest costs as many bytes as were sent since, or there is no rest.
+  // Sent bytes are erased only when they are at least half of the buffer, so that moving the rest
+  // costs no more than sending did.
   if (2 * client.sent < client.waiting.size()) return true;
   client.waiting.erase(0, client.sent);
   client.sent = 0;
@@ -107,6 +109,7 @@ void LivePort::turn() {
   std::erase_if(clients_, [this](Client& client) { return !is_silent(client) || !send(client); });
 }
 
+// Each client is told how many messages it lost.
 void LivePort::end() {
   for (Client& client : clients_) {
     append_mcap(client.waiting, to_metadata(RecordingEnd{client.lost}));

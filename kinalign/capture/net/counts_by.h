@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// A count for each value of an enumeration.
+/// One counter for each value of an enumeration.
 template <class Cause, std::size_t causes>
 class CountsBy {
  public:

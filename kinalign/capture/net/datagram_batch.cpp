@@ -31,6 +31,8 @@ HostAddress bytes_of(const in_addr& address) {
   return mapped_ipv4(bytes);
 }
 
+/// Reads the arrival stamp and the destination address from one control message. Other messages are
+/// ignored.
 void read_control(const cmsghdr& control, Datagram& datagram) {
   if (const auto stamp = kernel_stamp(control)) {
     datagram.received = stamp;
@@ -45,7 +47,8 @@ void read_control(const cmsghdr& control, Datagram& datagram) {
   }
 }
 
-/// The address that was asked, as the one to answer from; returns the bytes of `control` used.
+/// Writes the control message that sends from the address `asked.to`. Returns the bytes of
+/// `control` used.
 std::size_t put_source(const Datagram& asked, std::uint32_t scope,
                        std::span<std::uint8_t> control) {
   const bool four = is_ipv4(asked.to);
@@ -69,7 +72,7 @@ std::size_t put_source(const Datagram& asked, std::uint32_t scope,
   return CMSG_SPACE(size);
 }
 
-/// Where `asked` came from, as the system has it; its length is returned.
+/// Writes the sender's address of `asked` in the system's form. Returns the length of that form.
 socklen_t put_peer(const Datagram& asked, sockaddr_in6& peer) {
   if (!is_ipv4(asked.from)) {
     peer.sin6_family = AF_INET6;
@@ -92,7 +95,7 @@ bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> byte
   if (asked.from_port == 0) return false;
   sockaddr_in6 peer{};
   alignas(cmsghdr) std::array<std::uint8_t, CMSG_SPACE(sizeof(in6_pktinfo))> control{};
-  // sendmsg(2) writes to nothing that it is pointed to.
+  // iovec needs a pointer to mutable bytes, but sendmsg(2) does not write to them.
   iovec out{const_cast<std::uint8_t*>(bytes.data()), bytes.size()};
   msghdr head{};
   head.msg_name = &peer;
@@ -106,6 +109,7 @@ bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> byte
   return ::sendmsg(fd, &head, MSG_DONTWAIT) == static_cast<ssize_t>(bytes.size());
 }
 
+// Each message points to the buffers of its slot; the slots never move.
 DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(most) {
   unsent_.reserve(most);
   for (std::size_t i = 0; i < most; ++i) {
@@ -121,7 +125,7 @@ DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(
 
 std::size_t DatagramBatch::receive(int fd) {
   queue_length_ = 0;
-  for (mmsghdr& message : in_) {  // as the last batch left them
+  for (mmsghdr& message : in_) {  // recvmmsg(2) overwrites these lengths
     message.msg_hdr.msg_namelen = sizeof(sockaddr_in6);
     message.msg_hdr.msg_controllen = control_room;
   }
@@ -135,7 +139,7 @@ Datagram DatagramBatch::at(std::size_t i) const {
   Datagram datagram;
   datagram.bytes = std::span(slot.bytes).first(message.msg_len);
   datagram.cut = (message.msg_hdr.msg_flags & MSG_TRUNC) != 0;
-  datagram.from_port = ntohs(slot.from.sin6_port);  // where sin_port stands too
+  datagram.from_port = ntohs(slot.from.sin6_port);  // sin_port of IPv4 has the same place
   if (slot.from.sin6_family == AF_INET6) {
     datagram.from = bytes_of(slot.from.sin6_addr);
     datagram.from_scope = slot.from.sin6_scope_id;
@@ -144,7 +148,7 @@ Datagram DatagramBatch::at(std::size_t i) const {
     std::memcpy(&four, &slot.from, sizeof four);
     datagram.from = bytes_of(four.sin_addr);
   }
-  msghdr head = message.msg_hdr;  // CMSG_NXTHDR wants one that it could write to
+  msghdr head = message.msg_hdr;  // CMSG_NXTHDR needs a mutable header
   for (cmsghdr* control = CMSG_FIRSTHDR(&head); control != nullptr;
        control = CMSG_NXTHDR(&head, control)) {
     read_control(*control, datagram);
@@ -152,6 +156,7 @@ Datagram DatagramBatch::at(std::size_t i) const {
   return datagram;
 }
 
+// The answer goes to the sender's address in the slot, in the form in which the system gave it.
 void DatagramBatch::queue(std::size_t i, const Datagram& asked, std::size_t size) {
   Slot& slot = slots_[i];
   const bool six = slot.from.sin6_family == AF_INET6;
@@ -174,7 +179,8 @@ std::span<const std::size_t> DatagramBatch::send(int fd) {
     const auto left = static_cast<unsigned>(queue_length_ - at);
     const int sent = ::sendmmsg(fd, &out_[at], left, MSG_DONTWAIT);
     if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) unsent_.push_back(queued_[at]);  // no route, a full buffer; on with the next
+    // no route or a full buffer; continue with the next answer
+    if (sent < 0) unsent_.push_back(queued_[at]);
     at += sent < 0 ? 1 : static_cast<std::size_t>(sent);
   }
   queue_length_ = 0;

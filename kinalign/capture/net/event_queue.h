@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happened, kept until somebody asks: so many and no more, the rest is counted.
+// A queue of events with a fixed limit. Events beyond the limit are only counted.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,7 @@ namespace kinalign {
 template <class Event>
 class EventQueue {
  public:
+  // Events kept between two calls of take().
   static constexpr std::size_t most = 64;
 
   void add(const Event& event) {
@@ -21,7 +22,7 @@ class EventQueue {
       ++missed_;
     }
   }
-  /// Since this was asked last.
+  /// Events since the previous call.
   std::vector<Event> take() { return std::exchange(events_, {}); }
   std::uint64_t missed() const { return missed_; }
 

@@ -23,10 +23,11 @@ FollowedClock::~FollowedClock() = default;
 
 void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
   exchange.boot = life_of(exchange.boot, epoch);
-  // In the order in which they came, by microseconds of rounding: later is as true.
+  // Rounding may put an arrival microseconds before the previous one. The order of arrival is kept;
+  // a later arrival is still a correct bound.
   heard_ = exchange.h_rx = std::max(heard_, exchange.h_rx);
   clock_->push(exchange);
-  (void)clock_->take_events();  // a screen has no place for them; align finds them again
+  (void)clock_->take_events();  // events are not displayed; align finds them again
   now_.reset();
   const auto stamp = clock_->host_from_node(exchange.boot, exchange.n_tx);
   if (!stamp) return;

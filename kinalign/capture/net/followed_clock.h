@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of a device that pings, followed while it is recorded: for the screen. Takes get theirs
-// from all exchanges, afterwards (clock/offline/device_clock.h).
+// The clock of a device that sends pings, estimated during recording for display only. A take's
+// clock is fitted afterwards to all exchanges (clock/offline/device_clock.h).
 #pragma once
 
 #include "kinalign/capture/net/sender_clock.h"
@@ -15,7 +15,7 @@ namespace kinalign {
 
 class LiveClock;
 
-/// `n`: the sender's clock at that stamp.
+/// Converts a clock stamp for display. `n` is the reading of the sender's clock at that stamp.
 SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift);
 
 class FollowedClock {
@@ -27,9 +27,9 @@ class FollowedClock {
   FollowedClock& operator=(const FollowedClock&) = delete;
   ~FollowedClock();
 
-  /// `epoch`: of the host's axis.
+  /// Adds one exchange. `epoch` is the epoch of the host's time axis (HostAxis::epoch).
   void push(Exchange exchange, std::uint32_t epoch);
-  /// As of the newest exchange; absent while too little is known.
+  /// The clock at the newest exchange. Absent while there are too few exchanges for an estimate.
   const std::optional<SenderClock>& now() const { return now_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A descriptor of our own, closed when it goes.
+// Owns a file descriptor and closes it on destruction.
 #pragma once
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses of hosts and networks, IPv4 and IPv6 in one shape.
+// Addresses of hosts and networks. IPv4 and IPv6 share one type.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// 16 bytes; an IPv4 address stands as ::ffff:a.b.c.d (RFC 4291 section 2.5.5.2).
+/// 16 bytes. An IPv4 address is stored as ::ffff:a.b.c.d (RFC 4291 section 2.5.5.2).
 using HostAddress = std::array<std::uint8_t, 16>;
 
 constexpr HostAddress mapped_ipv4(std::span<const std::uint8_t, 4> bytes) {
@@ -26,7 +26,7 @@ constexpr bool is_ipv4(const HostAddress& address) {
   return address[10] == 0xff && address[11] == 0xff;
 }
 
-/// "192.168.7.20", "fd00::1".
+/// Text such as "192.168.7.20" or "fd00::1".
 std::string to_string(const HostAddress& address);
 
 /// A node's address and UDP port.
@@ -37,22 +37,22 @@ struct NodeAddress {
   bool operator==(const NodeAddress&) const = default;
 };
 
-/// What is counted as one stranger: an IPv4 address, an IPv6 network of 64 bits, which is what one
-/// customer has.
+/// The part of an address by which an unknown sender is rate-limited. For IPv4 it is the whole
+/// address. For IPv6 it is the 64-bit network, because one customer usually has a whole /64.
 constexpr std::span<const std::uint8_t, 8> stranger(const HostAddress& address) {
   const std::span<const std::uint8_t, 16> bytes(address);
   return is_ipv4(address) ? bytes.last<8>() : bytes.first<8>();
 }
 
-/// The addresses whose first `bits` bits are those of `prefix`.
+/// All addresses whose first `bits` bits equal those of `prefix`.
 struct AddressBlock {
   HostAddress prefix{};
-  std::size_t bits = 0;  // of the 16 bytes: 96 more than an IPv4 network says
+  std::size_t bits = 0;  // prefix length in the 16 bytes; an IPv4 prefix length plus 96
 
   bool has(const HostAddress& address) const;
 };
 
-/// "192.168.7.0/24", "fd00::/8" or an address alone.
+/// Parses "192.168.7.0/24", "fd00::/8" or a single address.
 Result<AddressBlock> parse_network(const std::string& text);
 
 }  // namespace kinalign

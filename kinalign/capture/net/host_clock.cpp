@@ -14,7 +14,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr Duration narrow = std::chrono::microseconds(2);  // a bracket that is not read again
+// a bracket at most this wide is accepted without another reading
+constexpr Duration narrow = std::chrono::microseconds(2);
 constexpr Duration reading_noise = std::chrono::microseconds(1);
 constexpr Duration shortest_sleep = std::chrono::milliseconds(10);
 
@@ -28,7 +29,7 @@ Duration share(Duration of, double part) {
   return Duration{static_cast<std::int64_t>(static_cast<double>(of.count()) * part)};
 }
 
-/// raw - utc, least and greatest.
+/// The least and the greatest value of raw - utc.
 std::pair<Duration, Duration> offsets(const ClockBracket& b) {
   const Duration utc = b.utc.time_since_epoch();
   return {b.before.time_since_epoch() - utc, b.after.time_since_epoch() - utc};
@@ -41,7 +42,7 @@ Time SystemClocks::utc() { return Time{read_clock(CLOCK_REALTIME)}; }
 
 Duration SystemClocks::asleep() {
   Duration least = Duration::max();
-  for (int i = 0; i < 3; ++i) {  // an interruption between two readings looks like sleep
+  for (int i = 0; i < 3; ++i) {  // an interruption between two readings looks like a suspension
     const Duration running = read_clock(CLOCK_MONOTONIC);
     least = std::min(least, read_clock(CLOCK_BOOTTIME) - running);
   }
@@ -52,6 +53,7 @@ SystemClocks::~SystemClocks() {
   if (timer_ && *timer_ >= 0) ::close(*timer_);
 }
 
+// If two readings contradict each other, or are imprecise, only the kernel can tell.
 bool WallWatch::must_ask(const Look& look) {
   constexpr Duration seldom = std::chrono::milliseconds(100);
   constexpr Duration narrow_look = Duration{500};
@@ -70,7 +72,8 @@ bool SystemClocks::wall_was_set() {
   if (!timer_) {
     timer_ = ::timerfd_create(CLOCK_REALTIME, TFD_NONBLOCK | TFD_CLOEXEC);
     itimerspec never{};
-    never.it_value.tv_sec = std::numeric_limits<std::int32_t>::max();  // in 2038 it reads as a tick
+    // if the clock reaches this time in 2038, the read below counts a tick
+    never.it_value.tv_sec = std::numeric_limits<std::int32_t>::max();
     ::timerfd_settime(*timer_, TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &never, nullptr);
   }
   const Duration before = read_clock(CLOCK_MONOTONIC);
@@ -94,7 +97,7 @@ HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time ste
   return behind.after - share(since, 1.0 - most_slew);
 }
 
-// What most_slew leaves in doubt of arrivals that waited for five seconds.
+// The tolerance is the error that most_slew leaves for arrivals that waited for five seconds.
 bool is_behind(const Moment& one, const Moment& other) {
   constexpr Duration most_doubt = std::chrono::milliseconds(5);
   if (!one.stamp || !other.stamp) return one.at > other.at;
@@ -102,7 +105,7 @@ bool is_behind(const Moment& one, const Moment& other) {
 }
 
 HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {
-  static_cast<void>(reader_.wall_was_set());  // from now on
+  static_cast<void>(reader_.wall_was_set());  // discards earlier settings of the wall clock
   bracket_ = read();
   steady_ = bracket_.utc;
 }
@@ -119,6 +122,7 @@ HostTime HostAxis::now() {
   return read;
 }
 
+// An interruption makes a bracket wide, so up to three are read and the narrowest is kept.
 ClockBracket HostAxis::read() {
   ClockBracket best;
   for (int i = 0; i < 3; ++i) {
@@ -131,14 +135,17 @@ ClockBracket HostAxis::read() {
   return best;
 }
 
-/// A datagram may have waited, and be received several looks after a step.
+/// A datagram may wait in the buffer. It may therefore be received several calls after a step of
+/// the wall clock.
 void HostAxis::look() {
   const ClockBracket before = std::exchange(bracket_, read());
-  const bool set = reader_.wall_was_set();  // until behind the bracket
+  // asked after the bracket was read, so that it covers the bracket
+  const bool set = reader_.wall_was_set();
   was_set_ = was_set_ || set;
   if (set || !runs_on(before, bracket_, most_slew)) steady_ = bracket_.utc;
 }
 
+// A suspension of more than 10 ms starts a new epoch. A step of the wall clock is only reported.
 ClockPair HostAxis::watch() {
   const ClockBracket bracket = read();
   const Duration asleep = reader_.asleep();

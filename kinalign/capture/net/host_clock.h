@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's axis, HostTime: CLOCK_MONOTONIC_RAW, which nobody steps or slews. The kernel stamps
-// arrivals on CLOCK_REALTIME, which anybody may; they are moved over here, rounded up, since a
-// later arrival bounds a node's clock as truly as the right one.
+// The host's time axis, HostTime. It is CLOCK_MONOTONIC_RAW, which is never stepped or slewed. The
+// kernel stamps arrivals on CLOCK_REALTIME, which may be stepped and slewed. Arrival stamps are
+// therefore converted to HostTime and rounded up. A late arrival stamp still gives a correct bound
+// on a node's clock.
 #pragma once
 
 #include "kinalign/capture/net/event_queue.h"
@@ -13,32 +14,36 @@
 
 namespace kinalign {
 
-/// The system's clocks; a test brings its own.
+/// Reads the system's clocks. Tests replace it.
 class ClockReader {
  public:
   virtual ~ClockReader() = default;
   virtual HostTime raw() = 0;     // CLOCK_MONOTONIC_RAW
   virtual Time utc() = 0;         // CLOCK_REALTIME
   virtual Duration asleep() = 0;  // CLOCK_BOOTTIME - CLOCK_MONOTONIC
-  /// Whether the wall clock was set, by however little, since this was asked last.
+  /// Returns whether the wall clock was set since the previous call, by any amount.
   virtual bool wall_was_set() = 0;
 };
 
-/// The wall clock runs with CLOCK_MONOTONIC, slewed as that is, unless it is set. So what a look at
-/// both says spares the question to the kernel, a system call for each datagram: a step shows in
-/// it, unless it is smaller than a look takes, some 0.1 us. Such a one the next question finds.
+/// Decides from clock readings whether the kernel must be asked if the wall clock was set. The wall
+/// clock runs and is slewed with CLOCK_MONOTONIC unless it is set. A step therefore shows as a
+/// change of their difference. Comparing readings saves one system call per datagram. A step
+/// smaller than the reading time, about 0.1 us, is found by the next query to the kernel.
 class WallWatch {
  public:
+  /// One reading of both clocks.
   struct Look {
-    Duration at{};             // CLOCK_MONOTONIC
-    Duration least{}, most{};  // CLOCK_REALTIME less that: read between two readings of it
+    Duration at{};  // CLOCK_MONOTONIC
+    // CLOCK_REALTIME - CLOCK_MONOTONIC, lower and upper bound from two readings around it
+    Duration least{}, most{};
   };
-  /// Whether the kernel has to be asked: the wall clock may have been set, or it was not asked for
-  /// a tenth of a second.
+  /// Returns true if the wall clock may have been set, or if the last query to the kernel is 100 ms
+  /// old.
   bool must_ask(const Look& look);
 
  private:
-  std::optional<Look> ran_;  // since the kernel was asked: when that was, and what all looks allow
+  // `at`: the time of the last query; bounds: the range that all readings since allow
+  std::optional<Look> ran_;
 };
 
 class SystemClocks : public ClockReader {
@@ -51,73 +56,80 @@ class SystemClocks : public ClockReader {
   HostTime raw() override;
   Time utc() override;
   Duration asleep() override;
-  /// By a timer that the kernel cancels then (timerfd_create(2)); false where there is none. What
-  /// WallWatch says of how little.
+  /// Uses a timer that the kernel cancels when the wall clock is set (timerfd_create(2)). Returns
+  /// false if the system has no such timer. Very small steps are found later, see WallWatch.
   bool wall_was_set() override;
 
  private:
   WallWatch watch_;
-  std::optional<int> timer_;  // since it was asked first
+  // descriptor of the timer; absent before the first call of wall_was_set
+  std::optional<int> timer_;
 };
 
-/// utc was read between the two.
+/// A wall clock reading between two readings of the host clock.
 struct ClockBracket {
   HostTime before{};
   Time utc{};
   HostTime after{};
 };
 
-/// Whether the wall clock ran on between two brackets: no step beyond what such a slew makes of the
-/// time between them. Smaller ones the system tells, where it can.
+/// Returns whether the wall clock ran on without a step between two brackets. A change is accepted
+/// if a slew at the rate `slew` explains it. Smaller steps are reported by wall_was_set, if the
+/// system supports that.
 bool runs_on(const ClockBracket& earlier, const ClockBracket& later, double slew);
 
-/// As much is allowed for where a stamp is moved to the raw axis: the kernel's own is 5e-4, and one
-/// that is slewed faster has no stamps of use.
+/// Greatest slew allowed when a stamp is converted to the host axis. The kernel's own limit is
+/// 5e-4. Stamps of a clock that is slewed faster are not useful.
 inline constexpr double most_slew = 1e-3;
 
-/// When a datagram arrived that the kernel stamped, and that was received before the bracket was
-/// read. Never earlier than the truth if the wall clock has run on since `steady`; the end of the
-/// bracket where the stamp is from before that, or there is none.
+/// Converts a kernel stamp to HostTime. The datagram must have been received before the bracket
+/// `behind` was read. The result is never earlier than the true arrival if the wall clock has run
+/// without a step since `steady`. If the stamp is absent or older than `steady`, the result is the
+/// end of the bracket.
 HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady);
 
-/// When something came: as arrival() has it, and as the kernel stamped it, where it did.
+/// An arrival: its time as converted by arrival(), and the kernel's stamp if there is one.
 struct Moment {
   HostTime at{};
   std::optional<Time> stamp{};
 };
-/// Later, as far as is known. Arrivals are moved over with a doubt of their own each; stamps have
-/// none, unless somebody sets the clock between the two: then both have to say so.
+/// Returns whether `one` arrived later than `other`, as far as is known. Each converted time has
+/// its own error, but stamps have none unless the wall clock is set between them. Both the stamps
+/// and the converted times must therefore agree.
 bool is_behind(const Moment& one, const Moment& other);
 
 struct HostClockEvent {
   enum class Kind : std::uint8_t {
-    suspended,    // the host slept: nothing is known of nodes' clocks from before
-    backwards,    // the raw clock went back; its axis goes on, and clocks begin anew
-    wall_stepped  // noted alone: no stamp depends on it
+    suspended,    // the host was suspended; earlier knowledge of node clocks is void
+    backwards,    // the raw clock went back; the axis continues, and node clocks start again
+    wall_stepped  // the wall clock was stepped; only reported, no stamp depends on it
   };
   Kind kind{};
   HostTime at{};
+  // Length of the suspension or size of the step.
   Duration by{};
 };
 
+/// The host's time axis. It converts arrival stamps, and it detects suspension and clock steps.
 class HostAxis {
  public:
   explicit HostAxis(ClockReader& reader);
 
-  /// Never earlier than what it said before.
+  /// The present host time. It is never earlier than the previous result.
   HostTime now();
-  /// After datagrams were received, before their arrival is asked for.
+  /// Call after datagrams were received and before arrival() is called for them.
   void look();
   HostTime arrival(std::optional<Time> stamp) const {
     return kinalign::arrival(stamp, bracket_, steady_);
   }
 
-  /// Once a second: a pair for the log that gives UTC afterwards.
+  /// Call once a second. Returns a pair of host time and UTC for the log; pairs give UTC
+  /// afterwards.
   ClockPair watch();
-  /// What was seen since this was asked last, and how many more had no room.
+  /// Events since the previous call. Events beyond the limit are counted in missed_events.
   std::vector<HostClockEvent> take_events() { return events_.take(); }
   std::uint64_t missed_events() const { return events_.missed(); }
-  /// Rises where clocks of nodes have to begin anew.
+  /// Increases whenever clocks of nodes must start again.
   std::uint32_t epoch() const { return epoch_; }
 
  private:
@@ -125,11 +137,12 @@ class HostAxis {
 
   ClockReader& reader_;
   HostTime last_ = HostTime::min();
-  Duration shift_{0};  // of the raw clock, since it went back
+  Duration shift_{0};  // added to the raw clock so that the axis never goes back
   ClockBracket bracket_;
-  Time steady_{};  // since when the wall clock has run on; as it says
+  Time steady_{};  // wall clock reading since which the wall clock has run without a step
+  // The bracket of the last watch().
   std::optional<ClockBracket> watched_;
-  bool was_set_ = false;  // the wall clock, since then
+  bool was_set_ = false;  // the wall clock was set since the last watch()
   Duration asleep_;
   std::uint32_t epoch_ = 0;
   EventQueue<HostClockEvent> events_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the kernel had something in hands, as it says beside the bytes (socket(7), SO_TIMESTAMPNS).
+// The kernel's stamp of a received message, from its control data (socket(7), SO_TIMESTAMPNS).
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// On CLOCK_REALTIME; absent where `control` says something else.
+/// The stamp on CLOCK_REALTIME. Absent if `control` is not a timestamp.
 inline std::optional<Time> kernel_stamp(const cmsghdr& control) {
   if (control.cmsg_level != SOL_SOCKET || control.cmsg_type != SCM_TIMESTAMPNS) return std::nullopt;
   timespec stamp{};

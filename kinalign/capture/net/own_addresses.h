@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The addresses under which other machines reach this one.
+// The addresses under which other machines can reach this one.
 #pragma once
 
 #include <string>
@@ -7,11 +7,13 @@
 
 namespace kinalign {
 
-/// Of interfaces that are up, IPv4 first; no loopback and no link-local ones.
+/// Addresses of the interfaces that are up, IPv4 first. Loopback and link-local addresses are left
+/// out.
 std::vector<std::string> own_addresses();
 
-/// Where clients reach who listens on these addresses (none: on all). In place of one that stands
-/// for all of its kind, which nobody can send to, stand those of `own` that are of that kind.
+/// Addresses under which clients can reach a server that listens on `listen` (empty: on all). A
+/// wildcard address ("0.0.0.0", "::") is replaced by the addresses of `own` of the same family,
+/// since clients cannot send to a wildcard address.
 std::vector<std::string> reachable_at(const std::vector<std::string>& listen,
                                       const std::vector<std::string>& own);
 

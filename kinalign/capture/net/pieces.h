@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices' ports, whatever they speak: datagrams or connections, handed on as they came, with their
-// arrival on the host's axis and a number for who sent them. Nothing here waits, and one port's
-// flood takes no more than its turn.
+// The ports of devices, UDP and TCP, independent of the devices' protocols. Received bytes are
+// passed on unchanged, with their arrival on the host's axis and the number of their sender. No
+// call blocks. Each port has a limited turn, so a flood on one port does not starve the others.
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
@@ -20,37 +20,43 @@
 
 namespace kinalign {
 
-/// A datagram, or what a connection had at once.
+/// One datagram, or the bytes of one read from a connection.
 struct Piece {
+  // Number of the sender in the port's Senders.
   std::size_t sender = 0;
-  std::string_view bytes;  // good during the call alone
+  std::string_view bytes;  // valid only during the call
   HostTime arrival{};
-  std::optional<Time> stamp{};  // the kernel's, of a datagram
+  std::optional<Time> stamp{};  // the kernel's stamp; absent for a connection
 };
 using TakePiece = std::function<void(const Piece& piece)>;
 
-/// Who sends to a port, by number. There is room for `most` at once: the number of one who is
-/// silent becomes another's, sooner where he has said little or is the newcomer's own past. So
-/// neither strangers nor a device's own returns keep a device out.
+/// The senders of one port, by number. At most `most` senders are known at once. The number of a
+/// silent sender is reused for a new one. A number is reused sooner if its sender sent few messages
+/// or has the newcomer's host address. So neither strangers nor a device's own reconnections keep a
+/// device out.
 class Senders {
  public:
   static constexpr std::size_t most = 64;
-  static constexpr std::uint64_t little = 10;        // messages: who said fewer may be a stranger
-  static constexpr std::uint64_t most_lives = 1000;  // each takes a channel
+  static constexpr std::uint64_t little = 10;  // messages; a sender of fewer may be a stranger
+  // each life occupies a channel of the recording
+  static constexpr std::uint64_t most_lives = 1000;
 
   struct Sender {
     HostAddress host{};
     std::uint16_t port = 0;
+    // Last arrival.
     HostTime heard{};
-    std::uint64_t life = 0;   // which sender this is, of all that ever had a number
-    std::uint64_t times = 0;  // it was heard
-    Datagram asked{};         // of UDP: its newest without its bytes, for answers
+    // serial number of this sender among all senders that ever had a number
+    std::uint64_t life = 0;
+    std::uint64_t times = 0;  // messages received
+    Datagram asked{};         // the newest datagram without its bytes, needed for answers; UDP only
   };
-  /// Absent: too many others are heard just now. After most_lives a newcomer goes on with the life
-  /// of its host that was silent longest; strangers then share the life most_lives + 1.
+  /// Returns the sender's number; a new sender gets one. Absent if too many other senders are
+  /// active. After most_lives, a new sender continues the life of the sender of the same host that
+  /// was silent longest. Hosts without an earlier sender then share the life most_lives + 1.
   std::optional<std::size_t> number(const HostAddress& host, std::uint16_t port, HostTime now);
-  /// Of a connection: one that was made anew is another sender, also from the same port. `known`:
-  /// the connection's own number and life, set with its first piece.
+  /// The same for a connection. A new connection is a new sender, even from the same port. `known`
+  /// is the connection's number and life; it is set with the first bytes.
   struct Known {
     std::size_t number = 0;
     std::uint64_t life = 0;
@@ -58,7 +64,7 @@ class Senders {
   std::optional<std::size_t> number(std::optional<Known>& known, const HostAddress& host,
                                     std::uint16_t port, HostTime now);
   const Sender& at(std::size_t number) const { return senders_[number]; }
-  /// Absent: it has none.
+  /// Returns the sender's number. Absent if the sender is not known.
   std::optional<std::size_t> find(const HostAddress& host, std::uint16_t port) const;
   void remember(std::size_t number, const Datagram& asked);
   std::size_t size() const { return senders_.size(); }
@@ -76,19 +82,19 @@ class Senders {
 /// A UDP port.
 class UdpPieces {
  public:
-  /// `address` empty: all.
+  /// Opens the port. If `address` is empty, it listens on all addresses.
   static Result<UdpPieces> open(const std::string& address, std::uint16_t port);
 
   void add_fds(std::vector<int>& fds) const;
   void drain(HostAxis& axis, const TakePiece& take);
-  /// At once, from the address that the sender's newest datagram was sent to.
+  /// Sends immediately, from the address to which the sender's newest datagram was sent.
   void send(std::size_t sender, std::span<const std::uint8_t> bytes);
-  /// To a sender by its address; nobody else is sent anything.
+  /// Sends to a known sender by its address. Does nothing if the address is not a known sender.
   void send_to(const HostAddress& host, std::uint16_t port, std::span<const std::uint8_t> bytes);
   std::uint16_t port() const { return sockets_.front().port(); }
   const Senders& senders() const { return senders_; }
   PortCounts counts() const;
-  /// All that came, without asking the kernel.
+  /// Received datagrams, including refused ones. Needs no system call.
   std::uint64_t heard() const { return counts_.pieces + counts_.refused; }
 
  private:
@@ -101,18 +107,18 @@ class UdpPieces {
   PortCounts counts_;
 };
 
-/// TCP: a connection to a device that serves, made anew whenever it breaks, or those of devices
-/// that connect to us.
+/// A TCP port. It either connects to a device that serves, and reconnects after a failure, or
+/// accepts connections from devices.
 class TcpPieces {
  public:
-  /// To the device at `address`, in the background: what is not there yet may come.
+  /// Connects to the device at `address` in the background. The device may be switched on later.
   static Result<TcpPieces> connect(const std::string& address, std::uint16_t port);
   static Result<TcpPieces> listen(const std::string& address, std::uint16_t port);
 
   void add_fds(std::vector<int>& fds) const;
-  /// Also connects anew, now and then.
+  /// Reads what has arrived. Also reconnects from time to time.
   void drain(HostAxis& axis, const TakePiece& take);
-  /// All of it at once or nothing; a connection that took a part is given up.
+  /// Sends all bytes or none. A connection that accepted only a part is closed.
   void send(std::size_t sender, std::span<const std::uint8_t> bytes);
   std::uint16_t port() const { return port_; }
   const Senders& senders() const { return senders_; }
@@ -122,11 +128,11 @@ class TcpPieces {
  private:
   struct Link {
     Handle socket;
-    HostTime heard{};  // or made
+    HostTime heard{};  // last arrival, or the time when the connection was made
     bool connected = false;
-    HostAddress host{};  // of the other end
+    HostAddress host{};  // address of the device
     std::uint16_t port = 0;
-    std::optional<Senders::Known> sender{};  // since it said something
+    std::optional<Senders::Known> sender{};  // absent before the first bytes
   };
   TcpPieces(std::string address, std::uint16_t port, Handle listener);
   void accept(HostTime now);
@@ -137,7 +143,7 @@ class TcpPieces {
 
   std::string address_;
   std::uint16_t port_ = 0;
-  Handle listener_;  // none: we connect
+  Handle listener_;  // without a descriptor if this side connects
   std::vector<Link> links_;
   HostTime next_try_ = HostTime::min();
   std::vector<char> buffer_;

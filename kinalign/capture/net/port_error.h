@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whose port it is that could not be opened: nobody knows a device by its port's number.
+// Adds the device's name to the error of a port that could not be opened. Users know devices by
+// name, not by port number.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -9,8 +10,8 @@
 
 namespace kinalign {
 
-/// "mocap: expected a UDP port to serve on at 0.0.0.0:7012, found another program on it": the
-/// device's name in the place of the address and port.
+/// Example: "mocap: expected a UDP port to serve on at 0.0.0.0:7012, found another program on it".
+/// The device's name replaces the address and port at the beginning.
 template <class T>
 Result<T> told_of(const std::string& name, Result<T> opened) {
   return std::move(opened).map_error([&name](Error error) {

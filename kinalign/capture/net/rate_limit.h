@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often a stranger is answered: a table of fixed size, whatever arrives. Time is an argument.
+// Limits how often an unknown sender is answered. The table has a fixed size. Time is an argument.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -11,8 +11,8 @@
 
 namespace kinalign {
 
-/// A bucket of 8 answers for each address, filled by one in 2 s: enough for the bursts of clients
-/// (chrony's iburst sends 4 to 8, ntpdig's -p 4 four at once).
+/// A token bucket of 8 answers for each address, refilled by one every 2 s. This is enough for the
+/// bursts of clients: chrony's iburst sends 4 to 8 requests, ntpdig's -p 4 sends four at once.
 class RateLimit {
  public:
   static constexpr std::int64_t burst = 8;
@@ -24,16 +24,17 @@ class RateLimit {
 
   RateLimit() : sets_(entries / ways) {}
 
-  /// One request more. `hash`: of the address, keyed by what nobody outside knows, so that nobody
-  /// can choose addresses that push another's entry out.
+  /// Counts one more request. `hash` is a keyed hash of the address. The key is secret, so that
+  /// nobody can choose addresses that evict another address's entry.
   Verdict ask(std::uint64_t hash, HostTime now);
 
  private:
   struct Entry {
     std::uint64_t hash = 0;
-    HostTime full_at{HostTime::min()};  // when the bucket is full again; past: it is
+    // the time when the bucket is full again; it is full if that is past
+    HostTime full_at{HostTime::min()};
   };
-  struct alignas(64) Set {  // a line of the cache
+  struct alignas(64) Set {  // one cache line
     std::array<Entry, ways> entries;
   };
   static Entry& entry_of(Set& set, std::uint64_t hash);

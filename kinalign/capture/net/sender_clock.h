@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of a sender that pings, as the screen shows it.
+// The clock of a sender that sends pings, for display.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -10,8 +10,8 @@ namespace kinalign {
 
 struct SenderClock {
   Duration host_minus_sender{};
-  std::optional<Duration> half_interval;  // certified; absent: not (yet)
-  double drift = 0.0;                     // of the host's rate against the sender's, as estimated
+  std::optional<Duration> half_interval;  // absent: the interval is not certified (yet)
+  double drift = 0.0;  // estimated rate of the host's clock against the sender's, minus 1
 };
 
 }  // namespace kinalign

@@ -13,7 +13,8 @@ std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_
   return number;
 }
 
-/// Another may have got its number while it was silent; then it begins anew.
+/// The number may have been given to another sender during a silence. The connection then gets a
+/// new one.
 std::optional<std::size_t> Senders::number(std::optional<Known>& known, const HostAddress& host,
                                            std::uint16_t port, HostTime now) {
   if (known && senders_[known->number].life != known->life) known.reset();
@@ -31,6 +32,7 @@ void Senders::hear(std::size_t number, HostTime now) {
   ++senders_[number].times;
 }
 
+// The limit on lives keeps the number of channels limited.
 std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t port, HostTime now) {
   if (lives_ >= most_lives) {
     if (const auto past = own_past(host)) {
@@ -45,9 +47,11 @@ std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t p
   return number;
 }
 
-/// A new place, or that of the one who has been silent longest. Who said little was a stranger, who
-/// comes from the newcomer's host likely the newcomer itself: two seconds are enough of them. Who
-/// says everything from another port crowds out itself alone.
+/// Returns a free number, or the number of the sender that was silent longest. After one minute of
+/// silence a number may be reused. Two seconds suffice if the sender sent few messages, since it
+/// may be a stranger, or if it has the newcomer's host address, since it is probably the newcomer
+/// itself. A host with at least half of all numbers may replace its own short-lived senders at
+/// once. So a host that uses a new port for each message crowds out only itself.
 std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime now) {
   if (senders_.size() < most) {
     senders_.emplace_back();
@@ -69,7 +73,7 @@ std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime 
   return found;
 }
 
-/// The one of that host that has been silent longest.
+/// The sender of that host that was silent longest.
 std::optional<std::size_t> Senders::own_past(const HostAddress& host) const {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < senders_.size(); ++i) {

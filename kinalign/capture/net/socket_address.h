@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses as the system's sockets have them, UDP's and TCP's alike.
+// Socket addresses of the system, for UDP and TCP.
 #pragma once
 
 #include <netdb.h>
@@ -12,7 +12,7 @@ namespace kinalign {
 
 using FoundAddress = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// Of a numeric address; `type`: SOCK_DGRAM, SOCK_STREAM. nullptr: it is none.
+/// Converts a numeric address. `type`: SOCK_DGRAM or SOCK_STREAM. nullptr: not a numeric address.
 FoundAddress find_address(const std::string& address, std::uint16_t port, int type);
 
 /// The port that a socket is bound to.

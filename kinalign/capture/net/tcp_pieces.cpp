@@ -18,17 +18,18 @@ namespace kinalign {
 
 namespace {
 
-// A read has one stamp, that of its last bytes: the smaller it is, the truer for what waited while
-// the machine stood still. Frames have 1 to 4 KB. (The kernel merges packets that wait, and their
-// stamps: over loopback 16 frames of 1480 bytes.)
+// Bytes of one read. A read has one stamp, that of its last bytes. A smaller read therefore gives
+// more accurate stamps to data that waited while the machine was stopped. Frames have 1 to 4 KB.
+// The kernel merges waiting packets and their stamps (over loopback 16 frames of 1480 bytes).
 constexpr std::size_t read_size = std::size_t{4} << 10;
-constexpr int reads_in_turn = 64;  // of a connection, before other ports have theirs
+constexpr int reads_in_turn = 64;  // reads of one connection before other ports have their turn
 constexpr std::size_t most_links = 8;
 constexpr Duration between_tries = std::chrono::seconds(1);
-constexpr Duration idle_after = std::chrono::seconds(3);  // chosen: each device sends many a second
+// a choice; every device sends many messages a second
+constexpr Duration idle_after = std::chrono::seconds(3);
 constexpr int type = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
 
-/// Of the other end.
+/// The address and port of the other end.
 std::pair<HostAddress, std::uint16_t> peer_of(int fd) {
   sockaddr_storage peer{};
   socklen_t size = sizeof peer;
@@ -47,13 +48,14 @@ std::pair<HostAddress, std::uint16_t> peer_of(int fd) {
   return {host, ntohs(six.sin6_port)};
 }
 
-/// The kernel stamps what arrives. Of a listener: on its connections, from their first byte on.
+/// Makes the kernel stamp received data. For a listener the option applies to its connections, from
+/// their first byte.
 void ask_for_stamps(int fd) {
   const int yes = 1;
   ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
 }
 
-/// Notices a device that vanished without a word within half a minute.
+/// Detects within half a minute that a device has vanished without closing the connection.
 void keep_alive(int fd) {
   const auto set = [fd](int level, int name, int value) {
     ::setsockopt(fd, level, name, &value, sizeof value);
@@ -64,16 +66,17 @@ void keep_alive(int fd) {
   set(IPPROTO_TCP, TCP_KEEPCNT, 3);
 }
 
-/// Gives up after three seconds (two requests, 1 and 2 s patience: measured 3.1 s), so that a new
-/// try is made. The system's own further requests come at 32 and 64 s: so late a device that was
-/// switched on in between would be heard.
+/// Limits an attempt to connect to about three seconds (two requests, timeouts of 1 and 2 s;
+/// measured 3.1 s), so that a new attempt is made soon. The system's own retries come after 32 and
+/// 64 s. A device that was switched on in between would be connected that late.
 void ask_briefly(int fd) {
   const int once_more = 1;
   ::setsockopt(fd, IPPROTO_TCP, TCP_SYNCNT, &once_more, sizeof once_more);
 }
 
-/// recv(2), and when the last of those bytes arrived. Behind a lost segment earlier ones may have
-/// come later; they were sent earlier, which is what clocks are bounded by.
+/// Calls recv(2) and also returns the arrival of the last byte. After a lost segment, earlier bytes
+/// may have arrived later than the last one. They were sent earlier, and clock bounds depend only
+/// on that.
 ssize_t receive_stamped(int fd, std::span<char> room, std::optional<Time>& stamp) {
   alignas(cmsghdr) std::array<std::uint8_t, 128> control{};
   iovec in{room.data(), room.size()};
@@ -108,6 +111,8 @@ Result<TcpPieces> TcpPieces::connect(const std::string& address, std::uint16_t p
   return TcpPieces(address, port, Handle());
 }
 
+// SO_REUSEADDR lets a restarted program listen at once, although old connections of the port have
+// not timed out yet.
 Result<TcpPieces> TcpPieces::listen(const std::string& address, std::uint16_t port) {
   const std::string own = address.empty() ? "0.0.0.0" : address;
   const FoundAddress found = find_address(own, port, SOCK_STREAM);
@@ -135,15 +140,16 @@ void TcpPieces::accept(HostTime now) {
     if (socket.fd() < 0) return;
     if (links_.size() == most_links && !give_up_idle(now)) {
       ++counts_.refused;
-      continue;  // which closes it
+      continue;  // the handle closes the refused connection
     }
     keep_alive(socket.fd());
     links_.push_back({std::move(socket), now});
   }
 }
 
-/// A device that vanished without a word must not keep out the one that returns: of those that say
-/// nothing the one that has done so for longest goes. Whether there is one.
+/// A device that vanished without closing its connection must not keep out a device that returns.
+/// The connection that was silent longest is closed. Returns false if no connection was silent long
+/// enough.
 bool TcpPieces::give_up_idle(HostTime now) {
   const auto idlest = std::min_element(
       links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.heard < b.heard; });
@@ -152,6 +158,7 @@ bool TcpPieces::give_up_idle(HostTime now) {
   return true;
 }
 
+// One attempt per second. The connection may complete in the background.
 void TcpPieces::try_to_connect(HostTime now) {
   if (now < next_try_) return;
   next_try_ = now + between_tries;
@@ -185,13 +192,13 @@ void TcpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
         ::send(link.socket.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent == static_cast<ssize_t>(bytes.size())) return;
     ++counts_.unsent;
-    // The rest can't be kept back: what came next would begin within a message.
+    // The rest cannot be sent later: the next message would then begin inside this one.
     if (sent > 0) ::shutdown(link.socket.fd(), SHUT_RDWR);
     return;
   }
 }
 
-/// Whether the connection is still there, made or in the making.
+/// Checks whether a pending connection was made. Returns false if it failed.
 bool TcpPieces::settle(Link& link) {
   int fault = 0;
   socklen_t size = sizeof fault;
@@ -203,6 +210,7 @@ bool TcpPieces::settle(Link& link) {
   return true;
 }
 
+// Returns false if the connection is closed or broken.
 bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
   if (!link.connected && !settle(link)) return false;
   for (int turn = 0; link.connected && turn < reads_in_turn; ++turn) {

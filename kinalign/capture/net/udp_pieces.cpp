@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr int batches_in_turn = 4;  // of a socket, before other ports have theirs
+constexpr int batches_in_turn = 4;  // batches of one socket before other ports have their turn
 
 }  // namespace
 

@@ -18,7 +18,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr int receive_buffer = 4 << 20;  // a tenth of a second of a flood
+constexpr int receive_buffer = 4 << 20;  // bytes; about a tenth of a second of a flood
 
 bool set(int fd, int level, int name, int value) {
   return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
@@ -26,14 +26,14 @@ bool set(int fd, int level, int name, int value) {
 
 bool set_options(int fd, int family) {
   if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer)) {  // needs CAP_NET_ADMIN
-    set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);            // net.core.rmem_max at most
+    set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);            // limited by net.core.rmem_max
   }
   if (!set(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1)) return false;
   if (family == AF_INET) return set(fd, IPPROTO_IP, IP_PKTINFO, 1);
   return set(fd, IPPROTO_IPV6, IPV6_V6ONLY, 1) && set(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO, 1);
 }
 
-/// An address and port as the system has them.
+/// An address and port in the system's form.
 struct Socket {
   Socket(const HostAddress& address, std::uint16_t port) {
     if (is_ipv4(address)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A UDP socket of a server: bound, never blocking, with the kernel's stamp of each arrival
-// (CLOCK_REALTIME) and the address that it was sent to.
+// A bound, non-blocking UDP socket of a server. For each datagram the kernel supplies a stamp of
+// its arrival (CLOCK_REALTIME) and its destination address.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -15,21 +15,22 @@ struct sockaddr;  // <sys/socket.h>
 
 namespace kinalign {
 
-/// A port that could not be opened: what stands in the way, in words and as the error's kind.
-/// `at`: the address and port. `code`: errno.
+/// The error for a port that could not be opened: a text and an ErrorKind for the cause. `at`: the
+/// address and port. `code`: errno.
 Error no_port(std::string at, std::string expected, int code, std::uint16_t port);
 
 class UdpSocket {
  public:
-  /// `address`: IPv4 or IPv6, with %interface where it is link-local; "0.0.0.0" and "::" are all of
-  /// their kind. Port 0: any free one.
+  /// `address`: IPv4 or IPv6, with %interface if it is link-local. "0.0.0.0" and "::" listen on all
+  /// addresses of their family. Port 0: any free port.
   static Result<UdpSocket> open(const std::string& address, std::uint16_t port);
-  /// For what `peer` alone sends to `own`, beside an open one of the same port that shares it.
+  /// Opens a socket for the datagrams from `peer` to `own` alone. An open socket of the same port
+  /// must have called share_port.
   static Result<UdpSocket> connected(const HostAddress& own, std::uint16_t port,
                                      const HostAddress& peer, std::uint16_t peer_port);
-  /// From now on sockets of this user, and of nobody else, may be bound to the same port if they
-  /// share it too, which `open` does not: a second server is still refused. Not before it is bound
-  /// itself, so that it is refused likewise.
+  /// Allows more sockets of the same user on this port. They must share the port too. `open` does
+  /// not share it, so a second server is still refused. Call it only after this socket is bound, so
+  /// that this socket is refused if a server is running.
   bool share_port() const;
 
   UdpSocket(UdpSocket&& other) noexcept;
@@ -50,15 +51,15 @@ class UdpSocket {
   std::string address_;
 };
 
-/// Datagrams that the kernel dropped: filtered, or without room in the buffer.
+/// Datagrams that the kernel dropped, because of a filter or because the buffer was full.
 std::uint64_t dropped_by_kernel(const UdpSocket& socket);
 
-/// An address that open takes, as the system writes it: "0.0.0.0" of "0". Absent: it is none, or a
-/// name, which might be several.
+/// The system's spelling of an address that `open` accepts: "0.0.0.0" for "0". Absent if the text
+/// is not an address. Names are not accepted, since a name may have several addresses.
 std::optional<std::string> spelt_address(const std::string& text);
 std::string address_text(const sockaddr& address);
 
-/// Whether `address`, as the system writes it, stands for all of its kind.
+/// Returns whether `address`, in the system's spelling, is the wildcard address of its family.
 inline bool is_any_address(std::string_view address) {
   return address == "0.0.0.0" || address == "::";
 }
@@ -68,12 +69,12 @@ inline bool is_ipv6_text(std::string_view address) {
 
 bool system_knows_ipv6();
 
-/// One for each address, all of one port; without addresses one for all of IPv4 and one for all of
-/// IPv6, where the host has that.
+/// Opens one socket for each address, all on the same port. Without addresses it opens one for all
+/// of IPv4 and, if the host has IPv6, one for all of IPv6.
 Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& addresses,
                                                 std::uint16_t port);
 
-/// "192.168.7.1:123", "[::1]:123".
+/// Text such as "192.168.7.1:123" or "[::1]:123".
 std::string endpoint_text(const std::string& address, std::uint16_t port);
 
 }  // namespace kinalign

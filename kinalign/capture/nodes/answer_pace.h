@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which frames of a node are answered: all up to 30 in a second, of more every second, third, …
-// More exchanges do not make its clock better (docs/clock.md), and take the radio's time.
+// Chooses which frames of a node are answered. Up to 30 frames per second, all are answered; at
+// higher rates every second, third, ... frame is. More exchanges do not improve the clock estimate
+// (docs/clock.md), and each takes radio time.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -14,9 +15,9 @@ class AnswerPace {
  public:
   static constexpr std::int64_t most_per_s = 30;
 
-  /// A frame came; whether to answer it.
+  /// Counts one received frame. Returns whether to answer it.
   bool ask(HostTime now);
-  /// Frames a second, of the last second that is over; absent before the first is.
+  /// Frames per second in the last complete second. Absent before the first one.
   std::optional<double> rate_hz() const { return rate_hz_; }
 
  private:

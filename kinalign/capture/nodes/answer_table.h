@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was answered to one node, the last 256: an echo or a confirm counts where it names one of
-// them with its nonce, and the times are those that stand here, whatever the node copies.
+// The last 256 answers sent to one node. An echo or a confirm counts only if it names one of these
+// answers and its nonce. The times are taken from this table, not from the copies that the node
+// sends.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -12,10 +13,12 @@
 namespace kinalign {
 
 struct GivenAnswer {
-  std::uint32_t sequence = 0;  // of the reply; of an answer to a clockless node: of its request
+  // the reply's number; for an answer to a node without a clock, the request's number
+  std::uint32_t sequence = 0;
   std::uint32_t nonce = 0;
-  HostTime t2{}, t3{};      // arrival of what was answered, departure of the answer
-  std::uint64_t frame = 0;  // the widened number of what was answered
+  HostTime t2{}, t3{};      // arrival of the answered datagram, departure of the answer
+  std::uint64_t frame = 0;  // the widened number of the answered datagram
+  // `given`: the entry is in use. `used`: the node has named the answer.
   bool given = false, used = false;
 };
 
@@ -24,18 +27,19 @@ class AnswerTable {
   static constexpr std::size_t remembered = 256;
 
   enum class Found : std::uint8_t {
-    now,     // named for the first time
-    before,  // named again
-    stale,   // given, and forgotten since
-    never    // not given, or with another nonce
+    now,     // the answer is named for the first time
+    before,  // the answer was named before
+    stale,   // too old: the answer is no longer in the table
+    never    // the answer was not sent, or it has another nonce
   };
 
   void add(const GivenAnswer& answer);
-  /// `answer` is set where it is known.
+  /// Looks an answer up. `answer` is set if the answer is known.
   Found find(std::uint32_t sequence, std::uint32_t nonce, GivenAnswer& answer);
 
  private:
-  // By sequence modulo their number. Not in place: who looks through lives should not pass it.
+  // Indexed by sequence modulo `remembered`. Stored outside the object, so that a search through
+  // all lives stays in the cache.
   std::vector<GivenAnswer> answers_ = std::vector<GivenAnswer>(remembered);
   std::uint32_t newest_ = 0;
   bool begun_ = false;

@@ -8,10 +8,11 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::int64_t turn_us = std::int64_t{1} << 32;  // 71.6 min
+constexpr std::int64_t turn_us = std::int64_t{1} << 32;  // one turn of a 32-bit counter: 71.6 min
 
-/// A reading further from what was foretold is no narrow one: delays and, in a day of silence, a
-/// crystal 100 ppm off.
+/// Limit on the difference between a widened reading and the prediction, us. It covers delays and,
+/// after a day of silence, a crystal that is 100 ppm off. Beyond it the reading is taken as 64
+/// bits.
 constexpr std::int64_t trusted_us = 20'000'000;
 
 }  // namespace

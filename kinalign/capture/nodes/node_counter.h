@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node's counter, us, as 64 bits though the node may send the low 32 of it: those are widened to
-// the reading that lies nearest to what the host's clock foretells.
+// A node's counter in us, as 64 bits. A node may send only the low 32 bits. Such a reading is
+// widened to the value nearest to the value predicted from the host's clock.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -9,30 +9,31 @@
 
 namespace kinalign {
 
-/// The highest reading there is, 142 years: beyond it a node lies, and ns would overflow.
+/// The highest accepted reading, us: 142 years. A higher one is wrong and would overflow in ns.
 inline constexpr std::uint64_t most_counter_us = std::uint64_t{1} << 52;
 
 constexpr NodeTime node_time(std::int64_t us) { return NodeTime{std::chrono::microseconds(us)}; }
 
 class NodeCounter {
  public:
-  /// What a reading at h_rx stands for, us; changes nothing.
+  /// Widens a reading that arrived at h_rx, us. Does not change the state.
   std::int64_t widened(std::uint64_t counter_us, HostTime h_rx) const;
-  /// The same for a reading that was taken at or before `n_tx_us`, a widened one.
+  /// Widens a reading taken at or before `n_tx_us`, which is already widened.
   std::int64_t widened_before(std::uint64_t counter_us, std::int64_t n_tx_us) const;
 
-  /// n - what was foretold, us; positive: the counter is ahead. 0 before the first.
+  /// n minus the predicted counter, us. Positive: the counter is ahead. 0 before the first reading.
   std::int64_t ahead_us(std::int64_t n_us, HostTime h_rx) const;
-  /// How far n lies behind the newest, us; negative: it is newer.
+  /// The newest reading minus n, us. Negative: n is newer.
   std::int64_t behind_us(std::int64_t n_us) const { return begun_ ? newest_us_ - n_us : 0; }
 
+  /// Stores a widened reading if it is the newest.
   void take(std::int64_t n_us, HostTime h_rx);
 
  private:
   std::int64_t foretold_us(HostTime h_rx) const;
 
   std::int64_t newest_us_ = 0;
-  HostTime heard_{};  // when the newest came
+  HostTime heard_{};  // arrival of the newest reading
   bool begun_ = false;
 };
 

@@ -57,11 +57,12 @@ NodeVerdict NodeDesk::judge(const NodeArrival& arrival, NodeNews& news) {
       return judge_request(arrival, envelope, news);
     case DatagramType::confirm:
       return judge_confirm(arrival, envelope, news);
-    default:  // decode refuses what only a host sends
+    default:  // decode refuses types that only a host sends
       return judge_frame(arrival, envelope, news);
   }
 }
 
+// A higher protocol version is reported once, when it is first received.
 void NodeDesk::refuse(NodeRefusal refusal, std::uint8_t version, HostTime now) {
   ++counts_.refusals[refusal];
   if (refusal != NodeRefusal::unknown_version || version <= counts_.newest_version) return;
@@ -73,7 +74,7 @@ void NodeDesk::refuse(NodeRefusal refusal, std::uint8_t version, HostTime now) {
   table_.tell(event);
 }
 
-/// With the node's key, or the one before while that lasts.
+/// Decodes with the node's key, or with its previous key while that is still valid.
 template <class Datagram>
 bool NodeDesk::unlock(const Envelope& envelope, const NodeArrival& arrival, Datagram& datagram) {
   const std::uint32_t id = envelope.origin.node_id;
@@ -94,7 +95,7 @@ bool NodeDesk::unlock(const Envelope& envelope, const NodeArrival& arrival, Data
   return false;
 }
 
-/// Anybody can bring this about as often as he likes.
+/// Anyone can cause this event with forged datagrams, so refused_nodes_ limits its rate.
 void NodeDesk::tell_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
                               const NodeArrival& arrival) {
   const bool is_key = refusal == NodeRefusal::no_key || refusal == NodeRefusal::no_mac ||
@@ -110,6 +111,8 @@ void NodeDesk::tell_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
   table_.tell(event);
 }
 
+// The sequence number is checked before the echo, and the echo before the life is admitted: an echo
+// proves that the frame is not a recording played back.
 NodeVerdict NodeDesk::judge_frame(const NodeArrival& arrival, const Envelope& envelope,
                                   NodeNews& news) {
   if (!unlock(envelope, arrival, frame_)) return NodeVerdict::refused;
@@ -136,6 +139,8 @@ NodeVerdict NodeDesk::judge_frame(const NodeArrival& arrival, const Envelope& en
   return NodeVerdict::accepted;
 }
 
+// A request has no echo. A new life is therefore admitted only by a confirm, unless no key is used
+// and the boot id is new.
 NodeVerdict NodeDesk::judge_request(const NodeArrival& arrival, const Envelope& envelope,
                                     NodeNews& news) {
   ClocklessRequest request;
@@ -156,6 +161,8 @@ NodeVerdict NodeDesk::judge_request(const NodeArrival& arrival, const Envelope& 
   return NodeVerdict::accepted;
 }
 
+// A confirm names an answer of this run and so proves that it is not a recording played back. The
+// times come from the table of answers; a wrong copy of them is only counted.
 NodeVerdict NodeDesk::judge_confirm(const NodeArrival& arrival, const Envelope& envelope,
                                     NodeNews& news) {
   ClocklessConfirm confirm;
@@ -190,7 +197,7 @@ NodeVerdict NodeDesk::find_life(const NodeSign& sign, NodeLife*& life) {
   return life != nullptr ? NodeVerdict::accepted : NodeVerdict::no_room;
 }
 
-/// Of what may be answered: its life, and its number there, which is taken.
+/// Finds the life of a datagram that may be answered, and takes the datagram's sequence number.
 NodeVerdict NodeDesk::find_place(const NodeSign& sign, std::uint32_t sequence, NodeLife*& life,
                                  NodeNews& news) {
   if (const auto found = find_life(sign, life); found != NodeVerdict::accepted) return found;
@@ -202,14 +209,15 @@ NodeVerdict NodeDesk::find_place(const NodeSign& sign, std::uint32_t sequence, N
   return NodeVerdict::accepted;
 }
 
-/// `echoed`: when the reply was sent that this datagram names.
+/// Admits the life if necessary. `echoed` is the time when the answer that this datagram names was
+/// sent.
 NodeVerdict NodeDesk::take_life(NodeLife& life, const NodeSign& sign,
                                 std::optional<HostTime> echoed) {
   life.heard = sign.at;
   if (life.state == State::live) return NodeVerdict::accepted;
   if (life.state == State::earlier) {
-    // Sent before its node started again, or by another node of the same id: that one alone has
-    // heard what was answered since.
+    // The datagram was sent before its node started again, or another node has the same id. Only
+    // another node can have received an answer that was sent after the restart.
     if (!echoed || *echoed <= life.replaced) return NodeVerdict::earlier_life;
     return table_.part(life, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
   }
@@ -220,6 +228,8 @@ NodeVerdict NodeDesk::take_life(NodeLife& life, const NodeSign& sign,
   return table_.admit(life, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
 }
 
+// An echo whose arrival lies after the frame's own departure, or beyond any counter, is counted as
+// `future`.
 std::optional<Exchange::Echo> NodeDesk::take_echo(NodeLife& life, std::int64_t n_tx_us) {
   EchoVerdict verdict = EchoVerdict::none;
   GivenAnswer answer;
@@ -236,7 +246,7 @@ std::optional<Exchange::Echo> NodeDesk::take_echo(NodeLife& life, std::int64_t n
   return Exchange::Echo{node_time(n_rx), answer.t3};
 }
 
-/// `n_tx_us`: absent where the node has no counter.
+/// Stores the samples with their counter stamps. `n_tx_us` is absent if the node has no counter.
 void NodeDesk::keep(std::span<const NodeSample> samples, std::optional<std::int64_t> n_tx_us,
                     NodeNews& news) {
   for (std::size_t i = 0; i < samples.size(); ++i) {

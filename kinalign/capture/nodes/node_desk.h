@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes' protocol on the host's side (docs/formats/imu_node.md): what becomes of each datagram,
-// what is answered, and what it says of its node's clock. No socket, no clock and no growth: time
-// is an argument, and every fault is tested without either.
+// The host's side of the nodes' protocol (docs/formats/imu_node.md). It decides about each
+// datagram, makes the answer, and extracts what the datagram says about its node's clock. It uses
+// no socket and no clock, and its memory is fixed. Time is an argument, so every fault can be
+// tested.
 #pragma once
 
 #include "kinalign/capture/net/rate_limit.h"
@@ -23,49 +24,53 @@ namespace kinalign {
 struct NodeArrival {
   std::span<const std::uint8_t> bytes;
   NodeAddress from;
-  HostTime h_rx{};              // T2 of RFC 5905; of a confirm T6
-  std::optional<Time> stamp{};  // the kernel's
+  HostTime h_rx{};              // T2 of RFC 5905; for a confirm T6
+  std::optional<Time> stamp{};  // the kernel's stamp
 };
 
-/// A sample, and the counter when it was taken; of a node without one the zero of NodeTime.
+/// A sample and the counter when it was taken. If the node has no counter, n is the zero of
+/// NodeTime.
 struct NodeReading {
   NodeTime n{};
   NodeSample sample;
   SampleFaults faults;
 };
 
-/// What an accepted datagram brought. A frame has an exchange, a confirm a clockless one.
+/// The content of an accepted datagram. A frame has `exchange`, a confirm has `clockless`.
 struct NodeNews {
   NodeVerdict verdict = NodeVerdict::refused;
-  std::uint32_t node_id = 0;  // as it says: of what is not refused its key vouches for it, if any
-  std::size_t stream = 0;     // if accepted
-  std::uint64_t frame = 0;    // its number, widened; lost ones count
+  // as claimed; if a key is used and the datagram is not refused, the MAC proves it
+  std::uint32_t node_id = 0;
+  std::size_t stream = 0;   // only if accepted
+  std::uint64_t frame = 0;  // the datagram's widened number; lost datagrams are counted too
   std::optional<Exchange> exchange;
   std::optional<ClocklessExchange> clockless;
-  std::span<const NodeReading> readings;  // oldest first; good until the next datagram
+  std::span<const NodeReading> readings;  // oldest first; valid until the next datagram
 };
 
 struct NodeDeskOptions {
   std::optional<LabKey> lab_key;
-  SipHashKey secret{};  // random in each run: nonces and the strangers' table come from it
+  // random in each run; nonces and the hash keys of unknown senders are made with it
+  SipHashKey secret{};
 };
 
 class NodeDesk {
  public:
   explicit NodeDesk(const NodeDeskOptions& options);
 
-  /// In the order of arrival.
+  /// Judges one datagram. Call in the order of arrival.
   NodeNews receive(const NodeArrival& arrival);
-  /// The answer to the datagram before, at the front of `out`; empty: none is due. It is never the
-  /// longer of the two, as their layouts are. `h_tx` was read before this call, and what is
-  /// returned is to be sent at once.
+  /// Makes the answer to the previous datagram at the front of `out`. Empty: no answer is due. The
+  /// layouts ensure that an answer is never longer than its request. `h_tx` must be read just
+  /// before this call, and the answer must be sent at once.
   std::span<const std::uint8_t> answer(HostTime h_tx, std::span<std::uint8_t> out);
 
-  /// Says what replies tell the node: the host has an interval for its clock.
+  /// Sets the flag in replies that tells a node that the host has a certified interval for its
+  /// clock.
   void set_locked(std::size_t stream, bool locked) { table_.stream(stream).locked = locked; }
-  /// The present keys are good for a minute more.
+  /// Changes the lab key. The previous keys stay valid for one more minute.
   void replace_key(const LabKey& lab, HostTime now) { keys_.replace(lab, now); }
-  /// Now and then.
+  /// Call from time to time; it finds nodes that fell silent.
   void tick(HostTime now) { table_.tick(now); }
 
   const NodeStream& stream(std::size_t i) const { return table_.stream(i); }
@@ -102,17 +107,17 @@ class NodeDesk {
   std::uint64_t nonces_ = 0;
   RefusedNodes refused_nodes_;
 
-  // of the datagram before
+  // State of the previous datagram.
   NodeFrame frame_;
   std::array<NodeReading, max_node_samples> readings_{};
-  /// What `answer` has to know of it.
+  /// The data that `answer` needs.
   struct Asked {
-    NodeLife* by = nullptr;  // nullptr: it is not answered
+    NodeLife* by = nullptr;  // nullptr: the datagram is not answered
     DatagramOrigin origin;
     DatagramType type{};
     HostTime h_rx{};
     std::uint64_t frame = 0;
-    std::optional<MacKey> key;  // that it came with; none: it has no MAC
+    std::optional<MacKey> key;  // the key of the datagram's MAC; absent: it has no MAC
     bool old_key = false;
   } asked_;
 };

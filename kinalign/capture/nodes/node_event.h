@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens among the nodes, for who watches.
+// Events of the nodes, for display and logs.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -14,17 +14,17 @@ namespace kinalign {
 
 struct NodeEvent {
   enum class Kind : std::uint8_t {
-    joined,         // a stream begins
-    started,        // its node has started (again), with a new boot id
-    restarted,      // warning: its counter and sequence began anew under the same boot id
-    twins,          // warning: two nodes have this id, each now has a stream
-    renamed,        // `other_id` was what this node was called before
-    moved,          // its frames come from another address
-    left,           // nothing for ten seconds
-    returned,       // and here it is again, in the same life
-    newer_version,  // something speaks a later version of the protocol: `version`
-    too_many,       // warning: a node was not taken in
-    wrong_key       // warning: not heard, for what `refusal` says; the node's id is only claimed
+    joined,         // a new stream begins
+    started,        // the stream's node has started again, with a new boot id
+    restarted,      // warning: counter and sequence began again under the same boot id
+    twins,          // warning: two nodes have this id; each has its own stream now
+    renamed,        // the node was known as `other_id` before
+    moved,          // the node's frames come from another address
+    left,           // the node was silent for ten seconds
+    returned,       // the node sends again after `left`, without a restart
+    newer_version,  // a datagram has a later protocol version: `version`
+    too_many,       // warning: a node was not admitted, because the table is full
+    wrong_key       // warning: refused for its key, see `refusal`; the node id is only a claim
   };
   Kind kind{};
   std::size_t stream = 0;
@@ -37,7 +37,7 @@ struct NodeEvent {
 };
 inline constexpr std::size_t node_event_kinds = 11;
 
-/// As in --json: "newer_version".
+/// The same word as in --json: "newer_version".
 const char* name_of(NodeEvent::Kind kind);
 bool is_warning(NodeEvent::Kind kind);
 

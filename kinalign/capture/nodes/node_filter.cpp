@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+// Bytes of the UDP header, and of the shortest datagram of a node.
 constexpr std::uint32_t header = 8;
 constexpr std::uint32_t least = node_datagram_size(0, false);
 
@@ -27,14 +28,14 @@ constexpr sock_filter step(int code, std::uint32_t k, int if_true = 0, int if_fa
 }  // namespace
 
 bool attach_node_filter(const UdpSocket& socket) {
-  // Versions pass: those that we don't know are counted.
+  // All protocol versions pass, since unknown versions are counted.
   std::array program{
       step(BPF_LD | BPF_W | BPF_LEN, 0),
       step(BPF_JMP | BPF_JGE | BPF_K, header + least, 0, 8),
       step(BPF_JMP | BPF_JGT | BPF_K, header + max_node_datagram, 7, 0),
       step(BPF_ALU | BPF_SUB | BPF_K, header),
       step(BPF_MISC | BPF_TAX, 0),
-      step(BPF_LD | BPF_H | BPF_ABS, header + 6),  // its length, as it says
+      step(BPF_LD | BPF_H | BPF_ABS, header + 6),  // the length field of the datagram
       step(BPF_JMP | BPF_JEQ | BPF_X, 0, 0, 3),
       step(BPF_LD | BPF_W | BPF_ABS, header),
       step(BPF_JMP | BPF_JEQ | BPF_K, node_magic, 0, 1),

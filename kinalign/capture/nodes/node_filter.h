@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel itself keeps from the nodes' port, before it takes room in the buffer.
+// A kernel filter for the nodes' port. It drops foreign datagrams before they use buffer space.
 #pragma once
 
 #include "kinalign/capture/net/udp_socket.h"
 
 namespace kinalign {
 
-/// From now on the socket takes only what begins as a node's datagram and has the length that it
-/// says. False: the system has no such filters, and nothing is changed.
+/// Makes the socket accept only datagrams that begin as a node's datagram and whose length field is
+/// right. Returns false if the system has no such filters; nothing is changed then.
 bool attach_node_filter(const UdpSocket& socket);
 
 }  // namespace kinalign

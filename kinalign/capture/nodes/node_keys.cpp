@@ -48,7 +48,7 @@ std::string octal(unsigned mode) {
   return text;
 }
 
-/// A file that its owner alone may read.
+/// Checks that only the owner may read the file.
 Result<void> check_mode(int fd, const std::string& path) {
   struct stat found {};
   if (::fstat(fd, &found) != 0) return no_key(path, "a key file", std::strerror(errno));
@@ -58,7 +58,8 @@ Result<void> check_mode(int fd, const std::string& path) {
                 ErrorKind::exposed_key);
 }
 
-/// Of a file that may not be read: whose it is, where that may be known.
+/// The message for a file that may not be read. It names the file's owner and mode if they are
+/// known.
 std::string forbidden(const std::string& path) {
   std::string text = "no permission to read it";
   struct stat found {};
@@ -68,14 +69,14 @@ std::string forbidden(const std::string& path) {
   return text + ": it is " + name + "'s, " + octal(found.st_mode);
 }
 
-/// A lab key's file could not be opened.
+/// The error for a lab key file that could not be opened.
 Failure no_lab_key(const std::string& path, int code) {
   if (code == EACCES) return no_key(path, "a lab key", forbidden(path), ErrorKind::forbidden_key);
   const ErrorKind kind = code == ENOENT ? ErrorKind::no_such_file : ErrorKind::other;
   return no_key(path, "a lab key", std::strerror(code), kind);
 }
 
-/// Of a file that could not be made.
+/// The message for a file that could not be created.
 std::string no_place(const std::string& path, int error) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::error_code unknown;
@@ -117,6 +118,7 @@ std::string key_text(std::span<const std::uint8_t> key) {
   return text;
 }
 
+// O_NONBLOCK keeps the open from waiting if the path is a pipe.
 Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   const OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0));
   if (file.fd() < 0) return no_lab_key(path, errno);
@@ -148,7 +150,7 @@ Result<void> write_key(FileSystem& files, const std::string& path,
       files.sync(file.fd()) == 0;
   if (written) return {};
   const std::string why = std::strerror(errno);
-  files.remove(path.c_str());  // half a key is none
+  files.remove(path.c_str());  // half a key is useless
   return no_key(path, "room for a key", why);
 }
 

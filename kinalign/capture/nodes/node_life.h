@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the host remembers of one start of one node.
+// The host's record of one life of a node. A life lasts from one start of the node to the next.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -17,17 +17,18 @@ namespace kinalign {
 struct NodeLife {
   enum class State : std::uint8_t {
     free,
-    held,    // until it echoes what this run of the host sent to it
-    live,    // the present one of its stream
-    earlier  // its node has started again
+    held,    // not admitted yet: must echo an answer of this run of the host
+    live,    // the present life of its stream
+    earlier  // the node has started again since
   };
   State state = State::free;
   std::uint32_t node_id = 0, boot_id = 0;
-  BootKey key = 0;         // boot id, and above it a number where that came before
-  std::size_t stream = 0;  // but while it is held
-  NodeAddress address;     // that its newest frame came from
+  BootKey key = 0;  // the boot id; the upper bits hold a number if this boot id was used before
+  std::size_t stream = 0;  // undefined while the life is held
+  NodeAddress address;     // source address of its newest frame
+  // First arrival, last arrival, and the start of the next life.
   HostTime begun{}, heard{}, replaced{};
-  bool old_key = false;  // its newest frame had the key that is being replaced
+  bool old_key = false;  // its newest frame was signed with the key that is being replaced
   SequenceWindow sequences;
   NodeCounter counter;
   AnswerTable answers;

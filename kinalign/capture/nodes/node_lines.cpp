@@ -15,9 +15,10 @@ namespace kinalign {
 namespace {
 
 constexpr Duration between_sockets = std::chrono::seconds(1);
-constexpr std::size_t most_ready = 80;  // at once: a line each of 64 nodes, and those they left
+// sockets at once: one for each of 64 nodes, and the open ones
+constexpr std::size_t most_ready = 80;
 
-/// fe80::/10 is an address of an interface, which we don't know here.
+/// A link-local address (fe80::/10) is valid on one interface only, which is not known here.
 bool is_link_local(const HostAddress& host) {
   return host[0] == 0xfe && (host[1] & 0xc0U) == 0x80U;
 }
@@ -27,7 +28,7 @@ bool is_link_local(const HostAddress& host) {
 NodeLines::NodeLines(std::span<const UdpSocket> open, std::size_t most)
     : open_(open), lines_(most), poll_(::epoll_create1(EPOLL_CLOEXEC)) {
   for (std::size_t i = 0; i < open_.size(); ++i) {
-    open_[i].share_port();  // where it may not, all stays with the open ones
+    open_[i].share_port();  // if the system refuses, all datagrams arrive at the open sockets
     wait_for(open_[i], most + i);
   }
 }
@@ -49,6 +50,7 @@ void NodeLines::wait_for(const UdpSocket& socket, std::uint64_t number) {
   ::epoll_ctl(poll_, EPOLL_CTL_ADD, socket.fd(), &event);
 }
 
+// A node that keeps changing its address gets at most one new socket per second.
 void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, HostTime now) {
   Line& line = lines_[stream];
   if (line.socket && line.way == way) return;
@@ -56,7 +58,7 @@ void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, H
   line.asked = now;
   line.way = way;
   if (line.socket) dropped_before_ += dropped_by_kernel(*line.socket);
-  line.socket.reset();  // which the kernel takes out of poll_
+  line.socket.reset();  // closing removes it from poll_
   if (is_link_local(way.from.host) || is_link_local(way.to)) return;
   auto socket = UdpSocket::connected(way.to, port, way.from.host, way.from.port);
   if (!socket) return;
@@ -65,6 +67,7 @@ void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, H
   wait_for(*line.socket, stream);
 }
 
+// Sockets of nodes come first: their numbers are lower than those of the open sockets.
 std::span<const UdpSocket* const> NodeLines::ready() {
   std::array<epoll_event, most_ready> events{};
   ready_.clear();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A socket of its own for each node that is known, connected to its address: the kernel puts the
-// node's datagrams into that one's buffer, which no stranger fills but who forges that address and
-// port. Link-local addresses have none. Before it is connected it takes a share of everybody's
-// (SO_REUSEPORT): these wait in it and are read like all others, so who reads one goes by each
-// datagram's address. Besides, the descriptor that a receiver waits for.
+// One socket per known node, connected to the node's address, so that the kernel puts the node's
+// datagrams into a buffer of their own. Strangers can fill that buffer only by forging the node's
+// address and port. Link-local addresses get no socket. Before such a socket is connected, it
+// receives a share of all datagrams of the port (SO_REUSEPORT). These stay in its buffer and are
+// read like all others, so the reader must go by each datagram's address. The class also owns the
+// descriptor on which a receiver waits.
 #pragma once
 
 #include "kinalign/capture/net/udp_socket.h"
@@ -17,7 +18,8 @@ namespace kinalign {
 
 class NodeLines {
  public:
-  /// `open`: for everybody; they have to stay where they are, and share their port from now on.
+  /// `open`: the sockets for all senders. They must not move, and they share their port from now
+  /// on.
   NodeLines(std::span<const UdpSocket> open, std::size_t most);
   NodeLines(NodeLines&& other) noexcept;
   NodeLines& operator=(NodeLines&&) = delete;
@@ -25,9 +27,10 @@ class NodeLines {
   NodeLines& operator=(const NodeLines&) = delete;
   ~NodeLines();
 
-  /// The node sends from `way.from` to `way.to`, an address of ours. Where the system gives no
-  /// socket all goes on over the open ones, and a second later it is asked again; no sooner does a
-  /// line follow one that sends from, or to, several addresses in turn.
+  /// The path of a node's datagrams: from `way.from` to `way.to`, an address of this host. If the
+  /// system gives no socket, the open sockets receive the node's datagrams, and a socket is asked
+  /// for again after a second. A node whose addresses alternate gets a new socket once a second at
+  /// most.
   struct Way {
     NodeAddress from;
     HostAddress to{};
@@ -35,17 +38,18 @@ class NodeLines {
   };
   void follow(std::size_t stream, const Way& way, std::uint16_t port, HostTime now);
 
-  /// Can be read where any socket can.
+  /// Readable when any of the sockets is readable.
   int fd() const { return poll_; }
-  /// Those that can be read, lines of nodes first.
+  /// The sockets that can be read, those of nodes first.
   std::span<const UdpSocket* const> ready();
+  /// Datagrams that the kernel dropped on all sockets, closed ones included.
   std::uint64_t dropped() const;
 
  private:
   struct Line {
     Way way;
     std::optional<UdpSocket> socket;
-    HostTime asked = HostTime::min();  // for the socket
+    HostTime asked = HostTime::min();  // time of the last attempt to open the socket
   };
   void wait_for(const UdpSocket& socket, std::uint64_t number);
 
@@ -53,7 +57,7 @@ class NodeLines {
   std::vector<Line> lines_;
   int poll_ = -1;
   std::vector<const UdpSocket*> ready_;
-  std::uint64_t dropped_before_ = 0;  // by lines that are closed
+  std::uint64_t dropped_before_ = 0;  // datagrams dropped on sockets that are now closed
 };
 
 }  // namespace kinalign

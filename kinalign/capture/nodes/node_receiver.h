@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes' port: sockets around a NodeDesk, and a clock for each node. Waits for nothing: who
-// serves several ports (time_server.h) drains this one first.
+// The nodes' port: sockets around a NodeDesk, and one clock per node. No call blocks. A program
+// that serves several ports (time_server.h) drains this one first.
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
@@ -22,8 +22,8 @@ namespace kinalign {
 class LiveClock;
 
 struct NodeReceiverOptions {
-  std::vector<std::string> addresses;  // empty: all, of IPv4 and IPv6
-  std::uint16_t port = 0;              // 0: any free one, the same for all addresses
+  std::vector<std::string> addresses;  // empty: all addresses of IPv4 and IPv6
+  std::uint16_t port = 0;              // 0: any free port, the same for all addresses
   NodeDeskOptions desk;
 };
 
@@ -35,36 +35,39 @@ class NodeReceiver {
   NodeReceiver& operator=(const NodeReceiver&) = delete;
   ~NodeReceiver();
 
-  /// `clocks` has to stay.
+  /// `clocks` must outlive the receiver.
   static Result<NodeReceiver> open(const NodeReceiverOptions& options, ClockReader& clocks);
 
-  /// Takes and answers what has come, at most some hundred datagrams of each socket.
+  /// Reads and answers the waiting datagrams, a few hundred per socket at most.
   void drain();
-  /// Datagrams since it was opened, of whatever kind.
+  /// Datagrams since the port was opened, of any kind.
   std::uint64_t heard() const { return datagrams_; }
-  /// Four times a second or so: who left, how the host's clocks run.
+  /// Call about four times a second. It finds silent nodes and reads the host's clocks.
   void tick();
 
-  /// Is told each datagram that got past port and key, in the order of arrival; of one that is
-  /// accepted with its node's clock, which has heard of it, else with nullptr.
+  /// Called for each datagram that passed the checks of port and key, in the order of arrival. If
+  /// the datagram is accepted, `clock` is its node's clock, already updated; else it is nullptr.
   using Watcher =
       std::function<void(const NodeArrival& arrival, const NodeNews& news, LiveClock* clock)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
   const std::vector<UdpSocket>& sockets() const { return *sockets_; }
-  /// Can be read where something has come.
+  /// Readable when a datagram is waiting.
   int fd() const { return lines_.fd(); }
   const NodeCounts& counts() const { return desk_->counts(); }
   const RefusedNodes& refused_nodes() const { return desk_->refused_nodes(); }
-  std::uint64_t dropped() const { return lines_.dropped(); }  // by the kernel
+  std::uint64_t dropped() const { return lines_.dropped(); }  // datagrams dropped by the kernel
+  /// Answers that the system did not accept.
   std::uint64_t unsent() const { return unsent_; }
   std::uint32_t epoch() const { return axis_.epoch(); }
   std::uint32_t node_id(std::size_t stream) const { return desk_->stream(stream).node_id; }
-  /// Datagrams that were not looked into, for how they came.
-  std::uint64_t not_unicast() const { return not_unicast_; }  // many would answer
-  std::uint64_t from_port_0() const { return from_port_0_; }  // nobody would hear the answer
-  /// By node id; of two nodes that have one, by stream.
+  /// Ignored datagrams. They were sent to a broadcast or multicast address, so many hosts would
+  /// answer, or they came from port 0, so the answer could not be received.
+  std::uint64_t not_unicast() const { return not_unicast_; }
+  std::uint64_t from_port_0() const { return from_port_0_; }
+  /// Sorted by node id; nodes with the same id are sorted by stream.
   std::vector<NodeStatus> status() const;
+  /// Changes the lab key. The previous keys stay valid for one more minute.
   void replace_key(const LabKey& lab) { desk_->replace_key(lab, axis_.now()); }
 
   std::vector<NodeEvent> take_node_events() { return desk_->take_events(); }
@@ -75,17 +78,17 @@ class NodeReceiver {
     ClockEvent event;
   };
   std::vector<StreamEvent> take_clock_events();
-  /// Raw and wall clock, read once a second; since this was asked last.
+  /// Pairs of raw and wall clock, read once a second, since the previous call.
   std::vector<ClockPair> take_pairs() { return pairs_.take(); }
-  /// Events and pairs that were lost for want of room, since nobody took them. Of the events of a
-  /// clock that was replaced (another node, another epoch) withdrawals may be among them.
+  /// Events and pairs that were lost because nobody took them in time. They may include withdrawals
+  /// of a clock that was replaced (by another node or in another epoch).
   std::uint64_t missed_events() const;
 
  private:
   NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSocket> sockets,
                ClockReader& clocks);
   struct StreamClock;
-  /// A datagram that waits until its batch is answered.
+  /// A datagram that waits until the answers of its batch are sent.
   struct Kept {
     NodeArrival arrival;
     NodeNews news;
@@ -107,12 +110,13 @@ class NodeReceiver {
   std::unique_ptr<NodeDesk> desk_;
   std::unique_ptr<DatagramBatch> batch_;
   std::vector<std::unique_ptr<StreamClock>> clocks_;
-  EventQueue<StreamEvent> last_events_;  // of clocks that were replaced
-  std::uint64_t missed_events_ = 0;      // of these
+  EventQueue<StreamEvent> last_events_;  // events of clocks that were replaced
+  std::uint64_t missed_events_ = 0;      // lost events of clocks that were replaced
   std::vector<Kept> kept_;
   std::size_t kept_length_ = 0;
   Watcher watcher_;
-  std::vector<std::optional<HostAddress>> heard_;  // by stream: where its frames came to, this time
+  // by stream: destination address of its frames since the last follow()
+  std::vector<std::optional<HostAddress>> heard_;
   std::uint64_t datagrams_ = 0, unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;
   HostTime next_watch_ = HostTime::min();
   EventQueue<ClockPair> pairs_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of one node while it sends: its counts, its rate, its clock.
+// The state of one node while it sends: its counts, its rate and its clock.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -12,22 +12,24 @@
 
 namespace kinalign {
 
-/// How a node does.
+/// The state of one node at one instant.
 struct NodeStatus {
   std::size_t stream = 0;
   std::uint32_t node_id = 0, boot_id = 0;
   NodeAddress address;
+  // `silent`: no datagram for ten seconds. `old_key`: it still uses the key that is being replaced.
   bool silent = false, old_key = false;
-  std::uint64_t lives = 0, accepted = 0, lost = 0;  // frames, of this life
-  std::optional<double> rate_hz;            // absent before it is known, and of who is silent
-  HostTime heard{};                         // last
-  std::optional<std::uint16_t> battery_mv;  // where it says that
-  // of its clock, where it has one
-  std::optional<NodeTime> n;  // its newest counter, ...
+  // `lives`: of the stream. `accepted`, `lost`: frames of the present life.
+  std::uint64_t lives = 0, accepted = 0, lost = 0;
+  std::optional<double> rate_hz;            // absent before it is known, and for a silent node
+  HostTime heard{};                         // last arrival
+  std::optional<std::uint16_t> battery_mv;  // absent if the node does not send it
+  // The node's clock; absent if it has none.
+  std::optional<NodeTime> n;  // its newest counter reading
   std::optional<ClockStamp> stamp;
-  double drift = 0.0, drift_deviation = 0.0;  // host_from_node's rate less one, as estimated
-  std::optional<Duration> round_trip;         // the least of the last whole ten seconds
-  std::optional<Duration> one_way, mean_way;  // d of a node without a counter: the last, the mean
+  double drift = 0.0, drift_deviation = 0.0;  // rate of host_from_node minus 1, as estimated
+  std::optional<Duration> round_trip;         // the shortest of the last complete ten seconds
+  std::optional<Duration> one_way, mean_way;  // delay of a node without a counter: last and mean
 };
 
 }  // namespace kinalign

@@ -13,35 +13,39 @@ namespace {
 using State = NodeLife::State;
 using Kind = NodeEvent::Kind;
 
-constexpr std::int64_t most_back_us = 1'000'000;   // of a frame behind one that was sent later
-constexpr std::int64_t most_ahead_us = 2'000'000;  // of the same node at another address
+// a frame may be this much older than a frame that arrived before it
+constexpr std::int64_t most_back_us = 1'000'000;
+constexpr std::int64_t most_ahead_us = 2'000'000;  // the limit for the same node at another address
+// An address counts as known, and a silent node's stream is not reused, for this long.
 constexpr Duration known_for = std::chrono::seconds(60);
 constexpr Duration left_after = std::chrono::seconds(10);
-constexpr Duration held_for = std::chrono::seconds(1);  // at least, if others want the room
-constexpr std::size_t most_held = 4;                    // lives of one node id
+constexpr Duration held_for = std::chrono::seconds(1);  // a held life is kept at least this long
+constexpr std::size_t most_held = 4;                    // held lives of one node id
 
 bool has_ids(const NodeLife& life, std::uint32_t node_id, std::uint32_t boot_id) {
   return life.state != State::free && life.node_id == node_id && life.boot_id == boot_id;
 }
 
-/// By counter, number and address, of one that has the same ids.
+/// Returns whether a datagram with the same ids may continue this life, judged by its counter,
+/// sequence number and address.
 bool continues(const NodeLife& life, const NodeSign& sign) {
   if (!sign.counter_us) return true;
   const std::int64_t n = life.counter.widened(*sign.counter_us, sign.at);
   const std::int64_t behind = life.counter.behind_us(n);
   if (behind > most_back_us) return false;
-  // A later reading under an earlier number, or a number of long ago within a second: both began
-  // anew, and the counter, taken for a narrow one that has gone round or being nearly as old, seems
-  // to go on.
+  // Both counter and sequence have started again if a later reading comes with an earlier number,
+  // or with a number far behind. The counter then only seems to continue: it was taken for a 32-bit
+  // counter that wrapped, or it has run nearly as long as before.
   if (behind < 0 && !life.sequences.is_ahead(sign.sequence)) return false;
   if (life.sequences.place_of(sign.sequence) == SequenceWindow::Place::behind) return false;
-  // From where it always came a jump ahead is a step of its counter, which the clock will see.
+  // If the address is unchanged, a jump ahead is a step of the node's counter. The clock model will
+  // detect it.
   return life.address == sign.from || life.counter.ahead_us(n, sign.at) <= most_ahead_us;
 }
 
-/// Which of the lives that a datagram may continue it most likely does; more is better. A counter
-/// that goes back and climbs again passes where its earlier life ended: the present life at the
-/// same address is then the one, else that which foretold the counter.
+/// Orders the lives that a datagram may continue; a greater value is more likely. A counter that
+/// starts again passes the reading at which its earlier life ended. The present life at the same
+/// address is then the right one, otherwise the life that predicted the counter.
 auto likelihood(const NodeLife& life, const NodeSign& sign) {
   const bool live = life.state == State::live, here = life.address == sign.from;
   bool foretold = true;
@@ -79,8 +83,9 @@ bool NodeTable::knows_address(const HostAddress& host, HostTime now) const {
   });
 }
 
-/// A free place, else that of the longest silent life that is not the present one of a stream. A
-/// node of which as many lives are held as may be has no more: its oldest held one makes room.
+/// Returns a free place, or else that of the life silent longest among those that are not the
+/// present life of a stream. If a node has most_held held lives already, its oldest held life is
+/// replaced.
 NodeLife* NodeTable::room_for_life(const NodeSign& sign) {
   NodeLife* oldest = nullptr;
   NodeLife* oldest_held = nullptr;
@@ -106,8 +111,8 @@ NodeLife* NodeTable::hold(const NodeSign& sign) {
   });
   NodeLife* life = same != lives_.end() ? &*same : room_for_life(sign);
   if (life == nullptr) return nullptr;
-  // As old as before: who sends two frames of an old life in turn would keep it young, and others
-  // of its id out.
+  // A replaced life keeps its age. Otherwise a sender that alternates two frames of an old life
+  // would keep it young, and so keep out other lives of its id.
   const HostTime begun = same != lives_.end() ? same->begun : sign.at;
   *life = {};
   life->state = State::held;
@@ -119,8 +124,8 @@ NodeLife* NodeTable::hold(const NodeSign& sign) {
   return life;
 }
 
-/// Of the streams with its node id: the one whose boot id it has, or its address, or that was
-/// silent for longest.
+/// Chooses among the streams with this node id: by boot id, then by address, then by longest
+/// silence.
 NodeStream* NodeTable::stream_for(const NodeLife& life) {
   const auto rank = [&](const NodeStream& stream) {
     const NodeLife& present = lives_[stream.life];
@@ -135,7 +140,7 @@ NodeStream* NodeTable::stream_for(const NodeLife& life) {
   return best;
 }
 
-/// A free one, or that of the node which was silent for longest, if that was for a minute.
+/// Returns a free stream, or that of the node silent longest if it was silent for a minute.
 NodeStream* NodeTable::new_stream(const NodeLife& life, HostTime now) {
   const auto heard = [this](const NodeStream& s) {
     return s.used ? lives_[s.life].heard : HostTime::min();
@@ -168,6 +173,7 @@ void NodeTable::enter(NodeLife& life, NodeStream& stream, HostTime now) {
   ++stream.lives;
 }
 
+// A stream of the same node id continues with this life. If there is none, a new stream begins.
 bool NodeTable::admit(NodeLife& life, HostTime now) {
   const bool again = knows_boot(life.node_id, life.boot_id);
   NodeStream* stream = stream_for(life);
@@ -193,8 +199,8 @@ bool NodeTable::part(NodeLife& life, HostTime now) {
   return true;
 }
 
-/// Whether a node that joins was known by another id: it has its boot id, or its address and port
-/// since it fell silent.
+/// Reports if a joining node was known by another id. It was if it has that node's boot id, or if
+/// it has that node's address and port and the other node has fallen silent.
 void NodeTable::tell_name(const NodeLife& life, HostTime now) {
   for (const NodeStream& stream : streams_) {
     const NodeLife& other = lives_[stream.life];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes and their lives, told apart: 64 streams, 256 lives, and not one more, whatever arrives.
+// Distinguishes nodes and their lives. The table has a fixed size of 64 streams and 256 lives.
 //
-// A life is (node id, boot id), unless two nodes were given one id and draw one boot id: then their
-// counters and addresses tell. A stream is what one node sends, over all its lives.
+// A life is one start of a node, identified by node id and boot id. If two nodes have the same id
+// and draw the same boot id, counters and addresses distinguish them. A stream is the data of one
+// node over all its lives.
 #pragma once
 
 #include "kinalign/capture/net/event_queue.h"
@@ -15,16 +16,17 @@ namespace kinalign {
 
 struct NodeStream {
   bool used = false;
-  std::uint32_t number = 0;  // of this run: no two streams have the same
+  std::uint32_t number = 0;  // unique among the streams of this run
   std::uint32_t node_id = 0;
-  std::size_t life = 0;  // the present one
+  std::size_t life = 0;  // the present life
+  // Lives that this stream has had.
   std::uint64_t lives = 0;
-  std::optional<std::uint16_t> battery_mv;  // as the node said last
-  bool locked = false;                      // as its replies say
-  bool silent = false;                      // `left` was told
+  std::optional<std::uint16_t> battery_mv;  // as last sent by the node
+  bool locked = false;  // the flag sent in its replies, see NodeDesk::set_locked
+  bool silent = false;  // the event `left` was reported
 };
 
-/// One datagram as far as the table is concerned.
+/// The facts about one datagram that the table needs.
 struct NodeSign {
   std::uint32_t node_id = 0, boot_id = 0;
   NodeAddress from;
@@ -39,20 +41,21 @@ class NodeTable {
 
   NodeTable() : lives_(most_lives), streams_(most_streams) {}
 
-  /// The life that this continues; nullptr: none.
+  /// The life that this datagram continues; nullptr: none.
   NodeLife* life_of(const NodeSign& sign);
-  /// Whether a life with these ids is known, whatever its counter and address.
+  /// Returns whether a life with these ids is known, with any counter and address.
   bool knows_boot(std::uint32_t node_id, std::uint32_t boot_id) const;
-  /// Somebody whose frames were taken within the last minute sends from there.
+  /// Returns whether an admitted node has sent from this address within the last minute.
   bool knows_address(const HostAddress& host, HostTime now) const;
 
-  /// A life that is held; nullptr: no room.
+  /// Makes a life that is held: not admitted yet. nullptr: no room.
   NodeLife* hold(const NodeSign& sign);
-  /// It is one of ours: the present life of its node's stream, or of a new one. False: no room.
+  /// Admits a held life. It becomes the present life of its node's stream or of a new stream.
+  /// False: no room.
   bool admit(NodeLife& life, HostTime now);
-  /// Two nodes have one id: this earlier life goes on in a stream of its own. False: no room.
+  /// Gives an earlier life a stream of its own, since two nodes have one id. False: no room.
   bool part(NodeLife& life, HostTime now);
-  /// Says who has left.
+  /// Reports nodes that have fallen silent.
   void tick(HostTime now);
 
   NodeLife& life(std::size_t i) { return lives_[i]; }
@@ -62,7 +65,7 @@ class NodeTable {
 
   void tell(NodeEvent::Kind kind, const NodeLife& life, HostTime at);
   void tell(const NodeEvent& event) { events_.add(event); }
-  /// What was told since this was asked last, and how many more had no room.
+  /// Events since the previous call. Events beyond the limit are counted in missed_events.
   std::vector<NodeEvent> take_events() { return events_.take(); }
   std::uint64_t missed_events() const { return events_.missed(); }
 
@@ -78,7 +81,7 @@ class NodeTable {
   std::vector<NodeStream> streams_;
   std::uint32_t streams_made_ = 0;
   std::uint64_t restarts_ = 0;
-  HostTime tell_too_many_ = HostTime::min();  // not sooner
+  HostTime tell_too_many_ = HostTime::min();  // too_many is not reported before this time
   EventQueue<NodeEvent> events_;
 };
 

@@ -7,11 +7,13 @@ namespace kinalign {
 
 namespace {
 
+// Reports are limited: one per `any_every` in all, one per `each_every` for each claim.
 constexpr Duration any_every = std::chrono::seconds(1);
 constexpr Duration each_every = std::chrono::minutes(10);
 
 }  // namespace
 
+// Claims beyond the limit share one entry.
 RefusedNodes::Claim& RefusedNodes::claim_of(NodeRefusal refusal, std::uint32_t node_id) {
   const auto end = claims_.begin() + static_cast<std::ptrdiff_t>(used_);
   const auto found = std::find_if(claims_.begin(), end, [&](const Claim& claim) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which nodes are refused for their keys, as far as anybody can say: without a right MAC an id is a
-// stranger's claim. So the table is fixed, the first ids stay in it, and what is told is limited.
+// The nodes that are refused because of their keys. Without a valid MAC an id is only a claim of an
+// unknown sender. The table therefore has a fixed size, the first ids stay in it, and reports are
+// limited.
 #pragma once
 
 #include "kinalign/wire/node_datagram.h"
@@ -20,15 +21,17 @@ class RefusedNodes {
   struct Claim {
     std::uint32_t node_id = 0;
     NodeRefusal refusal = NodeRefusal::none;  // no_key, no_mac or wrong_mac
+    // Time of the last report.
     std::optional<HostTime> told;
   };
 
-  /// Whether this one is to be told now: of all at most one a second, of each once in ten minutes.
+  /// Returns whether to report this refusal now: at most one per second in all, and one per ten
+  /// minutes for each node and cause.
   bool take(NodeRefusal refusal, std::uint32_t node_id, HostTime now);
 
-  /// In the order in which they came.
+  /// In the order in which they were first seen.
   std::span<const Claim> claims() const { return std::span(claims_).first(used_); }
-  /// Whether there were others, for which was no room.
+  /// Returns whether more nodes were refused for this cause than the table holds.
   bool others(NodeRefusal refusal) const { return others_[static_cast<std::size_t>(refusal)]; }
 
  private:
@@ -36,9 +39,9 @@ class RefusedNodes {
 
   std::array<Claim, most> claims_{};
   std::size_t used_ = 0;
-  Claim rest_;  // all that had no room
+  Claim rest_;  // shared by all claims beyond `most`
   std::array<bool, node_refusals> others_{};
-  std::optional<HostTime> told_;  // last
+  std::optional<HostTime> told_;  // time of the last report of any claim
 };
 
 }  // namespace kinalign

@@ -5,7 +5,7 @@
 
 namespace kinalign {
 
-/// From the newest on; negative: back.
+/// Steps from the newest number to `sequence`; negative: backwards.
 std::int64_t SequenceWindow::steps_to(std::uint32_t sequence) const {
   return static_cast<std::int32_t>(sequence - static_cast<std::uint32_t>(newest_));
 }
@@ -20,7 +20,7 @@ SequenceWindow::Place SequenceWindow::place_of(std::uint32_t sequence) const {
 
 std::uint64_t SequenceWindow::take(std::uint32_t sequence) {
   if (!begun_) {
-    // a turn above zero, so that those before the first are no negative numbers
+    // begins one turn above zero, so that numbers before the first are not negative
     first_ = newest_ = (std::uint64_t{1} << 32) + sequence;
     begun_ = true;
   }

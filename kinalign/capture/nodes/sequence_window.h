@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of a sender's sequence numbers came already: the newest and the 1023 before it, as RFC 4303
-// section 3.4.3 does against replays. Numbers are widened to 64 bits, so that they never wrap.
+// Tracks which sequence numbers of a sender were received: the newest and the 1023 before it, as
+// RFC 4303 section 3.4.3 does against replays. Numbers are widened to 64 bits, so they never wrap.
 #pragma once
 
 #include <bitset>
@@ -15,17 +15,17 @@ class SequenceWindow {
 
   enum class Place : std::uint8_t { fresh, seen, behind };
 
-  /// Of a number as it stands in a datagram: modulo 2^32, so it is the nearest to the newest.
+  /// Judges a number as sent, modulo 2^32. It is widened to the value nearest to the newest.
   Place place_of(std::uint32_t sequence) const;
-  /// After `fresh`; returns the number widened.
+  /// Marks a number as received. Call only after `fresh`. Returns the widened number.
   std::uint64_t take(std::uint32_t sequence);
 
   bool empty() const { return !begun_; }
-  /// Newer than all that came.
+  /// Returns whether the number is newer than all received ones.
   bool is_ahead(std::uint32_t sequence) const { return !begun_ || steps_to(sequence) > 0; }
   std::uint64_t first() const { return first_; }
   std::uint64_t newest() const { return newest_; }
-  /// Between the first and the newest.
+  /// Numbers not received between the first and the newest.
   std::uint64_t missing() const { return begun_ ? newest_ - first_ + 1 - taken_ : 0; }
 
  private:

@@ -16,7 +16,7 @@ ChronyQuery::ChronyQuery(std::uint16_t port)
   chronyd.sin_family = AF_INET;
   chronyd.sin_port = htons(port);
   chronyd.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  // connected: nobody else's datagrams come in
+  // A connected socket receives only chronyd's datagrams.
   (void)::connect(fd_, reinterpret_cast<const sockaddr*>(&chronyd), sizeof chronyd);
 }
 
@@ -40,13 +40,15 @@ ChronyQuery::~ChronyQuery() {
   if (fd_ >= 0) ::close(fd_);
 }
 
+// Answers are collected on the next call, so this call never waits.
 std::optional<ChronyTracking> ChronyQuery::latest(HostTime now) {
   constexpr Duration again = std::chrono::seconds(2), good_for = std::chrono::seconds(10);
   receive(now);
   if (!asked_at_ || now - *asked_at_ >= again) {
     asked_at_ = now;
     const auto request = chrony_tracking_request(++sequence_);
-    (void)::send(fd_, request.data(), request.size(), MSG_NOSIGNAL);  // refused: there is none
+    // an error means that no chronyd is running
+    (void)::send(fd_, request.data(), request.size(), MSG_NOSIGNAL);
   }
   if (!answered_at_ || now - *answered_at_ > good_for) return std::nullopt;
   return answer_;
@@ -59,7 +61,7 @@ void ChronyQuery::wait() const {
 }
 
 void ChronyQuery::receive(HostTime now) {
-  constexpr int most = 4;  // answers in a row, should they have piled up
+  constexpr int most = 4;  // limit on answers read in one call
   std::array<std::uint8_t, 256> bytes{};
   for (int i = 0; i < most; ++i) {
     const ssize_t got = ::recv(fd_, bytes.data(), bytes.size(), 0);

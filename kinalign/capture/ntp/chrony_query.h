@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks the chronyd of this host, now and then, without ever waiting for it.
+// Queries this host's chronyd from time to time, without blocking.
 #pragma once
 
 #include "kinalign/capture/ntp/chrony_tracking.h"
@@ -11,7 +11,7 @@ namespace kinalign {
 
 class ChronyQuery {
  public:
-  /// `port`: on 127.0.0.1; chronyd's cmdport. Where nobody listens there is no answer.
+  /// `port`: chronyd's cmdport on 127.0.0.1. Without a chronyd there is never an answer.
   explicit ChronyQuery(std::uint16_t port);
   ChronyQuery(ChronyQuery&& other) noexcept;
   ChronyQuery& operator=(ChronyQuery&& other) noexcept;
@@ -19,9 +19,9 @@ class ChronyQuery {
   ChronyQuery& operator=(const ChronyQuery&) = delete;
   ~ChronyQuery();
 
-  /// The last answer, where it is no older than ten seconds; asks again every two.
+  /// The last answer, if it is at most ten seconds old. Sends a new request every two seconds.
   std::optional<ChronyTracking> latest(HostTime now);
-  /// Waits for an answer that is under way, a tenth of a second at most.
+  /// Waits up to 100 ms for an answer to a request already sent.
   void wait() const;
 
  private:

@@ -17,13 +17,14 @@ void skip(ByteReader& reader, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; ++i) reader.take<std::uint8_t>();
 }
 
-/// A number of chrony's: 7 bits of exponent, 25 of coefficient, both signed; of seconds.
+/// Reads chrony's floating-point format, seconds: 7 bits of exponent, 25 bits of coefficient, both
+/// signed.
 Duration take_seconds(ByteReader& reader) {
   const auto bits = reader.take<std::uint32_t>();
   const int exponent = static_cast<std::int32_t>(bits) >> 25;
   const int coefficient = static_cast<std::int32_t>(bits << 7) >> 7;
   const double s = std::ldexp(coefficient, exponent - 25);
-  constexpr double most_s = 65'536;  // what NTP can say
+  constexpr double most_s = 65'536;  // the range of NTP's short format
   return std::chrono::ceil<Duration>(std::chrono::duration<double>(std::clamp(s, 0.0, most_s)));
 }
 

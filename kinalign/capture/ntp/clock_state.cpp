@@ -12,8 +12,8 @@ namespace kinalign {
 
 namespace {
 
-/// Leap 1 or 2 on the day of the leap second, before it: the kernel leaves its bits standing
-/// behind it.
+/// Leap 1 or 2 is announced on the day of the leap second, before it. The kernel keeps its status
+/// bits after the leap second, so its state is checked first.
 NtpLeap leap_of(const KernelClock& kernel) {
   if (kernel.state == TIME_OOP || kernel.state == TIME_WAIT) return NtpLeap::none;
   if ((kernel.status & STA_INS) != 0) return NtpLeap::insert;
@@ -25,6 +25,8 @@ bool knows_its_distance(const std::optional<ChronyTracking>& chrony) {
          chrony->stratum < ntp_stratum_unsynchronised - 1;
 }
 
+// Without a usable report of chronyd, the stratum is a guess and the kernel's maximum error stands
+// for the root dispersion.
 void set_synchronised(NtpServerState& state, const KernelClock& kernel,
                       const std::optional<ChronyTracking>& chrony) {
   constexpr std::uint8_t unknown_stratum = 9;
@@ -61,7 +63,7 @@ std::int8_t measured_precision() {
   Time last = first;
   for (int i = 0; i < readings; ++i) last = clocks.utc();
   const double s = seconds(last - first);
-  // a step of the clock between the readings is no reading time
+  // the limits exclude a step of the clock between the readings
   return static_cast<std::int8_t>(std::ceil(std::log2(std::clamp(s / readings, 1e-9, 1e-3))));
 }
 

@@ -13,7 +13,7 @@ std::optional<Time> transmit_stamp(Time received, Time now) {
 
 NtpPacket ntp_answer(const NtpPacket& request, Time received, Time transmit,
                      const NtpServerState& state) {
-  constexpr std::int64_t seldom = 66'667;  // 15 ppm is one in so many
+  constexpr std::int64_t seldom = 66'667;  // 1 / 15 ppm
   const Duration age = std::max(transmit - state.read, Duration{0});
   NtpPacket answer;
   answer.leap = state.leap;
@@ -34,7 +34,8 @@ NtpPacket ntp_answer(const NtpPacket& request, Time received, Time transmit,
 
 NtpPacket ntp_kiss_rate(const NtpPacket& request, Time received, Time transmit,
                         const NtpServerState& state) {
-  constexpr std::int8_t least_poll = 1;  // 2 s: what the limit lets pass (rate_limit.h)
+  // log2 s: 2 s, the rate that the limit allows (rate_limit.h)
+  constexpr std::int8_t least_poll = 1;
   NtpPacket kiss = ntp_answer(request, received, transmit, state);
   kiss.leap = NtpLeap::unsynchronised;
   kiss.stratum = 0;

@@ -15,6 +15,7 @@ constexpr std::array<std::string_view, ntp_outcomes> names{
     "wrong_mode",    "wrong_trailer", "from_port_0", "from_itself", "not_unicast",
     "clock_stepped", "unsent",        "from_node"};
 
+/// The outcome that counts a refusal of decode_request.
 NtpOutcome outcome_of(NtpRefusal refusal) {
   switch (refusal) {
     case NtpRefusal::none:
@@ -31,7 +32,7 @@ NtpOutcome outcome_of(NtpRefusal refusal) {
   return NtpOutcome::wrong_trailer;
 }
 
-/// What the datagram's way says, before a byte of it is read.
+/// Judges a datagram by its addresses alone, before any byte is read.
 NtpOutcome outcome_of_way(const NtpAsked& asked) {
   if (!asked.unicast) return NtpOutcome::not_unicast;
   if (asked.from_port == 0) return NtpOutcome::from_port_0;
@@ -55,6 +56,7 @@ RateLimit::Verdict NtpResponder::limit(const HostAddress& from, HostTime now) {
   return exempt ? RateLimit::Verdict::answer : limit_.ask(siphash_2_4(key_, stranger(from)), now);
 }
 
+// The cheap checks come first; the rate limit counts only valid requests.
 NtpOutcome NtpResponder::respond(const NtpAsked& asked, Time now, HostTime host_now,
                                  std::span<std::uint8_t, ntp_packet_size> answer) {
   const NtpOutcome way = outcome_of_way(asked);

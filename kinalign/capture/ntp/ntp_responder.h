@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides on each datagram of the NTP port: answered, limited, or refused, and for which reason.
-// No socket and no clock, so that every rule is tested without either.
+// Decides about each datagram of the NTP port: answered, limited or refused, with the reason. It
+// uses no socket and no clock, so every rule can be tested.
 #pragma once
 
 #include "kinalign/capture/net/counts_by.h"
@@ -16,34 +16,34 @@
 
 namespace kinalign {
 
-/// What became of a datagram; each has exactly one.
+/// The outcome of a datagram; each has exactly one.
 enum class NtpOutcome : std::uint8_t {
   answered,
-  limited,    // the address asks too often: no answer
-  kissed,     // and is told so, of 16 times once
-  too_short,  // the refusals of decode_request
+  limited,    // the address asks too often; no answer
+  kissed,     // the same, but answered with the kiss RATE; one of 16 such requests
+  too_short,  // this and the next three: refusals of decode_request
   wrong_version,
   wrong_mode,
   wrong_trailer,
-  from_port_0,    // nobody listens there
-  from_itself,    // the server's own address and port: it would talk to itself
-  not_unicast,    // asked of a broadcast or multicast address: many would answer
-  clock_stepped,  // between its arrival and its answer
-  unsent,         // the system did not take the answer
-  from_node,      // an inertial node's datagram: it has its own port
+  from_port_0,    // an answer to port 0 cannot be received
+  from_itself,    // sent from the server's own address and port; answering would make a loop
+  not_unicast,    // sent to a broadcast or multicast address; many hosts would answer
+  clock_stepped,  // the clock was stepped between arrival and answer
+  unsent,         // the system did not accept the answer
+  from_node,      // an inertial node's datagram; nodes have their own port
 };
 constexpr std::size_t ntp_outcomes = 13;
 
-/// As in --json: "wrong_version".
+/// The same word as in --json: "wrong_version".
 std::string_view name_of(NtpOutcome outcome);
 
-/// Of datagrams.
+/// Datagrams by outcome.
 using NtpCounts = CountsBy<NtpOutcome, ntp_outcomes>;
 
-/// A datagram as it arrived.
+/// A received datagram.
 struct NtpAsked {
   std::span<const std::uint8_t> bytes;
-  bool cut = false;  // it was longer
+  bool cut = false;  // the datagram was longer than `bytes`
   HostAddress from{};
   std::uint16_t from_port = 0;
   HostAddress to{};
@@ -54,13 +54,13 @@ struct NtpAsked {
 
 class NtpResponder {
  public:
-  /// `key`: random in each run, known to nobody. `exempt`: networks that are answered however often
-  /// they ask.
+  /// `key`: secret, random in each run. `exempt`: networks whose requests are not limited.
   NtpResponder(const SipHashKey& key, std::vector<AddressBlock> exempt)
       : key_(key), exempt_(std::move(exempt)) {}
 
-  /// Fills `answer` where the outcome is answered or kissed. `now`: for the transmit stamp, so the
-  /// answer is to be sent at once; `host_now`: the same moment for the limit.
+  /// Fills `answer` if the outcome is answered or kissed. `now` becomes the transmit stamp, so the
+  /// answer must be sent at once. `host_now` is the same moment on the host's axis, for the rate
+  /// limit.
   NtpOutcome respond(const NtpAsked& asked, Time now, HostTime host_now,
                      std::span<std::uint8_t, ntp_packet_size> answer);
 

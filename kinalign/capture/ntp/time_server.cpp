@@ -12,7 +12,7 @@ namespace kinalign {
 namespace {
 
 constexpr Duration tick = std::chrono::milliseconds(250);
-constexpr int batches_in_turn = 16;  // from one socket before the others have theirs
+constexpr int batches_in_turn = 16;  // batches of one socket before other sockets have their turn
 
 Time now_utc() { return SystemClocks{}.utc(); }
 HostTime now_host() { return SystemClocks{}.raw(); }
@@ -53,6 +53,7 @@ void TimeServer::look_at_clock() {
   responder_.set_state(server_state(kernel, chrony, policy_, now_utc()));
 }
 
+// The state of the clock is read once per tick, not once per request.
 void TimeServer::serve(const std::function<bool()>& go_on, NodeReceiver* nodes) {
   nodes_ = nodes;
   while (go_on()) {
@@ -68,12 +69,12 @@ void TimeServer::serve_until(HostTime end) {
   if (nodes_ != nullptr) {
     waiting.push_back({nodes_->fd(), POLLIN, 0});
   }
-  const std::size_t own = waiting.size();  // the first of ours
+  const std::size_t own = waiting.size();  // index of the first NTP socket
   for (const UdpSocket& socket : sockets_) waiting.push_back({socket.fd(), POLLIN, 0});
   for (Duration left = tick; left > Duration{0}; left = std::min(end - now_host(), tick)) {
     const auto whole_ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
     const int ready = ::poll(waiting.data(), waiting.size(), static_cast<int>(whole_ms));
-    if (ready <= 0) return;  // the time is over, or a signal has come
+    if (ready <= 0) return;  // the time is over, or a signal arrived
     if (nodes_ != nullptr) nodes_->drain();
     for (std::size_t i = 0; i < sockets_.size(); ++i) {
       if (waiting[own + i].revents != 0) drain(sockets_[i]);
@@ -86,10 +87,11 @@ void TimeServer::drain(const UdpSocket& socket) {
     const std::size_t datagrams = batch_->receive(socket.fd());
     if (datagrams == 0) return;
     answer(socket, datagrams);
-    if (nodes_ != nullptr) nodes_->drain();  // whatever floods this port
+    if (nodes_ != nullptr) nodes_->drain();  // a flood on this port must not delay the nodes' port
   }
 }
 
+// The outcome of a datagram is counted after sending, since the system may not accept its answer.
 void TimeServer::answer(const UdpSocket& socket, std::size_t datagrams) {
   const HostTime host_now = now_host();
   std::array<NtpOutcome, DatagramBatch::most> outcomes{};

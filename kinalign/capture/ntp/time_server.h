@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The NTP server: sockets around an NtpResponder. One thread, which waits only where nothing has
-// come.
+// The NTP server: sockets around an NtpResponder. It uses one thread, which blocks only when
+// nothing is waiting.
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
@@ -20,21 +20,20 @@
 namespace kinalign {
 
 struct TimeServerOptions {
-  std::vector<std::string> addresses;         // to serve on; empty: all, of IPv4 and IPv6
-  std::uint16_t port = 123;                   // 0: any free one, the same for all addresses
+  std::vector<std::string> addresses;         // addresses to serve on; empty: all of IPv4 and IPv6
+  std::uint16_t port = 123;                   // 0: any free port, the same for all addresses
   std::optional<std::uint8_t> local_stratum;  // see ClockPolicy
-  std::vector<AddressBlock> exempt;           // from the limit on how often one may ask
+  std::vector<AddressBlock> exempt;           // networks whose requests are not limited
   SipHashKey key{};                           // random in each run
-  std::uint16_t chrony_port = 323;            // where a chronyd of this host takes commands
+  std::uint16_t chrony_port = 323;            // command port of this host's chronyd
 };
 
 class TimeServer {
  public:
   static Result<TimeServer> open(const TimeServerOptions& options);
 
-  /// Serves until `go_on` says no; it is asked four times a second, and at once when a signal
-  /// arrives.
-  /// With `nodes` that port too, which comes first.
+  /// Serves until `go_on` returns false. `go_on` is called four times a second, and immediately
+  /// after a signal. If `nodes` is given, its port is served too, and first.
   void serve(const std::function<bool()>& go_on, NodeReceiver* nodes = nullptr);
 
   const std::vector<UdpSocket>& sockets() const { return sockets_; }
@@ -54,7 +53,7 @@ class TimeServer {
   NtpResponder responder_;
   NtpCounts counts_;
   std::unique_ptr<DatagramBatch> batch_;
-  NodeReceiver* nodes_ = nullptr;  // while it serves
+  NodeReceiver* nodes_ = nullptr;  // set during serve()
 };
 
 }  // namespace kinalign

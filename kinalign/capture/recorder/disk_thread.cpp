@@ -48,7 +48,7 @@ Result<void> DiskThread::start() {
     Error why{"", 0, "a thread for the disk", fault.code().message()};
     {
       const std::lock_guard lock(mutex_);
-      done_ = true;  // for one that has no other beside it
+      done_ = true;  // for a syncer_ that started while writer_ did not
     }
     asked_.notify_one();
     if (syncer_.joinable()) syncer_.join();
@@ -101,7 +101,7 @@ std::vector<PartFailure> DiskThread::take_failures() {
   return std::exchange(failures_, {});
 }
 
-/// After each step on the disk, under the lock.
+/// Updates the status after each step on the disk. The lock must be held.
 void DiskThread::publish(const Result<void>& result) {
   status_.paths = disk_->paths();
   status_.bytes = disk_->bytes();
@@ -110,7 +110,7 @@ void DiskThread::publish(const Result<void>& result) {
   for (PartFailure& failure : disk_->take_failures()) failures_.push_back(std::move(failure));
 }
 
-/// Without a file nothing can be kept.
+/// Drops all queued chunks, because there is no file for them.
 void DiskThread::drop_all() {
   for (const McapChunkContent& chunk : queue_) status_.dropped += messages_in(chunk);
   queue_.clear();
@@ -118,7 +118,7 @@ void DiskThread::drop_all() {
   done_ = status_.finished = true;
 }
 
-/// Whether there is a file to write to: tried until give_up().
+/// Opens the file. Retries every second until give_up(). Returns whether there is a file.
 bool DiskThread::begin() {
   while (!disk_ && !done_) {
     Result<RecordingDisk> opened = open_();
@@ -126,7 +126,7 @@ bool DiskThread::begin() {
     if (opened) {
       disk_ = *std::move(opened);
       publish({});
-      due_ = disk_->unsynced();  // the file's name and its head
+      due_ = disk_->unsynced();  // syncs the file's name and its head
       continue;
     }
     status_.refused = opened.error();
@@ -153,11 +153,11 @@ void DiskThread::write() {
   asked_.notify_one();
 }
 
-/// One step, the lock being open while it lasts. A sync's answer comes first: it may say that the
-/// file is spoilt.
+/// Does one step of work. The lock is released during the step. The result of a sync is handled
+/// first, because it may say that the file is damaged.
 void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
   Result<void> result;
-  std::uint64_t taken = 0;  // of what waits in the queue
+  std::uint64_t taken = 0;  // bytes taken from the queue
   if (synced_) {
     const Result<void> answer = *std::exchange(synced_, std::nullopt);
     const RecordingDisk::Sync sync = *std::exchange(due_, std::nullopt);
@@ -181,7 +181,7 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
   publish(result);
 }
 
-/// That it is finished is published together with how it went.
+/// Finishes the file. `finished` and the result are published together.
 void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
   due_.reset();  // finish() syncs itself
   const bool last = giving_up_;
@@ -195,8 +195,9 @@ void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
   if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
 }
 
-/// Here and not where it is shown: of a network disk that is gone the question hangs. Nor at the
-/// end: who waits for the thread would wait for the answer.
+/// Asks for the free space of the disk. The syncing thread asks, because the question blocks if a
+/// network disk is gone. It is not asked at the end, because the program waits for this thread
+/// then.
 void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
   if (status_.paths.empty() || finishing_) return;
   const std::string path = status_.paths.back();
@@ -206,7 +207,8 @@ void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
   status_.free_bytes = free;
 }
 
-/// After one that failed it waits, each time twice as long: each makes a new file.
+/// Syncs the file in a loop. After a failed sync it waits, each time twice as long, because each
+/// failure starts a new file.
 void DiskThread::sync() {
   using Clock = std::chrono::steady_clock;
   constexpr Clock::duration shortest = std::chrono::seconds(1), longest = std::chrono::seconds(32);

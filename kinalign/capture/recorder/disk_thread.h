@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A RecordingDisk behind two threads: one begins the file, packs and writes, one syncs, so that who
-// receives never waits, and a kill during a slow sync costs no more than at any other time.
+// A RecordingDisk with two threads. One opens the file, compresses and writes; the other syncs. So
+// the receiving thread never waits for the disk, and a kill during a slow sync loses no more data
+// than at any other time.
 #pragma once
 
 #include "kinalign/capture/recorder/recording_disk.h"
@@ -18,44 +19,46 @@
 namespace kinalign {
 
 struct DiskStatus {
-  std::vector<std::string> paths;           // the recording's files; none: not begun yet
-  std::uint64_t bytes = 0;                  // in them
-  std::uint64_t waiting_bytes = 0;          // that only memory has
-  std::optional<std::uint64_t> free_bytes;  // that the disk still takes; absent: it does not say
-  std::uint64_t dropped = 0;     // messages: memory was full, or they were given up at the end
-  std::optional<Error> refused;  // by the disk just now; tried again with what comes next
-  bool finished = false;         // nothing more is written; `refused`: not all could be, and
-                                 // without a path nothing at all
+  std::vector<std::string> paths;           // the recording's files; empty: no file is open yet
+  std::uint64_t bytes = 0;                  // in these files
+  std::uint64_t waiting_bytes = 0;          // not yet safely on the disk
+  std::optional<std::uint64_t> free_bytes;  // free space of the disk; absent: unknown
+  std::uint64_t dropped = 0;     // messages lost because memory was full or because of give_up()
+  std::optional<Error> refused;  // the present error of the disk; the write is tried again
+  // no more is written; if `refused` is set, not everything could be written, and without a path
+  // nothing
+  bool finished = false;
 };
 
 class DiskThread {
  public:
-  /// Bytes that wait for the disk at most: 19 minutes of the paper's devices.
+  /// Limit on the bytes that wait for the disk: 19 minutes of the paper's devices.
   static constexpr std::uint64_t most_waiting = std::uint64_t{256} << 20;
 
-  /// Asked on the writing thread, each second until it succeeds or nobody wants it any more: what
-  /// is pushed meanwhile waits.
+  /// Opens the file. It is called on the writing thread, every second until it succeeds or
+  /// give_up() is called. Chunks pushed before that wait.
   using Open = std::function<Result<RecordingDisk>()>;
   DiskThread(Open open, McapCompression compression);
-  /// As finish() and give_up(), and waits.
+  /// Calls finish() and give_up(), and waits for the threads.
   ~DiskThread();
   DiskThread(const DiskThread&) = delete;
   DiskThread& operator=(const DiskThread&) = delete;
 
-  /// The disk's work begins; until then what is pushed waits. Fails where the system has no thread
-  /// to give, and may be asked again.
+  /// Starts the threads. Chunks pushed before that wait. Fails if the system has no thread
+  /// available; it may then be called again.
   Result<void> start();
 
-  /// Waits for nothing. `room`: bytes that may wait; where that has no room, it is dropped.
+  /// Queues a chunk without blocking. `room`: limit on the waiting bytes. A chunk that exceeds it
+  /// is dropped.
   void push(McapChunkContent chunk, std::uint64_t room = most_waiting);
-  /// No more will be pushed. Returns at once: status().finished says when all is done. What the
-  /// disk refuses is tried again each second: somebody may make room.
+  /// Call after the last push. Returns at once; status().finished says when all is written. If the
+  /// disk refuses a write, it is tried again every second, because somebody may free space.
   void finish();
-  /// After finish(): tries once more. What the disk then refuses counts as dropped.
+  /// Call after finish(). Tries once more; messages that the disk then refuses count as dropped.
   void give_up();
 
   DiskStatus status() const;
-  /// Since this was asked last.
+  /// Failures since the previous call.
   std::vector<PartFailure> take_failures();
 
  private:
@@ -69,20 +72,20 @@ class DiskThread {
   void publish(const Result<void>& result);
 
   Open open_;
-  std::optional<RecordingDisk> disk_;  // both the writing thread's
+  std::optional<RecordingDisk> disk_;  // used, like open_, only by the writing thread
   McapCompression compression_;
 
-  mutable std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // guards all members below
   std::condition_variable written_, asked_;
   std::deque<McapChunkContent> queue_;
   std::uint64_t queue_bytes_ = 0;
-  std::optional<RecordingDisk::Sync> due_;  // for the syncing thread
-  std::optional<Result<void>> synced_;      // and its answer
+  std::optional<RecordingDisk::Sync> due_;  // the next sync, for the syncing thread
+  std::optional<Result<void>> synced_;      // the result of the sync
   bool syncing_ = false, finishing_ = false, giving_up_ = false, done_ = false;
   DiskStatus status_;
   std::vector<PartFailure> failures_;
 
-  std::thread writer_, syncer_;  // last: they use all above
+  std::thread writer_, syncer_;  // declared last, since they use all members above
 };
 
 }  // namespace kinalign

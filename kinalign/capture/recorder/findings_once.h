@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Findings about those who send to a port, each told once of each host: who sends one thing that is
-// amiss sends many.
+// Findings about the senders to a port. Each finding is reported once per host, because a faulty
+// sender repeats its fault with every message.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,14 +14,15 @@ namespace kinalign {
 
 class FindingsOnce {
  public:
-  static constexpr std::size_t most = 256;  // strangers' addresses are without number
+  // findings; the number of unknown senders' addresses has no limit
+  static constexpr std::size_t most = 256;
 
   void add(const std::string& host, Finding finding) {
     if (told_.size() >= most) return;
     const bool fresh = told_.insert(host + finding.what.expected + finding.meaning).second;
     if (fresh) fresh_.push_back(std::move(finding));
   }
-  /// Those that came since this was asked last.
+  /// Findings since the previous call.
   Findings take() { return std::exchange(fresh_, {}); }
 
  private:

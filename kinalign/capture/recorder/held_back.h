@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What arrived behind a moment, until marks that arrived before it have been obeyed. Of each sender
-// it stays in order; arrivals on the host's axis are rounded, and two of one may seem swapped.
+// A queue for data that arrived after a given moment. It waits until marks that arrived earlier are
+// processed. The data of one sender stays in order, although rounding may swap the arrival times of
+// two of its messages.
 #pragma once
 
 #include "kinalign/capture/net/host_clock.h"
@@ -17,7 +18,8 @@ namespace kinalign {
 template <class Item>
 class HeldBack {
  public:
-  /// Whether what came then has to wait: behind `until`, or behind another of the same sender.
+  /// Returns whether the item must wait: it arrived after `until`, or an earlier item of its sender
+  /// waits.
   bool must_hold(const Moment& came, std::uint64_t sender,
                  const std::optional<Moment>& until) const {
     return until && (is_behind(came, *until) || waiting_.contains(sender));
@@ -28,7 +30,7 @@ class HeldBack {
   }
   std::size_t size() const { return held_.size(); }
 
-  /// Hands on what does not have to wait for `until`; without that all.
+  /// Passes on the items that need not wait for `until`. Without `until` it passes on all.
   template <class Take>
   void release(const std::optional<Moment>& until, Take take) {
     waiting_.clear();
@@ -48,7 +50,7 @@ class HeldBack {
     Item item;
   };
   std::vector<Held> held_;
-  std::set<std::uint64_t> waiting_;  // their senders
+  std::set<std::uint64_t> waiting_;  // the senders of the items in held_
 };
 
 }  // namespace kinalign

@@ -26,7 +26,7 @@ std::optional<Exchange> KinectDesk::receive(const KinectPing& ping, const HostAd
   return exchange_of(ping, h_rx, take_echo(*session, ping));
 }
 
-/// nullptr: refused.
+/// Finds or begins the session of a ping. nullptr: refused.
 KinectDesk::Session* KinectDesk::session_of(const KinectPing& ping, const HostAddress& from,
                                             HostTime now) {
   auto place = std::find_if(sessions_.begin(), sessions_.end(), [&](const Session& one) {
@@ -49,7 +49,7 @@ KinectDesk::Session* KinectDesk::session_of(const KinectPing& ping, const HostAd
   return &*place;
 }
 
-/// When the echoed pong was sent.
+/// The time when the echoed pong was sent. Absent if the ping has no valid echo.
 std::optional<HostTime> KinectDesk::take_echo(Session& session, const KinectPing& ping) {
   if (!ping.echo || ping.echo->received_ticks > ping.sent_ticks) return std::nullopt;
   GivenAnswer answer;
@@ -57,6 +57,7 @@ std::optional<HostTime> KinectDesk::take_echo(Session& session, const KinectPing
   return found == AnswerTable::Found::now ? std::optional(answer.t3) : std::nullopt;
 }
 
+// Every pong is stored, because only a stored pong can be echoed.
 std::optional<KinectPong> KinectDesk::answer(HostTime h_tx) {
   Session* session = std::exchange(asked_by_, nullptr);
   if (session == nullptr) return std::nullopt;

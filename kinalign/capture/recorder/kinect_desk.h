@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's side of a Kinect sender's pings (docs/formats/kinect_stream.md): which of them are
-// answered, and what they say of the sender's clock. No socket, no clock and no growth: time is an
-// argument.
+// The host's side of a Kinect sender's pings (docs/formats/kinect_stream.md). It decides which
+// pings are answered and extracts what they say about the sender's clock. It uses no socket and no
+// clock, and its memory is fixed. Time is an argument.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -21,14 +21,14 @@ class KinectDesk {
  public:
   static constexpr std::size_t most_sessions = 32;
 
-  /// `secret`: random in each run; nonces and the strangers' table come from it.
+  /// `secret`: random in each run; nonces and the hash keys of unknown senders are made with it.
   explicit KinectDesk(const SipHashKey& secret) : secret_(secret) {}
 
-  /// In the order of arrival. Absent: the ping is refused, of one session too many at once, or of
-  /// an address that begins them too often.
+  /// Takes a ping. Call in the order of arrival. Absent: the ping is refused, because there are too
+  /// many sessions or its address begins sessions too often.
   std::optional<Exchange> receive(const KinectPing& ping, const HostAddress& from, HostTime h_rx);
-  /// The pong to the ping before; absent: none is due. `h_tx` was read before this call, and what
-  /// is returned is to be sent at once.
+  /// The pong to the previous ping. Absent: none is due. `h_tx` must be read just before this call,
+  /// and the pong must be sent at once.
   std::optional<KinectPong> answer(HostTime h_tx);
 
  private:
@@ -46,7 +46,7 @@ class KinectDesk {
   std::vector<Session> sessions_;
   RateLimit strangers_;
   std::uint64_t nonces_ = 0;
-  Session* asked_by_ = nullptr;  // of the ping before; nullptr: it is not answered
+  Session* asked_by_ = nullptr;  // session of the previous ping; nullptr: it is not answered
   KinectOrigin asked_;
   HostTime asked_at_{};
 };

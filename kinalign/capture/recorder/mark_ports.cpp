@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-// How long a mark is known again: docs/formats/marks.md.
+// Time during which a repeated mark is recognised: docs/formats/marks.md.
 constexpr Duration call_repeats = std::chrono::minutes(10);
 constexpr Duration trigger_repeats = std::chrono::seconds(5);
 
@@ -18,7 +18,7 @@ const char* port_name(MarkPort::Form form) {
   return form == MarkPort::Form::call ? "marks" : "trigger";
 }
 
-/// What does not say that it is a mark may be anybody's: no warning.
+/// A datagram that does not claim to be a mark may come from any program, so it is only a note.
 Severity severity_of(MarkCallRefusal refusal) {
   using enum MarkCallRefusal;
   const bool anybodys = refusal == too_long || refusal == bad_json || refusal == wrong_schema;
@@ -53,7 +53,7 @@ std::string MarkPort::sender_of(const Piece& piece) const {
   return endpoint_text(to_string(sender.host), sender.port);
 }
 
-/// Counted by its cause.
+/// Counts a refused datagram by its cause, and reports it.
 void MarkPort::refuse(const Piece& piece, Severity severity, const std::string& cause,
                       const char* expected) {
   ++counts_.refused[cause];
@@ -65,7 +65,7 @@ void MarkPort::refuse(const Piece& piece, Severity severity, const std::string& 
                  "docs/formats/marks.md shows what this port understands"});
 }
 
-/// A call that is none is answered with the cause, as far as that may be.
+/// Decodes one mark. A refused call is answered with the cause, if an answer is allowed.
 bool MarkPort::decode(const Piece& piece, Mark& mark) {
   if (form_ == Form::call) {
     const MarkCallRefusal refusal = decode_mark_call(piece.bytes, mark);
@@ -91,6 +91,8 @@ PortCounts MarkPort::port_counts() const {
   return counts;
 }
 
+// A repeated mark is answered again, because its sender may have missed the first answer. It is
+// passed on only once.
 void MarkPort::take_piece(const Piece& piece, const TakeMark& take) {
   RecordedMark heard;
   if (!decode(piece, heard.mark)) return;

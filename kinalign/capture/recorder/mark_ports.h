@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ports for marks from outside: docs/formats/marks.md.
+// UDP ports that receive marks: docs/formats/marks.md.
 #pragma once
 
 #include "kinalign/capture/net/pieces.h"
@@ -18,29 +18,30 @@
 namespace kinalign {
 
 struct MarkPortCounts {
+  // Each mark counts once in `marks`; its repetitions count in `repeats`.
   std::uint64_t marks = 0, repeats = 0;
-  std::map<std::string, std::uint64_t> refused;  // by cause: "bad_json"
+  std::map<std::string, std::uint64_t> refused;  // by cause, such as "bad_json"
 };
 
 class MarkPort {
  public:
   enum class Form : std::uint8_t {
-    call,    // ours, answered
-    trigger  // Vicon's broadcasts
+    call,    // kinalign's own format; each mark is answered
+    trigger  // Vicon's broadcasts; not answered
   };
   static Result<MarkPort> open(Form form, std::uint16_t port);
 
   using TakeMark = std::function<void(const RecordedMark& mark, const Moment& came)>;
   void add_fds(std::vector<int>& fds) const { pieces_.add_fds(fds); }
-  /// Tells each mark once.
+  /// Reads what has arrived. Passes on each mark once.
   void drain(HostAxis& axis, const TakeMark& take);
 
-  /// "marks", "trigger".
+  /// "marks" or "trigger".
   std::string name() const;
   std::uint16_t port() const { return pieces_.port(); }
   PortCounts port_counts() const;
   const MarkPortCounts& counts() const { return counts_; }
-  /// Of what was refused since this was asked last: the first of each cause and host, once.
+  /// Refused datagrams since the previous call. The first of each cause and host is reported, once.
   Findings take_findings() { return findings_.take(); }
 
  private:

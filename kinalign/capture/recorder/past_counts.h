@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts that run on from take to take, remembered whenever a chunk is closed: a take begins with
-// the chunks of its pre-roll, and its counts with what had come before them.
+// Counts that continue from take to take. Their values are stored whenever a chunk is closed. A
+// take begins with the chunks of its pre-roll, so its counts begin with the values before these
+// chunks.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +13,13 @@ namespace kinalign {
 template <class Counts>
 class PastCounts {
  public:
-  /// What has come before chunk `number`. `first`: a take that began now would begin with that one.
+  /// Stores the counts before chunk `number`. `first`: the first chunk of a take that would begin
+  /// now; older values are discarded.
   void remember(std::uint64_t number, std::uint64_t first, const Counts& counts) {
     past_.emplace_back(number, counts);
     while (past_.size() > 1 && past_[1].first <= first) past_.pop_front();
   }
-  /// Before that chunk; none: nothing had come then.
+  /// The counts before that chunk. All are zero if nothing was stored.
   Counts before(std::uint64_t number) const {
     Counts counts{};
     for (const auto& [chunk, past] : past_) {

@@ -12,16 +12,16 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_nodes = 256;  // each takes two channels
+constexpr std::size_t most_nodes = 256;  // each node uses two channels
 
-/// Without keys anybody can send in the name of any number of nodes: those that were not let in
-/// get no channels, or there would be none left.
+/// Without keys anyone can send datagrams with any number of node ids. Nodes that were not admitted
+/// get no channel, because otherwise they could use up all channels.
 bool is_limited(NodeVerdict verdict) {
   return verdict == NodeVerdict::limited || verdict == NodeVerdict::no_room ||
          verdict == NodeVerdict::wrong_counter || verdict == NodeVerdict::unknown_answer;
 }
 
-/// What the kernel would have thrown away, if it could.
+/// Datagrams that the kernel's filter drops if the system supports it.
 std::uint64_t no_frames(const NodeCounts& counts) {
   return counts.refusals[NodeRefusal::too_short] + counts.refusals[NodeRefusal::bad_magic] +
          counts.refusals[NodeRefusal::wrong_length];
@@ -42,6 +42,8 @@ Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& 
       new RecordedNodes(device, desk.lab_key.has_value(), std::move(receiver), recorder));
 }
 
+// Datagrams that arrived after `until_` are copied, since their bytes are valid only during the
+// call.
 RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver,
                              Recorder& recorder)
     : device_(std::move(device)),
@@ -76,6 +78,7 @@ void RecordedNodes::release(const std::optional<Moment>& until) {
   });
 }
 
+// The raw bytes are recorded for every node with a channel, whatever the verdict.
 void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
   const bool has_room = nodes_.size() < most_nodes && (keyed_ || !is_limited(news.verdict));
   if (!has_room && !nodes_.contains(news.node_id)) {
@@ -97,6 +100,7 @@ void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
   node.raw.record(recorder_, arrival.h_rx, text_of(arrival.bytes), device_ns);
 }
 
+// Each node has two channels: raw datagrams, and clock exchanges.
 RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress& from) {
   const auto found = nodes_.find(id);
   if (found != nodes_.end()) return found->second;
@@ -116,8 +120,8 @@ RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress&
       .first->second;
 }
 
-/// Which count a datagram belongs to. What is held counts as a message alone: it may be one of the
-/// next, or a recording played back.
+/// Counts a datagram by its verdict. A held datagram counts only as a message: it may belong to the
+/// node's next life, or be a recording played back.
 void RecordedNodes::judge(Node& node, const NodeNews& news) {
   SenderCounts& counts = node.raw.status.counts;
   switch (news.verdict) {
@@ -151,9 +155,10 @@ void RecordedNodes::look(HostTime now) {
   for (auto& [id, node] : nodes_) node.raw.take_rate(now);
 }
 
-/// Another device that sends here, say: nothing of it is in the take, and who learns of that behind
-/// it has no take. A node's frames that found no room are known as lost once the next one has come:
-/// so what was dropped until a second ago is looked at.
+/// Reports datagrams that are not frames of nodes, for example another device's. They are not
+/// recorded, so the user must learn of it during the take. Lost frames are subtracted; a frame
+/// dropped for lack of buffer space counts as lost only when the next frame of its node has
+/// arrived. Therefore the number of dropped datagrams of one second ago is used.
 void RecordedNodes::find_strays() {
   PortCounts counts = this->counts();
   counts.dropped = std::exchange(dropped_, counts.dropped);
@@ -174,6 +179,7 @@ void RecordedNodes::remember(std::uint64_t chunk, std::uint64_t first) {
   for (auto& [id, node] : nodes_) node.raw.remember(chunk, first);
 }
 
+// A node may have several streams of the receiver. Losses of earlier lives are kept in `before`.
 void RecordedNodes::count_lost() {
   for (const NodeStatus& status : receiver_.status()) {
     const auto found = nodes_.find(status.node_id);

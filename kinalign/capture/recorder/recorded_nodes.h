@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes' port while it is recorded: every datagram that got past port and key stands in the
-// file as it came, whatever becomes of it; what an accepted one says of its node's clock, too.
+// The nodes' port during recording. Every datagram that passed the checks of port and key is
+// recorded as received, whatever the verdict. The clock exchanges of accepted datagrams are
+// recorded too.
 #pragma once
 
 #include "kinalign/capture/net/pieces.h"
@@ -20,7 +21,7 @@ namespace kinalign {
 
 class RecordedNodes {
  public:
-  /// `clocks` and `recorder` have to stay.
+  /// `clocks` and `recorder` must outlive the object.
   static Result<std::unique_ptr<RecordedNodes>> open(const DeviceOptions& device,
                                                      const NodeDeskOptions& desk,
                                                      ClockReader& clocks, Recorder& recorder);
@@ -28,7 +29,7 @@ class RecordedNodes {
   RecordedNodes& operator=(const RecordedNodes&) = delete;
   ~RecordedNodes() = default;
 
-  /// These as RecordedPort has them.
+  /// See RecordedPort.
   void drain(const std::optional<Moment>& until = std::nullopt);
   void release(const std::optional<Moment>& until = std::nullopt);
 
@@ -36,7 +37,7 @@ class RecordedNodes {
 
   NodeReceiver& receiver() { return receiver_; }
   const NodeReceiver& receiver() const { return receiver_; }
-  /// These for each node, as RecordedSource has them.
+  /// See RecordedSource; each call applies to every node.
   void look(HostTime now);
   void remember(std::uint64_t chunk, std::uint64_t first);
   void begin(std::uint64_t chunk);
@@ -45,22 +46,23 @@ class RecordedNodes {
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const { return receiver_.sockets().front().port(); }
   PortCounts counts() const;
-  /// Once a second: whether others than nodes send here.
+  /// Call once a second. Checks whether other devices than nodes send to this port.
   void find_strays();
-  /// As RecordedPort has them.
+  /// See RecordedPort.
   Findings take_findings() { return findings_.take(); }
   void add_streams(std::vector<StreamStatus>& all) const;
 
  private:
-  /// What one stream of the receiver's has lost in its present life, and before.
+  /// Frames that one stream of the receiver lost: in its present life, and in all earlier ones.
   struct Lost {
     std::uint64_t lives = 0, present = 0, before = 0;
   };
   struct Node {
     RecordedSource raw;
-    std::uint16_t exchanges = 0;  // channel
-    BootKey boot = 0;             // of the newest frame, …
-    std::uint64_t newest = 0;     // … and its number
+    std::uint16_t exchanges = 0;  // channel of the clock exchanges
+    BootKey boot = 0;             // life of the newest frame
+    std::uint64_t newest = 0;     // number of the newest frame
+    // By stream of the receiver.
     std::map<std::size_t, Lost> lost{};
   };
 
@@ -82,11 +84,11 @@ class RecordedNodes {
   NodeReceiver receiver_;
   Recorder& recorder_;
   std::map<std::uint32_t, Node> nodes_;
-  std::optional<Moment> until_;  // what comes later is held back
+  std::optional<Moment> until_;  // datagrams that arrived later are held back
   HeldBack<Held> held_;
   std::uint64_t bytes_ = 0;
   std::uint64_t crowded_ = 0;  // datagrams of nodes that got no channel
-  std::uint64_t dropped_ = 0;  // when strays were looked for last
+  std::uint64_t dropped_ = 0;  // dropped datagrams at the last call of find_strays()
   FindingsOnce findings_;
 };
 

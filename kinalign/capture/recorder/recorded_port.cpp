@@ -83,7 +83,8 @@ void RecordedPort::release(HostAxis& axis, Recorder& recorder, const std::option
   });
 }
 
-/// Answers go out before anything is written: what is done in between delays one way alone.
+/// Answers are sent before anything is recorded, because work in between would delay one direction
+/// only.
 void RecordedPort::take(const Piece& piece, const Senders::Sender& sender, HostAxis& axis,
                         Recorder& recorder) {
   Source& source = source_of(sender, piece.sender, recorder);
@@ -100,7 +101,7 @@ const Senders::Sender& RecordedPort::sender_of(const Piece& piece) const {
   return std::visit(at, pieces_);
 }
 
-/// A new sender, or another in the place of one that fell silent, gets a channel of its own.
+/// A new sender gets its own channel, also if it takes the number of a sender that fell silent.
 RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std::size_t number,
                                               Recorder& recorder) {
   const bool is_shared = sender.life > Senders::most_lives;
@@ -124,7 +125,7 @@ RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std
   return *source;
 }
 
-/// "/kinect/raw" of the first sender that was ever heard, "/kinect/raw/2" of the next one.
+/// Returns "/kinect/raw" for the first sender of the port, "/kinect/raw/2" for the next one.
 std::string RecordedPort::topic(const char* content, std::uint64_t life) const {
   const std::string first = "/" + device_.name + "/" + content;
   if (life > Senders::most_lives) return first + "/others";
@@ -133,7 +134,8 @@ std::string RecordedPort::topic(const char* content, std::uint64_t life) const {
 
 void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& axis,
                                 Recorder& recorder) {
-  std::size_t may_send = piece.bytes.size();  // nobody who forges an address gains by it
+  // bytes; keeps the port from being used for amplification with forged addresses
+  std::size_t may_send = piece.bytes.size();
   for (const KinectPing& ping : source.watch.pings()) {
     const auto exchange = kinects_->receive(ping, source.address.host, piece.arrival);
     if (!exchange) {
@@ -163,7 +165,7 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
   }
 }
 
-/// Whoever shakes hands counts anew, also at an address where another tracker was.
+/// A tracker that sends a handshake starts new counts, also at an address that another tracker had.
 void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
   look_at(source);
   const SlimeNews news = slimes_->receive({octets(piece.bytes), source.address, piece.arrival});
@@ -174,7 +176,7 @@ void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
 }
 
 void RecordedPort::send_answers() {
-  auto* udp = std::get_if<UdpPieces>(&pieces_);  // trackers have no other
+  auto* udp = std::get_if<UdpPieces>(&pieces_);  // trackers use UDP only
   if (udp == nullptr) return;
   for (const SlimeSending& sending : slimes_->take_sendings()) {
     udp->send_to(sending.to.host, sending.to.port, sending.answer.datagram());
@@ -219,7 +221,7 @@ void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, HostTime now) 
                   [&](const Source& source) { source.recorded.tell(recorder, counts, now); });
 }
 
-/// What is known of a sender beside its messages and bytes.
+/// Updates the status of a sender except its messages and bytes.
 void RecordedPort::look_at(Source& source) const {
   SenderCounts& counts = source.recorded.status.counts;
   const SenderCounts watched = source.watch.counts();
@@ -228,14 +230,15 @@ void RecordedPort::look_at(Source& source) const {
   counts.refused = watched.refused + refused(source.verdicts) + source.pings_refused;
   if (source.clock) source.recorded.status.clock = source.clock->now();
   const SlimeDevice* tracker = slimes_ ? slimes_->device_at(source.address) : nullptr;
-  if (tracker == nullptr) return;  // it went elsewhere: the address keeps what it counted
+  // the tracker has another address now; this address keeps its counts
+  if (tracker == nullptr) return;
   counts.order = source.greeted;
   counts.order += tracker->numbers.counts();
   if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
 }
 
-/// Axis Studio's compressed port, say: who learns of it behind the take has no take. A host that
-/// comes back is not told of again.
+/// Looks for faults of a sender, for example Axis Studio's compressed port. The user must learn of
+/// them during the take. A host that reconnects is not reported again.
 void RecordedPort::find_faults(const Source& source) {
   const SenderCounts& counts = source.recorded.status.counts;
   const bool none = !source.exchanges && speaks_another_protocol(protocol_->recorded_name, counts);

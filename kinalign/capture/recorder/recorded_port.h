@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's port while it is recorded: its pieces, a channel for each sender, what the senders'
-// own numbers miss, and the desk that answers them where the protocol wants answers.
+// A device's port during recording. It reads the port, records each sender in its own channel, and
+// counts what is lost by the senders' own numbers. If the protocol needs answers, it sends them.
 #pragma once
 
 #include "kinalign/capture/net/followed_clock.h"
@@ -26,21 +26,21 @@ namespace kinalign {
 
 class RecordedPort {
  public:
-  /// `secret`: random in each run and for each port.
+  /// `secret`: random in each run and different for each port.
   static Result<RecordedPort> open(const DeviceOptions& device, const SipHashKey& secret);
 
   void add_fds(std::vector<int>& fds) const;
-  /// Takes, answers and records what has come. `until`: datagrams that came later are held back
-  /// for release(), and count from then on. A connection's pieces have no arrival but when they are
-  /// read: none is held.
+  /// Reads, answers and records what has arrived. Datagrams that arrived after `until` are held
+  /// back for release(), and are counted then. Data of a connection is never held, because its
+  /// arrival is known only from when it is read.
   void drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until = std::nullopt);
-  /// `until`: of what is held only that which is not later.
+  /// Records held datagrams. If `until` is given, those that arrived after it stay held.
   void release(HostAxis& axis, Recorder& recorder,
                const std::optional<Moment>& until = std::nullopt);
-  /// Ten times a second or so: what a desk says unasked.
+  /// Call about ten times a second. Sends messages that are due without a request.
   void tick(HostTime now);
-  /// These for each of its senders, as RecordedSource has them; once a second faults are looked
-  /// for.
+  /// See RecordedSource; these apply to each sender. look() also looks for faults; call it once a
+  /// second.
   void look(HostTime now);
   void remember(std::uint64_t chunk, std::uint64_t first);
   void begin(std::uint64_t chunk);
@@ -49,12 +49,11 @@ class RecordedPort {
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const;
   PortCounts counts() const;
-  /// Pieces since it was opened, also refused ones.
+  /// Pieces since the port was opened, including refused ones.
   std::uint64_t heard() const;
   std::size_t held() const { return held_.size(); }
   void add_streams(std::vector<StreamStatus>& all) const;
-  /// What the user should know of what is sent, since this was asked last: each fault of a host
-  /// once.
+  /// Findings about senders since the previous call. Each fault of a host is reported once.
   Findings take_findings() { return findings_.take(); }
 
  private:
@@ -63,13 +62,14 @@ class RecordedPort {
     RecordedSource recorded;
     RawChannel raw;
     StreamWatch watch;
-    std::uint64_t life = 0;                    // of its sender
-    NodeAddress address;                       // whose newest piece it was
-    std::optional<std::uint16_t> exchanges{};  // channel
-    std::unique_ptr<FollowedClock> clock{};    // since it pinged
-    SequenceCounts greeted{};                  // of its address, up to the newest handshake there
-    SlimeVerdicts verdicts{};                  // of a tracker's datagrams, and those of them …
-    std::uint64_t spoken = 0;                  // … that spoke as trackers do
+    std::uint64_t life = 0;  // the sender's life, see Senders
+    NodeAddress address;     // address of the newest piece
+    // channel of the clock exchanges; absent before the first ping
+    std::optional<std::uint16_t> exchanges{};
+    std::unique_ptr<FollowedClock> clock{};  // absent before the first ping
+    SequenceCounts greeted{};  // SlimeVR: counts of this address up to its newest handshake
+    SlimeVerdicts verdicts{};  // SlimeVR: datagrams by verdict
+    std::uint64_t spoken = 0;  // SlimeVR: datagrams that contain a packet of a tracker
     std::uint64_t pings_refused = 0;
   };
 
@@ -78,7 +78,7 @@ class RecordedPort {
   static Result<Pieces> open_pieces(const DeviceOptions& device);
   struct Held {
     Piece piece;
-    Senders::Sender sender;  // its number may be another's meanwhile
+    Senders::Sender sender;  // a copy, since the number may be reused while the piece is held
     std::string bytes;
   };
   void take(const Piece& piece, const Senders::Sender& sender, HostAxis& axis, Recorder& recorder);
@@ -98,8 +98,8 @@ class RecordedPort {
   DeviceOptions device_;
   const ProtocolRow* protocol_;
   Pieces pieces_;
-  std::vector<std::optional<Source>> sources_;  // by the sender's number
-  std::optional<Source> others_;                // strangers after too many lives share it
+  std::vector<std::optional<Source>> sources_;  // indexed by the sender's number
+  std::optional<Source> others_;                // shared by senders beyond Senders::most_lives
   HeldBack<Held> held_;
   std::uint64_t held_bytes_ = 0;
   NewestKinectFrames newest_frames_;

@@ -20,12 +20,14 @@ void RecordedSource::record(Recorder& recorder, HostTime arrival, std::string_vi
   ++status.counts.messages;
   status.counts.bytes += bytes.size();
   status.heard = arrival;
-  recorder.record(channel_, arrival, bytes, device_ns);  // last: it may close its chunk
+  // called last, because it may close the chunk
+  recorder.record(channel_, arrival, bytes, device_ns);
 }
 
 void RecordedSource::take_rate(HostTime now) {
   const SenderCounts& all = status.counts;
-  constexpr Duration shortest = std::chrono::milliseconds(500);  // that a rate can be seen in
+  // a rate over a shorter time is too inaccurate
+  constexpr Duration shortest = std::chrono::milliseconds(500);
   if (!rated_ || now - *rated_ < shortest) return;
   const std::uint64_t came = status.samples > 0 ? status.samples : frames_or_messages(all);
   const std::uint64_t before = std::exchange(came_, came);

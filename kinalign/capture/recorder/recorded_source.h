@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One channel of raw payloads while it is recorded, and how it does.
+// One channel of raw payloads during recording, with its counts and rate.
 #pragma once
 
 #include "kinalign/capture/recorder/past_counts.h"
@@ -16,31 +16,31 @@ namespace kinalign {
 
 class RecordedSource {
  public:
-  /// A channel of its own.
+  /// Adds a channel to the recorder.
   RecordedSource(Recorder& recorder, const std::string& topic, const RawChannel& raw);
 
   void record(Recorder& recorder, HostTime arrival, std::string_view bytes,
               std::optional<std::uint64_t> device_ns = std::nullopt);
-  /// Once a second: the rate.
+  /// Call once a second. Updates the rate.
   void take_rate(HostTime now);
-  /// As PastCounts has it.
+  /// See PastCounts.
   void remember(std::uint64_t chunk, std::uint64_t first) {
     past_.remember(chunk, first, status.counts);
   }
-  /// A take begins with that chunk.
+  /// A take begins with chunk `chunk`.
   void begin(std::uint64_t chunk) { before_ = past_.before(chunk); }
-  /// Onto the channel `counts`, if it is heard in this take.
+  /// Records the take's counts on the channel `counts`, if this take has a message of this source.
   void tell(Recorder& recorder, std::uint16_t counts, HostTime now) const;
   StreamStatus of_take() const;
 
-  StreamStatus status;  // counts: since it was first heard
+  StreamStatus status;  // counts since the first message
 
  private:
   std::uint16_t channel_ = 0;
-  std::optional<HostTime> rated_;  // when the rate was looked at last, or the first message came
-  std::uint64_t came_ = 0;         // until then
+  std::optional<HostTime> rated_;  // time of the last rate, or of the first message
+  std::uint64_t came_ = 0;         // samples, frames or messages up to that time
   PastCounts<SenderCounts> past_;
-  SenderCounts before_;  // the take
+  SenderCounts before_;  // counts before the take
 };
 
 }  // namespace kinalign

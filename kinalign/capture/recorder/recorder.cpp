@@ -22,7 +22,7 @@ std::uint16_t Recorder::add_channel(McapChannel channel, const McapSchema* schem
   return channels_.back().channel.id;
 }
 
-/// Channels of one kind share their schema.
+/// Channels with the same schema share its id.
 std::uint16_t Recorder::schema_id(const McapSchema& schema) {
   const auto known = std::find_if(schemas_.begin(), schemas_.end(), [&](const McapSchema& other) {
     return other.name == schema.name && other.data == schema.data;
@@ -36,6 +36,7 @@ std::uint64_t Recorder::log_time(HostTime t) const {
   return static_cast<std::uint64_t>((t.time_since_epoch() + options_.utc_minus_host).count());
 }
 
+// A chunk must be readable alone, so it contains the definitions of its channels.
 void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view data,
                       std::optional<std::uint64_t> device_ns) {
   newest_ = opened_ ? std::max(newest_, arrival) : arrival;
@@ -61,6 +62,7 @@ void Recorder::tick(HostTime now) {
   if (!started()) forget_before(now - options_.pre_roll);
 }
 
+// The chunk goes to the take if there is one, else to the pre-roll.
 void Recorder::close() {
   if (!opened_) return;
   opened_.reset();
@@ -80,7 +82,8 @@ std::uint64_t Recorder::first_number() const {
   return pre_roll_.empty() ? number_ : pre_roll_.front().number;
 }
 
-/// Whole chunks: what is kept reaches back the pre-roll, and a chunk more.
+/// Discards whole chunks only. The kept chunks therefore reach back the pre-roll and up to one
+/// chunk more.
 void Recorder::forget_before(HostTime first) {
   while (!pre_roll_.empty() &&
          (pre_roll_.front().end < first || pre_roll_bytes_ > options_.pre_roll_bytes)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What devices say, put into chunks: by channels, stamped, counted, a chunk closed four times a
-// second. Before a take it keeps the last seconds (the pre-roll), which the take begins with. Has
-// no thread, clock or file: time is an argument, and chunks go where start() says.
+// Puts the devices' messages into chunks, with channels, stamps and numbers. A chunk is closed four
+// times a second. Before a take the last seconds are kept (the pre-roll); a take begins with them.
+// The class has no thread, clock or file: time is an argument, and start() says where chunks go.
 #pragma once
 
 #include "kinalign/mcap/chunk.h"
@@ -18,13 +18,15 @@
 namespace kinalign {
 
 struct RecorderOptions {
-  Duration chunk = std::chrono::milliseconds(250);  // what a kill costs at most, nearly
-  std::size_t chunk_bytes = std::size_t{1} << 20;   // or earlier at that size
-  Duration pre_roll = std::chrono::seconds(5);      // kept before a take
-  /// At most. A take begins with all of them at once, and what comes next must have room beside
-  /// them where chunks wait for the disk: less than DiskThread::most_waiting.
+  // length of a chunk; a kill loses little more than this
+  Duration chunk = std::chrono::milliseconds(250);
+  std::size_t chunk_bytes = std::size_t{1} << 20;  // bytes; a chunk of this size is closed earlier
+  Duration pre_roll = std::chrono::seconds(5);     // kept before a take
+  /// Limit on the pre-roll, bytes. A take begins with the whole pre-roll at once, and later chunks
+  /// need space beside it while they wait for the disk. It must therefore be less than
+  /// DiskThread::most_waiting.
   std::size_t pre_roll_bytes = std::size_t{192} << 20;
-  /// UTC less the host's axis, the same for the whole run: log times in a file are UTC.
+  /// UTC minus the host's axis, constant for the whole run. Log times in a file are UTC.
   Duration utc_minus_host{};
 };
 
@@ -34,33 +36,35 @@ class Recorder {
 
   explicit Recorder(const RecorderOptions& options) : options_(options) {}
 
-  /// A channel to record on; its number. `schema`'s id is set here, absent: none. More than a file
-  /// can number, 65,534, share one more, "/others".
+  /// Adds a channel and returns its number. The id of `schema` is set here; nullptr: no schema. A
+  /// file can number 65,534 channels; further ones share the channel "/others".
   std::uint16_t add_channel(McapChannel channel, const McapSchema* schema = nullptr);
 
-  /// `device`: on the device's own clock, ns; absent where it has none.
+  /// Records one message. `device_ns`: stamp of the device's own clock, ns; absent if it has none.
   void record(std::uint16_t channel, HostTime arrival, std::string_view data,
               std::optional<std::uint64_t> device_ns = std::nullopt);
-  /// Closes a chunk that is due: some times a chunk's length.
+  /// Closes the chunk if it is due. Call several times per length of a chunk.
   void tick(HostTime now);
 
-  /// From now on chunks go to `take`, those of the pre-roll at once. The first one's number, of all
-  /// that were ever begun.
+  /// Begins a take. Chunks go to `take` from now on, those of the pre-roll at once. Returns the
+  /// number of the take's first chunk, counted over the whole run.
   std::uint64_t start(HostTime now, Take take);
-  /// The chunk that is open goes there, too; then none any more.
+  /// Ends the take. The open chunk still goes to it.
   void stop();
   bool started() const { return take_ != nullptr; }
 
-  /// Whenever a chunk is closed: the next one's number, and that which a take would begin with.
+  /// Called whenever a chunk is closed, with the number of the next chunk and the number of the
+  /// first chunk of a take that would begin now.
   using Closed = std::function<void(std::uint64_t next, std::uint64_t first)>;
   void when_closed(Closed closed) { closed_ = std::move(closed); }
 
-  /// Whatever is recorded, in takes and before. `schema`: nullptr where the channel has none.
+  /// Called for every recorded message, also before takes. `schema`: nullptr if the channel has
+  /// none.
   using Recorded = std::function<void(const McapSchema* schema, const McapChannel& channel,
                                       const McapMessage& message)>;
   void when_recorded(Recorded recorded) { recorded_ = std::move(recorded); }
 
-  /// Recorded on a channel since it was added, in takes and before.
+  /// Messages on a channel since it was added, also before takes.
   std::uint64_t messages(std::uint16_t channel) const { return channels_[channel].messages; }
   std::uint64_t log_time(HostTime t) const;
 
@@ -68,7 +72,7 @@ class Recorder {
   struct Channel {
     McapChannel channel;
     std::uint64_t messages = 0;
-    bool in_chunk = false;  // its definition
+    bool in_chunk = false;  // the open chunk contains the channel's definition
   };
   std::uint16_t schema_id(const McapSchema& schema);
   void close();
@@ -76,10 +80,11 @@ class Recorder {
 
   RecorderOptions options_;
   std::vector<McapSchema> schemas_;           // [i] has the id i + 1
-  std::vector<Channel> channels_{Channel{}};  // [0]: none
+  std::vector<Channel> channels_{Channel{}};  // [0] is not used
   McapChunkContent chunk_;
-  std::optional<HostTime> opened_;  // the chunk: the first arrival in it
-  HostTime newest_{};               // arrival in it
+  std::optional<HostTime> opened_;  // first arrival in the open chunk; absent: no chunk is open
+  HostTime newest_{};               // newest arrival in the open chunk
+  // A closed chunk of the pre-roll. `end`: its newest arrival.
   struct Kept {
     McapChunkContent chunk;
     HostTime end{};
@@ -88,7 +93,7 @@ class Recorder {
   std::uint64_t first_number() const;
   std::deque<Kept> pre_roll_;
   std::size_t pre_roll_bytes_ = 0;
-  std::uint64_t number_ = 0;  // of the open chunk
+  std::uint64_t number_ = 0;  // number of the open chunk
   Closed closed_;
   Recorded recorded_;
   Take take_;

@@ -11,7 +11,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view suffix = ".mcap";
-constexpr int most_parts = 1000;  // names that are tried
+constexpr int most_parts = 1000;  // limit on the file names that are tried
 
 std::string part_path(const std::string& path, int part) {
   if (part == 1) return path;
@@ -19,8 +19,8 @@ std::string part_path(const std::string& path, int part) {
          std::string(suffix);
 }
 
-/// Where the next file may stand. A file that an earlier recording has left takes no more than its
-/// own number.
+/// The path of the next file. If a file of an earlier recording has that name, only its number is
+/// skipped.
 Result<std::string> free_path(const std::string& path, int part) {
   for (; part <= most_parts; ++part) {
     std::string free = part_path(path, part);
@@ -44,7 +44,8 @@ Result<RecordingDisk> RecordingDisk::open(FileSystem& files, std::string path, M
   return disk;
 }
 
-/// The next file and what it begins with. What failed halfway is removed: it holds no sample.
+/// Creates the next file and writes its head. If that fails halfway, the file is removed, since it
+/// contains no sample.
 Result<void> RecordingDisk::open_part() {
   const int part = static_cast<int>(paths_.size()) + 1;
   const std::string path = KA_TRY(free_path(path_, part));
@@ -70,7 +71,7 @@ Result<void> RecordingDisk::open_part() {
   return {};
 }
 
-/// With no file open the next write tries again, and nothing is told: that was.
+/// If no file is open, the next write tries again. The failure was reported before.
 Result<void> RecordingDisk::write(McapStoredChunk chunk) {
   kept_bytes_ += chunk.bytes.size();
   kept_.push_back({std::move(chunk)});
@@ -78,8 +79,8 @@ Result<void> RecordingDisk::write(McapStoredChunk chunk) {
   return put || !open_ ? put : next_part(put.error());
 }
 
-/// Into the file what is not in it yet. A new one that takes none of it is removed again, or a full
-/// disk that takes names alone would fill with them.
+/// Writes all chunks that are not in the file yet. A new file that accepts none of them is removed.
+/// Otherwise a full disk that still accepts names would fill with empty files.
 Result<void> RecordingDisk::put_kept() {
   const bool fresh = !open_;
   if (fresh) KA_TRY(open_part());
@@ -102,10 +103,10 @@ void RecordingDisk::remove_part() {
   open_ = stands_ = false;
 }
 
-/// Ends the file for what it is worth; all that memory has goes into the next one, too. A further
-/// file of which no sync has brought anything to the disk is repeated by that one, and stays until
-/// then alone: where every sync fails, there would be a thousand. Of two such files the fuller one
-/// stays.
+/// Ends the file as well as possible. All chunks in memory will be written to the next file too. If
+/// the file is not the first one and none of its syncs succeeded, the next file repeats all its
+/// chunks, and the file is kept only until then. Otherwise a disk on which every sync fails would
+/// collect a thousand files. Of two such files the one with more chunks is kept.
 void RecordingDisk::give_up_part() {
   if (!std::exchange(stands_, false)) return;
   const std::uint64_t of_others = bytes_before_ - (open_ ? 0 : file_->size());
@@ -122,7 +123,7 @@ void RecordingDisk::give_up_part() {
   repeated_ = std::move(one);
 }
 
-/// Told once, and once more where it goes on later.
+/// Continues in a new file. The failure is reported once, and again when a new file accepts data.
 Result<void> RecordingDisk::next_part(const Error& why) {
   const bool told = std::exchange(given_up_, given_up_.value_or(why)).has_value();
   give_up_part();
@@ -146,7 +147,7 @@ std::optional<RecordingDisk::Sync> RecordingDisk::unsynced() const {
 }
 
 Result<void> RecordingDisk::synced(const Sync& sync, const Result<void>& result) {
-  if (!open_ || sync.file != file_) return {};  // it was given up in the meantime
+  if (!open_ || sync.file != file_) return {};  // the file was given up in the meantime
   if (!result) return next_part(result.error());
   forget_synced(sync.size);
   return {};
@@ -160,8 +161,8 @@ void RecordingDisk::forget_synced(std::uint64_t size) {
   }
 }
 
-/// Once a file: what failed is cut off again, and can be read as it is; `recover` gives it an
-/// index.
+/// Finishes the file, once. If that fails, the incomplete end is cut off. The file can still be
+/// read, and `recover` gives it an index.
 Result<void> RecordingDisk::finish_part() {
   if (!std::exchange(open_, false)) return {};
   const std::uint64_t size = file_->size();
@@ -181,7 +182,8 @@ Result<void> RecordingDisk::finish_once(const McapMetadata& end) {
   return {};
 }
 
-/// Two tries. What failed in the end was the last sync, say: the file may hold nothing of it.
+/// Tries twice. If only the last sync failed, the file may still lack its data, so a new file is
+/// begun.
 Result<void> RecordingDisk::finish(const McapMetadata& end) {
   Result<void> result = finish_once(end);
   if (result) return result;

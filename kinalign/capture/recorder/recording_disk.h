@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording on its way to the disk. Where the disk refuses a write or a sync, the recording goes
-// on in a new file, which begins with all that had not reached the disk for sure: after a failed
+// Writes a recording to the disk. If the disk refuses a write or a sync, the recording continues in
+// a new file. The new file begins with all data that is not certainly on the disk: after a failed
 // sync the kernel may have dropped any of it (fsync(2), and Rebello et al., «Can Applications
-// Recover from fsync Failures?», USENIX ATC 2020). Has no thread: disk_thread.h gives it two.
+// Recover from fsync Failures?», USENIX ATC 2020). The class has no thread; disk_thread.h adds two.
 #pragma once
 
 #include "kinalign/core/growing_file.h"
@@ -18,15 +18,15 @@
 
 namespace kinalign {
 
-/// What each file of a recording begins with.
+/// The records at the beginning of each file.
 struct RecordingHead {
   McapHeader header;
   std::vector<McapMetadata> metadata;
   std::vector<McapAttachment> attachments;
 };
 
-/// A file was given up, and why; `next`: where the recording goes on, empty where nowhere yet: then
-/// a second one says where, once it does.
+/// A file was given up. `why`: the reason. `next`: the file in which the recording continues. If
+/// `next` is empty, there is none yet; a second PartFailure follows when there is one.
 struct PartFailure {
   Error why;
   std::string next;
@@ -34,35 +34,35 @@ struct PartFailure {
 
 class RecordingDisk {
  public:
-  /// Makes PATH, and syncs nothing. `path` ends in .mcap; further files
-  /// are PATH with .part2.mcap at its end, and so on. `head` is asked for the number of the part,
-  /// from 1.
+  /// Creates the file `path`, which ends in .mcap, and syncs nothing. Further files end in
+  /// .part2.mcap, .part3.mcap and so on. `head` is called with the number of the part, from 1.
   using MakeHead = std::function<RecordingHead(int part)>;
   static Result<RecordingDisk> open(FileSystem& files, std::string path, MakeHead head);
 
-  /// Fails where no file could be had for it any more: then it is kept, and tried again with the
-  /// next one or with finish().
+  /// Writes a chunk. Fails if no file accepts it. The chunk is then kept and tried again with the
+  /// next chunk or with finish().
   Result<void> write(McapStoredChunk chunk);
 
-  /// What a sync is to bring to the disk; absent: nothing is new. The file stays for the sync.
+  /// The next sync: the file and its size. Absent: nothing new is to be synced. The file stays open
+  /// for the sync.
   struct Sync {
     std::shared_ptr<GrowingFile> file;
     std::uint64_t size = 0;
   };
   std::optional<Sync> unsynced() const;
-  /// How the sync went. Fails as write() does.
+  /// Reports the result of a sync. Fails like write().
   Result<void> synced(const Sync& sync, const Result<void>& result);
 
-  /// `end`, index, sync. The files stay whatever happens.
+  /// Writes `end` and the index, and syncs. The files are kept in any case.
   Result<void> finish(const McapMetadata& end);
 
-  /// Since this was asked last.
+  /// Failures since the previous call.
   std::vector<PartFailure> take_failures() { return std::exchange(failures_, {}); }
   std::vector<std::string> paths() const;  // all files, in order
   std::uint64_t bytes() const;
-  /// Bytes that only memory has for sure.
+  /// Bytes that are not certainly on the disk.
   std::uint64_t kept_bytes() const { return kept_bytes_; }
-  /// Messages that no file ever took.
+  /// Messages that no file has accepted.
   std::uint64_t unwritten() const;
 
  private:
@@ -83,24 +83,26 @@ class RecordingDisk {
   std::vector<std::string> paths_;
   std::shared_ptr<GrowingFile> file_;
   std::unique_ptr<McapWriter> writer_;
-  bool open_ = false;         // the file: chunks may be added to it
-  bool stands_ = false;       // the newest of paths_: it has not been given up
-  std::uint64_t synced_ = 0;  // bytes of it
+  bool open_ = false;         // the file accepts chunks
+  bool stands_ = false;       // the newest file of paths_ has not been given up
+  std::uint64_t synced_ = 0;  // bytes of the file that are certainly on the disk
   struct Kept {
     McapStoredChunk chunk;
-    std::uint64_t end = 0;  // in the file; 0: it is not in it
-    bool written = false;   // it is, or was in one before
+    std::uint64_t end = 0;  // end of the chunk in the present file; 0: not in it
+    bool written = false;   // the chunk is, or was, in some file
   };
   std::deque<Kept> kept_;
+  // bytes_before_: bytes of earlier files.
   std::uint64_t kept_bytes_ = 0, bytes_before_ = 0;
+  // A file whose chunks the next file repeats.
   struct Repeated {
     std::string path;
     std::size_t chunks = 0;
     std::uint64_t bytes = 0;
   };
-  std::optional<Repeated> repeated_;  // a file that goes once the next one has all of it
-  bool end_told_ = false;             // that it failed
-  std::optional<Error> given_up_;     // a file was, and the recording has not gone on yet
+  std::optional<Repeated> repeated_;  // removed as soon as the next file has all its chunks
+  bool end_told_ = false;             // a failed finish() was reported
+  std::optional<Error> given_up_;  // the reason for giving up a file, until the recording continues
   std::vector<PartFailure> failures_;
 };
 

@@ -13,7 +13,7 @@ namespace kinalign {
 namespace {
 
 constexpr Duration between_looks = std::chrono::milliseconds(100);
-constexpr std::size_t most_untaken = 256;  // marks
+constexpr std::size_t most_untaken = 256;  // marks kept for take_marks()
 
 std::vector<McapAttachment> attachments_of(const RecordingSession::Options& options, Time at) {
   const auto utc = static_cast<std::uint64_t>(to_ns(at));
@@ -27,7 +27,7 @@ std::vector<McapAttachment> attachments_of(const RecordingSession::Options& opti
   return all;
 }
 
-/// Of nodes those that have places: which others there are nobody says.
+/// Only nodes with a place in lab.toml are expected; other nodes are not known in advance.
 ExpectedDevices expected_of(const Lab& lab) {
   ExpectedDevices expected;
   for (const DeviceOptions& device : lab.devices) {
@@ -39,8 +39,8 @@ ExpectedDevices expected_of(const Lab& lab) {
   return expected;
 }
 
-/// Whether stamps of the kernel say in which order these came: all have one, and nobody set the
-/// clock between.
+/// Returns whether the kernel's stamps give the order of these marks. All marks must have a stamp,
+/// and the wall clock must not have been set between them.
 bool have_like_stamps(const std::vector<std::pair<RecordedMark, Moment>>& marks) {
   constexpr Duration doubt = std::chrono::milliseconds(50);
   std::optional<Duration> first;
@@ -53,7 +53,7 @@ bool have_like_stamps(const std::vector<std::pair<RecordedMark, Moment>>& marks)
   });
 }
 
-/// A key for each port, so that no two draw the same nonces.
+/// A separate key for each port, so that no two ports draw the same nonces.
 SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   SipHashKey key{};
   for (std::uint8_t half = 0; half < 2; ++half) {
@@ -79,6 +79,7 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::open(Options options
   return session;
 }
 
+// The channels of the session come first, so their numbers are the same in every recording.
 RecordingSession::RecordingSession(Options options, Machine machine)
     : options_(std::move(options)), machine_(machine), axis_(machine.ports_clock) {
   facts_.host = options_.host;
@@ -99,6 +100,7 @@ RecordingSession::RecordingSession(Options options, Machine machine)
       [this](std::uint64_t next, std::uint64_t first) { remember_counts(next, first); });
 }
 
+// A device of protocol nodes gets RecordedNodes, any other device a RecordedPort.
 Result<void> RecordingSession::open_ports() {
   for (const DeviceOptions& device : options_.lab.devices) {
     const auto protocol = find_protocol(device.protocol);
@@ -146,10 +148,10 @@ std::uint64_t RecordingSession::held() const {
   return held;
 }
 
-/// A waking costs more than the messages that it is for. At a lab's speed those of 20 ms are taken
-/// together; while so many come that buffers fill, in a flood, nobody rests. No clock sees it:
-/// arrivals are the kernel's, and of an answer it is known when it was asked for and given. Live
-/// clients want each message at once.
+/// Waking up costs more than processing a message. At a lab's rates the messages of 20 ms are
+/// therefore processed together. In a flood the buffers fill, so there is no rest. Resting does not
+/// affect clocks: arrivals are stamped by the kernel, and the times of an answer are known. Live
+/// clients need each message at once, so there is no rest for them either.
 void RecordingSession::rest(Duration patience) {
   constexpr Duration short_rest = std::chrono::milliseconds(20);
   constexpr std::uint64_t few = 32;  // in a turn; the kernel's buffers hold twice as many
@@ -163,9 +165,10 @@ void RecordingSession::rest(Duration patience) {
   }
 }
 
-/// Only devices' ports where something has come cost a call; connections are looked after with the
-/// clock. Marks first, all of them: what arrives behind a stop is not its take's. So what devices
-/// send while their ports are read waits until marks have been looked at again.
+/// A device's port is read only when data is waiting; connections are also checked at each look
+/// (every 100 ms). All marks are processed first, because data that arrives after a stop does not
+/// belong to its take. Data that arrives while ports are read is held back until marks are read
+/// again.
 bool RecordingSession::turn(Duration patience, std::optional<int> also) {
   if (held() > 0) patience = {};
   rest(patience);
@@ -188,7 +191,7 @@ bool RecordingSession::turn(Duration patience, std::optional<int> also) {
   return some;
 }
 
-/// By ports_, then mark_ports_.
+/// Returns whether data waits at a port. Index into ports_, then mark_ports_.
 bool RecordingSession::is_ready(std::size_t port) const {
   const std::size_t begin = port > 0 ? fds_end_[port - 1] : nodes_ ? 1 : 0;
   const auto of_port = std::span(waiting_).subspan(begin, fds_end_[port] - begin);
@@ -196,7 +199,7 @@ bool RecordingSession::is_ready(std::size_t port) const {
                      [](const pollfd& one) { return one.revents != 0; });
 }
 
-/// Whether something has come; waiting_ says where.
+/// Waits for data. Returns whether any has arrived; waiting_ says at which descriptors.
 bool RecordingSession::wait(Duration patience, std::optional<int> also) {
   fds_.clear();
   fds_end_.clear();
@@ -217,7 +220,7 @@ bool RecordingSession::wait(Duration patience, std::optional<int> also) {
   return ::poll(waiting_.data(), waiting_.size(), static_cast<int>(ms)) > 0;
 }
 
-/// A start stands in the take that it begins, a stop in the one that it ends.
+/// A start mark is recorded in the take that it begins, a stop mark in the take that it ends.
 void RecordingSession::mark(const RecordedMark& mark, const Moment& came) {
   using Kind = Mark::Kind;
   const Kind kind = mark.mark.kind;
@@ -242,7 +245,7 @@ void RecordingSession::tick(HostTime now) {
   if (nodes_) nodes_->find_strays();
 }
 
-/// Both clocks of the host, and what has come: the latter once a take has begun.
+/// Records both clocks of the host. During a take it records the counts too.
 void RecordingSession::tell(HostTime now) {
   recorder_->record(pairs_, now, to_json(axis_.watch()));
   for (RecordedPort& port : ports_) port.look(now);
@@ -269,7 +272,7 @@ void RecordingSession::begin_counts(std::uint64_t chunk) {
   for (auto& [name, port] : port_counts_past_) port.before = port.past.before(chunk);
 }
 
-/// `at`: from when on; the pre-roll reaches back from there.
+/// `at`: begin of the take; the pre-roll reaches back from there.
 void RecordingSession::start(const TakePlan& plan, HostTime at) {
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
@@ -282,7 +285,7 @@ void RecordingSession::start(const TakePlan& plan, HostTime at) {
   }));
 }
 
-/// Told once, until there is room again.
+/// Reports a full queue once, until there is space again.
 bool RecordingSession::has_room_for_takes() {
   const bool was_full = std::exchange(full_, takes_.is_full());
   if (full_ && !was_full) {
@@ -297,8 +300,9 @@ bool RecordingSession::has_room_for_takes() {
   return !full_;
 }
 
-/// What of devices lies in the kernel's buffers up to then, which a turn may not have emptied; no
-/// longer than a flood of connections may hold up the end.
+/// Reads all data of devices that arrived up to `until`, since one turn may not have emptied the
+/// kernel's buffers. Stops after 200 ms, so that a flood on a connection cannot delay the end of
+/// the take further.
 void RecordingSession::drain_devices(const Moment& until) {
   constexpr Duration longest = std::chrono::milliseconds(200);
   const HostTime begun = axis_.now();
@@ -311,14 +315,14 @@ void RecordingSession::drain_devices(const Moment& until) {
   } while (heard() - held() != before && axis_.now() - begun < longest);
 }
 
-/// What was held back of devices and is not later, or all.
+/// Records held data of devices, up to `until` or all.
 void RecordingSession::release(const std::optional<Moment>& until) {
   if (nodes_) nodes_->release(until);
   for (RecordedPort& port : ports_) port.release(axis_, *recorder_, until);
 }
 
-/// Of all ports in the order of their arrival: a start may come to one and the stop to another, and
-/// what devices sent between two marks is recorded between them.
+/// Processes the marks of all ports in the order of arrival, because a start may come to one port
+/// and its stop to another. Data that devices sent between two marks is recorded between them.
 void RecordingSession::drain_marks() {
   std::vector<std::pair<RecordedMark, Moment>> all;
   for (MarkPort& port : mark_ports_) {
@@ -343,7 +347,7 @@ void RecordingSession::stop() {
   if (recording() && newest_ == ending) end_take(now);
 }
 
-/// What arrived later is held back: the next take's, or nobody's.
+/// Data that arrived later is held back. It belongs to the next take or to none.
 void RecordingSession::end_take(const Moment& came) {
   drain_devices(came);
   const HostTime now = axis_.now();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lab while it records: the devices' ports, the recorder behind them and the disk behind that.
-// One thread receives; takes begin and end while devices go on.
+// A recording session: the ports of a lab's devices, the recorder, and the disk. One thread
+// receives. Takes begin and end while the devices go on sending.
 #pragma once
 
 #include "kinalign/capture/live/live_port.h"
@@ -29,16 +29,17 @@ class RecordingSession {
  public:
   struct Options {
     Lab lab;
-    std::string lab_toml;  // its text, which goes into the file; may be empty
-    std::map<std::string, std::string> skeletons;  // by stream: a BVH's head, which goes there too
-    NodeDeskOptions desk;                          // of the nodes' port; others' come from its
-                                                   // secret
-    std::string host;                              // the machine's name
-    std::optional<std::uint16_t> marks_port, trigger_port;  // absent: none
-    std::optional<std::uint16_t> live_port;                 // absent: none
+    std::string lab_toml;  // text of lab.toml, stored in each file; may be empty
+    // by stream: the head of a BVH file, stored in each file
+    std::map<std::string, std::string> skeletons;
+    // options of the nodes' port; the keys of other ports come from its secret
+    NodeDeskOptions desk;
+    std::string host;                                       // the machine's name
+    std::optional<std::uint16_t> marks_port, trigger_port;  // absent: no such port
+    std::optional<std::uint16_t> live_port;                 // absent: no live port
   };
-  /// Opens all ports. `files` and the clocks have to stay; each clock reader is read by one part
-  /// alone.
+  /// Opens all ports. `files` and the clocks must outlive the session. Each clock reader is used by
+  /// one part only.
   struct Machine {
     FileSystem& files;
     ClockReader& ports_clock;
@@ -46,54 +47,58 @@ class RecordingSession {
   };
   static Result<std::unique_ptr<RecordingSession>> open(Options options, Machine machine);
 
-  /// Waits for something to come, but no longer than that, and not while something is held back,
-  /// and takes it all. `also`: a descriptor of the caller's to wake up for. Whether something came.
+  /// Waits until data arrives, `patience` at most, and processes all of it. It does not wait while
+  /// data is held back. `also`: a descriptor of the caller that ends the wait too. Returns whether
+  /// any descriptor was ready.
   bool turn(Duration patience, std::optional<int> also = std::nullopt);
 
-  /// A take begins: the pre-roll and all that comes from now on is in it. Its file is begun on the
-  /// disk's thread; the take's disk.status() says once it is done, or why it can't be.
+  /// Begins a take, which contains the pre-roll and all later data. Its file is opened on the
+  /// disk's thread. The take's disk.status() says when that is done, or why it fails.
   void start(const TakePlan& plan) { start(plan, axis_.now()); }
+  /// Which start marks begin a take: none, the next one only, or each.
   enum class Starts : std::uint8_t { none, next, each };
-  /// From now on start marks begin takes, where none goes on, and a stop mark ends it, each in the
-  /// turn in which it comes, whatever the disk is doing: but while takes_ is full none is ended,
-  /// and what comes stands in the same file.
+  /// Makes marks begin and end takes. A start mark begins a take if none is in progress, and a stop
+  /// mark ends it, in the turn in which the mark arrives, regardless of the disk. While takes_ is
+  /// full, no take is ended and data goes into the same file.
   void obey_marks(TakePlan plan, Starts starts) { by_marks_ = ByMarks{std::move(plan), starts}; }
-  /// A mark begins no take any more; one that goes on is still ended by one.
+  /// Start marks begin no more takes. A stop mark still ends a take in progress.
   void obey_no_start();
-  /// Ends the take that goes on: what has come to the machine goes to the disk, see the take's
-  /// disk; turn() looks after that. Marks that came meanwhile may have begun another one.
+  /// Ends the take in progress. Data that has arrived is written to the disk during further calls
+  /// of turn(); see the take's disk. A start mark that arrived before the call may have begun
+  /// another take.
   void stop();
   bool recording() const { return recorder_->started(); }
-  /// Those that began, in their order, each once; nullptr: none more.
+  /// The takes that have begun, in order, each once. nullptr: no more.
   std::shared_ptr<SessionTake> next_take() { return takes_.next(); }
-  /// The present or last one; nullptr before the first.
+  /// The present or last take. nullptr before the first.
   const std::shared_ptr<SessionTake>& newest_take() const { return newest_; }
-  /// Bytes of all takes that only memory has.
+  /// Bytes of all takes that are not yet safely on the disk.
   std::uint64_t waiting_bytes() const { return takes_.waiting_bytes(); }
 
-  /// Onto the channel of marks; before a take into its pre-roll. It may begin or end one.
+  /// Records a mark. Before a take it goes into the pre-roll. The mark may begin or end a take.
   void mark(const RecordedMark& mark, HostTime at) {
-    drain_marks();  // all that came so far
+    drain_marks();  // marks that arrived earlier come first
     this->mark(mark, Moment{at});
   }
-  /// All marks since this was asked last, at most some hundred.
+  /// Marks since the previous call, 256 at most.
   std::vector<HeardMark> take_marks() { return std::exchange(marks_, {}); }
 
   std::vector<StreamStatus> streams() const;
-  /// What the user should know of what devices send, each once; looked for once a second.
+  /// Findings about the devices' data, each once. They are looked for once a second.
   Findings take_findings();
-  /// What became of the host's clocks since this was asked last.
+  /// Events of the host's clocks since the previous call.
   std::vector<HostClockEvent> take_clock_events() { return axis_.take_events(); }
-  /// By the device's name, or "marks" and "trigger": the port that it is heard on.
+  /// The port of each device, by the device's name; also of "marks" and "trigger".
   std::vector<std::pair<std::string, std::uint16_t>> ports() const;
-  /// As ports(); of the present or last take, before the first since they were opened.
+  /// Counts by name as in ports(), for the present or last take. Before the first take they count
+  /// from the opening.
   std::vector<std::pair<std::string, PortCounts>> port_counts() const;
   const std::vector<MarkPort>& mark_ports() const { return mark_ports_; }
-  /// Where what is recorded is served meanwhile; nullptr where nobody asked for it.
+  /// The live port. nullptr if the options ask for none.
   const LivePort* live() const { return live_ ? &*live_ : nullptr; }
-  /// Nothing more is recorded: live streams end in order.
+  /// Call when nothing more is recorded. Ends the live streams properly.
   void end_live();
-  /// nullptr where the lab has no nodes.
+  /// nullptr if the lab has no nodes.
   NodeReceiver* nodes() { return nodes_ ? &nodes_->receiver() : nullptr; }
   const Lab& lab() const { return options_.lab; }
   HostTime now() { return axis_.now(); }
@@ -122,7 +127,7 @@ class RecordingSession {
 
   struct PortPast {
     PastCounts<PortCounts> past;
-    PortCounts before{};  // the take
+    PortCounts before{};  // counts before the take
   };
 
   struct ByMarks {
@@ -143,16 +148,17 @@ class RecordingSession {
   RecordingFacts facts_;
   HostTime next_second_ = HostTime::min(), next_look_ = HostTime::min();
   std::map<std::string, PortPast> port_counts_past_;
-  std::vector<int> fds_;              // of this turn
-  std::vector<std::size_t> fds_end_;  // by port, marks' last: where in fds_ those of the next begin
+  std::vector<int> fds_;              // descriptors of this turn
+  std::vector<std::size_t> fds_end_;  // end of each port's descriptors in fds_, mark ports last
   std::vector<pollfd> waiting_;
-  std::uint64_t heard_before_ = 0;  // the last turn
+  std::uint64_t heard_before_ = 0;  // heard() at the last turn
+  // No rest before this time, because of a flood.
   HostTime awake_until_ = HostTime::min();
   std::optional<ByMarks> by_marks_;
   std::shared_ptr<SessionTake> newest_;
   TakeQueue takes_;
   Findings findings_;
-  bool full_ = false;  // takes_; and told so
+  bool full_ = false;  // takes_ is full, and this was reported
 };
 
 }  // namespace kinalign

@@ -9,9 +9,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr int most_tries = 100;  // a disk may make names and no files
+constexpr int most_tries = 100;  // a disk may accept names but no files
 
-/// Begins a take's file, on the disk's thread: it owns all that it needs for it.
+/// Opens a take's file on the disk's thread. It owns all data that it needs.
 struct TakeFiles {
   FileSystem* files;
   std::function<std::string()> free_path;
@@ -23,7 +23,7 @@ struct TakeFiles {
       Result<RecordingDisk> opened = open(path);
       const std::string next = opened ? path : free_path();
       if (next == path || tries == most_tries) return opened;
-      path = next;  // another recorder has taken the name meanwhile
+      path = next;  // another recorder has taken the name in the meantime
     }
   }
   Result<RecordingDisk> open(const std::string& path) {
@@ -65,6 +65,7 @@ std::shared_ptr<SessionTake> TakeQueue::next() {
   return next;
 }
 
+// A take whose disk gave up before it was started is skipped.
 void TakeQueue::run() {
   std::erase_if(writing_, [](const auto& take) { return take->disk.status().finished; });
   while (!queued_.empty() && next_may()) {
@@ -76,6 +77,8 @@ void TakeQueue::run() {
   }
 }
 
+// The next disk starts only when the file of the one before is open, so that files are numbered in
+// the order of takes.
 bool TakeQueue::next_may() const {
   if (writing_.empty()) return true;
   return writing_.size() < most_writing && !writing_.back()->disk.status().paths.empty();

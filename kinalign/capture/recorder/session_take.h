@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take of a recording session: where it goes, and how it ended. Several may stand side by side:
-// one records while the disk still writes the end of the one before.
+// A take of a recording session: its file and its result. Several takes may exist at once: one
+// records while the disk still writes the end of the previous one.
 #pragma once
 
 #include "kinalign/capture/nodes/node_status.h"
@@ -21,17 +21,17 @@
 
 namespace kinalign {
 
-/// A mark and when it came.
+/// A mark and its arrival.
 using HeardMark = std::pair<RecordedMark, HostTime>;
 
 struct TakePlan {
-  /// A path that ends in .mcap, under which there is no file yet. Asked for on the disk's thread,
-  /// however long that takes, and again where another recorder took the name meanwhile.
+  /// Returns a path that ends in .mcap and does not exist yet. It is called on the disk's thread,
+  /// where it may take long. It is called again if another recorder has taken the name.
   std::function<std::string()> free_path;
   std::string subject{}, action{};
 };
 
-/// What had come in a take when it ended.
+/// The state of a take when it ended.
 struct TakeEnd {
   HostTime at{};
   std::vector<StreamStatus> streams;
@@ -41,50 +41,50 @@ struct TakeEnd {
 
 struct SessionTake {
   HostTime begun{};
-  std::optional<TakeEnd> end;  // absent: it goes on
+  std::optional<TakeEnd> end;  // absent: the take is in progress
   DiskThread disk;
 };
 
-/// Of each file of a take, and of each live stream.
+/// The MCAP header of each file of a take, and of each live stream.
 McapHeader recording_header();
 
-/// What stands in front of each file of a take.
+/// The records at the beginning of each file of a take.
 struct TakeHead {
   RecordingFacts facts;
   ExpectedDevices expected;
   std::vector<McapAttachment> attachments;
 };
 
-/// Its disk is not started yet.
+/// Makes a take. Its disk is not started yet.
 std::shared_ptr<SessionTake> begin_take(FileSystem& files, const TakePlan& plan, TakeHead head,
                                         McapCompression compression);
 
-/// A session's takes until the disk has all of them. Files are begun in the order of the takes, so
-/// that they are numbered so, and a few are written at a time: however many marks somebody sends,
-/// they make no more threads.
+/// The takes of a session that are not completely on the disk. Files are opened in the order of the
+/// takes, so that their numbers have this order. Only a few are written at a time, so the number of
+/// threads is limited, however many marks arrive.
 class TakeQueue {
  public:
   static constexpr std::size_t most = 32;
-  static constexpr std::size_t most_writing = 8;  // at once: each has two threads
+  static constexpr std::size_t most_writing = 8;  // at once; each has two threads
 
   void add(std::shared_ptr<SessionTake> take);
-  /// Those that were added, in their order, each once; nullptr: none more.
+  /// Added takes, in order, each once. nullptr: no more.
   std::shared_ptr<SessionTake> next();
-  /// Starts the disks that may; to be called again and again.
+  /// Starts the disks that may start. Call it repeatedly.
   void run();
-  /// As many wait as may, for the disk or to be asked for.
+  /// Returns whether the limit of takes that wait, for the disk or for next(), is reached.
   bool is_full() const { return std::max(queued_.size() + writing_.size(), added_.size()) >= most; }
-  /// Bytes of all that only memory has.
+  /// Bytes of all takes that are not yet safely on the disk.
   std::uint64_t waiting_bytes() const { return waiting_beside(nullptr); }
-  /// Bytes that may wait of `take`, beside those of the others.
+  /// Bytes of `take` that may wait for the disk, considering the other takes.
   std::uint64_t room(const SessionTake& take) const;
 
  private:
   bool next_may() const;
   std::uint64_t waiting_beside(const SessionTake* one) const;
 
-  std::deque<std::shared_ptr<SessionTake>> added_;   // since next() was asked
-  std::deque<std::shared_ptr<SessionTake>> queued_;  // whose disks are not started
+  std::deque<std::shared_ptr<SessionTake>> added_;   // not yet returned by next()
+  std::deque<std::shared_ptr<SessionTake>> queued_;  // their disks are not started
   std::vector<std::shared_ptr<SessionTake>> writing_;
 };
 

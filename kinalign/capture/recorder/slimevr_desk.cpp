@@ -10,11 +10,11 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr Duration left_after = seconds(1);  // as their server does
+constexpr Duration left_after = seconds(1);  // SlimeVR's own server does the same
 constexpr Duration tracker_replaced_after = seconds(60);
 constexpr Duration heartbeat_every = milliseconds(500), ping_every = seconds(1);
 constexpr std::uint64_t most_credit = 4096;
-constexpr std::size_t most_sendings = 1024;  // of those that nobody takes
+constexpr std::size_t most_sendings = 1024;  // limit on messages that wait in sendings_
 constexpr std::uint32_t handshake_type = 3, ping_type = 10;
 
 }  // namespace
@@ -25,9 +25,10 @@ std::uint64_t refused(const SlimeVerdicts& verdicts) {
          verdicts[Verdict::late];
 }
 
-/// Who moves is let in a second after it was heard from its old address.
+/// A tracker that changes its address is admitted one second after its last datagram from the old
+/// address.
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name) {
-  constexpr std::uint64_t too_often = 3;  // for one that moves
+  constexpr std::uint64_t too_often = 3;  // a tracker that moves causes fewer
   constexpr const char* unanswered = "it is not answered, so it sends nothing of use";
   Findings findings;
   if (verdicts[SlimeVerdict::no_room] > 0) {
@@ -56,7 +57,7 @@ SlimeNews SlimeDesk::receive(const SlimeArrival& arrival) {
 SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, SlimeNews& news) {
   if (!decode_slime(arrival.bytes, datagram_)) return SlimeVerdict::too_short;
   news.spoke = !datagram_.packets.empty();
-  // Of a bundle a handshake counts for nothing: trackers that have one are known already.
+  // A handshake inside a bundle is ignored: only trackers that are known already send bundles.
   const bool handshake = datagram_.type == handshake_type && !datagram_.packets.empty();
   if (handshake) {
     const auto& said = std::get<SlimeHandshake>(datagram_.packets.front());
@@ -78,6 +79,7 @@ SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, SlimeNews& news) {
   return SlimeVerdict::accepted;
 }
 
+// A tracker is identified by its MAC, or by its address if it sends no MAC.
 SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const SlimeArrival& arrival) {
   SlimeDevice* device = device_named(handshake, arrival.from);
   const bool known = device != nullptr;
@@ -89,7 +91,7 @@ SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const Slime
       return SlimeVerdict::limited;
     }
   }
-  // Another device that was there before has another address now, or it is gone.
+  // Another device that had this address has a new address, or it is gone.
   SlimeDevice* other = find_device(arrival.from);
   if (other != nullptr && other != device) *other = {};
   if (!known) device = new_device(arrival.h_rx);
@@ -102,7 +104,8 @@ SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const Slime
   device->next_heartbeat = arrival.h_rx + heartbeat_every;
   device->next_ping = arrival.h_rx;
   hear(*device, arrival);
-  send(*device, slime_handshake_answer(arrival.bytes.size()));  // to one of 12 bytes none
+  // a 12-byte handshake gets no answer
+  send(*device, slime_handshake_answer(arrival.bytes.size()));
   return SlimeVerdict::accepted;
 }
 
@@ -126,7 +129,7 @@ SlimeDevice* SlimeDesk::device_named(const SlimeHandshake& handshake, const Node
   return nullptr;
 }
 
-/// A free place, or that of the device which was silent for longest, if that was for a minute.
+/// Returns a free place, or that of the device silent longest if it was silent for a minute.
 SlimeDevice* SlimeDesk::new_device(HostTime now) {
   const auto heard = [](const SlimeDevice& d) { return d.used ? d.heard : HostTime::min(); };
   SlimeDevice& place =
@@ -152,7 +155,7 @@ void SlimeDesk::take(SlimeDevice& device, const SlimePacket& packet) {
   }
 }
 
-/// Never more bytes than came from there since its handshake.
+/// Sends at most as many bytes as arrived from that address since its handshake.
 void SlimeDesk::send(SlimeDevice& device, const SlimeAnswer& answer) {
   if (device.credit < answer.size || sendings_.size() >= most_sendings) return;
   device.credit -= answer.size;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// SlimeVR's trackers on the host's side (docs/formats/slimevr.md): what becomes of each datagram,
-// what is sent, who is who. No socket, no clock and no growth: time is an argument. What a tracker
-// measures is no matter here: it is recorded as it came.
+// The host's side of SlimeVR trackers (docs/formats/slimevr.md). It judges each datagram, makes the
+// answers and identifies the trackers. It uses no socket and no clock, and its memory is fixed.
+// Time is an argument. Measurements are not decoded here; they are recorded as received.
 #pragma once
 
 #include "kinalign/capture/net/counts_by.h"
@@ -28,29 +28,29 @@ struct SlimeArrival {
 
 enum class SlimeVerdict : std::uint8_t {
   accepted,
-  duplicate,  // its number was seen
-  late,       // overtaken by a newer one
-  stranger,   // no handshake came from there
-  limited,    // a stranger's address that shakes hands too often
-  elsewhere,  // a handshake in the name of a device that is heard from another address
-  no_room,    // more devices than are kept
-  too_short   // no datagram of a tracker
+  duplicate,  // its number was received before
+  late,       // a newer one arrived before it
+  stranger,   // no handshake came from this address
+  limited,    // an unknown address that sends handshakes too often
+  elsewhere,  // a handshake with the MAC of a device that sends from another address
+  no_room,    // the table of devices is full
+  too_short   // not a datagram of a tracker
 };
 inline constexpr std::size_t slime_verdicts = 8;
 using SlimeVerdicts = CountsBy<SlimeVerdict, slime_verdicts>;
-/// Of them those of datagrams that were of no use.
+/// Datagrams that were useless: all except accepted, duplicate and late ones.
 std::uint64_t refused(const SlimeVerdicts& verdicts);
-/// What the user should know of an address with these; `name` stands in the messages.
+/// Findings about an address with these verdicts. `name` appears in the messages.
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name);
 
 struct SlimeNews {
   SlimeVerdict verdict = SlimeVerdict::too_short;
-  std::size_t device = 0;    // if accepted
-  bool counts_anew = false;  // it shook hands
-  bool spoke = false;        // as trackers do, let in or not
+  std::size_t device = 0;    // only if accepted
+  bool counts_anew = false;  // the datagram was a handshake that was accepted
+  bool spoke = false;        // the datagram contains a packet of a tracker; it need not be accepted
 };
 
-/// To be sent, in this order.
+/// A datagram to send. The order must be kept.
 struct SlimeSending {
   NodeAddress to;
   SlimeAnswer answer;
@@ -58,12 +58,12 @@ struct SlimeSending {
 
 struct SlimeDevice {
   bool used = false;
-  std::optional<SlimeMac> mac;  // absent: the address is its name
+  std::optional<SlimeMac> mac;  // absent: the device is identified by its address
   NodeAddress address;
   std::optional<float> battery_volts;
   HostTime heard{};
   SequenceCount numbers{64};  // since the newest handshake
-  std::uint64_t credit = 0;   // bytes that may still be sent there
+  std::uint64_t credit = 0;   // bytes that may still be sent to this device
   HostTime next_heartbeat{}, next_ping{};
 };
 
@@ -71,18 +71,19 @@ class SlimeDesk {
  public:
   static constexpr std::size_t most_devices = 64;
 
-  /// `secret`: random in each run; the ids of pings and the strangers' table come from it.
+  /// `secret`: random in each run; ids of pings and the hash keys of unknown senders are made with
+  /// it.
   explicit SlimeDesk(const SipHashKey& secret);
 
-  /// In the order of arrival.
+  /// Judges one datagram. Call in the order of arrival.
   SlimeNews receive(const SlimeArrival& arrival);
-  /// Ten times a second or so: heartbeats and pings.
+  /// Call about ten times a second. Sends heartbeats and pings.
   void tick(HostTime now);
-  /// What the calls since brought about; good until the next one of them.
+  /// The datagrams to send since the previous call. Valid until the next call of this function.
   std::span<const SlimeSending> take_sendings();
 
   const SlimeDevice& device(std::size_t i) const { return devices_[i]; }
-  /// nullptr: none.
+  /// nullptr: no device has this address.
   const SlimeDevice* device_at(const NodeAddress& address) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of one stream while it is recorded: its counts, its rate, its sender's clock.
+// The state of one stream during recording: its counts, its rate and its sender's clock.
 #pragma once
 
 #include "kinalign/capture/net/sender_clock.h"
@@ -12,16 +12,17 @@
 
 namespace kinalign {
 
-/// How a stream does: one sender's, or one node's.
+/// The state of one sender's or one node's stream.
 struct StreamStatus {
   std::string topic, stream, sender;
-  std::string node, place;    // of nodes: the id, and where the lab says that it is worn
-  SenderCounts counts;        // of the present or last take; else since it was first heard
-  std::uint64_t samples = 0;  // of nodes: a frame has several
-  double rate_hz = 0.0;       // of the last second: samples, else frames, else messages
-  HostTime heard{};           // last
-  std::optional<double> battery_volts;  // where the device says that
-  std::optional<SenderClock> clock;     // of a Kinect's sender
+  std::string node, place;  // nodes only: the id, and the place on the body from lab.toml
+  // of the present or last take; before the first take, since the first message
+  SenderCounts counts;
+  std::uint64_t samples = 0;            // nodes only: a frame has several samples
+  double rate_hz = 0.0;                 // of the last second: samples, or frames, or messages
+  HostTime heard{};                     // last arrival
+  std::optional<double> battery_volts;  // absent if the device does not send it
+  std::optional<SenderClock> clock;     // senders of a Kinect only
 };
 
 }  // namespace kinalign

@@ -11,15 +11,16 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_sensors = 8;     // of a sender
-constexpr std::size_t most_of_a_port = 64;  // whose sessions are known
+constexpr std::size_t most_sensors = 8;     // of one sender
+constexpr std::size_t most_of_a_port = 64;  // sensors of one port whose sessions are stored
 
 template <class Refused>
 std::uint64_t sum(const Refused& refused) {
   return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
-/// What a decoder could make nothing of: rises with each piece that has some in it.
+/// Refused messages and skipped bytes. The sum increases with each piece that cannot be read
+/// completely.
 std::uint64_t trouble(const NoitomCounts& counts) {
   return sum(counts.refused) + counts.bytes_skipped;
 }
@@ -77,8 +78,8 @@ void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& n
   }
 }
 
-/// One that another sender brought before goes on with that session's count, or is started anew
-/// behind the newest.
+/// A new state for a sensor. If another sender brought the session before, its count continues.
+/// Otherwise the sensor has started again since the newest session.
 StreamWatch::KinectSensor StreamWatch::sensor_behind(const KinectSessions& sessions,
                                                      std::uint32_t session) {
   KinectSensor sensor;
@@ -90,7 +91,8 @@ StreamWatch::KinectSensor StreamWatch::sensor_behind(const KinectSessions& sessi
   return sensor;
 }
 
-/// Who speaks beside the newest session's sender goes on with a count of its own.
+/// Counts one frame. A sender that sends at the same time as the newest session's sender gets its
+/// own count.
 void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest) {
   const KinectOrigin origin = frame.origin;
   const bool is_heard = kinect.sensors.contains(origin.sensor);
@@ -98,7 +100,7 @@ void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& n
     ++kinect.further_sensors;
     return;
   }
-  KinectSessions alone;  // of one that has no room among the port's
+  KinectSessions alone;  // used if the port's table is full
   const bool has_room = newest.contains(origin.sensor) || newest.size() < most_of_a_port;
   KinectSessions& sessions = has_room ? newest[origin.sensor] : alone;
   if (!is_heard) {
@@ -152,7 +154,7 @@ bool StreamWatch::has_twins() const {
 
 SenderCounts StreamWatch::counts(const Noitom& noitom) {
   const NoitomCounts& counts = noitom.decoder.counts();
-  // The last one is whole as well, though no other has come behind it.
+  // The last frame is complete too, although no frame has followed it.
   SenderCounts out{0, 0, counts.frames + (noitom.decoder.has_last() ? 1 : 0), {}, 0};
   for (const auto& [index, avatar] : noitom.decoder.avatars()) {
     out.order += avatar.by_index.counts();

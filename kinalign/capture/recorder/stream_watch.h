@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one sender's bytes are while they are recorded: frames, what was lost, late or doubled by
-// the sender's own numbers, what could not be read. The bytes are recorded whatever this says.
+// Counts one sender's data during recording: frames, lost, late and duplicate ones by the sender's
+// own numbers, and data that cannot be read. The bytes are recorded in any case.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -20,26 +20,27 @@
 
 namespace kinalign {
 
-/// Of a port's Kinects, by sensor: their sessions, whichever of its senders brought them.
+/// The sessions of a port's Kinects, by sensor id, whichever sender brought them.
 using NewestKinectFrames = std::map<std::uint32_t, KinectSessions>;
 
 class StreamWatch {
  public:
-  /// Nothing is counted for a protocol that is decoded elsewhere. `datagrams`: a piece is one, with
-  /// whole messages in it; else bytes cut anywhere. `sender`: as findings name it.
+  /// Protocols that are decoded elsewhere are not counted. `datagrams`: each piece is a datagram
+  /// with whole messages; otherwise pieces may end anywhere. `sender`: its name in findings.
   explicit StreamWatch(Protocol protocol, bool datagrams = false, const std::string& sender = "");
 
-  /// `newest`: a Kinect that is heard on another way than before, in a connection made anew, goes
-  /// on with its count, or has been started anew.
+  /// Decodes one piece. `newest`: the sessions of the port's Kinects. If a Kinect returns over a
+  /// new connection, its count continues, or it is recognised as restarted.
   void feed(std::string_view piece, HostTime arrival, NewestKinectFrames& newest);
-  /// Of a Kinect's sender: the pings that the last piece completed, and how pongs are to look.
+  /// The pings of a Kinect's sender that the last piece completed.
   std::span<const KinectPing> pings() const;
+  /// Whether the sender uses lines; pongs must use the same form.
   bool speaks_lines() const;
-  /// Whether another sender speaks beside this one with its sensor's id.
+  /// Returns whether another sender uses the same sensor id at the same time.
   bool has_twins() const;
-  /// Of its frames: messages and bytes are the caller's.
+  /// Counts of frames. The caller counts messages and bytes.
   SenderCounts counts() const;
-  /// What the user should know; `name` stands in the messages.
+  /// Findings about this sender. `name` appears in the messages.
   Findings findings(const std::string& name) const;
 
  private:
@@ -54,16 +55,17 @@ class StreamWatch {
   };
   struct KinectSensor {
     KinectFrameJoiner joiner{};
-    std::optional<std::uint32_t> restarted{};  // the session before this sender's first one
+    std::optional<std::uint32_t> restarted{};  // the session before this sender's first session
   };
   struct Kinect {
     KinectStreamDecoder decoder;
     std::vector<KinectMessage> messages{};
-    std::map<std::uint32_t, KinectSensor> sensors{};  // as many as most_sensors
+    std::map<std::uint32_t, KinectSensor> sensors{};  // most_sensors at most
     std::vector<JoinedKinectFrame> frames{};
-    std::uint64_t whole = 0, further_sensors = 0;  // frames; messages of one sensor too many
-    std::uint64_t late = 0;                        // of a session that another sender's has ended
-    std::vector<KinectTwins> twins{};              // that were found by this sender's frames
+    // whole frames; messages of sensors beyond most_sensors
+    std::uint64_t whole = 0, further_sensors = 0;
+    std::uint64_t late = 0;  // frames of a session that another sender's session has ended
+    std::vector<KinectTwins> twins{};  // found by frames of this sender
     std::vector<KinectPing> pings{};
     bool datagrams = false;
     std::string sender{};
@@ -82,7 +84,7 @@ class StreamWatch {
   static SenderCounts counts(const Kinect& kinect);
 
   std::variant<std::monostate, Noitom, Xsens, Kinect> decoder_;
-  std::uint64_t refused_ = 0;  // pieces with what is no frame in them
+  std::uint64_t refused_ = 0;  // pieces that contain unreadable data
 };
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounds of the last exchanges of a piece, as they came: after a step of the counter they tell
-// how far back stamps are in doubt.
+// Keeps the bounds of a piece's latest exchanges, in their order. After a step of the counter they
+// show since when stamps are in doubt.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -15,7 +15,7 @@ class BoundJournal {
  public:
   void add(const Bound& bound);
   std::size_t size() const { return size_; }
-  Bound newest(std::size_t i) const;  // 0: the last one
+  Bound newest(std::size_t i) const;  // 0: the latest one
 
  private:
   static constexpr std::size_t capacity = 1024;

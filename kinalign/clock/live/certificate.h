@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The interval that holds the offset between two clocks under stated assumptions (assumptions.h),
-// from all exchanges so far. Hulls under straight lines are Zhang, Liu, Xia's (INFOCOM 2002) and
-// Harrison and Newman's («TICSync», ICRA 2011); lifting them by the curvature is ours.
+// from all exchanges so far. Hulls under straight lines come from Zhang, Liu and Xia (INFOCOM 2002)
+// and from Harrison and Newman («TICSync», ICRA 2011). Lifting the hulls by the curvature is new
+// here.
 #pragma once
 
 #include "kinalign/clock/assumptions.h"
@@ -14,19 +15,19 @@ namespace kinalign {
 
 class Certificate {
  public:
-  /// Remembers so many corners of each hull (lifted_hull.h).
+  /// Keeps at most `corners` corners of each hull (lifted_hull.h).
   explicit Certificate(const Assumptions& assumptions, std::size_t corners = LiftedHull::all)
       : assumptions_(assumptions), corridor_(assumptions.curvature, corners) {}
 
   void add(const Bound& bound);
 
-  /// There are bounds enough for a claim: two up, one down.
+  /// True if there are enough bounds for a certificate: two upper ones and a lower one.
   bool bounded() const { return up_ >= 2 && down_ >= 1; }
-  /// All that x(t) can be. Absent where there are no bounds of one kind, or where they contradict
+  /// All possible values of x(t). Absent if there are no bounds of one kind, or if they contradict
   /// each other.
   std::optional<ValueRange> at(double t) const;
   const Assumptions& assumptions() const { return assumptions_; }
-  /// The same under a greater curvature, from the corners of the hulls alone.
+  /// The same certificate for a greater curvature, made from the corners of the hulls only.
   Certificate relaxed(double curvature) const;
 
  private:

@@ -9,12 +9,15 @@ namespace kinalign {
 
 namespace {
 
-constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
+// Share of the round trip. Half of the round trip is the least delay.
+constexpr double harmless_share = 0.4;
 constexpr Duration before_a_slip = Violators::wait;
-// Lifted, doubles keep 11 ns over a year of a clock that bends as crystals do, 1 us over three.
+// In lifted coordinates, doubles keep 11 ns over a year and 1 us over three years, for a clock with
+// a crystal's curvature.
 constexpr double longest_piece_s = 1e8;
 constexpr Duration oldest_reading = std::chrono::seconds(10);
-constexpr int looked_back = 12;  // windows
+constexpr int looked_back = 12;  // number of windows
+/// The range of x is computed again after so many seconds, or after so many bounds (seldom).
 constexpr double stale_s = 0.5;
 constexpr std::uint32_t seldom = 4;
 
@@ -37,8 +40,8 @@ void ClockPiece::ask(double s) {
   unseen_ = 0;
 }
 
-/// By how much a bound excludes all that the certificate leaves, s; not positive: it does not. What
-/// was left a moment ago serves as well, until bounds have come that leave less.
+/// How far a bound lies beyond the range that the certificate allows, s; 0 or less: inside. It uses
+/// the last range computed, widened by the time since then, unless bounds came that narrow it.
 double ClockPiece::violation(const Bound& e) {
   if (!certificate_.bounded()) return 0.0;
   if (!range_ || e.s - range_at_ > stale_s || unseen_ >= seldom) ask(e.s);
@@ -72,7 +75,7 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   ++crossings_;
   if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
     amount_ = std::abs(e.x);
-    return Verdict::violator;  // no counter that begins to count says that
+    return Verdict::violator;  // no counter that starts to count gives such a reading
   }
   amount_ = violation(e);
   if (amount_ > Violators::tolerated_s) {
@@ -80,7 +83,7 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
     return violators_.full() ? broken(End::violators) : Verdict::violator;
   }
   if (contradicted_) {
-    amount_ = 0.0;  // which of the bounds are wrong is not known
+    amount_ = 0.0;  // it is unknown which of the bounds are wrong
     return broken(End::contradiction);
   }
   violators_.drop_excluded_by(e, assumptions().rate);
@@ -97,7 +100,7 @@ ClockPiece::Verdict ClockPiece::broken(End why) {
   return Verdict::broken;
 }
 
-/// A step by less than the least delay leaves the truth within the certificate.
+/// Looks for a step below the least delay: the truth is then still within the certificate.
 std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
   if (floors_.windows() == windows_judged_ && estimate_.changes() == routes_judged_) return {};
   if (const auto by = narrowed()) {
@@ -113,8 +116,9 @@ std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
   return Verdict::slipped;
 }
 
-/// Bounds of before and after a slip leave less between them than the shortest round trip that
-/// there is: where that is seen best depends on when it was. Asked once a window.
+/// Amount by which the interval is narrower than the shortest possible round trip. Bounds from
+/// before and after a slip cause that. The place where it shows best depends on the time of the
+/// slip, so several windows are checked. Called once a window.
 std::optional<double> ClockPiece::narrowed() {
   if (floors_.windows() == windows_judged_ || !certificate_.bounded()) return std::nullopt;
   const double least = floors_.least_width(), now = journal_.newest(0).s;
@@ -123,7 +127,7 @@ std::optional<double> ClockPiece::narrowed() {
     const double back = (window + 0.5) * FloorLog::window_s;
     const auto range = certificate_.at(std::max(now - back, 0.0));
     if (!range) {
-      contradicted_ = true;  // which is more than a slip: told with the next bound
+      contradicted_ = true;  // more than a slip: reported with the next bound
       return std::nullopt;
     }
     left = std::min(left, range->high - range->low);
@@ -131,7 +135,7 @@ std::optional<double> ClockPiece::narrowed() {
   return left < least ? std::optional(least - left) : std::nullopt;
 }
 
-/// Told once a change of route.
+/// Step of the counter at the latest change of route; reported once for each change.
 std::optional<double> ClockPiece::stepped_with_route() {
   const auto& change = estimate_.last_change();
   if (!change || !change->step || estimate_.changes() == routes_judged_) return std::nullopt;
@@ -139,7 +143,8 @@ std::optional<double> ClockPiece::stepped_with_route() {
   return change->step;
 }
 
-/// Asked once a window. Where routes are seen to change, windows of two of them are not alike.
+/// Step between windows; computed once a window. After a recent change of route, windows on both
+/// sides can't be compared.
 std::optional<double> ClockPiece::stepped_between_windows() {
   if (floors_.windows() == windows_judged_) return std::nullopt;
   windows_judged_ = floors_.windows();
@@ -154,8 +159,8 @@ std::optional<HostTime> ClockPiece::step_pending_since() const {
   return std::max(begin_, doubt_of_violators());
 }
 
-/// Behind the last crossing that can't go with the violators: until then the counter had not
-/// stepped. At least five seconds before the first violator.
+/// Arrival of the last crossing that contradicts one of the violators: until then the counter had
+/// not stepped. The result is at least five seconds before the first violator.
 HostTime ClockPiece::doubt_of_violators() const {
   HostTime since = violators_.pending()[0].crossing.heard - Violators::wait;
   for (std::size_t i = 0; i < journal_.size(); ++i) {
@@ -179,23 +184,24 @@ HostTime ClockPiece::next_begins() const {
   return end_ == End::violators ? violators_.pending()[0].crossing.heard : heard_;
 }
 
-/// When the host heard of what happened at s, but for delays.
+/// Approximate arrival on the host of an event at s, apart from delays.
 HostTime ClockPiece::about(double s) const {
   std::size_t i = 0;
   while (i + 1 < journal_.size() && journal_.newest(i).s > s) ++i;
   return host_time({s, journal_.newest(i).x});
 }
 
-/// Whether what is known of now could be of a counter that bends, as far as crystals go, and never
-/// stepped. Which of the two it was can't be told then, and the next piece allows for both.
+/// True if all that is known fits a counter without a step whose rate changes as fast as a
+/// crystal's can. The two cases can't be told apart then, and the next piece allows for both.
 bool ClockPiece::may_bend() const {
   Certificate bent = certificate_.relaxed(most_curvature);
   for (const Violator& v : violators_.pending()) bent.add(v.bound);
   return bent.at(journal_.newest(0).s).has_value();
 }
 
-/// When just a counter stepped by little is not known well: nothing is certified by what came
-/// before now. The estimate has begun anew with its route, or does so with the last window.
+/// The piece after a small step. The exact time of the step is unknown, so bounds from before now
+/// don't enter its certificate. The estimate has begun anew with the change of route, or it begins
+/// with the last window.
 ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const {
   ClockPiece next = *this;
   next.begin_ = heard_;
@@ -217,16 +223,20 @@ ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBe
   return next;
 }
 
-/// By which the counter may have stepped back: beyond the certificate, and over all that it left.
+/// The greatest possible step back of the counter: the excess over the certificate plus the width
+/// of the interval.
 Duration ClockPiece::greatest_step_back() const {
   if (end_ == End::none) return Duration{0};
   const auto violators = violators_.pending();
-  if (!violators.empty() && violators[0].bound.side == Side::above) return Duration{0};  // ahead
+  // The counter stepped ahead.
+  if (!violators.empty() && violators[0].bound.side == Side::above) return Duration{0};
   const auto range = certificate_.at(journal_.newest(0).s);
   const double width = range ? range->high - range->low : 2.0 * estimate_.least_round_trip();
   return rounded_up(std::min(std::abs(amount_) + width, seconds(oldest_reading)));
 }
 
+/// The piece after a break: it begins with the violators if they caused the break, otherwise with
+/// the newest bound.
 ClockPiece ClockPiece::next_behind(const Assumptions& assumed, const SlopeBelief& prior) const {
   if (end_ == End::slip_with_route || end_ == End::slip_between_windows) {
     return next_after_slip(assumed, prior);
@@ -245,8 +255,8 @@ ClockPiece ClockPiece::next_behind(const Assumptions& assumed, const SlopeBelief
   return next;
 }
 
-/// What a counter that stepped ahead read before lies, by the new piece, before the step was seen;
-/// one that stepped back shows some readings twice.
+/// A counter that stepped ahead shows no reading twice: the new piece puts old readings before the
+/// step. A counter that stepped back shows some readings twice.
 ClockPiece ClockPiece::next_piece() const {
   Assumptions assumed = assumptions();
   if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One stretch of a node's counter without a break: its certificate, its estimate, and the watch
-// over exchanges that can't be.
+// One continuous stretch of a node's counter: its certificate, its estimate, and the crossings that
+// contradict the certificate.
 #pragma once
 
 #include "kinalign/clock/clock_stamp.h"
@@ -28,37 +28,37 @@ class ClockPiece {
 
   enum class Verdict : std::uint8_t {
     taken,
-    violator,  // against the certificate: left out
-    broken,    // violators that are to be believed, or bounds without any way between them
-    slipped,   // taken; the floors say that the counter stepped, by less than the certificate sees
-    uneasy     // taken; likewise, by so little that the certificate holds all the same
+    violator,  // contradicts the certificate; left out
+    broken,    // several violators that must be believed, or bounds that leave no value in between
+    slipped,   // taken; the floors show a step of the counter that is too small for the certificate
+    uneasy     // taken; the same, but so small that the certificate still holds
   };
   Verdict push(const Crossing& crossing);
 
-  /// Absent until there is a crossing of each kind, and more than three years away.
+  /// The host's time for reading n. Absent before there is a crossing of each kind, and more than
+  /// three years away.
   std::optional<ClockStamp> at(NodeTime n);
 
-  /// After `broken` or `slipped`: the piece that begins here, …
+  /// After `broken` or `slipped`: the piece that begins here.
   ClockPiece next_piece() const;
   HostTime next_begins() const;
-  /// … and since when the stamps of this one are in doubt, by the frames' arrival.
+  /// After `broken` or `slipped`: arrivals from this time on have stamps in doubt in this piece.
   HostTime doubtful_since() const;
 
-  /// Since when a step is likely that three violators have not shown yet. While it is, nothing is
-  /// certified.
+  /// The time since when a step is likely, although three violators have not confirmed it yet.
+  /// Meanwhile nothing is certified.
   std::optional<HostTime> step_pending_since() const;
 
   const ClockOrigin& origin() const { return origin_; }
-  HostTime begins() const { return begin_; }  // its first arrival
-  /// Readings of before this may be of before the counter stepped, and are not certified. Nobody
-  /// asks for readings of more than ten seconds before a frame in which one that stepped back is
-  /// heard.
+  HostTime begins() const { return begin_; }  // arrival of its first frame
+  /// Readings before this time may come from before a step and are not certified. Nobody asks for
+  /// readings more than ten seconds older than a frame by which a step back is noticed.
   HostTime certified_from() const { return certified_from_; }
   const Assumptions& assumptions() const { return certificate_.assumptions(); }
   const OffsetEstimate& estimate() const { return estimate_; }
   const FloorLog& floors() const { return floors_; }
-  /// Behind the verdict: how far beyond the certificate, or how far the counter stepped, s. Absent
-  /// where bounds contradict each other.
+  /// After a verdict: the distance to the certificate, or the size of the counter's step, s. Absent
+  /// if bounds contradict each other.
   std::optional<double> amount() const {
     return end_ == End::contradiction ? std::nullopt : std::optional(amount_);
   }
@@ -66,12 +66,12 @@ class ClockPiece {
  private:
   static constexpr std::size_t corners = 255;
 
-  enum class End : std::uint8_t {  // why a piece is over
+  enum class End : std::uint8_t {  // reason for the end of a piece
     none,
     violators,
     overdue_violator,
-    contradiction,  // bounds without a way between them, or …
-    narrowed,       // … less than packets take: since when is not known
+    contradiction,  // bounds leave no value between them
+    narrowed,       // bounds leave less than packets take; the time of the slip is unknown
     slip_with_route,
     slip_between_windows
   };
@@ -93,7 +93,7 @@ class ClockPiece {
   ClockPiece next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const;
 
   ClockOrigin origin_;
-  HostTime begin_, heard_;  // first and newest arrival
+  HostTime begin_, heard_;  // arrivals of the first and the newest frame
   HostTime certified_from_ = HostTime::min();
   Certificate certificate_;
   OffsetEstimate estimate_;
@@ -105,10 +105,11 @@ class ClockPiece {
   End end_ = End::none;
   std::uint32_t routes_judged_ = 0;
   double amount_ = 0.0;
-  /// What x could be at range_at_ when it was asked last, and how many bounds came since.
+  /// The range of x at range_at_ when it was last computed; unseen_ counts the bounds since then
+  /// that would narrow it.
   std::optional<ValueRange> range_;
   double range_at_ = 0.0;
-  bool contradicted_ = false;  // bounds leave no way between them
+  bool contradicted_ = false;  // bounds leave no value between them
   std::uint32_t unseen_ = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// g(b) = above(b) - below(b) is concave and piecewise linear in the slope b: its peak is found by
-// cutting it with tangents, the ends of g >= 0 by Newton's steps from outside. Both end after
-// finitely many steps, exactly.
+// g(b) = above(b) - below(b) is concave and piecewise linear in the slope b. Its peak is found by
+// intersecting tangents, the ends of g >= 0 by Newton's steps from outside. Both need finitely many
+// steps and are exact.
 #include "kinalign/clock/live/corridor.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-/// g with its derivative at a slope.
+/// g and its derivative at a slope.
 struct Gap {
   CorridorLine line;
   double rise = 0.0;
@@ -23,7 +23,8 @@ Gap gap_at(const Corridor& corridor, double t, double slope) {
   return {{up.bound, -down.bound, slope}, down.tau - up.tau};
 }
 
-/// Where g falls to zero between a slope outside and the peak; as far outside as rounding goes.
+/// The slope at which g reaches zero, searched from a slope outside towards the peak. Rounding
+/// errors leave the result outside.
 double edge_from(const Corridor& corridor, double t, double outside) {
   for (;;) {
     const Gap gap = gap_at(corridor, t, outside);
@@ -44,7 +45,7 @@ CorridorLine widest_line(const Corridor& corridor, double t, double beta) {
   Gap right = gap_at(corridor, t, beta);
   if (right.rise >= 0.0) return right.line;
   for (;;) {
-    // Where the two tangents meet; no point of g lies above it.
+    // The tangents intersect here; no point of g lies above them.
     const double slope = (right.line.width() - left.line.width() + left.rise * left.line.slope -
                           right.rise * right.line.slope) /
                          (left.rise - right.rise);
@@ -62,7 +63,8 @@ std::optional<ValueRange> value_range(const Corridor& corridor, double t, double
   ValueRange range;
   range.least_slope = std::min(edge_from(corridor, t, -beta), widest.slope);
   range.greatest_slope = std::max(edge_from(corridor, t, beta), widest.slope);
-  // The end that a slope leaves is concave in it: greatest at its own peak or at an edge.
+  // The end of the range for a slope is concave in the slope: its maximum lies at its own peak or
+  // at an edge.
   const auto greatest = [&](const LiftedHull& hull, double least, double most) {
     const auto peak = hull.peak(t);
     return hull.at(t, std::clamp(peak.slope, least, most)).bound;

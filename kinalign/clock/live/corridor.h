@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between bounds from above and bounds from below: what they leave for a function's value at t.
+// Upper and lower bounds, and the values at t that they leave for a function.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// x(s) from above and below. The lower bounds are a hull of -x.
+/// Hulls of the bounds on x(s). The lower bounds are a hull of -x.
 struct Corridor {
   explicit Corridor(double rho, std::size_t corners = LiftedHull::all)
       : above(rho, corners), below(rho, corners) {}
@@ -22,15 +22,15 @@ struct Corridor {
   LiftedHull above, below;
 };
 
-/// A line a + b (s - t) through the corridor at t.
+/// A line a + b (s - t) between the bounds.
 struct CorridorLine {
-  double above = 0.0, below = 0.0;  // the ends that slope leaves for a
+  double above = 0.0, below = 0.0;  // the range of a for this slope
   double slope = 0.0;
   double width() const { return above - below; }
   double middle() const { return (above + below) / 2.0; }
 };
 
-/// The slope in [-beta, beta] that leaves the widest choice. Negative width: no line passes.
+/// The slope in [-beta, beta] with the widest range of a. If the width is negative, no line fits.
 CorridorLine widest_line(const Corridor& corridor, double t, double beta);
 
 struct ValueRange {
@@ -38,7 +38,7 @@ struct ValueRange {
   double least_slope = 0.0, greatest_slope = 0.0;
 };
 
-/// All that x(t) can be for any slope in [-beta, beta]; `widest` is widest_line's. Absent where
+/// All values of x(t) for slopes in [-beta, beta]; `widest` comes from widest_line(). Absent if
 /// bounds contradict each other. Needs a bound of each kind.
 std::optional<ValueRange> value_range(const Corridor& corridor, double t, double beta,
                                       const CorridorLine& widest);

@@ -10,7 +10,7 @@ namespace kinalign {
 namespace {
 
 constexpr double remembered_s = 100.0;
-constexpr std::size_t nearest = 6;  // gaps between points that tell a density
+constexpr std::size_t nearest = 6;  // number of gaps between points that a density is computed from
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double resolution_s = 1e-6;
 
@@ -53,7 +53,7 @@ void Floor::add(OffsetBound bound, const FloorLine& line) {
   hull_.add(bound.s, bound.x);
 }
 
-/// Of a full set the worst goes: an old one, else the one farthest above the floor.
+/// Replaces the worst point of a full set: an old one, or else the one farthest above the floor.
 void Floor::keep_low(OffsetBound bound, const FloorLine& line) {
   if (lows_ < low_.size()) {
     low_[lows_++] = bound;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The least delay of one direction of one route, told from the fastest packets.
+// Estimates the least delay of one direction of a route, from the fastest packets.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// A straight floor under bounds.
+/// A straight line below the bounds of one direction: the bound of a packet with the least delay.
 struct FloorLine {
   double s = 0.0, x = 0.0, slope = 0.0;
 
@@ -20,18 +20,19 @@ struct FloorLine {
   double excess(OffsetBound bound) const { return bound.x - at(bound.s); }
 };
 
-/// How densely bounds stand above a floor, in points per second of delay, by the nearest few of
-/// these; they are put into another order. 0 with fewer than two.
+/// Density of bounds just above a floor, in points per second of delay, from the nearest few of
+/// these delays. Reorders `excess`. 0 for fewer than two.
 double density_above(std::span<double> excess);
 
-/// Where the delays of a direction lie above its floor: classes of a factor of two from 1 us on.
+/// Histogram of the delays of a direction above its floor: classes grow by a factor of two, from 1
+/// us on.
 class ExcessCounts {
  public:
   void add(double excess);
   std::uint64_t total() const { return total_; }
-  /// How many lie above, in whole classes: at least as many as do.
+  /// Number of delays above `excess`, counted in whole classes, so at least the true number.
   std::uint64_t above(double excess) const;
-  /// Half of them lie at most so far above, rounded up to a whole class.
+  /// The median of the delays, rounded up to a whole class.
   double median() const;
 
  private:
@@ -39,15 +40,15 @@ class ExcessCounts {
   std::uint64_t total_ = 0;
 };
 
-/// Bounds of one direction while its floor does not change.
+/// The bounds of one direction for as long as its floor does not change.
 class Floor {
  public:
   explicit Floor(std::size_t corners) : hull_(usual_curvature, corners) {}
 
   void add(OffsetBound bound, const FloorLine& line);
 
-  /// Points per second of delay just above `line`: how sharply the floor is known. 0 with fewer
-  /// than two points.
+  /// Density just above `line`, in points per second of delay: it tells how well the floor is
+  /// known. 0 for fewer than two points.
   double density(const FloorLine& line) const;
   const LiftedHull& hull() const { return hull_; }
   const ExcessCounts& counts() const { return counts_; }
@@ -55,12 +56,12 @@ class Floor {
  private:
   void keep_low(OffsetBound bound, const FloorLine& line);
 
-  /// |x''| that is usual, not what can be: with 1e-8 / s each link's error is the least or within
-  /// 15 % of it (docs/clock.md).
+  /// The usual |x''|, not the greatest possible. With 1e-8 / s the error of each simulated link is
+  /// the smallest, or within 15 % of it (docs/clock.md).
   static constexpr double usual_curvature = 1e-8;
   LiftedHull hull_;
   ExcessCounts counts_;
-  std::array<OffsetBound, 12> low_{};  // the points nearest to the floor, of the last 100 s
+  std::array<OffsetBound, 12> low_{};  // points nearest to the floor in the last 100 s
   std::size_t lows_ = 0;
 };
 

@@ -10,32 +10,32 @@ namespace kinalign {
 
 namespace {
 
-constexpr double least_step_s = 0.7e-3;  // a thousandth of a second shows, with its noise
+constexpr double least_step_s = 0.7e-3;  // a step of 1 ms is found, even with its noise
 constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
 constexpr double slope_slack = 5e-6;
 constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
-// Round trips that are alike, those that may be too short, and how far below them the least may be:
-// so that of 460 simulated recordings with all assumptions held one seemed to slip, where a route
-// became shorter than it had ever been.
+// Number of round trips that must be alike, number of those that may be too short, and the margin
+// below them. With these values, one of 460 simulated recordings with valid assumptions seemed to
+// slip; there a route became shorter than ever before.
 constexpr std::size_t alike = 3, most_too_short = 2;
-constexpr double wander_s = 20e-6;  // of real floors, by schedulers and caches
+constexpr double wander_s = 20e-6;  // variation of real floors, caused by schedulers and caches
 constexpr double narrow_share = 0.2, narrow_gaps = 2.0, narrow_spreads = 3.0;
 constexpr std::uint64_t enough_pairs = 4;
-constexpr double row_s = 1.5 * FloorLog::window_s;  // of windows in a row, from one to the next
+constexpr double row_s = 1.5 * FloorLog::window_s;  // greatest distance of consecutive windows
 
 bool agree(double least, double most, double gap) {
   return most - least <= agreeing_share * least + agreeing_gaps * gap;
 }
 
-/// What an interval can't be narrower than if packets take so long, s.
+/// Lower limit for the width of an interval, s, for packets with this round trip.
 double width(double round_trip, double gap, double spread) {
   const double noise = narrow_gaps * gap + narrow_spreads * spread;
   return round_trip - std::max({wander_s, narrow_share * round_trip, noise});
 }
 
-/// By how much an offset may have moved, for a crystal that warms, between windows that are farther
-/// apart than what is compared, s: their node was away.
+/// Possible change of an offset, s, between windows that are farther apart than windows usually
+/// compared. The node was silent in between, and its crystal may have warmed.
 double silence(double apart_s, double slope_deviation) {
   if (apart_s <= FloorLog::longest_reach_s) return 0.0;
   return Assumptions{}.curvature * apart_s * apart_s / 2.0 + 3.0 * slope_deviation * apart_s;
@@ -71,8 +71,8 @@ double ShortestRoundTrips::least_width() const {
   return 0.0;
 }
 
-/// If the last two windows until then agree: one alone may be short because a counter stepped in
-/// it.
+/// Remembers the round trip of the route that was left, if its last two windows agree. A single
+/// window may be short because a counter stepped in it.
 void FloorLog::change_route(double s) {
   const auto last = std::find_if(past_.begin(), past_.end(),
                                  [s](const auto& window) { return window && window->s <= s; });
@@ -106,7 +106,7 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
     if (index_) close();
     open(index, slope);
   } else if (index < *index_) {
-    return;  // reordered over the edge
+    return;  // a late packet from the window before
   }
   const Bound level{bound.s, bound.x - slope_.mean * (bound.s - middle_s()), bound.side};
   corridor_.add(level);
@@ -122,15 +122,15 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   std::sort(lows.x.begin(), lows.x.begin() + static_cast<std::ptrdiff_t>(lows.count));
 }
 
-/// The floors of a window are those of the widest line whose slope is near to the one expected: a
-/// clock that bends has a slope of its own in each window.
+/// Closes a window. Its floors belong to the widest line with a slope near the expected one,
+/// because a clock of changing rate has its own slope in each window.
 void FloorLog::close() {
   std::rotate(past_.begin(), past_.end() - 1, past_.end());
   past_[0].reset();
   ++windows_;
   if (now_[0].count == lowest && now_[1].count == lowest) {
     const auto gap = [](const Lows& l) { return (l.x.back() - l.x.front()) / (lowest - 1); };
-    // Of a node that was not heard before the slope is not known: all are tried that can be.
+    // The slope of a new node is unknown, so all possible slopes are tried.
     const bool known = slope_.deviation < SlopeBelief{}.deviation;
     const CorridorLine line =
         widest_line(corridor_, middle_s(), known ? slope_slack : greatest_rate);
@@ -145,7 +145,7 @@ void FloorLog::close() {
   if (now && then && !step_) step_ = threes_.step(*now, *then, expected);
 }
 
-/// The median of the windows that are remembered; 0 without one.
+/// The median round trip of the remembered windows; 0 without one.
 double FloorLog::usual_round_trip() const {
   std::array<double, remembered> trips{};
   std::size_t count = 0;
@@ -157,7 +157,7 @@ double FloorLog::usual_round_trip() const {
   return *middle;
 }
 
-/// The lowest of floors over windows in a row, as of their middle one.
+/// Combines consecutive windows: the lowest floors, moved to the middle window.
 std::optional<FloorWindow> FloorLog::merged(std::size_t first, std::size_t count) const {
   const auto& centre = past_[first + count / 2];
   if (!centre) return std::nullopt;
@@ -187,12 +187,12 @@ std::optional<double> FloorLog::Comparison::step(const FloorWindow& now, const F
       pairs >= enough_pairs ? std::sqrt(moved_squares / static_cast<double>(pairs)) : gap;
   const double silent = silence(now.s - then.s, expected.slope.deviation);
   if (silent == 0.0) {
-    // A step on its way through the windows is not usual.
+    // A step that moves through the windows must not count as usual.
     const double counted = pairs >= enough_pairs ? std::min(std::abs(moved), 2.0 * usual) : moved;
     ++pairs;
     moved_squares += counted * counted;
   }
-  // A longer round trip may be so all one way: half of it is in the middle.
+  // A longer round trip may be longer one way only; half of the difference then shifts the middle.
   const double unknown =
       std::max(0.0, (now.round_trip + then.round_trip) / 2.0 - expected.round_trip);
   const double least =

@@ -9,11 +9,13 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_events = 64;
-constexpr Duration settling = Violators::wait;             // after several steps, …
-constexpr Duration late_frames = std::chrono::seconds(1);  // … and after one: some were sent before
+constexpr Duration settling = Violators::wait;  // wait after several steps
+// Wait after a single step: some frames were sent before it.
+constexpr Duration late_frames = std::chrono::seconds(1);
 
 }  // namespace
 
+/// Queues an event. A withdrawal that finds no room extends an earlier one.
 void LiveClock::tell(const ClockEvent& event) {
   if (events_.size() < most_events) return events_.push_back(event);
   ++missed_events_;
@@ -31,7 +33,7 @@ void LiveClock::tell(const ClockEvent& event) {
 
 std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_, {}); }
 
-/// What is not decided yet when a piece is cut short is in doubt.
+/// A piece is cut short: a step that is not confirmed yet leaves its stamps in doubt.
 void LiveClock::cut_short() {
   if (const auto since = piece_->step_pending_since()) {
     tell({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
@@ -42,7 +44,7 @@ void LiveClock::cut_short() {
 
 void LiveClock::begin(BootKey boot, const Crossing& first) {
   SlopeBelief prior;
-  if (piece_) {  // it is the same crystal
+  if (piece_) {  // the crystal is the same
     cut_short();
     prior = piece_->estimate().slope().after_a_break();
     earlier_[lives_++ % earlier_.size()] = boot_;
@@ -89,11 +91,12 @@ void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
     ++late_;
     return;
   }
-  if (replaced_) return;  // the reply reached the node before what the frame has shown
+  if (replaced_) return;  // the reply reached the node before the break that the frame revealed
   const Crossing crossing{Side::below, n_rx, h_tx, newest_};
   answer(piece_->push(crossing), crossing);
 }
 
+/// Acts on the verdict about a crossing: reports events and replaces the piece if necessary.
 void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
   using Verdict = ClockPiece::Verdict;
   using Kind = ClockEvent::Kind;
@@ -106,7 +109,8 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
       return;
     case Verdict::violator:
       tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
-      // If it does not lie the counter has stepped, and may step back before three have shown that.
+      // If the violator is right, the counter has stepped. It may step back before three violators
+      // have confirmed that.
       return tell({Kind::withdrawn, boot_,
                    std::max(crossing.heard - Violators::wait, piece_->begins()), crossing.heard});
     case Verdict::uneasy:
@@ -119,8 +123,8 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
   }
 }
 
-/// A counter that runs at another rate, asleep, is seen to step again and again, by as little as
-/// one that bends.
+/// A sleeping node's counter may run at another rate. It then seems to step again and again, by as
+/// little as a counter of changing rate.
 void LiveClock::take_step(const Crossing& crossing) {
   const bool relaxed = replace_piece(ClockEvent::Kind::step, piece_->amount(), crossing);
   const bool again = stepped_ && newest_ - *stepped_ < settling;
@@ -133,7 +137,7 @@ void LiveClock::settle(const Crossing& crossing) {
   replace_piece(ClockEvent::Kind::settled, std::nullopt, crossing);
 }
 
-/// Whether the new piece allows for a clock that bends more.
+/// Replaces the piece. True if the new one allows for a greater curvature.
 bool LiveClock::replace_piece(ClockEvent::Kind why, std::optional<double> by,
                               const Crossing& crossing) {
   replaced_ = true;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of one node, told while its frames arrive: from exchanges to host_from_node with an
-// interval. One object a node; it does not grow: some 60 KiB.
+// The clock of one node while its frames arrive: from exchanges to host_from_node() with an
+// interval. One object for each node; its size is fixed, some 60 KiB.
 //
 //   frame up:    n_tx (T1 of RFC 5905, read by the node)  ->  h_rx (T2, read by the host)
 //   its reply:   h_tx (T3, read by the host)              ->  n_rx (T4, read by the node)
 //
-// The two ways need no pairing: a frame whose reply was lost still bounds the offset from above,
-// and a reply is pushed once a later frame has brought its echo.
+// The two directions need no pairing. A frame whose reply was lost still bounds the offset from
+// above. A reply is pushed once a later frame has brought its echo.
 #pragma once
 
 #include "kinalign/clock/clock_event.h"
@@ -25,30 +25,30 @@ class LiveClock {
  public:
   explicit LiveClock(const Assumptions& assumptions = {}) : assumptions_(assumptions) {}
 
-  /// A frame of this life arrived, in the order of arrival; with its echo.
+  /// Takes a frame with its echo, in the order of arrival.
   void push(const Exchange& exchange);
-  /// The halves of that: the frame, …
+  /// One half of push(): the frame.
   void push_up(BootKey boot, NodeTime n_tx, HostTime h_rx);
-  /// … and what it says: that the reply sent at h_tx reached the node at n_rx.
+  /// The other half, the echo: the reply sent at h_tx reached the node at n_rx.
   void push_down(BootKey boot, NodeTime n_rx, HostTime h_tx);
 
-  /// When the counter of this life read n. What it works out for that serves the next crossing,
-  /// too: stamps may differ, by less than their noise, with how often it is asked. Absent where too
-  /// little is known of that life, and for lives before the present one: the offline clock has
-  /// those.
+  /// The time at which the counter of this boot read n. The computation is kept for the next
+  /// crossing, so stamps may depend on how often this is called, by less than their noise. Absent
+  /// if too little is known, and for earlier boots, which the offline clock covers.
   std::optional<ClockStamp> host_from_node(BootKey boot, NodeTime n);
 
-  /// What happened since this was asked last: at most 64, `missed_events` counts the rest. Of
-  /// withdrawals none is lost: the last one then reaches over those that had no room.
+  /// The events since the last call, at most 64; `missed_events` counts the others. Withdrawals are
+  /// never lost: if there is no room, the last one is extended.
   std::vector<ClockEvent> take_events();
   std::uint64_t missed_events() const { return missed_events_; }
-  std::uint64_t late_crossings() const { return late_; }  // of earlier lives
+  std::uint64_t late_crossings() const { return late_; }  // crossings of earlier boots
 
-  /// Since when nothing is certified for a step just seen. While it has not settled.
+  /// The time since when nothing is certified, because of a recent step. Absent once the clock has
+  /// settled.
   std::optional<HostTime> unsettled_since() const {
     return settles_ ? std::optional(piece_->begins()) : std::nullopt;
   }
-  /// The stretch of the counter that is being told; nullptr before the first frame.
+  /// The current piece of the counter; nullptr before the first frame.
   const ClockPiece* piece() const { return piece_ ? &*piece_ : nullptr; }
 
  private:
@@ -64,12 +64,12 @@ class LiveClock {
   Assumptions assumptions_;
   std::optional<ClockPiece> piece_;
   BootKey boot_ = 0;
-  std::array<BootKey, 256> earlier_{};  // lives
+  std::array<BootKey, 256> earlier_{};  // boots before the present one
   std::size_t lives_ = 0;
   HostTime newest_ = HostTime::min();
-  std::optional<HostTime> stepped_;  // last, in this life
-  bool replaced_ = false;            // the piece, by the newest frame
-  std::optional<HostTime> settles_;  // if there is no other
+  std::optional<HostTime> stepped_;  // the latest step in this boot
+  bool replaced_ = false;            // the newest frame has replaced the piece
+  std::optional<HostTime> settles_;  // time at which the clock settles if there is no other step
   std::uint32_t routes_told_ = 0;
   std::uint64_t late_ = 0;
   std::vector<ClockEvent> events_;

@@ -9,15 +9,19 @@ namespace kinalign {
 
 namespace {
 
-constexpr double floors_known_after_s = 8.0;  // before a route's floors are known
+constexpr double floors_known_after_s = 8.0;  // time until the floors of a route are known
 constexpr std::uint64_t floors_known_from_points = 100;
-constexpr double gaps_off = 20.0;      // a floor's usual gaps that make a bound stand apart, …
-constexpr double least_off_s = 20e-6;  // … and at least this
-constexpr double wander = 0.2e-6;      // of a slope between two routes
-constexpr double alike_round_trips = 8.0;  // of round trips before and behind a step
+// A bound stands apart if its distance exceeds a floor's usual gaps by this factor.
+constexpr double gaps_off = 20.0;
+constexpr double least_off_s = 20e-6;  // smallest such distance
+constexpr double wander = 0.2e-6;      // possible difference of the slopes on two routes
+// Tolerance of the round trips before and after a step, in units of their noise.
+constexpr double alike_round_trips = 8.0;
 constexpr double step_deviations = 20.0;
-constexpr std::uint64_t few_points = 64;  // of a route: each one is told apart
-constexpr double far_gaps = 8.0;          // above a floor, where a bound says nothing of it: e^-8
+// A route with fewer points is young: its middle is computed anew for each bound.
+constexpr std::uint64_t few_points = 64;
+// A bound more than this many gaps above the floor gives no information about the floor: e^-8.
+constexpr double far_gaps = 8.0;
 constexpr std::uint32_t most_unseen = 4;
 constexpr double stale_middle_s = 1.0, stale_answer_s = 0.25;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
@@ -33,6 +37,8 @@ void OffsetEstimate::add_to_route(Side side, OffsetBound bound) {
   route_.add(side, bound, middle_);
 }
 
+/// Adds a bound to the route, unless it lies so far off the floor that it may belong to another
+/// route.
 void OffsetEstimate::add(const Bound& b) {
   const OffsetBound bound = from_above(b);
   RecentBounds& recent = this->recent(b.side);
@@ -55,7 +61,8 @@ void OffsetEstimate::add(const Bound& b) {
   look(b.s, !(excess * density > far_gaps));
 }
 
-/// Where the middle is, anew, once enough bounds have said something of it.
+/// Computes the middle again once enough informative bounds have come. `said`: this bound is
+/// informative.
 void OffsetEstimate::look(double s, bool said) {
   if (!route_.bounded()) return;
   const bool young = route_.points() < few_points;
@@ -68,8 +75,9 @@ void OffsetEstimate::refresh(double t) {
   unseen_ = 0;
 }
 
-/// The route's middle, moved by what the joint says against what its own round trip allows: extra
-/// delays of a route are as likely to be all up as all down or any share between.
+/// The route's middle, shifted towards the value at the joint, weighted against the range of the
+/// route's own round trip. The extra delay of a route may lie in either direction or be divided
+/// between both; all shares are equally likely.
 Middle OffsetEstimate::joined(const Middle& middle) const {
   if (!joint_) return middle;
   const Middle there = route_.middle_elsewhere(joint_->s, middle);
@@ -84,6 +92,7 @@ Middle OffsetEstimate::joined(const Middle& middle) const {
   return moved;
 }
 
+/// Without bounds of both kinds on the present route, the offset at the joint is extrapolated.
 std::optional<Middle> OffsetEstimate::at(double t) {
   if (route_.bounded()) {
     if (unseen_ > 0 || std::abs(t - middle_.t) > stale_answer_s) refresh(t);
@@ -97,7 +106,8 @@ std::optional<Middle> OffsetEstimate::at(double t) {
   return middle;
 }
 
-/// Asked once the floors of the present route are known.
+/// Decides whether the counter stepped at the change of route. Called once the floors of the
+/// present route are known.
 void OffsetEstimate::judge_change(double s) {
   if (!joint_ || joint_->judged) return;
   refresh(s);
@@ -115,7 +125,7 @@ double OffsetEstimate::least_round_trip() const {
   return joint_ ? std::min(least_round_trip_, middle_.round_trip) : middle_.round_trip;
 }
 
-/// The offset is carried over s.
+/// Carries the offset over s to a new route.
 void OffsetEstimate::join_routes(double s) {
   const Middle old = *at(s);
   least_round_trip_ = joint_ ? std::min(least_round_trip_, old.round_trip) : old.round_trip;
@@ -125,7 +135,7 @@ void OffsetEstimate::join_routes(double s) {
   route_ = Route({old.slope, route_.belief().deviation + wander});
 }
 
-/// The first guess at the new floors: through the lowest points behind s.
+/// The first guess at the new floors: through the lowest points after s.
 void OffsetEstimate::guess_floors(double s, const Middle& before) {
   const auto risen = [&](Side side) {
     const FloorLine floor = before.floor(side);
@@ -142,7 +152,7 @@ void OffsetEstimate::guess_floors(double s, const Middle& before) {
   middle_.above_density = middle_.below_density = 0.0;
 }
 
-/// What came after s is of a new route.
+/// Begins a new route with the bounds after s.
 void OffsetEstimate::change_route(double s) {
   for (const RecentBounds& recent : recent_) s = std::min(s, recent.before_held().value_or(s));
   join_routes(s);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The likeliest offset between two clocks over changes of the packets' route. What a change of
-// route does to the delays of each direction can't be told from them; but x(t) itself goes on
-// without a jump, and so the offset is carried over from the route with the shortest round trip.
+// The likeliest offset between two clocks, also when the packets' route changes. The packets don't
+// show how a change of route affects the delays of each direction. But x(t) itself has no jump, so
+// the offset is carried over from the route with the shortest round trip.
 #pragma once
 
 #include "kinalign/clock/live/recent_bounds.h"
@@ -13,12 +13,12 @@
 
 namespace kinalign {
 
-/// The moment when a route changed.
+/// The moment of a change of route.
 struct RouteChange {
   double s = 0.0;
-  /// Known some seconds later. The round trip is what it was, to a hair, and the floors moved
-  /// against each other by so much, s: then it was the counter that stepped. A route that is as
-  /// much longer one way as it is shorter the other would look the same, which is unlikely.
+  /// Set some seconds later, s. If the round trip is almost unchanged and the floors moved against
+  /// each other by this amount, the counter has stepped. A route that is longer one way and equally
+  /// shorter the other way would look the same, but is unlikely.
   std::optional<double> step;
 };
 
@@ -26,23 +26,23 @@ class OffsetEstimate {
  public:
   explicit OffsetEstimate(SlopeBelief prior = {}) : route_(prior) {}
 
-  /// Nearly in order of s.
+  /// Bounds must come nearly in order of s.
   void add(const Bound& bound);
 
   /// Absent until there is a bound of each kind.
   std::optional<Middle> at(double t);
   SlopeBelief slope() const { return route_.belief(); }
-  /// Between the floors, of the shortest route so far, s.
+  /// Distance between the floors of the shortest route so far, s.
   double least_round_trip() const;
   const std::optional<RouteChange>& last_change() const { return last_change_; }
   std::uint32_t changes() const { return changes_; }
 
  private:
-  /// Where the present route was joined to the ones before.
+  /// The point at which the present route was joined to the earlier ones.
   struct Joint {
     double s = 0.0, x = 0.0, variance = 0.0;
-    double round_trip = 0.0, floor_deviation = 0.0;  // of the route before
-    bool judged = false;                             // whether it was the counter that stepped
+    double round_trip = 0.0, floor_deviation = 0.0;  // the earlier route's
+    bool judged = false;  // judge_change() has looked for a step of the counter
   };
 
   void add_to_route(Side side, OffsetBound bound);
@@ -57,12 +57,12 @@ class OffsetEstimate {
   void judge_change(double s);
 
   Route route_;
-  Middle middle_;                // of the route alone; its lines are the floors
-  std::uint32_t unseen_ = 0;     // bounds since then
+  Middle middle_;                // middle of the present route alone; its lines are the floors
+  std::uint32_t unseen_ = 0;     // bounds since `middle_` was computed
   std::optional<double> since_;  // first bound of the route
   std::array<RecentBounds, 2> recent_;
   std::optional<Joint> joint_;
-  double least_round_trip_ = 0.0;  // of the routes before
+  double least_round_trip_ = 0.0;  // over the earlier routes
   std::optional<RouteChange> last_change_;
   std::uint32_t changes_ = 0;
 };

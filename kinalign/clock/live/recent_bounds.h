@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounds of one direction of the last seconds, watched for a floor that has moved.
+// Keeps the bounds of one direction over the last seconds and finds a floor that has moved.
 #pragma once
 
 #include "kinalign/clock/live/floor.h"
@@ -11,34 +11,35 @@
 
 namespace kinalign {
 
-/// Where a bound lies when it comes, by the floor as it is known then.
+/// Position of a bound on arrival, relative to the floor as it is known then.
 enum class Standing : std::uint8_t {
-  held,   // so far below that it is kept out of the route until more is known
+  held,   // far below: kept out of the route until more is known
   usual,  // near the floor
-  above   // clearly above, as it is for a delayed packet, and for each of a longer route
+  above   // clearly above, as for a delayed packet or for every packet of a longer route
 };
 
 class RecentBounds {
  public:
   void add(OffsetBound bound, Standing standing);
 
-  /// If all of the last second (or three, or nine) lie around another floor than `line`: the moment
-  /// between the last one of the old floor and the first of the new. `counts`: how the excess lies
-  /// that was seen on the old floor. Found within a few bounds.
+  /// Finds a new floor: all bounds of the last second (or three, or nine) lie around another line
+  /// than `line`. Returns the moment between the last bound of the old floor and the first of the
+  /// new. `counts`: histogram of the delays on the old floor. Detects a change within a few bounds.
   std::optional<double> moved(const FloorLine& line, const ExcessCounts& counts) const;
 
-  /// Whether fewer came around s than usually do: the longest step over it against the mean one.
+  /// True if there is an unusually long gap around s, compared with the mean gap.
   bool silent_around(double s) const;
 
-  /// The moment before the first held bound.
+  /// The moment before the first bound of standing `held`.
   std::optional<double> before_held() const;
 
-  /// A held bound that nothing followed within nine seconds: it is taken for one of the route.
+  /// Returns a bound of standing `held` if it did not start a new floor within nine seconds: it
+  /// then counts as one of the route.
   std::optional<OffsetBound> release(double s);
 
-  /// How many of the newest came behind s.
+  /// Number of the newest bounds that come after s.
   std::size_t behind(double s) const;
-  const OffsetBound& newest(std::size_t i) const { return entry(i).bound; }  // 0: the last one
+  const OffsetBound& newest(std::size_t i) const { return entry(i).bound; }  // 0: the latest one
 
  private:
   struct Entry {
@@ -49,7 +50,7 @@ class RecentBounds {
   const Entry& entry(std::size_t newest) const {
     return entries_[(next_ + capacity - 1 - newest) % capacity];
   }
-  /// Of some of the newest: how many, and the least delay above a floor.
+  /// Some of the newest bounds: their number, and their least delay above a floor.
   struct Level {
     std::size_t points = 0;
     double least = 0.0;
@@ -60,8 +61,8 @@ class RecentBounds {
 
   std::array<Entry, capacity> entries_{};
   std::size_t next_ = 0, size_ = 0;
-  std::size_t above_run_ = 0;   // newest in a row that stand above
-  std::size_t since_held_ = 0;  // newest since the first held one; 0: none is
+  std::size_t above_run_ = 0;   // number of newest bounds in a row that stand above
+  std::size_t since_held_ = 0;  // number of newest bounds since the first held one; 0: none is held
 };
 
 }  // namespace kinalign

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delays stand so densely above their floor, a density each second of delay, that a floor is likely
-// by exp(density * height) up to the lowest point, and impossible above it. With the heights of
-// both floors unknown a slope b is likely by exp(density * g(b)), g being the gap that it leaves
-// between the hulls: its peak is the widest line (corridor.h), and this is the mean.
+// Delays above a floor have a density, in points per second of delay. A height of the floor is then
+// likely by exp(density * height) up to the lowest point, and impossible above it. Integrating over
+// the heights of both floors, a slope b is likely by exp(density * g(b)), where g is the gap
+// between the hulls. The peak of g is the widest line (corridor.h); this file computes the mean.
 #include "kinalign/clock/live/route.h"
 
 #include "kinalign/clock/assumptions.h"
@@ -16,12 +16,13 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t grid = 24;  // slopes that are averaged over, …
-constexpr double reach = 5.0;     // … this many deviations to each side
+constexpr std::size_t grid = 24;  // number of slopes in the average
+constexpr double reach = 5.0;     // range of these slopes, in deviations to each side
 constexpr int most_rounds = 24;
-constexpr double least_deviation = 1e-15;  // of a slope: a microsecond in thirty years
-constexpr double far_beyond = 1e4;         // nats: sharp floors may speak against it by hundreds
+constexpr double least_deviation = 1e-15;  // slope: a microsecond in thirty years
+constexpr double far_beyond = 1e4;         // nats; evidence from sharp floors may reach hundreds
 
+/// The grid of slopes with their results; arrays [grid].
 struct Slopes {
   std::array<double, grid> slope{}, middle{}, gap{}, likelihood{};
   std::size_t likeliest = 0;
@@ -33,19 +34,20 @@ struct Evidence {
   double t, density;
 };
 
-/// How unlikely a slope is before any packet: a few crystals are far worse than most, none is worse
-/// than 100 ppm.
+/// Negative log prior of a slope, in nats: a few crystals are far worse than most, and none is
+/// worse than 100 ppm.
 double surprise(double slope, const SlopeBelief& prior) {
   const double off = std::abs(slope - prior.mean) / prior.deviation;
   const double beyond = std::max(0.0, std::abs(slope) - greatest_rate) / SlopeBelief{}.deviation;
   return (off < 2.0 ? off * off / 2.0 : 2.0 * off - 2.0) + far_beyond * beyond * beyond;
 }
 
+/// Likelihood of each slope on the grid, relative to the greatest.
 Slopes weigh(const Evidence& e, const SlopeBelief& prior, const SlopeBelief& around) {
   Slopes s;
   const double first = around.mean - reach * around.deviation;
   const double step = 2.0 * reach * around.deviation / (grid - 1);
-  std::array<double, grid> above{}, below{};  // the lower bounds mirrored: their slopes fall
+  std::array<double, grid> above{}, below{};  // the lower bounds are mirrored: their slopes fall
   e.above.bounds_at(e.t, first, step, above);
   e.below.bounds_at(e.t, -first - step * (grid - 1), step, below);
   for (std::size_t i = 0; i < grid; ++i) {
@@ -78,7 +80,7 @@ Moments moments(const std::array<double, grid>& values, const std::array<double,
   return {first, std::sqrt(second / sum)};
 }
 
-/// Where to look again if the grid did not fit what was found; nothing if it did.
+/// A better position and width of the grid if it did not fit the result; empty if it did.
 std::optional<SlopeBelief> better_grid(const Slopes& s, const Moments& found, double deviation) {
   const double step = 2.0 * reach * deviation / (grid - 1);
   if (s.likeliest <= 1 || s.likeliest >= grid - 2) {
@@ -139,7 +141,7 @@ Middle Route::average(double t, const Middle& known, SlopeBelief& around) const 
     middle.t = t;
     middle.slope = slope.mean;
     middle.value = value.mean;
-    // A floor lies below its lowest point by a gap between points, on the average.
+    // On average a floor lies below its lowest point by one gap between points.
     middle.round_trip = moments(s.gap, s.likelihood).mean - above_gap - below_gap;
     middle.deviation =
         sharp ? std::hypot(value.deviation, std::hypot(above_gap, below_gap) / 2.0) : 1.0;

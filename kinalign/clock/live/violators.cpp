@@ -8,8 +8,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t few_crossings = 8;  // of a node that says little
-constexpr double overtaken_s = 1.0;         // what came so late may be of before a step
+constexpr std::uint64_t few_crossings = 8;  // limit for a node that rarely sends
+constexpr double overtaken_s = 1.0;  // a crossing that is so late may come from before a step
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Crossings that the certificate excludes. Such a packet lies, or the counter stepped: if it lies,
-// a later crossing can't go with it; what nothing speaks against for a while was true.
+// Keeps crossings that contradict the certificate. Either such a packet is wrong or the counter
+// stepped. If it is wrong, a later crossing contradicts it. If nothing contradicts it for a while,
+// it is believed.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -13,40 +14,42 @@
 
 namespace kinalign {
 
-/// One way of an exchange: a frame that left at n and arrived at h bounds the offset from above, a
-/// reply that left at h and arrived at n from below.
+/// One direction of an exchange. A frame that left at n and arrived at h bounds the offset from
+/// above; a reply that left at h and arrived at n bounds it from below.
 struct Crossing {
   Side side = Side::above;
   NodeTime n{};
   HostTime h{};
-  HostTime heard{};  // when the frame arrived that told of it
+  HostTime heard{};  // arrival of the frame that reported it
 };
 
+/// A crossing that contradicts the certificate.
 struct Violator {
   Crossing crossing;
   Bound bound;
-  double amount = 0.0;       // beyond the certificate, s
-  std::uint64_t number = 0;  // of the crossings of its piece
+  double amount = 0.0;       // distance to the certificate, s
+  std::uint64_t number = 0;  // its number among the crossings of the piece
 };
 
-/// Whether two bounds leave no way for a function of at most this rate.
+/// True if no function with at most this rate satisfies both bounds.
 bool contradict(const Bound& a, const Bound& b, double rate);
 
 class Violators {
  public:
-  static constexpr double tolerated_s = 5e-6;  // counters of 1 us, both ways, and what reads them
+  /// For counters of 1 us on both sides and their reading.
+  static constexpr double tolerated_s = 5e-6;
   static constexpr Duration wait = std::chrono::seconds(5);
 
-  /// There must be room.
+  /// Call only while full() is false.
   void add(const Violator& violator);
-  /// Drops those that a bound, of more than a second later, which the certificate takes can't go
-  /// with.
+  /// Drops the violators that contradict `taken`, a bound that agrees with the certificate and is
+  /// more than a second later.
   void drop_excluded_by(const Bound& taken, double rate);
   void clear() { count_ = 0; }
 
   std::span<const Violator> pending() const { return {violators_.data(), count_}; }
   bool full() const { return count_ == violators_.size(); }
-  /// Whether one has been pending for so long that it is to be believed.
+  /// True if a violator has been pending for so long that it must be believed.
   bool overdue(HostTime now, std::uint64_t crossings) const;
 
  private:

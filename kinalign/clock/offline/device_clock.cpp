@@ -14,15 +14,15 @@ namespace kinalign {
 
 namespace {
 
-/// A sample is so much older than its frame at most; else it is told by the piece before.
+/// Greatest age of a sample in a frame; an older one falls under the piece before.
 constexpr Duration oldest_sample = std::chrono::seconds(2);
 
-/// Chosen: twice what a stated rate may be off (recording/streams/counted_clock.h). A wild counter
-/// has any.
+/// Chosen: twice the error allowed for a stated rate (recording/streams/counted_clock.h). A faulty
+/// counter may have any rate.
 constexpr double most_drift_ppm = 20'000.0;
 
-/// `life`: indexes into `exchanges`, of one life. An hour of a device is 20 MB of exchanges, so
-/// they are not copied where they are neighbours.
+/// Fits the exchanges of one boot; `life` has their indices in `exchanges`. An hour of a device
+/// takes 20 MB, so exchanges that follow one another are not copied.
 HostFromNode fit_one_way(std::span<const Exchange> exchanges, std::span<const std::size_t> life) {
   if (life.empty()) return {};
   if (life.back() - life.front() + 1 == life.size()) {
@@ -34,11 +34,11 @@ HostFromNode fit_one_way(std::span<const Exchange> exchanges, std::span<const st
   return fit_one_way_clock(heard);
 }
 
-/// Pieces without replies get their clock from the arrivals alone.
+/// Gives pieces without replies a clock from their arrivals alone.
 HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
   HostFromNode out;
   out.doubtful = std::move(model.doubtful);
-  std::unordered_map<BootKey, std::vector<std::size_t>> lives;  // without replies
+  std::unordered_map<BootKey, std::vector<std::size_t>> lives;  // boots without replies
   for (const ClockPieceModel& piece : model.pieces) {
     if (piece.knots.empty()) lives[piece.boot];
   }
@@ -68,6 +68,7 @@ HostTime host_at(const ClockKnot& knot) {
   return HostTime{knot.node.time_since_epoch() + knot.offset};
 }
 
+/// True if a step or a doubtful stretch lies at or near the line between two knots.
 bool is_doubtful(const HostFromNode& model, const ClockPieceModel& piece, const ClockKnot& a,
                  const ClockKnot& b) {
   constexpr Duration around = std::chrono::seconds(1);
@@ -79,14 +80,14 @@ bool is_doubtful(const HostFromNode& model, const ClockPieceModel& piece, const 
   });
 }
 
-/// So far the ends are from the middle of what lies between two knots.
+/// Greatest distance from the likeliest offset to an end of the interval between two knots.
 Duration half_width_of(const ClockKnot& a, const ClockKnot& b) {
   return std::max({a.offset - a.least, a.greatest - a.offset, b.offset - b.least,
                    b.greatest - b.offset}) +
          counter_resolution;
 }
 
-/// A piece of a straight line for each two knots.
+/// Appends a straight line for each pair of neighbouring knots.
 void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Duration moved,
                   Duration utc_minus_host, TimeModel& time) {
   for (std::size_t k = 0; k < piece.knots.size(); ++k) {
@@ -98,7 +99,7 @@ void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Durat
     if (b.node > a.node) {
       line.drift_ppm = 1e6 * seconds(b.offset - a.offset) / seconds(b.node - a.node);
     } else if (k > 0) {
-      line.drift_ppm = time.pieces.back().drift_ppm;  // behind the last knot as before it
+      line.drift_ppm = time.pieces.back().drift_ppm;  // the last knot continues the line before it
     }
     if (std::abs(line.drift_ppm) > most_drift_ppm) line.drift_ppm = 0.0;
     if (piece.certified && !is_doubtful(model, piece, a, b)) line.half_width = half_width_of(a, b);
@@ -106,8 +107,8 @@ void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Durat
   }
 }
 
-/// Samples may be older than the first frame: the first line begins so much earlier, but not before
-/// what the last piece told.
+/// Samples may be older than the first frame, so the first line starts that much earlier, but not
+/// before the end of the previous piece.
 void reach_back(TimeModel& time, std::size_t first, std::optional<Time> told) {
   TimeModelPiece& line = time.pieces[first];
   Time begin = line.begin - oldest_sample;
@@ -118,9 +119,9 @@ void reach_back(TimeModel& time, std::size_t first, std::optional<Time> told) {
   line.begin = begin;
 }
 
-/// From line `first` on, that goes on in stamps where the one in front of it ends: a guessed line
-/// that begins before that one's end begins there, since later stamps are of later moments,
-/// whatever arrivals say.
+/// Keeps UTC from falling, from line `first` on, where the stamps continue those of the line
+/// before. A guessed line that would begin before the end of the previous line begins at that end.
+/// Later stamps belong to later moments, whatever the arrivals suggest.
 void keep_rising(TimeModel& time, std::size_t first) {
   for (std::size_t i = std::max<std::size_t>(first, 1); i < time.pieces.size(); ++i) {
     TimeModelPiece& line = time.pieces[i];
@@ -132,7 +133,8 @@ void keep_rising(TimeModel& time, std::size_t first) {
   }
 }
 
-/// The least move that keeps stamps rising: the last piece's, or on by what the host counted.
+/// The smallest shift that keeps stamps rising: that of the last piece, or one by which the stamps
+/// continue for as long as the host counted.
 Duration move_of(const ClockPieceModel& piece, const ClockPieceModel& before, Duration moved) {
   const ClockKnot &end = before.knots.back(), &begin = piece.knots.front();
   if (piece.boot == before.boot && begin.node > end.node) return moved;
@@ -147,7 +149,7 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
   out.model = with_one_way(fit_offline_clock(exchanges).model, exchanges);
   out.time.pieces.clear();
   const ClockPieceModel* before = nullptr;
-  std::optional<Time> told;  // the last stamp of the piece before
+  std::optional<Time> told;  // the last stamp of the previous piece
   for (const ClockPieceModel& piece : out.model.pieces) {
     const Duration last_moved = out.moved.empty() ? Duration{0} : out.moved.back();
     Duration moved = last_moved;
@@ -176,8 +178,8 @@ std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n,
   const auto& pieces = clock.model.pieces;
   std::optional<std::size_t> found;
   for (const std::size_t p : life->second) {
-    // What came late belongs to the last piece of its life, what was held at its start to the
-    // first.
+    // A late frame belongs to the last piece of its boot, and an early one, delayed at the start,
+    // to the first.
     if (found && h_rx < pieces[p].first) continue;
     found = p;
     if (h_rx <= pieces[p].last) break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of one device over a whole recording, as a stream carries it: its counter as stamps on
-// one axis that goes on over restarts, and the model from these to UTC.
+// The clock of one device over a whole recording, in the form of a stream. The counter's readings
+// become stamps on one axis that continues over restarts, and a model maps these stamps to UTC.
 #pragma once
 
 #include "kinalign/clock/host_from_node.h"
@@ -15,20 +15,23 @@
 namespace kinalign {
 
 struct DeviceClock {
-  HostFromNode model;  // pieces without any knots are of nothing that was heard
-  /// Of each piece: what is added to its counter. 0 up to the first restart or step back: stamps
-  /// are the counter's readings. Behind one they go on as long after as the host counted.
+  HostFromNode model;  // pieces without knots: nothing is known of them
+  /// For each piece: the duration added to its counter. It is 0 up to the first restart or step
+  /// back, so stamps equal readings. After one, stamps continue by as much as the host's clock
+  /// advanced.
   std::vector<Duration> moved;
-  std::unordered_map<BootKey, std::vector<std::size_t>> pieces_of;  // of a life, with knots
-  TimeModel time;  // from stamps to UTC; half-widths where a piece is certified
+  /// For each boot, its pieces with knots.
+  std::unordered_map<BootKey, std::vector<std::size_t>> pieces_of;
+  TimeModel time;  // from stamps to UTC; half-widths are set where a piece is certified
 };
 
-/// Exchanges in the order of arrival. Lives that were answered are certified (offline_clock.h), of
-/// others the earliest arrivals speak (one_way_clock.h). `utc_minus_host` is the recording's.
+/// Exchanges must be in the order of arrival. Boots with replies are certified (offline_clock.h).
+/// For others the earliest arrivals are used (one_way_clock.h). `utc_minus_host` belongs to the
+/// recording.
 DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus_host);
 
-/// The stamp of the counter's reading n in what arrived at h_rx, by the piece of that life that is
-/// nearest. Absent where nothing of that life was heard.
+/// The stamp of reading n in a frame that arrived at h_rx, by the nearest piece of that boot.
+/// Absent if there is no such piece.
 std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n, HostTime h_rx);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second half: each piece that the walk has found is fitted to all that is left of it.
+// Second step of the offline clock: each piece found by the walk is fitted to all of its bounds.
 #include "kinalign/clock/offline/offline_clock.h"
 
 #include "kinalign/clock/bound.h"
@@ -16,10 +16,10 @@ namespace kinalign {
 namespace {
 
 constexpr double knot_s = 1.0;
-constexpr double longest_wait_s = 60.0;    // of a packet
-constexpr double longest_offline_s = 1e6;  // eleven days, of a knot a second
+constexpr double longest_wait_s = 60.0;    // longest delay of a packet
+constexpr double longest_offline_s = 1e6;  // eleven days; there is a knot for each second
 
-/// The bounds of a piece in seconds from its first exchange.
+/// The bounds of a piece, in seconds from its first exchange.
 struct PieceBounds {
   ClockOrigin origin;
   std::vector<Bound> bounds;
@@ -32,7 +32,7 @@ struct PieceBounds {
 };
 
 Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumptions) {
-  std::sort(bounds.begin(), bounds.end(),  // appending is cheap, inserting is not
+  std::sort(bounds.begin(), bounds.end(),  // adding at the end is cheap, inserting is not
             [](const Bound& a, const Bound& b) { return a.s < b.s; });
   Certificate certificate(assumptions);
   for (const Bound& b : bounds) certificate.add(b);
@@ -41,9 +41,11 @@ Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumpt
 
 struct Knots {
   std::vector<ClockKnot> knots;
-  bool sound = true;  // bounds go together everywhere, and leave what there is at least
+  bool sound = true;  // the bounds agree everywhere and leave at least the least width
 };
 
+/// A knot a second, with the likeliest offset and the interval. The interval is widened for the
+/// curvature between knots.
 Knots knots_of(const PieceBounds& piece, const Certificate& certificate, OfflineEstimate& estimate,
                double least_width) {
   double begin = piece.bounds.front().s, end = begin;
@@ -69,7 +71,8 @@ Knots knots_of(const PieceBounds& piece, const Certificate& certificate, Offline
   return out;
 }
 
-/// Under the assumptions of the live clock then: a piece that contradicts them has no certificate.
+/// Fits a piece under the assumptions that the live clock had for it. A piece that contradicts them
+/// has no certificate.
 void fit(const PieceBounds& piece, double least_width, const Assumptions& assumptions,
          ClockPieceModel& model) {
   OfflineEstimate estimate(piece.bounds);
@@ -82,8 +85,9 @@ void fit(const PieceBounds& piece, double least_width, const Assumptions& assump
   model.certified = found.sound && certificate.bounded();
 }
 
-/// Whether a counter counted about as long as the host did: a piece of two frames has no
-/// certificate yet that would have left out a wild one, and knots are one a second.
+/// True if the counter advanced about as far as the host's clock. A piece of two frames has no
+/// certificate that could exclude a faulty counter, and there would be a knot for each second of
+/// it.
 bool counted_like_the_host(const PieceBounds& piece) {
   const auto [first, last] =
       std::minmax_element(piece.bounds.begin(), piece.bounds.end(),
@@ -96,7 +100,7 @@ bool counted_like_the_host(const PieceBounds& piece) {
   return node < 1.01 * host + longest_wait_s && node < longest_offline_s;
 }
 
-/// All exchanges of a piece but those that can't be and those that are in doubt.
+/// The exchanges of a piece, without those left out and those in doubt.
 PieceBounds collect(const OfflineWalk& walk, std::size_t p,
                     std::span<const DoubtfulStretch> doubtful, ClockPieceModel& model) {
   PieceBounds piece;
@@ -115,7 +119,7 @@ PieceBounds collect(const OfflineWalk& walk, std::size_t p,
     model.violators += (walk.up_left_out[i] ? 1U : 0U) + (walk.echo_left_out[i] ? 1U : 0U);
     if (is_in(doubtful, e.h_rx)) continue;
     if (!walk.up_left_out[i]) piece.add(Side::above, e.n_tx, e.h_rx);
-    // What the first one echoes reached the node before the counter stepped.
+    // The echo of the first frame reached the node before the counter stepped.
     if (e.echo && i != first && !walk.echo_left_out[i])
       piece.add(Side::below, e.echo->n_rx, e.echo->h_tx);
   }
@@ -133,7 +137,7 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
   for (std::size_t p = 0; p < walk.pieces.size(); ++p) {
     ClockPieceModel& model = out.model.pieces.emplace_back();
     PieceBounds piece = collect(walk, p, walk.doubtful, model);
-    const bool in_doubt = piece.bounds.empty();  // something is likeliest all the same
+    const bool in_doubt = piece.bounds.empty();  // even then there is a likeliest offset
     if (in_doubt) piece = collect(walk, p, {}, model);
     if (piece.up > 0 && piece.down > 0 && counted_like_the_host(piece))
       fit(piece, walk.least_width, walk.pieces[p].assumptions, model);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of one node over a whole recording: what the live clock found, told again with all that
-// came later.
+// The clock of one node over a whole recording: the result of the live clock, computed again with
+// all later exchanges.
 #pragma once
 
 #include "kinalign/clock/host_from_node.h"
@@ -13,10 +13,10 @@ namespace kinalign {
 
 struct OfflineClock {
   HostFromNode model;
-  std::vector<ClockEvent> events;  // as the live clock has them, withdrawn stretches aside
+  std::vector<ClockEvent> events;  // events of the live clock, without the withdrawals
 };
 
-/// Exchanges in the order of arrival.
+/// Exchanges must be in the order of arrival.
 OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
                                const Assumptions& assumptions = {});
 

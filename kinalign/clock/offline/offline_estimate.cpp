@@ -14,19 +14,20 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double bin_s = 10.0;
 constexpr std::size_t lows_each = 12;
-constexpr std::size_t bins_around = 5;    // that tell how sharp a floor is
-constexpr int first_looks = 4;            // each moves the lines that the next one counts from
-constexpr std::size_t least_bounds = 20;  // of each kind, for a route of its own
-constexpr double same_crystal = 1e-6;     // by which slopes of two routes may differ
+constexpr std::size_t bins_around = 5;  // on each side; they tell how sharp a floor is
+constexpr int first_looks = 4;  // each one improves the lines from which the next one starts
+constexpr std::size_t least_bounds = 20;  // bounds of each kind, for a separate route
+constexpr double same_crystal = 1e-6;     // possible difference of the slopes of two routes
 constexpr double least_variance = 1e-14;
 
-/// Where routes changed, by a run through the bounds as they came, and the slope that was found
-/// before: it is one crystal, and a new route bends nothing.
+/// The changes of route, found by a pass through the bounds in their order, and the slope known
+/// before each. The crystal is the same on all routes, so the slope serves as prior.
 struct Changes {
   std::vector<double> at;
-  std::vector<SlopeBelief> slopes;  // of the routes before each change, and of the last
+  std::vector<SlopeBelief> slopes;  // on the routes before each change, and on the last route
 };
 
+/// Runs the live estimate through the bounds to find the changes of route.
 Changes find_changes(const std::vector<Bound>& bounds) {
   OffsetEstimate estimate;
   Changes changes;
@@ -51,10 +52,11 @@ std::size_t count(const std::vector<Bound>& bounds, Side side, double begin, dou
 
 struct Span {
   double begin = 0.0, end = 0.0;
-  double slope = 0.0;  // about
+  double slope = 0.0;  // approximate
 };
 
-/// The spans between changes. Short ones, in which a route was being changed, are left out.
+/// The spans between changes of route. Short ones, during which the route was changing, are left
+/// out.
 std::vector<Span> routes_between(const std::vector<Bound>& bounds, const Changes& changes) {
   double begin = bounds.front().s, end = begin;
   for (const Bound& b : bounds) {
@@ -75,6 +77,7 @@ std::vector<Span> routes_between(const std::vector<Bound>& bounds, const Changes
   return spans;
 }
 
+/// Keeps the lowest bounds, in rising order, after removing the slope.
 void keep_low(std::vector<OffsetBound>& lows, OffsetBound bound, double slope) {
   const auto lower = [slope](const OffsetBound& a, const OffsetBound& b) {
     return a.x - slope * a.s < b.x - slope * b.s;
@@ -116,7 +119,7 @@ void OfflineEstimate::add(Stretch& stretch, const Bound& b, double slope) {
   keep_low(up ? lows.above : lows.below, bound, up ? slope : -slope);
 }
 
-/// The middle of one route, with its floors as sharp as the lowest bounds around there say.
+/// The middle of one route; the lowest bounds around t tell how sharp its floors are.
 Middle OfflineEstimate::middle(const Stretch& stretch, double t) {
   Middle known = stretch.last;
   const auto bin = static_cast<std::size_t>(
@@ -133,8 +136,8 @@ Middle OfflineEstimate::middle(const Stretch& stretch, double t) {
   return stretch.route.middle_elsewhere(t, known);
 }
 
-/// Least squares over how far each route is to be moved: by as little as its round trip allows, so
-/// that the offset is continuous where routes change. The equations have three diagonals.
+/// Finds the shift of each route by least squares: small compared with the range of its round trip,
+/// and so that the offset is continuous at changes of route. The equations are tridiagonal.
 void OfflineEstimate::join() {
   const std::size_t n = stretches_.size();
   if (n < 2) return;

@@ -14,22 +14,24 @@ bool begins_piece(ClockEvent::Kind kind) {
          kind == Kind::settled || kind == Kind::host_backwards;
 }
 
-/// Arrivals of before the host's clock went back, with exchange i, and of behind that.
+/// The host's clock went back at exchange i. Arrivals that its clock shows twice are in doubt.
 void doubt_what_was_twice(OfflineWalk& walk, std::size_t i, const ClockEvent& event) {
   HostTime newest = event.begin;
   for (std::size_t k = i; k < walk.exchanges.size() && newest < event.end; ++k) {
-    if (walk.exchanges[k].h_rx < newest) break;  // it went back again
+    if (walk.exchanges[k].h_rx < newest) break;  // the host's clock went back again
     newest = walk.exchanges[k].h_rx;
   }
   const DoubtfulStretch twice{std::max(event.begin, walk.earliest), std::min(event.end, newest)};
   if (twice.begin <= twice.end) walk.doubtful.push_back(twice);
 }
 
-/// What happened with exchange i: pieces that begin reach back to where they do.
+/// Records an event of exchange i. Exchanges from the beginning of a new piece on are assigned to
+/// it.
 void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
           const ClockPiece& now) {
   if (event.kind == ClockEvent::Kind::withdrawn) {
-    const ClockEvent& why = walk.events.back();  // told before, but for what a reboot cuts short
+    // Reported before, except for a step that a reboot cut short.
+    const ClockEvent& why = walk.events.back();
     const HostTime end = begins_piece(why.kind) ? why.begin - Duration{1} : event.end;
     if (event.begin <= end) walk.doubtful.push_back({event.begin, end});
     return;
@@ -43,14 +45,16 @@ void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
   walk.pieces.push_back({now.assumptions(), now.certified_from()});
   const auto is_of_it = [&](std::size_t k) {
     const Exchange& e = walk.exchanges[k];
-    if (event.kind == ClockEvent::Kind::host_backwards) return k == i;  // what was is of that time
+    // Earlier exchanges keep their piece.
+    if (event.kind == ClockEvent::Kind::host_backwards) return k == i;
     return e.h_rx >= event.begin && (walk.late[k] || e.boot == event.boot);
   };
   for (std::size_t k = i + 1; k-- > 0 && is_of_it(k);) walk.piece[k] = next;
 }
 
-/// A crossing that can't be may be the first of a step that a reboot or the end cut short, or that
-/// was undone: live the five seconds before it are withdrawn, those behind it are in doubt as well.
+/// A crossing that was left out may be the first after a step that was undone, or that a reboot or
+/// the end cut short. The live clock withdraws the five seconds before it; the five seconds after
+/// it are in doubt as well.
 void doubt_behind_violators(OfflineWalk& walk) {
   for (std::size_t i = 0; i < walk.exchanges.size(); ++i) {
     if (!walk.up_left_out[i] && !walk.echo_left_out[i]) continue;
@@ -60,7 +64,7 @@ void doubt_behind_violators(OfflineWalk& walk) {
   }
 }
 
-/// Rising, without those that others reach over.
+/// Merges overlapping stretches; the result is in rising order.
 std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
   std::vector<DoubtfulStretch> out;
@@ -74,7 +78,7 @@ std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
   return out;
 }
 
-/// What the clock says of exchange i, or of its echo.
+/// Records the clock's events of exchange i, or of its echo.
 void hear(OfflineWalk& walk, std::size_t i, LiveClock& clock, Side of) {
   for (const ClockEvent& event : clock.take_events()) note(walk, i, event, of, *clock.piece());
 }
@@ -86,7 +90,7 @@ bool cuts_short(ClockEvent::Kind kind) {
 }  // namespace
 
 ExchangeRange range_of(const OfflineWalk& walk, std::size_t p) {
-  const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // rising
+  const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // sorted
   return {static_cast<std::size_t>(first - walk.piece.begin()),
           static_cast<std::size_t>(last - walk.piece.begin())};
 }
@@ -111,13 +115,13 @@ OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions&
     }
     hear(walk, i, clock, Side::above);
     walk.earliest = std::min(walk.earliest, e.h_rx);
-    if (unsettled && cuts_short(walk.events.back().kind))  // it never will settle
+    if (unsettled && cuts_short(walk.events.back().kind))  // the clock will not settle any more
       walk.doubtful.push_back({*unsettled, exchanges[i - 1].h_rx});
     if (e.echo) {
       clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
       hear(walk, i, clock, Side::below);
     }
-    // Its estimate is refreshed when it is asked: this one sees what one in use does.
+    // A call refreshes the estimate, so this walk sees the same as a clock in use.
     static_cast<void>(clock.host_from_node(e.boot, e.n_tx));
   }
   if (const ClockPiece* last = clock.piece()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first half of the offline clock: the live one walks through all exchanges of a recording and
-// says where pieces begin, which stretches are in doubt and what can't be.
+// First step of the offline clock. The live clock walks through all exchanges of a recording and
+// finds the beginnings of pieces, the doubtful stretches and the crossings to leave out.
 #pragma once
 
 #include "kinalign/clock/live/live_clock.h"
@@ -12,27 +12,29 @@
 namespace kinalign {
 
 struct OfflineWalk {
-  /// Of a piece, as the live clock had it when it began.
+  /// State of the live clock at the beginning of a piece.
   struct Piece {
     Assumptions assumptions;
     HostTime certified_from;
   };
   std::span<const Exchange> exchanges;
   std::vector<ClockEvent> events;
-  std::vector<DoubtfulStretch> doubtful;  // rising, apart from each other
+  std::vector<DoubtfulStretch> doubtful;  // in rising order, without overlap
   std::vector<Piece> pieces;
-  // of each exchange:
-  std::vector<std::size_t> piece;                // rising
-  std::vector<bool> up_left_out, echo_left_out;  // it, or what it echoes, can't be
-  std::vector<bool> late;                        // its life was over when it came
-  HostTime earliest = HostTime::max();           // arrival, so far
-  double least_width = 0.0;  // s, that an interval can have: packets took no less, there and back
+  // For each exchange:
+  std::vector<std::size_t> piece;  // index of its piece; never falls
+  /// The frame, or its echo, contradicts the certificate.
+  std::vector<bool> up_left_out, echo_left_out;
+  std::vector<bool> late;               // its boot was over when it arrived
+  HostTime earliest = HostTime::max();  // earliest arrival so far
+  /// s; least width of an interval: no packets were faster, both ways together.
+  double least_width = 0.0;
 };
 
-/// Exchanges in the order of arrival; they have to stay.
+/// Exchanges must be in the order of arrival, and must outlive the result.
 OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions& assumptions);
 
-/// The exchanges of piece p, which follow each other.
+/// The exchanges of piece p, which are consecutive.
 struct ExchangeRange {
   std::size_t begin = 0, end = 0;
 };

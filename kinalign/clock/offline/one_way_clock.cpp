@@ -14,23 +14,26 @@ namespace kinalign {
 namespace {
 
 constexpr double step_s = 1.0;
-constexpr double rate_known = 5e-6;  // chosen: so well the middle's edge tells it in half a minute
-// Chosen: delays of a busy radio vary by more, but not the least one of a second, for three.
+constexpr double rate_known = 5e-6;  // chosen: the edge of the hull under the middle gives the rate
+                                     // so well after half a minute
+// Chosen: on a busy radio link delays vary by more, but not the least delay of each of three
+// seconds.
 constexpr double leap_s = 0.05;
 constexpr std::size_t leap_seconds = 3, rate_seconds = 30;
 
-/// Exchanges [begin, end) of one life.
+/// Exchanges [begin, end) of one boot.
 struct Stretch {
   std::size_t begin = 0, end = 0;
 };
 
-/// The least bound of each second in which something came, as the device counts.
+/// The least bound of each second, by the device's clock, that had an arrival.
 struct Low {
-  std::size_t first = 0;  // exchange of that second
+  std::size_t first = 0;  // first exchange of that second
   std::int64_t second = 0;
   double s = 0.0, x = 0.0;
 };
 
+/// The lows of a stretch, in seconds from its first exchange.
 std::vector<Low> lows_of(std::span<const Exchange> exchanges, Stretch stretch) {
   const ClockOrigin origin{exchanges[stretch.begin].n_tx, exchanges[stretch.begin].h_rx};
   std::vector<Low> lows;
@@ -46,15 +49,15 @@ std::vector<Low> lows_of(std::span<const Exchange> exchanges, Stretch stretch) {
   return lows;
 }
 
-/// The lowest of three seconds: one in which all packets were held back tells no level.
+/// The lowest of three seconds. A single second, in which all packets were delayed, shows no level.
 const Low& level_at(const std::vector<Low>& lows, std::size_t from) {
   const auto begin = lows.begin() + static_cast<std::ptrdiff_t>(from);
   return *std::min_element(begin, begin + leap_seconds,
                            [](const Low& a, const Low& b) { return a.x < b.x; });
 }
 
-/// Whether the seconds from k on lie on another level than those before: all three of them, and on
-/// one side. The rate between is what half a minute before has.
+/// True if the three seconds from k on all lie on another level than those before, on the same
+/// side. The rate in between is that of the half minute before.
 bool leaps(const std::vector<Low>& lows, std::size_t first, std::size_t k) {
   if (k < first + leap_seconds || k + leap_seconds > lows.size()) return false;
   const Low& before = level_at(lows, k - leap_seconds);
@@ -70,8 +73,8 @@ bool leaps(const std::vector<Low>& lows, std::size_t first, std::size_t k) {
   return above == leap_seconds || below == leap_seconds;
 }
 
-/// Where within its second the level changed: in front of the greatest change from one exchange to
-/// the next.
+/// Position of the leap within its second: before the greatest change from one exchange to the
+/// next.
 std::size_t place_of_leap(std::span<const Exchange> exchanges, const Low& before, const Low& behind,
                           std::size_t end) {
   const auto level = [&](std::size_t i) {
@@ -90,6 +93,7 @@ std::size_t place_of_leap(std::span<const Exchange> exchanges, const Low& before
   return place;
 }
 
+/// Splits the exchanges of one boot at leaps.
 std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch life) {
   std::vector<Stretch> out;
   const std::vector<Low> lows = lows_of(exchanges, life);
@@ -107,8 +111,8 @@ std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch
   return out;
 }
 
-/// Every second, in which something came or beside one in which it did: over a silence, of which
-/// no sample is, there is a straight line.
+/// A knot at each second that had an arrival, and at its neighbours. A straight line spans a
+/// silence, which has no samples.
 std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOrigin& origin,
                              double begin, double end) {
   std::vector<std::int64_t> seconds;
@@ -148,8 +152,9 @@ ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double
     model.last = std::max(model.last, exchanges[i].h_rx);
   }
   model.up = stretch.end - stretch.begin;
-  // The edge of the hull under the middle tells the rate. At its ends a corner is whatever packet
-  // came there: the offset leaves that rate by no more than the rate may have changed meanwhile.
+  // The edge of the hull under the middle gives the rate. Near the ends of the piece, a corner is
+  // merely some packet that arrived there. The offset may deviate from that rate only by as much as
+  // the rate may have changed meanwhile.
   const double middle = straight.peak((begin + end) / 2.0).slope;
   const double rate = std::isfinite(middle) ? middle : 0.0;
   const double change = rate_known + curvature * (end - begin) / 2.0;

@@ -51,7 +51,8 @@ class RemovalPlanner {
   }
 
  private:
-  /// True also where it can't be found out and raw files are to go: looking at them then fails.
+  /// Also true if the check fails and raw files are to be removed: reading them then reports the
+  /// fault.
   bool has_raw(const TakeName& name) const {
     std::error_code fault;
     return fs::exists(folder_ + "/" + raw_folder(name), fault) || (with_raw_ && fault);
@@ -65,7 +66,7 @@ class RemovalPlanner {
       if (word == "sub-" + take.subject) out.insert(take);
     }
     if (with_raw_ && word.starts_with("sub-") && is_label(word.substr(4))) {
-      out.merge(takes_with_raw(word));  // of a run that was killed the raw files may be left alone
+      out.merge(takes_with_raw(word));  // a stopped run may have left only raw files
     }
     return out;
   }
@@ -86,8 +87,8 @@ class RemovalPlanner {
     return out;
   }
 
-  /// Notes what the takes that stay are made of. Another take may have been made, by hand, of the
-  /// raw files of one that goes.
+  /// Collects the inputs of the takes that stay: another take may have been made by hand from the
+  /// raw files of a removed one.
   Result<void> check_others(const std::set<TakeName>& wanted) {
     for (const auto& [name, there] : takes_) {
       if (!there.manifest || wanted.contains(name)) continue;
@@ -104,7 +105,7 @@ class RemovalPlanner {
     return {};
   }
 
-  /// The inputs of a take below sourcedata/, and what those that are links lead to.
+  /// The inputs of a take below sourcedata/; for links also the files that they lead to.
   Result<std::vector<std::string>> raw_places(const TakeName& name) const {
     std::vector<std::string> out;
     for (const TakeInput& input : KA_TRY(raw_files_of(files_, folder_, name))) {
@@ -118,7 +119,7 @@ class RemovalPlanner {
     return out;
   }
 
-  /// The manifest goes last: until then a removal that was killed can be run again.
+  /// The manifest is removed last: until then a stopped removal can be run again.
   Result<void> add_take(const TakeName& name) {
     add_file("report/" + to_string(name) + ".html");
     if (has_raw(name)) {
@@ -135,9 +136,9 @@ class RemovalPlanner {
     return {};
   }
 
-  /// Inputs that do not lie in the take's own folder of raw files: those of a corpus that was
-  /// unpacked, and the user's own, which stay. Further files go first, since they are found by way
-  /// of the file that they belong to.
+  /// Adds inputs outside the take's own folder of raw files: those of an unpacked corpus go, the
+  /// user's own stay. Further files are removed first, since they are found through the file that
+  /// they belong to.
   Result<void> add_inputs(const TakeName& name) {
     auto inputs = raw_files_of(files_, folder_, name);
     if (!inputs && with_raw_) {
@@ -146,7 +147,7 @@ class RemovalPlanner {
                            "and they stay)",
                            to_string(inputs.error())});
     }
-    if (!inputs) return {};  // the take goes all the same; `verify` names raw files that are left
+    if (!inputs) return {};  // the take is removed anyway; `verify` reports raw files that are left
     std::reverse(inputs->begin(), inputs->end());
     for (const TakeInput& input : *inputs) {
       const auto place = place_in_sourcedata(folder_, input.path);
@@ -184,7 +185,7 @@ class RemovalPlanner {
     if (kind == fs::file_type::regular) plan_.bytes += fs::file_size(whole, fault);
   }
 
-  /// No link is followed: what it leads to lies elsewhere.
+  /// Links are not followed: they lead to files elsewhere.
   Result<void> add_raw(const TakeName& name) {
     std::string folder = raw_folder(name);
     folder.pop_back();
@@ -218,9 +219,9 @@ class RemovalPlanner {
   const std::string& folder_;
   bool with_raw_;
   std::map<TakeName, TakeFiles> takes_;
-  std::set<std::string> needed_;         // places of what takes that stay are made of
-  std::set<std::string> seen_;           // raw files that were looked at
-  std::set<std::string> folders_above_;  // of raw files that go
+  std::set<std::string> needed_;         // inputs of the takes that stay
+  std::set<std::string> seen_;           // raw files checked already
+  std::set<std::string> folders_above_;  // parent folders of removed raw files
   RemovalPlan plan_;
 };
 
@@ -239,7 +240,7 @@ Result<void> remove_takes(FileSystem& files, const std::string& folder, const Re
     return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
   }
   for (const std::string& inner : plan.folders) {
-    std::error_code ignored;  // it is not empty, or not there
+    std::error_code ignored;  // not empty, or missing
     const std::string path = path_in(root, inner);
     if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
   }

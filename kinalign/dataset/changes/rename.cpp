@@ -34,12 +34,13 @@ std::string place(const std::string& folder, const TakeName& name, TakeFile file
   return folder + "/" + path_of(name, file);
 }
 
-// ---- what is to be done
+// ---- planning
 
 std::string journal_path(const std::string& folder) {
   return folder + "/" + std::string(unfinished_rename_file);
 }
 
+/// The journal of a rename, from which a stopped run can be finished.
 std::string journal_json(const RenamePlan& plan) {
   Json takes = Json::array();
   for (const auto& [from, to] : plan.takes) takes.push_back({to_string(from), to_string(to)});
@@ -52,6 +53,7 @@ std::string journal_json(const RenamePlan& plan) {
          "\n";
 }
 
+/// Reads the journal of a stopped rename.
 Result<RenamePlan> read_journal(FileSystem& files, const std::string& path) {
   const Failure broken(Error{path, 0, "what a rename that was stopped has left", "other text"});
   const std::string text = KA_TRY(read_whole(files, path, longest_journal));
@@ -77,7 +79,7 @@ Result<RenamePlan> read_journal(FileSystem& files, const std::string& path) {
   }
 }
 
-/// "sub-03" is "03", "task-S2A03" is "S2A03".
+/// The id without its prefix: "sub-03" gives "03", "task-S2A03" gives "S2A03".
 std::string without(std::string_view lead, const std::string& word) {
   return word.starts_with(lead) ? word.substr(lead.size()) : word;
 }
@@ -117,7 +119,7 @@ class RenamePlanner {
     return RenamePlan{RenameKind::take, to_string(from), to_string(*to), {{from, *to}}, false};
   }
 
-  /// A subject or an action, whichever is known by that id.
+  /// Plans for a subject or an action, whichever has that id.
   Result<RenamePlan> plan_id(const std::string& from, const std::string& to) const {
     const std::string subject = without("sub-", from), action = without("task-", from);
     const bool is_subject =
@@ -206,9 +208,9 @@ class RenamePlanner {
   std::map<TakeName, TakeFiles> takes_;
 };
 
-// ---- doing it
+// ---- renaming
 
-/// Each step looks at what is there and does what is left of it.
+/// Each step checks what exists and does the rest.
 class Renamer {
  public:
   Renamer(FileSystem& files, const std::string& folder) : files_(files), folder_(folder) {}
@@ -253,7 +255,7 @@ class Renamer {
   }
 
  private:
-  /// True: the take has the same parameters as before.
+  /// Writes the manifest under its new name. True: the take's parameters are unchanged.
   Result<bool> write_manifest(const TakeName& from, const TakeName& to) {
     const std::string path = place(folder_, from, TakeFile::manifest);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_manifest));
@@ -286,10 +288,10 @@ class Renamer {
   const std::string& folder_;
 };
 
-/// Folders of people that have nothing left in them.
+/// Removes a person's folders if they are empty.
 void remove_if_empty(const std::string& folder, const std::string& subject) {
   for (const char* above : {"/sub-", "/sourcedata/sub-"}) {
-    std::error_code ignored;  // it is not empty, or not there
+    std::error_code ignored;  // not empty, or missing
     std::string path = folder;
     path.append(above).append(subject);
     if (fs::is_directory(path, ignored)) fs::remove(path, ignored);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of splits that name takes which have been renamed or removed.
+// Finds files of splits that name renamed or removed takes.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -13,15 +13,16 @@
 
 namespace kinalign {
 
-/// All splits in the folder and in splits/, by path below the folder. Other files are passed over.
+/// All splits in the folder and in splits/, by their paths below the folder. Other files are
+/// ignored.
 std::map<std::string, Split> splits_in(FileSystem& files, const std::string& folder);
 
 struct SplitFile {
   std::string path;         // below the data set's folder
-  std::uint64_t takes = 0;  // of those asked for
+  std::uint64_t takes = 0;  // how many of the given takes it names
 };
 
-/// Those of splits_in() that name any of `takes`.
+/// The splits of splits_in() that name any of `takes`.
 std::vector<SplitFile> splits_naming(FileSystem& files, const std::string& folder,
                                      const std::set<TakeName>& takes);
 

@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-/// The text with each line put through `edit`; line ends stay.
+/// The text with `edit` applied to each line; line ends stay.
 std::string each_line(std::string_view text,
                       const std::function<std::string(std::string_view)>& edit) {
   std::string out;
@@ -34,7 +34,7 @@ bool skip(std::string_view line, std::size_t& at, std::string_view word) {
   return true;
 }
 
-/// "[subject.03" of a line: where the id stands, bare or quoted; npos: nowhere.
+/// The position of the id in a line such as "[subject.03", bare or quoted; npos if it is not there.
 std::size_t id_in_head(std::string_view line, std::string_view table, std::string_view id) {
   std::size_t at = 0;
   skip_blanks(line, at);
@@ -83,7 +83,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
   }
 }
 
-/// `key = "value"` in front of the first table gets another value.
+/// Replaces the value of `key = "value"` before the first table.
 std::string with_value(const std::string& toml, std::string_view key, const std::string& value) {
   bool is_top = true;
   return each_line(toml, [&](std::string_view line) {

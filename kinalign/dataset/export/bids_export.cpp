@@ -20,10 +20,10 @@ namespace kinalign {
 
 namespace {
 
-/// Files without a date count their stamps from about 0, which is 1970. 1990-01-01T00:00:00Z.
+/// 1990-01-01T00:00:00Z. Files without a date count their stamps from about 0, which is 1970.
 constexpr Time first_date = utc_time(631'152'000'000'000'000);
 
-/// A stream's name without what a label can't have: "kinect_2" is kinect2.
+/// A stream's name without characters that a label can't have: "kinect_2" gives kinect2.
 std::string label_of(const std::string& stream) {
   std::string out;
   for (const char c : stream) {
@@ -47,7 +47,7 @@ std::string text_of(const Described* device, const char* key) {
   return found == device->texts.end() ? "" : found->second;
 }
 
-/// The facts of the device in dataset.toml whose id is the stream's name.
+/// The facts about the device in dataset.toml whose id is the stream's name.
 BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
                          const TakeGroup& group) {
   const auto device = std::find_if(catalogue.devices.begin(), catalogue.devices.end(),
@@ -77,6 +77,7 @@ Result<void> BidsExport::write(const std::string& path, std::string_view text) {
   return write_whole(files_, whole, text, Overwrite::no);
 }
 
+/// Writes the rows of one stream and returns its sidecar files.
 Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t group,
                                               const std::string& path) {
   const TakeGroup& of = take.header().groups[group];
@@ -91,6 +92,7 @@ Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t gr
   return writer.sidecars(facts_of(catalogue_, take, of));
 }
 
+/// Writes a stream as a tracking system with its sidecar files, and notes it for scans.tsv.
 Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, FilesMade& made) {
   const BidsEntities entities{take.name().subject,
                               "",
@@ -121,6 +123,7 @@ Result<FilesMade> BidsExport::add(ExportedTake& take) {
   return made;
 }
 
+/// The participants; a released data set has only their ids.
 BidsParticipants BidsExport::participants() const {
   BidsParticipants out;
   if (!released_) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole data set as BIDS-Motion (docs/formats/bids.md), take by take, then what stands above.
+// Writes a whole data set as BIDS-Motion (docs/formats/bids.md): take by take, then the files of
+// the whole set.
 #pragma once
 
 #include "kinalign/dataset/catalogue.h"
@@ -14,14 +15,14 @@ namespace kinalign {
 
 class BidsExport {
  public:
-  /// `folder`: of the new data set. `released`: no height, weight and the like in participants.tsv,
-  /// and no date in scans.tsv.
+  /// `folder`: of the new data set. `released`: participants.tsv has no height, weight and the
+  /// like, and scans.tsv no dates.
   BidsExport(FileSystem& files, std::string folder, const Catalogue& catalogue, bool released)
       : files_(files), folder_(std::move(folder)), catalogue_(catalogue), released_(released) {}
 
-  /// A tracking system for each stream.
+  /// Adds a take; each stream becomes a tracking system.
   Result<FilesMade> add(ExportedTake& take);
-  /// The description, participants and scans. Then all is read again and checked.
+  /// Writes the description, participants and scans, then reads everything again and checks it.
   Result<Findings> finish();
 
  private:
@@ -34,7 +35,7 @@ class BidsExport {
   std::string folder_;
   const Catalogue& catalogue_;
   bool released_;
-  std::map<std::string, std::vector<BidsScan>> scans_;  // of each subject
+  std::map<std::string, std::vector<BidsScan>> scans_;  // by subject
 };
 
 }  // namespace kinalign

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// RFC 4180: a name with a comma, a quote or a line end stands in quotes.
+/// RFC 4180: text with a comma, a quote or a line end is put in quotes.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -31,7 +31,7 @@ std::string head_of(const TakeGroup& group, Precision precision) {
   return out;
 }
 
-/// The numbers of one row of an array, in the shortest form that gives them again.
+/// The numbers of one row of an array, in the shortest form that can be read back exactly.
 template <class Value>
 void put_row(const std::vector<Value>& values, std::size_t row, std::size_t rows,
              Precision precision, std::string& text) {
@@ -48,6 +48,7 @@ void put_row(const std::vector<Value>& values, std::size_t row, std::size_t rows
   }
 }
 
+/// Writes the rows of one group as lines.
 Result<void> put_slab(const TakeSlab& slab, std::size_t group, Precision precision, TextOut& out) {
   std::string text;
   for (std::size_t row = 0; row < slab.stamps.size(); ++row) {
@@ -76,6 +77,7 @@ Result<void> write_stream_csv(ExportedTake& take, std::size_t group, FileSystem&
   return out.commit();
 }
 
+/// The facts of all streams as JSON, with the unit of each array.
 std::string streams_json(const TakeHeader& header) {
   Json out{{"subject", header.subject}, {"action", header.action}, {"frames", header.frames}};
   for (const TakeGroup& group : header.groups) {

@@ -23,13 +23,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Collects what was made; then it goes to the parent as a text.
+/// Collects the results of an export, which then go to the parent process as text.
 struct Made {
   std::uint64_t files = 0;
   Json left_out = Json::array();
   Findings findings;
 
-  /// An empty folder must not pass for an export. `needs`: what a take must have.
+  /// Fails if no file was written: an empty folder must not look like an export. `needs`: what a
+  /// take must have for this format.
   Result<void> holds_something(const ExportJob& job, std::string_view needs) const {
     if (files > 0) return {};
     if (!findings.empty()) return Failure(findings.front().what);
@@ -51,7 +52,7 @@ Result<FilesMade> copy_take(FileSystem& files, const std::string& from, const st
   return FilesMade{{to}, {}, {}};
 }
 
-/// The take without names and dates.
+/// The take rewritten without names and dates.
 Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std::string& to) {
   TakeHeader header = take.header();
   AlignmentReport report = KA_TRY(parse_report_json(KA_TRY(take.report_json()), to));
@@ -63,7 +64,7 @@ Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std:
   return FilesMade{{to}, {"marks, and the names of raw files"}, {}};
 }
 
-/// The summary beside a take that was written: without it, a data set lists no take.
+/// Adds the summary of a written take: a data set does not list takes without one.
 Result<FilesMade> with_summary(FilesMade made, FileSystem& files, const std::string& folder,
                                const TakeName& name) {
   TakeReader reader = KA_TRY(TakeReader::open(files, made.paths.front()));
@@ -97,6 +98,7 @@ class Exporting {
   ShardExport shards_;
 };
 
+/// Writes one take in the format of the job.
 Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
                                    const std::string& path) {
   if (job_.format == "bids") return bids_.add(take);
@@ -165,7 +167,7 @@ Result<ExportMade> made_from(const std::string& text) {
     made.left_out.push_back(
         {parse_take_name(one.at(0).get<std::string>()).value_or(TakeName{}), one.at(1)});
   }
-  // Findings are read as those of a report.
+  // Findings are parsed like those of a report.
   const Json report{{"findings", json.at("findings")}};
   made.findings = KA_TRY(parse_report_json(report.dump(), "")).findings;
   return made;
@@ -178,7 +180,7 @@ std::string_view needs_of(const std::string& name) {
   return format == formats.end() ? "a stream" : format->needs;
 }
 
-/// A folder that is removed unless it is kept.
+/// A folder that is removed at the end unless it is kept.
 class PartFolder {
  public:
   static Result<PartFolder> make(const std::string& target) {
@@ -220,6 +222,7 @@ class PartFolder {
 
 }  // namespace
 
+/// The formats of single takes, then those of whole data sets.
 std::vector<ExportFormat> export_formats() {
   std::vector<ExportFormat> out;
   for (const TakeFormat& one : take_formats()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A data set's takes as files of other programs.
+// Writes a data set's takes as files of other programs.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -15,20 +15,20 @@ namespace kinalign {
 struct ExportTake {
   TakeName name;
   TakeSummary summary;
-  std::string part;  // of a split; names shards
+  std::string part;  // the part of a split; names of shards begin with it
 };
 
 struct ExportJob {
-  std::string folder;    // of the data set
+  std::string folder;    // the data set's
   std::string target;    // a new folder
-  std::string format;    // in export_formats()
+  std::string format;    // a name in export_formats()
   bool release = false;  // dates are moved to the year 2000, names of raw files are hidden
   std::vector<ExportTake> takes;
 };
 
 struct ExportFormat {
   std::string name, title;
-  std::string lost;  // what the format does not hold
+  std::string lost;  // the content that the format can't hold
 };
 std::vector<ExportFormat> export_formats();
 
@@ -40,12 +40,12 @@ struct LeftOutStream {
 struct ExportMade {
   std::uint64_t files = 0;
   std::vector<LeftOutStream> left_out;
-  Findings findings;  // streams that could not be written; of BIDS what our check finds
+  Findings findings;  // streams that could not be written; for BIDS also our check's findings
 };
 
-/// Writes into `target` + ".part", which then becomes `target`. Nothing stands at `target` before;
-/// where it fails, nothing is left. Runs in a child process, since HDF5 can crash on a hostile
-/// file.
+/// Writes into `target` + ".part", which becomes `target` at the end. `target` must not exist
+/// before; after a failure nothing is left. Runs in a child process, since HDF5 can crash on a
+/// hostile file.
 Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, const ExportJob& job,
                                 const Progress& progress);
 

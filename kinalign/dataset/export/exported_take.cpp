@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint64_t slab_rows = 1024;
 constexpr Time no_date = utc_time(946'684'800'000'000'000);  // 2000-01-01T00:00:00Z
 
-/// A skeleton's joints as points.
+/// The joints of a skeleton as points.
 PointFrames frames_of(const std::vector<Time>& stamps, const ClipRows& rows) {
   PointFrames out{stamps, rows.positions, {}};
   const std::size_t joints = rows.positions.size() / 3 / stamps.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take on its way into files of other programs: its rows as their writers want them.
+// A take that is being exported: its rows in the forms that writers need.
 #pragma once
 
 #include "kinalign/dataset/take_name.h"
@@ -21,16 +21,16 @@ class ExportedTake {
   const TakeName& name() const { return name_; }
   const TakeHeader& header() const { return reader_.header(); }
   double rate_hz() const { return rate_hz_; }
-  Time first() const { return first_; }      // stamp of the first row, moved
-  Duration moved() const { return moved_; }  // by how much
+  Time first() const { return first_; }      // stamp of the first row, after moving
+  Duration moved() const { return moved_; }  // by which stamps were moved
   Result<std::string> report_json() const { return reader_.report_json(); }
 
-  /// All rows from the front, slab by slab; may be called again.
+  /// Reads all rows from the beginning, slab by slab; may be called again.
   Result<void> rows(const std::function<Result<void>(const TakeSlab&)>& use);
 
-  /// The same of one group, of its kind. Points are missing where they are not valid; so are the
-  /// joints of a skeleton, as points, in rows that are not valid. Frames of a skeleton have no such
-  /// mark and are handed on as they are.
+  /// The same for one group of that kind. Points are missing if they are not valid; so are a
+  /// skeleton's joints, read as points, in rows that are not valid. Frames of a skeleton have no
+  /// validity and are passed on unchanged.
   Result<void> clip_frames(std::size_t group,
                            const std::function<Result<void>(const ClipFrames&)>& use);
   Result<void> point_frames(std::size_t group,

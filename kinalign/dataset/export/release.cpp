@@ -25,6 +25,7 @@ struct Pattern {
 
 constexpr std::size_t address_patterns = 2;  // the first ones
 
+/// Patterns of texts that could identify a person. Addresses come first, see address_patterns.
 const std::array<Pattern, 4>& patterns() {
   static const std::array<Pattern, 4> all{{
       {"an e-mail address", std::regex("[^\\s@]+@[^\\s@]+\\.[a-zA-Z]{2,}")},
@@ -36,7 +37,7 @@ const std::array<Pattern, 4>& patterns() {
   return all;
 }
 
-/// Three letters and no digit: "maria", unlike "s03" and "07".
+/// True for an id with three letters or more and no digit: "maria", unlike "s03" and "07".
 bool reads_like_a_name(const std::string& id) {
   const auto is = [](int (*kind)(int)) {
     return [kind](char c) { return kind(static_cast<unsigned char>(c)) != 0; };
@@ -70,12 +71,13 @@ class Look {
     find_first_of(where, value, patterns());
   }
 
-  /// Of a text that may have dates and long numbers: years, pages, an ISBN.
+  /// Checks a text that may contain dates and long numbers, such as years, pages or an ISBN.
   void published_text(const std::string& where, const std::string& value) {
     find_first_of(where, value, std::span(patterns()).first(address_patterns));
   }
 
-  /// Of an action, a class, a device or a rig. "kinect" and "walk" are ids, "Maria" may be a name.
+  /// Checks the id of an action, a class, a device or a rig. "kinect" and "walk" are ids, "Maria"
+  /// may be a name.
   void id(const char* table, const std::string& value) {
     text(fmt::format("the id of a {}", table), value);
     const auto letter = [&](std::size_t i) { return static_cast<unsigned char>(value[i]); };
@@ -102,6 +104,7 @@ class Look {
   const std::string& file_;
 };
 
+/// A serial number is an error: it leads to a lab and a day.
 void look_at_devices(const std::vector<Described>& all, const char* table, Look& look) {
   for (const Described& one : all) {
     look.id(table, one.id);
@@ -132,7 +135,7 @@ void look_at_measures(const std::vector<Subject>& people, const char* what,
   }
 }
 
-/// The names that raw files get, by their names before.
+/// The new names of raw files, by their old names.
 class HiddenNames {
  public:
   const std::string& of(const std::string& name, const std::string& stream, std::size_t number) {

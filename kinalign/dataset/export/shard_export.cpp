@@ -17,7 +17,7 @@ struct Npy {
   std::string ending, bytes;
 };
 
-/// The members without their values.
+/// The members' headers, without values.
 std::vector<Npy> heads_of(const TakeHeader& header) {
   std::vector<Npy> out;
   const auto add = [&](const std::string& name, Stored stored, std::vector<std::uint64_t> shape) {
@@ -33,7 +33,7 @@ std::vector<Npy> heads_of(const TakeHeader& header) {
   return out;
 }
 
-/// Values behind their heads; arrays that a stream leaves empty have no member.
+/// Appends the values; arrays that a stream leaves empty have no member.
 Result<void> add_values(const TakeHeader& header, const TakeSlab& slab, NumberStore& numbers,
                         std::vector<Npy>& members) {
   members.front().bytes += bytes_of(std::span<const Time>(slab.stamps));
@@ -62,6 +62,7 @@ Result<void> add_values(const TakeHeader& header, const TakeSlab& slab, NumberSt
   return {};
 }
 
+/// The JSON of a sample.
 std::string sample_json(const ExportedTake& take, const SampleFacts& facts) {
   Json out{{"name", to_string(take.name())},
            {"class", facts.class_id},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes as samples of WebDataset shards: docs/formats/webdataset.md.
+// Writes takes as samples of WebDataset shards: docs/formats/webdataset.md.
 #pragma once
 
 #include "kinalign/dataset/export/exported_take.h"
@@ -11,20 +11,20 @@
 
 namespace kinalign {
 
-/// Members of a sample's JSON beside the take's streams.
+/// Members of a sample's JSON besides the take's streams.
 struct SampleFacts {
   std::string class_id, part;
 };
 
 class ShardExport {
  public:
-  /// A shard ends behind the sample with which it reaches `shard_bytes`.
+  /// A shard ends after the sample with which it reaches `shard_bytes`.
   ShardExport(FileSystem& files, std::string folder,
               std::uint64_t shard_bytes = std::uint64_t{256} << 20)
       : files_(files), folder_(std::move(folder)), shard_bytes_(shard_bytes) {}
 
-  /// A sample: each array as STREAM_ARRAY.npy, time_ns.npy, and json. Shards are named by the
-  /// take's part: train-000000.tar. A take is held in memory.
+  /// Adds a sample: each array as STREAM_ARRAY.npy, time_ns.npy, and a JSON. Names of shards begin
+  /// with the take's part: train-000000.tar. One take is held in memory.
   Result<FilesMade> add(ExportedTake& take, const SampleFacts& facts);
   Result<FilesMade> finish();
 
@@ -37,7 +37,7 @@ class ShardExport {
   std::string folder_;
   std::uint64_t shard_bytes_;
   std::map<std::string, std::shared_ptr<Shard>> open_;
-  std::map<std::string, std::uint64_t> numbers_;  // the next shard's, of each part
+  std::map<std::string, std::uint64_t> numbers_;  // number of the next shard, by part
 };
 
 }  // namespace kinalign

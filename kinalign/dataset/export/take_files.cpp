@@ -19,6 +19,7 @@ namespace {
 using WriteStream = Result<void> (*)(ExportedTake& take, std::size_t group, FileSystem& files,
                                      const std::string& path);
 
+/// Writes a stream's points as TRC.
 Result<void> write_trc(ExportedTake& take, std::size_t group, FileSystem& files,
                        const std::string& path) {
   const TakeHeader& header = take.header();
@@ -32,6 +33,7 @@ Result<void> write_trc(ExportedTake& take, std::size_t group, FileSystem& files,
   return out.commit();
 }
 
+/// Writes a stream's points as C3D.
 Result<void> write_c3d(ExportedTake& take, std::size_t group, FileSystem& files,
                        const std::string& path) {
   const TakeHeader& header = take.header();
@@ -45,6 +47,7 @@ Result<void> write_c3d(ExportedTake& take, std::size_t group, FileSystem& files,
   return out.commit();
 }
 
+/// Writes a skeleton's joint angles as MOT.
 Result<void> write_mot(ExportedTake& take, std::size_t group, FileSystem& files,
                        const std::string& path) {
   const TakeHeader& header = take.header();
@@ -57,6 +60,7 @@ Result<void> write_mot(ExportedTake& take, std::size_t group, FileSystem& files,
   return out.commit();
 }
 
+/// Writes the orientations of nodes as STO.
 Result<void> write_sto(ExportedTake& take, std::size_t group, FileSystem& files,
                        const std::string& path) {
   const auto& nodes = std::get<ImuGroup>(take.header().groups[group].kind);
@@ -81,13 +85,15 @@ std::string_view no_orientation(const TakeGroup& group) {
 }
 std::string_view nothing(const TakeGroup&) { return ""; }
 
-/// A format of a file for each stream.
+/// A format with a file for each stream.
 struct StreamFormat {
   std::string_view ending;
-  std::string_view (*refused)(const TakeGroup&);  // why it does not hold a stream; empty: it does
+  // The reason why it can't hold a stream; empty: it can.
+  std::string_view (*refused)(const TakeGroup&);
   WriteStream write;
 };
 
+/// Writes each stream that the format can hold. A stream that fails does not stop others.
 Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::string& stem,
                               const StreamFormat& format) {
   FilesMade made;
@@ -142,6 +148,7 @@ Result<FilesMade> as_npz(ExportedTake& take, FileSystem& files, const std::strin
   return FilesMade{{path}, {}, {}};
 }
 
+/// Writes the first skeleton; BVH holds only one.
 Result<FilesMade> as_bvh(ExportedTake& take, FileSystem& files, const std::string& take_path,
                          const std::string& stem) {
   FilesMade made;
@@ -166,6 +173,7 @@ Result<FilesMade> as_bvh(ExportedTake& take, FileSystem& files, const std::strin
 
 }  // namespace
 
+/// Each format with the content that it loses.
 const std::vector<TakeFormat>& take_formats() {
   static const std::vector<TakeFormat> all{
       {"npz", "NumPy, all streams of a take in a file", "the report and the parameters", "a stream",

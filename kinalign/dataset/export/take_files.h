@@ -23,8 +23,8 @@ using WriteTake = Result<FilesMade> (*)(ExportedTake& take, FileSystem& files,
 struct TakeFormat {
   std::string_view name;   // "trc"
   std::string_view title;  // for people
-  std::string_view lost;   // what no file of this format holds; empty: nothing
-  std::string_view needs;  // what a take must have: "a skeleton"
+  std::string_view lost;   // content that no file of this format holds; empty: none
+  std::string_view needs;  // required content of a take: "a skeleton"
   WriteTake write;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// BIDS-Motion: subject, task and run become the take's, tracking systems its streams.
+// Imports BIDS-Motion: subject, task and run become the take's, tracking systems its streams.
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/formats/bids/names.h"
 #include "kinalign/formats/bids/system.h"
@@ -19,7 +19,7 @@ bool looks_like_bids(FileSystem&, const std::vector<SourceFile>& sources) {
   return std::any_of(sources.begin(), sources.end(), is_motion);
 }
 
-/// One recording: what all its tracking systems share in their names.
+/// One recording, by the entities that the names of its tracking systems share.
 struct Recorded {
   std::string subject, session, task, acquisition, run;
 
@@ -45,7 +45,7 @@ std::uint32_t run_number(const std::string& run) {
   return value;
 }
 
-/// Systems with positions first: the reference has to have some.
+/// Systems with positions come first: the reference must have positions.
 Manifest systems_manifest(std::vector<System> systems) {
   std::stable_partition(systems.begin(), systems.end(),
                         [](const System& one) { return one.has_points; });
@@ -79,7 +79,7 @@ Result<Corpus> list_bids(const ImportInput& input) {
       out.left_out.push_back({key.text(), "no tracking system with positions"});
       continue;
     }
-    // Runs are counted in each session anew, so that a later session's may be taken already.
+    // Each session counts runs anew, so the run of a later session may be taken already.
     out.takes.push_back(
         {key.subject, key.task, run_number(key.run), systems_manifest(systems), key.text()});
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// People, classes and actions are added to dataset.toml as text, so that what its user wrote, with
-// comments and order, stays as it is.
+// Adds people, classes and actions to dataset.toml as text, so that the user's own text, with
+// comments and order, stays.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,15 +11,15 @@
 
 namespace kinalign {
 
-/// Entries that a data set has to have; those that are there already are passed over.
+/// Entries that a data set must have. Existing ones are skipped.
 struct CatalogueNeeds {
   std::vector<std::string> subjects;
-  std::vector<ActionClass> classes;  // those of `actions`
+  std::vector<ActionClass> classes;  // the classes of `actions`
   std::vector<Action> actions;
 };
 
-/// The text with what it lacks at its end. Fails where it could not be read then, as where the
-/// people stand in an inline table.
+/// The text with the missing entries at its end. Fails if the result could not be parsed, for
+/// example if the people are in an inline table.
 Result<std::string> grown_catalogue(const std::string& toml, const std::string& name,
                                     const CatalogueNeeds& needs);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CMU's motion capture database, packed: asf_00.npz on each person's own skeleton, daz_05.npz on
-// one body for all. Each clip becomes a BVH.
+// Imports CMU's motion capture database in packed form: asf_00.npz on each person's own skeleton,
+// daz_05.npz on one body for all. Each clip becomes a BVH.
 #include "kinalign/dataset/import/cmu_clips.h"
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/ids.h"
@@ -25,7 +25,7 @@ bool looks_like_cmu(FileSystem&, const std::vector<SourceFile>& sources) {
   return std::any_of(sources.begin(), sources.end(), is_clip_pack);
 }
 
-/// The trial's number of "13_29", CMU's own; 0 where the take has another name.
+/// CMU's number of the trial: 29 for "13_29"; 0 if the take has another name.
 std::uint32_t trial_of(const PackedClip& clip) {
   const std::string lead = clip.person + "_";
   std::uint32_t number = 0;
@@ -35,7 +35,7 @@ std::uint32_t trial_of(const PackedClip& clip) {
   return fault == std::errc{} && behind == end ? number : 0;
 }
 
-/// "13__13_29.bvh", with letters and digits for what a name can't have.
+/// The names of the clips' files: "13__13_29.bvh". Characters that a name can't have are replaced.
 std::vector<std::string> file_names_of(const std::vector<PackedClip>& clips) {
   std::vector<std::string> out;
   std::set<std::string> given;
@@ -56,6 +56,7 @@ std::vector<std::string> file_names_of(const std::vector<PackedClip>& clips) {
   return out;
 }
 
+/// Writes each clip as a BVH.
 Result<void> write_clips(const PackedClips& packed, const std::vector<std::string>& names,
                          const PutFile& put, const ImportInput& input, const std::string& file) {
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -76,8 +77,8 @@ CorpusTake take_of(const PackedClip& clip, const std::string& path) {
   return out;
 }
 
-/// Clips that another pack holds, too, on the person's own skeleton: one of them is enough, and
-/// both would lie on two sides of a split.
+/// Leaves out clips that another pack has on the person's own skeleton: both could end up in
+/// different parts of a split.
 void leave_out_doubles(std::map<std::string, CorpusTake>& takes,
                        const std::set<std::string>& doubles, Corpus& corpus) {
   for (auto& [key, take] : takes) {
@@ -97,7 +98,7 @@ Result<Corpus> list_cmu(const ImportInput& input) {
                  "database was created with funding from NSF EIA-0196217.",
              .classes = {{"cmu", "CMU's database, sorted by its descriptions"}},
              .class_id = "cmu"};
-  std::map<std::string, CorpusTake> takes;  // by "asf_06:06_01", as clip_same names them
+  std::map<std::string, CorpusTake> takes;  // by names as in clip_same: "asf_06:06_01"
   std::set<std::string> doubles;
   for (const SourceFile& file : input.sources) {
     if (!is_clip_pack(file)) continue;

@@ -16,7 +16,7 @@ constexpr double metres_per_step = 0.0005, degrees_per_step = 0.015;
 constexpr ArchiveLimits largest_pack{
     .entries = 100, .bytes = std::uint64_t{512} << 20, .ratio = 1000};
 
-/// Rz Ry Rx.
+/// The rotation Rz Ry Rx.
 Quat turned(double x_deg, double y_deg, double z_deg) {
   constexpr double radians = std::numbers::pi / 180.0;
   return Quat(Eigen::AngleAxisd(z_deg * radians, Vec3::UnitZ()) *
@@ -24,8 +24,8 @@ Quat turned(double x_deg, double y_deg, double z_deg) {
               Eigen::AngleAxisd(x_deg * radians, Vec3::UnitX()));
 }
 
-/// Low and high bytes [2,C,F] of zigzag-coded second differences become values [C,F]. Sums wrap:
-/// the packer's did.
+/// Turns the low and high bytes [2,C,F] of zigzag-coded second differences into values [C,F]. Sums
+/// wrap around, as they did in the packer.
 std::vector<std::int16_t> unpacked(const std::vector<std::int64_t>& planes, std::size_t channels,
                                    std::size_t frames) {
   std::vector<std::int16_t> out(channels * frames);
@@ -50,7 +50,7 @@ std::vector<Vec3> vectors(const std::vector<double>& numbers, std::size_t first,
   return out;
 }
 
-/// The people's skeletons, which share joints and ends.
+/// The people's skeletons, which share joints and end sites.
 Result<std::vector<Skeleton>> read_skeletons(const Npz& npz, const std::string& name,
                                              std::size_t people) {
   Skeleton body;
@@ -80,6 +80,7 @@ Result<std::vector<Skeleton>> read_skeletons(const Npz& npz, const std::string& 
   return out;
 }
 
+/// The clips; each must name a person and a range of frames that exist.
 Result<std::vector<PackedClip>> read_clips(const Npz& npz, const std::string& name,
                                            const std::vector<std::string>& people,
                                            std::size_t frames) {
@@ -111,6 +112,7 @@ Result<std::vector<PackedClip>> read_clips(const Npz& npz, const std::string& na
   return out;
 }
 
+/// The axes of each person's joints, from angles in degrees.
 Result<std::vector<std::vector<Quat>>> read_axes(const Npz& npz, std::size_t people,
                                                  std::size_t joints) {
   const auto axes = KA_TRY(npz.numbers("axis", {people, joints, 3}));
@@ -150,6 +152,7 @@ Result<PackedClips> PackedClips::read(const ArchiveBytes& bytes) {
   return out;
 }
 
+/// Rebuilds the clip's frames; angles are about each joint's own axes.
 Clip PackedClips::clip(const PackedClip& packed) const {
   Clip out;
   out.skeleton = skeletons_[packed.body];

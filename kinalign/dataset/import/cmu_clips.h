@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clips of CMU's motion capture database packed into an NPZ: angles as second differences, a
-// skeleton per person. Layout: docs/dataset_import.md.
+// Clips of CMU's motion capture database packed into an NPZ: angles as second differences, one
+// skeleton for each person. Layout: docs/dataset_import.md.
 #pragma once
 
 #include "kinalign/formats/archive/archive.h"
@@ -14,14 +14,14 @@ namespace kinalign {
 
 struct PackedClip {
   std::string person, take, label, text;  // "13", "13_29", "climb", CMU's description
-  std::string same;      // "daz_05:06_01": the clip of another pack that it is, too
-  std::size_t body = 0;  // which of the people's skeletons
+  std::string same;      // the same clip in another pack: "daz_05:06_01"; empty: none
+  std::size_t body = 0;  // index of the person's skeleton
   std::size_t begin = 0, frames = 0;
 };
 
 class PackedClips {
  public:
-  /// Fails where an array is missing, has another shape, or says what can't be.
+  /// Fails if an array is missing, has another shape, or has impossible values.
   static Result<PackedClips> read(const ArchiveBytes& bytes);
 
   const std::vector<PackedClip>& clips() const { return clips_; }
@@ -29,11 +29,11 @@ class PackedClips {
   Clip clip(const PackedClip& packed) const;
 
  private:
-  std::vector<Skeleton> skeletons_;      // of each person
+  std::vector<Skeleton> skeletons_;      // one for each person
   std::vector<std::vector<Quat>> axes_;  // [person][joint]: the joint's axes in the parent's space
   std::vector<PackedClip> clips_;
-  std::vector<std::int16_t> values_;  // [C,F]: of the root x, y, z in 0.5 mm; then of each joint
-                                      // the angles x, y, z in 0.015 degrees
+  std::vector<std::int16_t> values_;  // [C,F]: root x, y, z in 0.5 mm; then for each joint the
+                                      // angles x, y, z in 0.015 degrees
   std::size_t frames_ = 0;
   double frame_seconds_ = 1.0 / 60.0;
 };

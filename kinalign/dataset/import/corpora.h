@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of corpora that are known. A new one: its file, a line here, a line in corpora.cpp.
+// The known kinds of corpora. A new kind needs its own file, a line here and a line in corpora.cpp.
 #pragma once
 
 #include "kinalign/dataset/import/corpus.h"
@@ -21,8 +21,8 @@ std::vector<CorpusKind> motion_file_corpora();  // bvh, c3d, mvnx, trc
 std::vector<CorpusKind> corpus_kinds();
 std::vector<std::string> corpus_kind_names();
 
-/// The kind of that name or, where it is empty, the one that the files are of. Fails where there is
-/// none, or several, with those that are known.
+/// The kind with that name; if the name is empty, the kind that the files belong to. Fails if there
+/// is none, or several; the error lists the known kinds.
 Result<CorpusKind> find_corpus(FileSystem& files, const std::vector<SourceFile>& sources,
                                const std::string& wanted, const std::string& source);
 

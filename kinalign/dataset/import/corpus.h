@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A corpus as an importer finds it: which takes it has, in its own words, and what is known of it.
+// A corpus as an importer reads it: its takes in its own words, and the known facts about it.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -15,15 +15,15 @@
 
 namespace kinalign {
 
-/// Subject and action are words of the corpus; ids.h makes ids of them.
+/// Subject and action are words of the corpus; ids.h turns them into ids.
 struct CorpusTake {
   std::string subject, action;
-  std::uint32_t run = 0;  // 0: the corpus numbers no repetitions
-  Manifest manifest;      // paths as they can be opened
-  std::string from;       // what the corpus calls it, for messages
+  std::uint32_t run = 0;  // 0: the corpus does not number repetitions
+  Manifest manifest;      // with paths that can be opened
+  std::string from;       // its name in the corpus, for messages
 };
 
-/// A stream of one raw file; `layout` empty: by the file's content.
+/// A stream of one raw file. `layout` empty: by the file's content.
 inline StreamOptions stream_of(const std::string& name, const std::string& path,
                                const std::string& layout = "") {
   StreamOptions out;
@@ -33,7 +33,7 @@ inline StreamOptions stream_of(const std::string& name, const std::string& path,
   return out;
 }
 
-/// A part of the corpus that becomes no take. Parts with one reason are told together.
+/// A part of the corpus that becomes no take. Parts with the same reason are reported together.
 struct LeftOut {
   std::string what, why;  // "m03_s03_e01", "without Vicon"
 };
@@ -41,18 +41,18 @@ struct LeftOut {
 struct Corpus {
   std::string name, licence{}, citation{};
   std::vector<ActionClass> classes{};
-  std::vector<Action> actions{};  // ids are words of the corpus; takes may have others, too
-  std::string class_id{};         // of the actions that `actions` does not have
+  std::vector<Action> actions{};  // ids are words of the corpus; takes may have further actions
+  std::string class_id{};         // class of actions that `actions` lacks
   std::vector<CorpusTake> takes{};
   std::vector<LeftOut> left_out{};
 };
 
-/// All that an importer works with.
+/// The input of an importer.
 struct ImportInput {
   FileSystem& files;
   const std::vector<SourceFile>& sources;  // sorted by name
-  std::string raw_folder;                  // the data set's sourcedata: packed corpora unpack there
-  std::string subject, action;             // of files that say none; empty: not said
+  std::string raw_folder;       // the data set's sourcedata: packed corpora are unpacked there
+  std::string subject, action;  // for files that state none; empty: not given
   const Progress& progress;
   std::size_t jobs = 1;  // threads to use
 };
@@ -61,10 +61,10 @@ struct ImportInput {
 struct CorpusKind {
   std::string_view name;      // for --from: "ui-prmd"
   std::string_view known_by;  // for messages: "m01_s01_e01_positions.txt, s01.npz"
-  bool general = false;       // any folder of such files: a corpus of its own goes first
+  bool general = false;       // any folder of such files; a specific corpus has priority
   bool (*looks)(FileSystem& files, const std::vector<SourceFile>& sources) = nullptr;
   Result<Corpus> (*list)(const ImportInput& input) = nullptr;
-  bool unit_is_open = false;  // unit and up axis may be other than the format's own
+  bool unit_is_open = false;  // unit and up axis may differ from the format's own
 };
 
 }  // namespace kinalign

@@ -22,12 +22,13 @@ std::uint32_t number_of(std::string_view text) {
   return value;
 }
 
-/// "Char00" at the end, which Axis Neuron adds for each character of a recording.
+/// The name without "Char00" at its end, which Axis Neuron adds for each character of a recording.
 std::string_view without_character(std::string_view stem) {
   const auto at = stem.rfind("Char");
   return at != stem.npos && at > 0 && is_number(stem.substr(at + 4)) ? stem.substr(0, at) : stem;
 }
 
+/// A number at the end of the name is the run, the rest the action.
 void read_action(std::string_view stem, FileSays& out) {
   stem = without_character(stem);
   std::size_t end = stem.size();
@@ -61,7 +62,7 @@ std::vector<std::string_view> folders_of(std::string_view name) {
   return out;
 }
 
-/// How many folders all names begin with.
+/// The number of folders with which all names begin.
 std::size_t shared_folders(const std::vector<std::string>& names) {
   if (names.empty()) return 0;
   const auto first = folders_of(names.front());

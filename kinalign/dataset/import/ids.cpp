@@ -42,7 +42,8 @@ Ids::Ids(const std::vector<std::pair<std::string, std::string>>& known) {
   }
 }
 
-/// A known id is the word's where it was made of it, or where it is the word and was made of none.
+/// True if the id may stand for the word: it is not taken, or was made from this word, or equals it
+/// and has no name.
 bool Ids::is_free(const std::string& id, const std::string& word) const {
   if (!taken_.contains(in_small(id))) return true;
   const auto known = names_.find(id);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ids of people and actions out of a corpus' own words: letters and digits (take_name.h), no two
-// words with one id.
+// Makes ids of people and actions from a corpus's own words: letters and digits (take_name.h), a
+// different id for each word.
 #pragma once
 
 #include <map>
@@ -12,29 +12,29 @@
 
 namespace kinalign {
 
-/// The word's letters and digits, at most 60; a letter behind something that was left out is made a
-/// large one: "slow walk" is slowWalk. "x" where nothing is left.
+/// The word's letters and digits, at most 60. A letter after a dropped character becomes a capital:
+/// "slow walk" gives slowWalk. "x" if nothing is left.
 std::string label_of(std::string_view word);
 
-/// Gives ids to words. Ids that differ in large and small letters alone count as one: some file
-/// systems know no difference.
+/// Gives ids to words. Ids that differ only in case count as one, since some file systems ignore
+/// case.
 class Ids {
  public:
-  /// `known`: ids that are there, each with its name, which is the word that it was made of or some
-  /// other text.
+  /// `known`: existing ids with their names; a name is the word that the id was made from, or
+  /// another text.
   explicit Ids(const std::vector<std::pair<std::string, std::string>>& known);
 
-  /// The same id for the same word.
+  /// The same word always gets the same id.
   std::string of(const std::string& word);
-  /// Words that are not their own ids.
+  /// Words that differ from their ids.
   std::vector<std::pair<std::string, std::string>> changed() const;
 
  private:
   bool is_free(const std::string& id, const std::string& word) const;
 
-  std::map<std::string, std::string> names_;  // of known ids
+  std::map<std::string, std::string> names_;  // names of known ids
   std::map<std::string, std::string> given_;  // by word
-  std::set<std::string> taken_;               // ids in small letters
+  std::set<std::string> taken_;               // ids in lower case
 };
 
 }  // namespace kinalign

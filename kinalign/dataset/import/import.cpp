@@ -22,7 +22,7 @@ std::string catalogue_path(const std::string& folder) {
   return folder + "/" + std::string(catalogue_file);
 }
 
-/// The text of dataset.toml; absent where the folder is no data set.
+/// The text of dataset.toml; absent if the folder is no data set.
 Result<std::optional<std::string>> read_catalogue_text(FileSystem& files,
                                                        const std::string& folder) {
   const std::string path = catalogue_path(folder);
@@ -37,7 +37,7 @@ std::vector<std::pair<std::string, std::string>> named(const std::vector<Action>
   return out;
 }
 
-/// Words of the corpus made ids, and what dataset.toml needs for them.
+/// The ids for the words of the corpus, and the entries that dataset.toml needs for them.
 struct Named {
   Ids subjects, actions;
   CatalogueNeeds needs;
@@ -50,7 +50,7 @@ const Action* action_of(const Corpus& corpus, const std::string& word) {
 }
 
 Named name_takes(Corpus& corpus, const Catalogue& has) {
-  // No name is kept of a person: the same word is the same person in each import.
+  // Names of people are not stored, so the same word means the same person in every import.
   Named out{Ids({}), Ids(named(has.actions)), {}};
   std::set<std::string> subjects, actions;
   for (CorpusTake& take : corpus.takes) {
@@ -76,7 +76,7 @@ Result<void> write_catalogue(FileSystem& files, const std::string& folder,
   return write_whole(files, catalogue_path(folder), text, Overwrite::yes);
 }
 
-/// A unit for files that state theirs would be passed over by their reader.
+/// Refuses a unit for files that state theirs: their reader would ignore it.
 Result<void> check_units(const CorpusKind& kind, const ImportRequest& request) {
   if (kind.unit_is_open || (request.metres_per_unit == 0.0 && request.up.empty())) return {};
   const char* flag = request.metres_per_unit == 0.0 ? "--up" : "--metres-per-unit";
@@ -96,7 +96,7 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                            const ImportRequest& request, const Progress& progress,
                            std::string& kind_name) {
   const std::string raw_folder = folder + "/sourcedata";
-  std::optional<UnfinishedFolder> unfinished;  // what was unpacked in vain
+  std::optional<UnfinishedFolder> unfinished;  // unpacked files, removed unless the import succeeds
   if (!is_there(raw_folder)) unfinished.emplace(raw_folder);
   const auto sources = KA_TRY(list_sources(files, request.sources, raw_folder, progress));
   const CorpusKind kind =
@@ -117,7 +117,7 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                        "takes of " + kind_name + " (" + std::string(kind.known_by) + ")", why});
 }
 
-/// dataset.toml with the corpus' terms where it states none.
+/// dataset.toml with the corpus's licence and citation if it states none.
 std::string with_terms(std::string text, const Corpus& corpus) {
   for (const auto& [key, value] :
        {std::pair("licence", &corpus.licence), {"citation", &corpus.citation}}) {
@@ -129,8 +129,8 @@ std::string with_terms(std::string text, const Corpus& corpus) {
   return text;
 }
 
-/// The data set's catalogue with all that the takes need, written where it grew. One without people
-/// gets the corpus' terms.
+/// The data set's catalogue with all entries that the takes need; written if it grew. A catalogue
+/// without people gets the corpus's terms.
 Result<Catalogue> grow_catalogue(FileSystem& files, const std::string& folder,
                                  const std::optional<std::string>& text, const Corpus& corpus,
                                  const CatalogueNeeds& needs) {
@@ -144,7 +144,7 @@ Result<Catalogue> grow_catalogue(FileSystem& files, const std::string& folder,
   return read_catalogue(grown, path);
 }
 
-/// Adds the takes; returns how many were there before.
+/// Adds the takes; returns the number of those that existed before.
 Result<std::uint64_t> add_takes(const Corpus& corpus, const ImportRequest& request,
                                 TakeAdder& adder, const Progress& progress,
                                 const ImportStep& step) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keraal: exercises of the back before a Kinect v2 and 17 optical targets, in texts of one name but
-// for the device: G3-Kinect-CTK-P1T1-Unknown-C-0.txt.
+// Imports Keraal: exercises of the back with a Kinect v2 and 17 optical targets. The texts of a
+// recording differ in their names only by the device: G3-Kinect-CTK-P1T1-Unknown-C-0.txt.
 #include "kinalign/dataset/import/corpora.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 struct RecordingName {
   std::string device, subject, action;  // "Kinect", "G3P1", "CTK"
-  std::string key;                      // the name without its device
+  std::string key;                      // the name without the device
 };
 
 std::vector<std::string> words_between_dashes(std::string_view stem) {
@@ -27,6 +27,7 @@ std::vector<std::string> words_between_dashes(std::string_view stem) {
   }
 }
 
+/// Splits a file's name; absent for other files.
 std::optional<RecordingName> recording_of(std::string_view name) {
   const auto parts = words_between_dashes(stem_of(name));
   if (!has_ending(name, ".txt") || parts.size() < 4 || !parts[0].starts_with('G') ||
@@ -44,6 +45,7 @@ bool looks_like_keraal(FileSystem&, const std::vector<SourceFile>& sources) {
                      [](const SourceFile& file) { return recording_of(file.name).has_value(); });
 }
 
+/// The manifest of a pair: the targets that correspond to joints fit the Kinect's space.
 Manifest recording_manifest(const std::string& kinect, const std::string& vicon) {
   Manifest out;
   out.streams.push_back(stream_of("mocap", vicon, "keraal_vicon"));
@@ -62,6 +64,7 @@ struct DevicePair {
   std::string kinect, vicon;
 };
 
+/// Pairs the files of both devices by the rest of their names.
 Result<Corpus> list_keraal(const ImportInput& input) {
   Corpus out{.name = "Keraal",
              .licence = "BSD-2-Clause",

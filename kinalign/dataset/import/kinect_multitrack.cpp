@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// KinectMultiTrack: logs of two Kinect v2 that see one person, as skeletons 0 and 1 of a table.
+// Imports KinectMultiTrack: logs of two Kinect v2 that see one person, as skeletons 0 and 1 of a
+// table.
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/sources/formats.h"
 
@@ -27,7 +28,7 @@ bool looks_like_kinect_multitrack(FileSystem& files, const std::vector<SourceFil
                      [&](const SourceFile& file) { return is_log(files, file); });
 }
 
-/// The digits behind `lead`, "10" of "Study_10_Kinect_0_Time_..."; empty where there are none.
+/// The digits after `lead`: "10" in "Study_10_Kinect_0_Time_..."; empty if there are none.
 std::string number_behind(std::string_view text, std::string_view lead) {
   const auto at = text.find(lead);
   if (at == text.npos) return "";
@@ -44,10 +45,11 @@ Manifest log_manifest(const std::string& path) {
     out.streams.back().select = {{"Skeleton#", std::to_string(k)}};
   }
   out.streams.back().clock = "shared";  // the server stamped both
-  out.spaces[names[1]].method = "fit";  // the logger's own calibration is some degrees off
+  out.spaces[names[1]].method = "fit";  // the logger's own calibration is off by some degrees
   return out;
 }
 
+/// A log is a take; its study is the subject, its arrangement of Kinects the action.
 Result<Corpus> list_kinect_multitrack(const ImportInput& input) {
   Corpus out{.name = "KinectMultiTrack",
              .licence = "MIT",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any folder of BVH, C3D, TRC or MVNX: a file is a take of one stream. Folders and names say who
-// does what (file_names.h).
+// Imports any folder of BVH, C3D, TRC or MVNX: each file is a take of one stream. Folders and names
+// give subject and action (file_names.h).
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/file_names.h"
 
@@ -25,12 +25,12 @@ bool looks_like_motion_files(FileSystem&, const std::vector<SourceFile>& sources
   return std::any_of(sources.begin(), sources.end(), is_one<ending>);
 }
 
-/// "walk" of "walk.mvnx.gz": what a name says stands before its first ending.
+/// The name without the ending of packing: "walk.mvnx.gz" gives "walk.mvnx".
 std::string without_packing(const std::string& name) {
   return has_ending(name, packed_mvnx) ? name.substr(0, name.size() - 3) : name;
 }
 
-/// The folder that the user named, for a collection that has no other name.
+/// The folder that the user gave, as the name of a collection without one.
 std::string folder_name(const std::vector<SourceFile>& sources) {
   const std::filesystem::path path(sources.front().path);
   std::error_code fault;
@@ -42,6 +42,7 @@ std::string folder_name(const std::vector<SourceFile>& sources) {
   return up.filename().string();
 }
 
+/// Each file is a take; files without a subject are left out.
 template <const std::string_view& ending>
 Result<Corpus> list_motion_files(const ImportInput& input) {
   constexpr const char* unnamed = "motion";

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Removes the folders `parent`/LEAD-PID of imports that were killed.
+/// Removes the folders `parent`/LEAD-PID of imports whose processes have ended.
 void remove_abandoned(const std::string& parent, const std::string& lead) {
   for (const std::string& name : names_in_folder(parent).value_or(std::vector<std::string>{})) {
     if (!name.starts_with(lead)) continue;
@@ -33,7 +33,7 @@ void remove_abandoned(const std::string& parent, const std::string& lead) {
   }
 }
 
-/// Moves the files of a folder to another one that lacks them.
+/// Moves files from one folder to another that lacks them.
 Result<void> fill_in(const fs::path& from, const fs::path& to) {
   std::error_code fault;
   fs::recursive_directory_iterator at(from, fault);
@@ -61,7 +61,7 @@ UnfinishedFolder::~UnfinishedFolder() {
   if (kept_) return;
   std::error_code ignored;
   fs::remove_all(path_, ignored);
-  for (const std::string& one : above_) fs::remove(one, ignored);  // where nothing else is in it
+  for (const std::string& one : above_) fs::remove(one, ignored);  // only if it is empty
 }
 
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
@@ -76,7 +76,7 @@ Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
                                   const FillFolder& fill) {
   const std::string own = stem + "-" + sha256.substr(0, 8);
   const fs::path to = fs::path(parent) / own;
-  // Another process may unpack the same source.
+  // The process id is in the name, since another process may unpack the same source.
   const std::string lead = "." + own + "-";
   remove_abandoned(parent, lead);
   const fs::path beside = fs::path(parent) / (lead + std::to_string(::getpid()));

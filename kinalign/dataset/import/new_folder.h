@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder that comes to be only when all its files are there, so that an import that fails or is
-// stopped leaves nothing half done.
+// A folder that appears only when all its files are complete, so that a failed or stopped import
+// leaves nothing unfinished.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -12,8 +12,8 @@
 
 namespace kinalign {
 
-/// A folder that is not there yet. Unless it is kept, it is removed at the end with all that is in
-/// it, and so are the folders above it that were not there.
+/// A new folder. Unless it is kept, it is removed at the end with all its files, and so are parent
+/// folders that did not exist before.
 class UnfinishedFolder {
  public:
   explicit UnfinishedFolder(std::string path);
@@ -29,17 +29,17 @@ class UnfinishedFolder {
   bool kept_ = false;
 };
 
-/// Puts a file into the folder, in folders of its own where `name` has them.
+/// Creates a file in the folder; subfolders in `name` are made.
 using PutFile = std::function<Result<OutputFile>(const std::string& name)>;
 using FillFolder = std::function<Result<void>(const PutFile& put)>;
 
-/// The folder `parent`/STEM-HASH of what `source` is unpacked to; the hash is the file's, so that
-/// the same source has one folder. If the folder is there already, files that it lacks are put into
-/// it (dataset rm --raw removed them), and all others stay as they are.
+/// The folder `parent`/STEM-HASH for the content of `source`. The hash is the file's, so the same
+/// source always has the same folder. If the folder exists, only missing files are added (dataset
+/// rm --raw removed them), and all others stay.
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
                                     const std::string& source, const FillFolder& fill);
 
-/// The same of what is made of several files: `sha256` is over all that it depends on.
+/// The same for content made from several files. `sha256`: a hash of everything that it depends on.
 Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
                                   const std::string& stem, const std::string& sha256,
                                   const FillFolder& fill);

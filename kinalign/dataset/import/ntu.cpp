@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// NTU RGB+D: S001C002P003R001A004.skeleton is setup, camera, person, repetition and action.
+// Imports NTU RGB+D: S001C002P003R001A004.skeleton is setup, camera, person, repetition and action.
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/formats/points/ntu_bodies.h"
 
@@ -15,9 +15,9 @@ namespace {
 struct ClipName {
   std::uint32_t setup = 0, camera = 0, person = 0, repetition = 0, action = 0;
 
-  /// 1712 is setup 17, camera 1, repetition 2: each clip of a person's action has one of its own.
+  /// Unique for each clip of a person's action: 1712 is setup 17, camera 1, repetition 2.
   std::uint32_t run() const { return 100 * setup + 10 * camera + repetition; }
-  /// Actions of two people (rose1.ntu.edu.sg): the second person has no number.
+  /// True for actions of two people (rose1.ntu.edu.sg); the second person has no number.
   bool is_mutual() const { return (action >= 50 && action <= 60) || action >= 106; }
   std::string_view class_id() const {
     if (is_mutual()) return "mutual";
@@ -25,6 +25,7 @@ struct ClipName {
   }
 };
 
+/// Takes `lead` and three digits off the front.
 bool take_three_digits(std::string_view& text, char lead, std::uint32_t& out) {
   if (text.size() < 4 || text.front() != lead) return false;
   out = 0;
@@ -51,7 +52,7 @@ bool looks_like_ntu(FileSystem&, const std::vector<SourceFile>& sources) {
                      [](const SourceFile& file) { return clip_of(file.name).has_value(); });
 }
 
-/// The body that is seen longest and, of two people's actions, the next one; `bodies` come so.
+/// The body seen longest; for actions of two people also the next one. `bodies` are sorted by this.
 Manifest clip_manifest(const std::string& path, const std::vector<NtuBody>& bodies,
                        bool is_mutual) {
   Manifest out;
@@ -60,10 +61,11 @@ Manifest clip_manifest(const std::string& path, const std::vector<NtuBody>& bodi
     out.streams.push_back(stream_of(k == 0 ? "kinect" : "partner", path, "ntu"));
     out.streams.back().select = {{"body", bodies[k].id}};
   }
-  if (count == 2) out.streams.back().clock = "shared";  // rows of one file
+  if (count == 2) out.streams.back().clock = "shared";  // both are rows of one file
   return out;
 }
 
+/// A clip is a take; clips without a skeleton are left out.
 Result<Corpus> list_ntu(const ImportInput& input) {
   Corpus out{.name = "NTU RGB+D",
              .licence = "for academic research alone, by agreement with ROSE Lab",

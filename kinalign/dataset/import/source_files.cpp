@@ -21,7 +21,7 @@ Failure unreadable_folder(const std::string& path, const std::error_code& fault)
   return Failure(Error{path, 0, "a folder that can be read", fault.message()});
 }
 
-/// Links to folders are not followed: they may lead in a circle.
+/// Links to folders are not followed, since they may form a circle.
 Result<void> list_folder(const fs::path& top, std::vector<SourceFile>& out) {
   std::error_code fault;
   fs::recursive_directory_iterator at(top, fault);
@@ -46,6 +46,7 @@ Result<bool> is_archive(FileSystem& files, const std::string& path) {
   return looks_like_archive({head.data(), KA_TRY(file.read_at(0, head))}, path);
 }
 
+/// Unpacks an archive into a folder of its own.
 Result<std::string> unpack(FileSystem& files, const std::string& path,
                            const std::string& raw_folder, const Progress& progress) {
   const ArchiveBytes bytes = KA_TRY(archive_bytes(files, path));
@@ -81,7 +82,7 @@ Result<std::vector<SourceFile>> list_sources(FileSystem& files,
                                              const Progress& progress) {
   std::vector<SourceFile> out;
   for (const std::string& source : sources) {
-    std::error_code ignored;  // opening the file says what is wrong
+    std::error_code ignored;  // opening the file reports the fault
     if (fs::is_directory(source, ignored)) {
       KA_TRY(list_folder(source, out));
     } else if (KA_TRY(is_archive(files, source))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of what is imported: folders are searched downwards, archives are unpacked first.
+// The files of an import: folders are searched recursively, archives are unpacked first.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -13,23 +13,23 @@
 namespace kinalign {
 
 struct SourceFile {
-  std::string path;  // to open it
-  std::string name;  // below what the user named, or a file's own: "Kinect/m01.txt"
+  std::string path;  // for opening it
+  std::string name;  // below the folder that the user gave, or a file's own name: "Kinect/m01.txt"
 };
 
-/// Files of all sources, sorted by name. Names that begin with a dot are passed over, and what
-/// macOS adds to archives. An archive goes to a folder of its own below `raw_folder`.
+/// The files of all sources, sorted by name. Names that begin with a dot, and files that macOS adds
+/// to archives, are skipped. An archive is unpacked into its own folder below `raw_folder`.
 Result<std::vector<SourceFile>> list_sources(FileSystem& files,
                                              const std::vector<std::string>& sources,
                                              const std::string& raw_folder,
                                              const Progress& progress);
 
-/// An archive's bytes out of a file.
+/// The bytes of an archive, read from a file.
 Result<ArchiveBytes> archive_bytes(FileSystem& files, const std::string& path);
 
-/// "m01_s01" of "Kinect/m01_s01.txt".
+/// The name without folder and ending: "Kinect/m01_s01.txt" gives "m01_s01".
 std::string_view stem_of(std::string_view name);
-/// The name ends so, in large or small letters.
+/// True if the name ends with `ending`, in any case of letters.
 bool has_ending(std::string_view name, std::string_view ending);
 
 }  // namespace kinalign

@@ -37,6 +37,7 @@ bool take_two_digits(std::string_view& text, std::string_view lead, int& out) {
   return true;
 }
 
+/// The piece that a file's name states; absent for other files.
 std::optional<PieceName> piece_of(std::string_view name) {
   PieceName out;
   std::string_view rest = stem_of(name);
@@ -54,7 +55,7 @@ bool is_piece_pack(const SourceFile& file) {
   return has_ending(file.name, ".npz") && take_two_digits(stem, "s", number) && stem.empty();
 }
 
-/// Whole movements, which the pieces were cut out of, are no pieces and are passed over.
+/// Adds the pairs of texts. Whole movements, from which the pieces were cut, are skipped.
 void add_texts(const std::vector<SourceFile>& sources, double vicon_hz, PiecePairs& out) {
   for (const SourceFile& file : sources) {
     const auto piece = piece_of(file.name);
@@ -81,7 +82,7 @@ Result<void> add_packs(const ImportInput& input, PiecePairs& out) {
     PiecePairs packed;
     add_texts(KA_TRY(list_sources(input.files, {folder}, input.raw_folder, input.progress)), 50.0,
               packed);
-    out.merge(packed);  // pieces whose texts are there stay these
+    out.merge(packed);  // a piece that exists as text keeps the text
   }
   return {};
 }
@@ -91,7 +92,7 @@ Manifest pair_manifest(const PiecePair& pair) {
   out.streams = {marker_stream_of(pair), kinect_stream_of(pair)};
   SpaceOptions& space = out.spaces["kinect"];
   space.method = "fit";
-  // The markers on the skin that lie nearest to the joints, in pairs left and right.
+  // The markers on the skin that are nearest to the joints, in pairs left and right.
   space.joints = {{"UpperArmLeft", "LSHO"}, {"UpperArmRight", "RSHO"}, {"ForearmLeft", "LELB"},
                   {"ForearmRight", "RELB"}, {"HandLeft", "LWRA"},      {"HandRight", "RWRA"},
                   {"LowerLegLeft", "LKNE"}, {"LowerLegRight", "RKNE"}, {"FootLeft", "LANK"},
@@ -99,6 +100,7 @@ Manifest pair_manifest(const PiecePair& pair) {
   return out;
 }
 
+/// Each pair of files is a take.
 Result<Corpus> list_ui_prmd(const ImportInput& input) {
   Corpus out = ui_prmd_without_takes();
   PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));

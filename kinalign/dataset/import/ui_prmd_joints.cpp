@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// UI-PRMD as pairs for learning, by the corpus' protocol (docs/dataset_import.md): joint centres
-// from the markers, the time shift of each repetition by search, one rigid transform of a person's
-// movement. Repetitions that fit badly are left out.
+// Imports UI-PRMD as pairs for learning, by the corpus's protocol (docs/dataset_import.md): joint
+// centres from the markers, the time shift of each repetition by a search, one rigid transform for
+// a person's movement. Repetitions that fit badly are left out.
 #include "kinalign/core/hash.h"
 #include "kinalign/core/parallel.h"
 #include "kinalign/core/text_out.h"
@@ -26,23 +26,24 @@ namespace kinalign {
 namespace {
 
 constexpr double kinect_hz = 30.0, truth_hz = 50.0;
-constexpr double most_rms_m = 0.12;      // of a repetition that is taken
+constexpr double most_rms_m = 0.12;      // limit for an accepted repetition
 constexpr std::size_t least_taken = 3;   // repetitions of a person's movement
-constexpr std::size_t shift_stride = 5;  // frames of the truth that elbows and knees are fitted to
-constexpr double gap_ms = 36.0;          // more than a Kinect's step, less than two of the truth
+constexpr std::size_t shift_stride = 5;  // frames of the truth between those that elbows and knees
+                                         // are fitted to
+constexpr double gap_ms = 36.0;  // more than a step of the Kinect, less than two of the truth
 constexpr std::size_t marker_count = plug_in_gait_markers.size();
 
-/// One repetition. The markers are dropped once the joints are there.
+/// One repetition. The markers are dropped once the joints are computed.
 struct Repetition {
   PieceName name;
   PiecePair files;
-  std::string sha256;                // over the files' hashes
+  std::string sha256;                // hash of the files' hashes
   std::vector<double> kinect;        // [F,18,3] m
   std::vector<double> markers;       // [G,39,3] m, 50 Hz
   std::vector<std::uint8_t> seen;    // [G,39]
   JointCentres truth;                // [G]
-  std::optional<FoundShift> found;   // absent: too little overlaps
-  RigidTransform kinect_from_truth;  // of the person's movement
+  std::optional<FoundShift> found;   // absent: too little overlap
+  RigidTransform kinect_from_truth;  // the same for a person's movement
 
   PointPiece rough() const { return {kinect, {}, shared_joint_count, kinect_hz}; }
   PointPiece precise() const {
@@ -51,6 +52,7 @@ struct Repetition {
   bool fits() const { return found && found->rms_m <= most_rms_m; }
 };
 
+/// All frames of a stream, in memory.
 Result<PointFrames> all_frames(const PointInput& points) {
   PointFrames out, block;
   auto pass = KA_TRY(points.passes());
@@ -62,6 +64,7 @@ Result<PointFrames> all_frames(const PointInput& points) {
   return out;
 }
 
+/// Reads the joints that the Kinect shares with other devices.
 Result<void> read_kinect(const PointInput& points, Repetition& out) {
   const auto joints = KA_TRY(shared_joints_among(points.joint_names));
   const PointFrames frames = KA_TRY(all_frames(points));
@@ -75,7 +78,7 @@ Result<void> read_kinect(const PointInput& points, Repetition& out) {
   return {};
 }
 
-/// Markers at 100 Hz give every second frame: packs hold no others.
+/// Every second frame of markers at 100 Hz is used, since packs contain only those.
 Result<void> read_markers(const PointInput& points, Repetition& out) {
   const PointFrames frames = KA_TRY(all_frames(points));
   const std::size_t stride = out.files.vicon_hz > truth_hz ? 2 : 1;
@@ -89,6 +92,7 @@ Result<void> read_markers(const PointInput& points, Repetition& out) {
   return {};
 }
 
+/// Reads both devices of a repetition, and hashes their files.
 Result<Repetition> read_repetition(FileSystem& files, const PieceName& name,
                                    const PiecePair& pair) {
   Repetition out;
@@ -106,7 +110,8 @@ Result<Repetition> read_repetition(FileSystem& files, const PieceName& name,
   return out;
 }
 
-/// Joints of all repetitions of one person, whose size and whose markers' places they share.
+/// Computes the joints of all repetitions of one person, which share body size and places of
+/// markers.
 void put_truth(std::vector<Repetition>& all) {
   std::vector<double> places, few_places;
   std::vector<std::uint8_t> seen, few_seen;
@@ -137,7 +142,7 @@ void put_truth(std::vector<Repetition>& all) {
 
 using Group = std::vector<std::pair<PieceName, PiecePair>>;
 
-/// All repetitions of one person with their joints and shifts.
+/// All repetitions of one person, with their joints and time shifts.
 Result<std::vector<Repetition>> read_person(const ImportInput& input, const Group& group) {
   std::vector<Result<Repetition>> read(group.size());
   parallel_for(group.size(), input.jobs, [&](std::size_t i) {
@@ -153,8 +158,8 @@ Result<std::vector<Repetition>> read_person(const ImportInput& input, const Grou
   return out;
 }
 
-/// The gate over one person's movement: moves the repetitions that pass to `taken`, and adds the
-/// others with the reason to the parts left out.
+/// Accepts repetitions of one person's movement: those that pass are moved to `taken`, the others
+/// are noted with the reason.
 void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken, Corpus& corpus) {
   const auto fitting = static_cast<std::size_t>(std::count_if(
       movement.begin(), movement.end(), [](const Repetition& one) { return one.fits(); }));
@@ -174,7 +179,7 @@ void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken,
   }
 }
 
-/// One transform for all repetitions of the movement.
+/// Fits one transform for all repetitions of the movement.
 Result<void> put_transform(std::span<Repetition> movement) {
   PairMoments moments;
   for (const Repetition& one : movement) {
@@ -185,7 +190,7 @@ Result<void> put_transform(std::span<Repetition> movement) {
   return {};
 }
 
-/// The repetitions of one person that pass the gate, with their transforms.
+/// The accepted repetitions of one person, with their transforms.
 Result<std::vector<Repetition>> take_person(std::vector<Repetition> all, Corpus& corpus) {
   std::vector<Repetition> taken;
   for (auto begin = all.begin(); begin != all.end();) {
@@ -202,7 +207,7 @@ Result<std::vector<Repetition>> take_person(std::vector<Repetition> all, Corpus&
 
 std::string truth_name(const Repetition& one) { return one.name.text() + "_joints.trc"; }
 
-/// The truth from the first frame with a valid joint to the last.
+/// The truth from the first to the last frame with a valid joint.
 PointFrames truth_frames(const Repetition& one) {
   const auto is_valid = [](std::uint8_t valid) { return valid != 0; };
   const auto& valid = one.truth.valid;
@@ -224,6 +229,7 @@ PointFrames truth_frames(const Repetition& one) {
   return out;
 }
 
+/// Writes the truth of a repetition.
 Result<void> write_truth(const Repetition& one, const PutFile& put) {
   const PointFrames frames = truth_frames(one);
   TextOut out(KA_TRY(put(truth_name(one))));
@@ -238,8 +244,8 @@ Result<void> write_truth(const Repetition& one, const PutFile& put) {
   return out.commit();
 }
 
-/// The folder of one person's files of joints, made where it is not there. Its name has a hash of
-/// all files of the person, since each of them moves every joint.
+/// The folder with one person's files of joints, made if it does not exist. Its name contains a
+/// hash of all files of the person, since each of them influences every joint.
 Result<std::string> truth_folder(const ImportInput& input, const std::string& sha256,
                                  const std::vector<Repetition>& taken) {
   const std::string stem = fmt::format("s{}joints", taken.front().name.person());
@@ -270,6 +276,7 @@ Manifest manifest_of(const Repetition& one, const std::string& folder) {
   return out;
 }
 
+/// Adds the accepted repetitions of one person to the corpus.
 Result<void> add_person(const ImportInput& input, const Group& group, Corpus& corpus) {
   std::vector<Repetition> all = KA_TRY(read_person(input, group));
   Sha256 hash;
@@ -289,7 +296,7 @@ Result<Corpus> list_ui_prmd_joints(const ImportInput& input) {
   Corpus out = ui_prmd_without_takes();
   PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));
   leave_out_single(pairs, out);
-  std::map<std::pair<int, bool>, Group> people;  // what was done wrongly is a session of its own
+  std::map<std::pair<int, bool>, Group> people;  // wrong repetitions are a session of their own
   for (auto& pair : pairs) {
     people[{pair.first.subject, pair.first.incorrect}].emplace_back(std::move(pair));
   }

@@ -15,10 +15,11 @@ namespace {
 constexpr ArchiveLimits largest_pieces{
     .entries = 100, .bytes = std::uint64_t{512} << 20, .ratio = 1000};
 constexpr std::size_t kinect_columns = 66, vicon_columns = 117;
-/// Hundredths of a centimetre and of a degree; tenths of a millimetre.
+/// Decimals of the packed numbers: hundredths of a centimetre and of a degree; tenths of a
+/// millimetre.
 constexpr int kinect_decimals = 2, vicon_decimals = 1;
 
-/// Values [C,F] of which the array holds differences, taken `times` times. Sums wrap.
+/// Values [C,F] stored as differences, taken `times` times. Sums wrap around.
 struct PackedTable {
   std::vector<std::int16_t> values;
   std::size_t columns = 0, frames = 0;
@@ -32,6 +33,7 @@ struct Packing {
   int times, decimals;
 };
 
+/// Sums up the differences, column by column.
 Result<PackedTable> read_table(const Npz& npz, const Packing& packing) {
   const auto steps = KA_TRY(npz.integers(packing.array, {packing.columns, 0}));
   PackedTable out{{}, packing.columns, steps.size() / packing.columns, 1.0, packing.decimals};
@@ -51,7 +53,7 @@ Result<PackedTable> read_table(const Npz& npz, const Packing& packing) {
   return out;
 }
 
-/// Rows of numbers between commas, as the source writes them.
+/// Rows of numbers between commas, in the source's form.
 std::string text_of(const PackedTable& table, std::size_t begin, std::size_t rows) {
   std::string out;
   std::array<char, number_room> room{};
@@ -97,6 +99,7 @@ Result<void> check_piece(const Piece& p, const Tables& tables, const std::string
                        fmt::format("piece {} of movement {}", p.repetition, p.movement)});
 }
 
+/// Writes the texts of a piece; a device without rows gets no file.
 Result<void> write_piece(const Piece& p, const Tables& tables, const std::string& person,
                          const PutFile& put) {
   const std::string name = fmt::format("m{:02}_{}_e{:02}", p.movement, person, p.repetition);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// UI-PRMD packed into an NPZ per person, unpacked to the texts of its source. Layout:
+// Unpacks UI-PRMD, an NPZ for each person, to the texts of its source. Layout:
 // docs/dataset_import.md.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace kinalign {
 
 /// Writes Kinect/Positions/m01_s01_e01_positions.txt, Kinect/Angles/m01_s01_e01_angles.txt and
-/// Vicon/Positions/m01_s01_e01_positions.txt of each piece. `person`: "s01". The markers were
+/// Vicon/Positions/m01_s01_e01_positions.txt for each piece. `person`: "s01". The markers were
 /// packed at 50 Hz, every second row of the source.
 Result<void> write_ui_prmd_pieces(const ArchiveBytes& bytes, const std::string& person,
                                   const PutFile& put);

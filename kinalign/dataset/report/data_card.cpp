@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t longest_card = std::size_t{4} << 20;
 constexpr std::string_view own_begin = "<!-- own text -->", own_end = "<!-- end -->";
 
-/// One line of Markdown without markup of its own.
+/// One line of text for Markdown, with markup characters escaped.
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -41,7 +41,7 @@ std::string text_at(const Cell& cell, const TableColumn& column) {
   return std::holds_alternative<std::monostate>(cell) ? "" : cell_text(cell, column);
 }
 
-/// Blocks of own text in the old card, with their marks.
+/// The user's own blocks of the old card, with their marks.
 Result<std::string> own_texts(FileSystem& files, const std::string& path) {
   const std::string empty = fmt::format("{}\n\n{}\n", own_begin, own_end);
   if (path.empty() || !is_there(path)) return empty;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data card: README.md of a data set, written from its index for those who use the data.
+// The data card: README.md of a data set, made from its index for the users of the data.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -10,11 +10,11 @@
 
 namespace kinalign {
 
-/// Stands in the card's first lines: a file that has it may be replaced.
+/// This text is in the card's first lines; a file that has it may be replaced.
 inline constexpr std::string_view data_card_mark = "<!-- data card of kinalign";
 
-/// The card's text. `old_card`: path of the card that stands there; what its readers wrote between
-/// "<!-- own text -->" and "<!-- end -->" is kept. Fails where such a text has no end.
+/// The text of the card. `old_card`: the path of an existing card; text between "<!-- own text -->"
+/// and "<!-- end -->" in it is kept. Fails if such a text has no end.
 Result<std::string> data_card(FileSystem& files, const DatasetIndex& index,
                               const std::string& folder, const std::string& old_card,
                               const std::string& software);

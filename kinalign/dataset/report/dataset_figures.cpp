@@ -38,6 +38,7 @@ constexpr const char* worst_first =
     "coalesce(residual_cm, 0) desc, min(coalesce(kinect_valid, 1), coalesce(imu_valid, 1)), name "
     "limit ?";
 
+/// A take from a row, whose cells have the order of the query.
 DatasetTake take_of(const std::vector<Cell>& row) {
   DatasetTake take;
   const std::array<std::string*, 7> texts{&take.name,   &take.subject,     &take.class_id,
@@ -55,6 +56,7 @@ DatasetTake take_of(const std::vector<Cell>& row) {
   return take;
 }
 
+/// The sums over all takes.
 Result<void> add_sums(const DatasetIndex& index, DatasetPage& page) {
   const Table sums = KA_TRY(
       index.select("select count(*), count(distinct subject), coalesce(sum(mocap), 0), "

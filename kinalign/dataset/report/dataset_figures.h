@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a data set's index to what its page shows.
+// Makes the content of a data set's page from its index.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -11,15 +11,15 @@
 
 namespace kinalign {
 
-/// The page's table has at most so many takes: 2,000 rows with their pictures are 3 MB.
+/// The most takes in the page's table: 2,000 rows with pictures are 3 MB.
 inline constexpr std::size_t most_shown_takes = 2000;
 
-/// All of the page but pictures and links. The worst takes come first: bad, usable, good; then by
+/// The whole page but pictures and links. The worst takes come first: bad, usable, good; then by
 /// errors, warnings, distance from the reference, valid samples and name.
 Result<DatasetPage> dataset_figures(const DatasetIndex& index, const std::string& folder,
                                     std::size_t most = most_shown_takes);
 
-/// Adds the takes' pictures. No other thread may run.
+/// Adds the pictures of takes. No other thread may run, since a child process is forked.
 void add_pictures(FileSystem& files, const std::string& folder, DatasetPage& page);
 
 }  // namespace kinalign

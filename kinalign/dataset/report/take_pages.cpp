@@ -21,9 +21,10 @@ constexpr std::string_view schema = "kinalign.dataset_pages/1";
 constexpr std::string_view ledger_name = "pages.json";
 constexpr std::size_t longest_ledger = std::size_t{64} << 20;
 constexpr std::size_t head_bytes = 4096;
-constexpr std::size_t pages_between_writes = 32;  // of the ledger: a kill costs as many at most
+// The ledger is written after this number of pages: a stopped run loses at most as many.
+constexpr std::size_t pages_between_writes = 32;
 
-/// A ledger that can't be read is none: its pages are made again.
+/// A ledger that can't be read counts as empty: its pages are made again.
 std::map<std::string, std::string> read_ledger(FileSystem& files, const std::string& path,
                                                const std::string& software) {
   std::map<std::string, std::string> out;
@@ -42,7 +43,7 @@ std::map<std::string, std::string> read_ledger(FileSystem& files, const std::str
   return out;
 }
 
-/// The folder from which the names that a take remembers lead to all of its raw files.
+/// The folder from which the names in the take lead to all of its raw files.
 std::string inputs_folder(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                           const TakeName& name) {
   const std::string base = folder + "/sub-" + name.subject + "/";
@@ -90,6 +91,7 @@ std::string TakePages::page_of(const std::string& name, const std::string& sha25
   return current && is_there(path_of_page(name)) ? name + ".html" : "";
 }
 
+/// The pages that are missing or old. A file that is no page of kinalign is never replaced.
 Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
                                              const std::vector<std::string>& takes) const {
   const auto hashes = hashes_of(KA_TRY(index.select("select name, sha256 from takes")));

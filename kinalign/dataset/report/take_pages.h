@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages of takes beside the page of their data set: which are there, which have to be made.
-// A file pages.json beside them says of which bytes each was made.
+// The pages of takes, in a folder for their data set's page: which exist and which have to be made.
+// A file pages.json states the bytes that each page was made from.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -20,7 +20,7 @@ struct PageJob {
   TakeName name;
   std::string take, page;  // paths
   std::string inputs;      // folder of the take's raw files; empty: not known
-  std::string sha256;      // of the take
+  std::string sha256;      // the take's
 };
 
 /// Makes one page. Called from several threads at once.
@@ -33,15 +33,15 @@ struct PagesMade {
 
 class TakePages {
  public:
-  /// `folder`: of the data set. `place`: of the pages; need not be there.
+  /// `folder`: of the data set. `place`: folder of the pages, which may not exist yet.
   TakePages(FileSystem& files, std::string folder, std::string place, std::string software);
 
-  /// "NAME.html", where a page of these bytes by this software is there; else empty.
+  /// "NAME.html" if a page of these bytes by this software exists; else empty.
   std::string page_of(const std::string& name, const std::string& sha256) const;
 
-  /// Makes the pages of `takes` that are missing or old. Removes pages of takes that the index does
-  /// not have. A page that fails stops no other. Fails where the user stops it, and where a file
-  /// that is no page of kinalign stands in a page's place.
+  /// Makes the missing and old pages of `takes`, and removes pages of takes that the index lacks. A
+  /// page that fails does not stop others. Fails if the user stops it, or if a page's name belongs
+  /// to a file that is no page of kinalign.
   Result<PagesMade> make(const DatasetIndex& index, const std::vector<std::string>& takes,
                          std::size_t jobs, const MakePage& make_page, const Progress& progress);
 
@@ -57,7 +57,7 @@ class TakePages {
   std::map<std::string, std::string> pages_;  // take's name -> SHA-256 of the take
 };
 
-/// True: the first 4096 bytes of the file hold `mark`, so kinalign wrote it.
+/// True if the first 4096 bytes of the file contain `mark`, so kinalign wrote it.
 bool is_own_page(FileSystem& files, const std::string& path, std::string_view mark);
 
 }  // namespace kinalign

@@ -16,15 +16,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::uint64_t, 7> eighths{4, 3, 5, 2, 6, 1, 7};  // of the take's length
+// Eighths of the take's length, from the middle outwards.
+constexpr std::array<std::uint64_t, 7> eighths{4, 3, 5, 2, 6, 1, 7};
 constexpr std::size_t most_joints = 1000;
 
 struct RowOfBodies {
   std::vector<PageBody> bodies;
   std::size_t tracked = 0;  // joints of all bodies
-  bool is_whole = true;     // all joints of all bodies are
+  bool is_whole = true;     // all joints of all bodies are tracked
 };
 
+/// The bodies of one row, with the number of their tracked joints.
 RowOfBodies bodies_of(const TakeHeader& header, const TakeSlab& slab) {
   RowOfBodies out;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
@@ -41,6 +43,7 @@ RowOfBodies bodies_of(const TakeHeader& header, const TakeSlab& slab) {
   return out;
 }
 
+/// The row with the most tracked joints among seven of the take.
 Result<std::string> typical_row(TakeReader& reader) {
   const TakeHeader& header = reader.header();
   RowOfBodies best;
@@ -55,6 +58,7 @@ Result<std::string> typical_row(TakeReader& reader) {
   return bodies_json(best.bodies);
 }
 
+/// A body from the text of a child process.
 PageBody body_from(const Json& json) {
   PageBody body;
   const int colour = json.at("colour").get<int>();
@@ -89,6 +93,7 @@ std::string bodies_json(const std::vector<PageBody>& bodies) {
   return out.dump();
 }
 
+/// Bodies whose arrays do not fit together are left out: a damaged take may have crashed the child.
 std::vector<PageBody> parse_bodies_json(std::string_view json) {
   std::vector<PageBody> out;
   try {

@@ -7,8 +7,8 @@ namespace kinalign {
 
 namespace {
 
-// Rows of the tables that the paper's numbers tie to each other: person 05 alone did S4, person 07
-// alone S6, and person 10 alone, in S2, was recorded without a Kinect.
+// Rows of the tables that the paper's numbers connect: only person 05 did S4, only person 07 S6,
+// and only person 10, in S2, was recorded without a Kinect.
 constexpr std::size_t person_10 = 1, person_05 = 2, person_07 = 3;
 constexpr std::size_t baduanjin = 1, wuqinxi = 3, dance = 5;
 constexpr std::uint64_t without_kinect = 29'776;
@@ -16,7 +16,7 @@ constexpr std::uint64_t without_kinect = 29'776;
 using Supplies = std::array<std::uint64_t, paper_people.size()>;
 using Demands = std::array<std::uint64_t, paper_classes.size()>;
 
-/// Divides supplies among demands of the same sum, in the order of both.
+/// Divides supplies among demands with the same sum, both in order.
 void transport(Supplies supplies, Demands demands, bool imu, std::vector<PaperCell>& out) {
   for (std::size_t who = 0; who < supplies.size(); ++who) {
     for (std::size_t what = 0; what < demands.size(); ++what) {

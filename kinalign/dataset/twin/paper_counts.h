@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The frames that the paper counts (tables 6 and 7), and one division of them that agrees with both
-// tables. The paper gives sums by people and sums by classes; who did which class is ours.
+// tables. The paper gives sums by people and sums by classes; the division is ours.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-/// Frames at 60 Hz; of Kinect and nodes those of takes that have them.
+/// Frames at 60 Hz. Frames of Kinect and nodes are those of takes that have them.
 struct ModalityFrames {
   std::uint64_t mocap = 0, kinect = 0, imu = 0;
 
@@ -19,7 +19,7 @@ struct ModalityFrames {
 
 /// A row of table 6: people of one sex and height.
 struct PaperPeople {
-  std::array<std::string_view, 4> ids;  // empty ones behind the last
+  std::array<std::string_view, 4> ids;  // unused ones at the end are empty
   ModalityFrames frames;
 
   std::size_t count() const;
@@ -45,15 +45,15 @@ inline constexpr std::array<PaperClass, 6> paper_classes{{{"S1", {621'208, 621'2
                                                           {"S5", {702'930, 702'930, 92'044}},
                                                           {"S6", {33'680, 33'680, 0}}}};
 
-/// Frames of some people, a class and a choice of devices beside the suit.
+/// Frames of some people, in one class, with a choice of devices besides the suit.
 struct PaperCell {
   std::size_t people = 0, of_class = 0;  // rows of the two tables
   bool kinect = true, imu = false;
   std::uint64_t frames = 0;
 };
 
-/// Cells whose sums are both tables: those with all three devices first, then mocap and Kinect,
-/// then mocap and nodes. The first division that agrees (north-west corner rule).
+/// Cells whose sums give both tables: first those with all three devices, then mocap and Kinect,
+/// then mocap and nodes. It is the first division that agrees (north-west corner rule).
 std::vector<PaperCell> paper_cells();
 
 }  // namespace kinalign

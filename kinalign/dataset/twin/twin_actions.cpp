@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 130 of a seed: number 0 lane 0 the first movement; numbers 1, 2, ... lane 0 how long the
-// movement lasts.
+// Stream 130 of a seed: counter 0, lane 0 draws the first movement; counters 1, 2, ..., lane 0 draw
+// the length of each movement.
 #include "kinalign/dataset/twin/twin_actions.h"
 
 #include "kinalign/dataset/catalogue.h"
@@ -12,10 +12,10 @@ namespace kinalign {
 
 namespace {
 
-constexpr double t_pose_s = 3.5;  // still for two of them: the arms come down in the last 1.3
+constexpr double t_pose_s = 3.5;  // still for two of them; the arms come down in the last 1.3
 constexpr double least_piece_s = 5.0;
 
-/// s; a walk comes back to where it began.
+/// The mean length of a movement, s. A walk returns to its beginning.
 double mean_length(Piece piece) {
   if (piece == Piece::walk || piece == Piece::walk_turn) return 13.0;
   if (piece == Piece::turn) return 10.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 34 actions of the template hfut-mmd, each with a name and the movements that it consists of.
-// The paper names no action; names and movements are ours.
+// The 34 actions of the template hfut-mmd, each with a name and its movements. The paper names no
+// action; names and movements are ours.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,20 +14,20 @@ namespace kinalign {
 
 struct TwinAction {
   std::string_view id, name;
-  std::vector<Piece> pieces;  // in their order, again from the first until the take ends
+  std::vector<Piece> pieces;  // in order, again from the first until the take ends
 };
 
 /// In the order of their ids.
 const std::vector<TwinAction>& twin_actions();
 
-/// The actions of a class, "S2".
+/// The actions of a class, such as "S2".
 std::vector<const TwinAction*> twin_actions_of(std::string_view class_id);
 
-/// Two seconds of T-pose, then the action's movements, beginning at a drawn one, each for a drawn
-/// time, until `length_s` (7 s at least) is reached.
+/// Two seconds of T-pose, then the action's movements from a drawn one on, each for a drawn time,
+/// until `length_s` (at least 7 s) is reached.
 Programme twin_programme(const TwinAction& action, double length_s, std::uint64_t seed);
 
-/// dataset.toml: the template hfut-mmd with the actions' names.
+/// A dataset.toml: the template hfut-mmd with the names of actions.
 Result<std::string> twin_catalogue(const std::string& name);
 
 }  // namespace kinalign

@@ -20,7 +20,7 @@ constexpr std::int64_t take_spacing_ns = 120'000'000'000;
 constexpr std::uint64_t bytes_a_frame = 1900, kinect_bytes_a_frame = 800, imu_bytes_a_frame = 450;
 constexpr std::uint64_t bytes_a_take = 40'000;
 
-/// Seeds below 2^52, which every reader of JSON keeps exactly.
+/// A seed below 2^52, which every JSON parser keeps exactly.
 std::uint64_t derived(std::uint64_t seed, std::uint64_t stream, std::uint64_t number) {
   return mix64(mix64(mix64(seed) ^ stream) + number) >> 12;
 }
@@ -35,7 +35,7 @@ void add(const ModalityFrames& from, ModalityFrames& to) {
   to.imu += from.imu;
 }
 
-/// 7 of the id "07".
+/// The number of a person's id: 7 for "07".
 std::uint64_t person_number(std::string_view id) {
   const auto digit = [&](std::size_t i) { return static_cast<std::uint64_t>(id[i] - '0'); };
   return 10 * digit(0) + digit(1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of takes of a twin of the paper's data set. The paper counts frames, not takes: a scale
-// is a share of its frames. Takes of half a minute at most are our choice.
+// The list of takes in a twin of the paper's data set. The paper counts frames, not takes, so the
+// scale is a share of its frames. The limit of half a minute for a take is our choice.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,16 +14,16 @@
 namespace kinalign {
 
 inline constexpr double twin_rate_hz = 60.0;
-inline constexpr std::uint64_t longest_twin_take = 1800, shortest_twin_take = 600;  // frames
+inline constexpr std::uint64_t longest_twin_take = 1800, shortest_twin_take = 600;  // in frames
 
 struct TwinTake {
   TakeName name;
   std::size_t people = 0, of_class = 0;  // rows of the paper's tables
   bool kinect = true, imu = false;
-  std::uint64_t frames = 0;       // the alignment may cut some
-  std::uint64_t seed = 0;         // of everything that differs between takes
-  std::uint64_t person_seed = 0;  // of the body, its habits, and how a Kinect errs on it
-  std::int64_t start_ns = 0;      // UTC; takes follow each other
+  std::uint64_t frames = 0;       // alignment may cut some
+  std::uint64_t seed = 0;         // for everything that differs between takes
+  std::uint64_t person_seed = 0;  // for the body, its way of moving, and a Kinect's errors on it
+  std::int64_t start_ns = 0;      // UTC; takes follow one another
 
   bool operator==(const TwinTake&) const = default;
 };
@@ -33,17 +33,17 @@ struct TwinOptions {
   std::uint64_t seed = 1;
 };
 
-/// A cell of the paper's tables (paper_cells) becomes takes of nearly equal length, none shorter
-/// than `shortest_twin_take`: a small scale has more frames than were asked for. People of a row
-/// and actions of a class take turns.
+/// Plans the takes. Each cell of the paper's tables (paper_cells) becomes takes of nearly equal
+/// length, at least `shortest_twin_take`: a small scale gets more frames than asked for. People of
+/// a row and actions of a class take turns.
 std::vector<TwinTake> plan_twin(const TwinOptions& options);
 
-/// Frames of each kind in the rows of the paper's tables.
+/// The frames of each kind in the rows of the paper's tables.
 struct TwinCounts {
   std::array<ModalityFrames, paper_people.size()> people;
   std::array<ModalityFrames, paper_classes.size()> classes;
   std::array<ModalityFrames, 3> choices;  // mocap + Kinect, mocap + nodes, all three
-  std::array<std::uint64_t, 3> takes{};   // of each choice
+  std::array<std::uint64_t, 3> takes{};   // for each choice
 
   ModalityFrames sum() const;
 };
@@ -54,11 +54,11 @@ void count(const TwinTake& take, std::uint64_t frames, TwinCounts& counts);
 /// The paper's own counts times `scale`, rounded.
 TwinCounts paper_counts(double scale);
 
-/// Bytes on the disk of takes and truths, estimated.
+/// The estimated size of takes and truths on the disk, bytes.
 std::uint64_t bytes_of(const std::vector<TwinTake>& takes);
 
-/// The plan as a file, schema kinalign.twin/1: what a stopped job goes on with. `motions`: names of
-/// the motions that are cycled over the takes; none: the built-in person.
+/// The plan as a file, schema kinalign.twin/1, from which a stopped job continues. `motions`: the
+/// names of the motion files, used for the takes in turn; empty: the built-in person.
 std::string twin_json(const TwinOptions& options, const std::vector<std::string>& motions,
                       const std::vector<TwinTake>& takes);
 

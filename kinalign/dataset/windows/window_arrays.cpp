@@ -24,7 +24,8 @@ enum Fixed : std::size_t {
   manifest_array
 };
 
-/// How a take's stream differs from the windows' one of that name; empty where it is alike.
+/// The difference between a take's stream and the windows' stream of that name; empty if they
+/// agree.
 std::string difference(const TakeGroup& group, const TakeGroup& other) {
   if (group.kind.index() != other.kind.index())
     return fmt::format("{} of another kind", group.name);
@@ -43,7 +44,7 @@ std::string difference(const TakeGroup& group, const TakeGroup& other) {
   return "";
 }
 
-/// The columns of a stream that windows have: all but what follows from others.
+/// The columns of a stream in windows: all that do not follow from others.
 std::vector<TakeColumn> window_columns(const TakeGroup& group) {
   std::vector<TakeColumn> columns = columns_of(group, Precision::single);
   const std::vector<std::string> wanted = window_array_names();
@@ -72,7 +73,7 @@ Json take_json(const WindowTake& take, const std::vector<std::string>& parts) {
           {"sha256", take.summary.sha256}};
 }
 
-/// Each take has bones of its own: they stand in an array.
+/// The stream's facts without bone lengths: each take has its own bones, which are in an array.
 Json windows_stream_json(const TakeGroup& group) {
   Json out = Json::parse(stream_json(group));
   out.erase("rest_offsets");
@@ -80,6 +81,7 @@ Json windows_stream_json(const TakeGroup& group) {
   return out;
 }
 
+/// The manifest of a file of windows: takes, streams and the meaning of each array.
 std::string manifest_json(const WindowSource& source, const WindowOptions& options,
                           const WindowStreams& streams, const std::vector<WindowedTake>& takes) {
   const double rate =
@@ -101,6 +103,7 @@ std::string manifest_json(const WindowSource& source, const WindowOptions& optio
   return out.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// Adds an array of parents for each skeleton, and one of each take's bones.
 void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>& takes,
                    WindowLayout& layout) {
   std::size_t skeleton = 0;
@@ -137,7 +140,7 @@ WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
   return out;
 }
 
-/// The value that stands in the windows of a take that lacks an array.
+/// The value in windows of a take that lacks the array.
 int value_of_absent(std::string_view array) {
   if (array == "valid") return 1;
   return array == "time_interval_ns" ? -1 : 0;
@@ -177,6 +180,7 @@ Result<std::vector<std::size_t>> WindowStreams::find_in(const TakeHeader& header
   return out;
 }
 
+/// Lays out all arrays of the file.
 WindowLayout window_layout(const WindowSource& source, const WindowOptions& options,
                            const WindowStreams& streams, const std::vector<WindowedTake>& takes) {
   std::uint64_t windows = 0;
@@ -216,6 +220,7 @@ Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<st
   return {};
 }
 
+/// Writes the arrays of one stream; arrays that the take lacks are filled.
 Result<void> WindowFile::append_stream(const std::vector<WindowLayout::Column>& columns,
                                        std::size_t length, const AnyRows& rows) {
   const auto use = [&](std::string_view name, const auto& values) -> Result<void> {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arrays of a file of windows and what it says of them.
+// The arrays of a file of windows and their description.
 #pragma once
 
 #include "kinalign/dataset/windows/window_places.h"
@@ -10,25 +10,26 @@
 
 namespace kinalign {
 
-/// Names of all arrays of a take that windows may have.
+/// The names of all arrays of a take that windows may have.
 std::vector<std::string> window_array_names();
 
-/// The streams of all windows, as the first take has them.
+/// The streams of all windows, as in the first take.
 struct WindowStreams {
   std::vector<TakeGroup> groups;
 
-  /// Which of a take's groups these are; fails, saying what is missing or another.
+  /// The indices of these groups in a take. Fails with the name of a group that is missing or
+  /// differs.
   Result<std::vector<std::size_t>> find_in(const TakeHeader& header) const;
-  /// Takes note of what this take's groups, found by find_in(), have and others may lack: distances
-  /// and intervals of samples.
+  /// Notes the arrays that this take's groups, found by find_in(), have and others may lack:
+  /// distances and intervals of samples.
   void add(const TakeHeader& header, const std::vector<std::size_t>& found);
 };
 
-/// A take that windows come from.
+/// A take that windows are cut from.
 struct WindowedTake {
-  std::size_t index = 0;                        // of the source's takes
-  std::vector<std::size_t> groups;              // of the take, in the order of the streams
-  std::vector<std::vector<Vec3>> rest_offsets;  // of its skeletons
+  std::size_t index = 0;                        // in the source's takes
+  std::vector<std::size_t> groups;              // indices in the take, in the order of the streams
+  std::vector<std::vector<Vec3>> rest_offsets;  // one list for each skeleton
   std::vector<WindowPlace> places;
 };
 
@@ -41,15 +42,15 @@ struct WindowLayout {
     std::size_t array;
   };
   std::vector<NpzArray> arrays;
-  std::vector<std::pair<std::size_t, std::string>> contents;  // of arrays that are known before
+  std::vector<std::pair<std::size_t, std::string>> contents;  // arrays known in advance
   std::vector<std::vector<Column>> streams;                   // arrays of rows
 };
 WindowLayout window_layout(const WindowSource& source, const WindowOptions& options,
                            const WindowStreams& streams, const std::vector<WindowedTake>& takes);
 
-/// Where a window comes from.
+/// The source of a window.
 struct WindowOrigin {
-  std::size_t take = 0;  // position in the file's list
+  std::size_t take = 0;  // index in the file's list
   std::uint8_t part = 0;
   WindowPlace place;
 };
@@ -57,9 +58,9 @@ struct WindowOrigin {
 class WindowFile {
  public:
   static Result<WindowFile> create(FileSystem& files, const NewFile& target, WindowLayout layout);
-  /// A take that lacks an array has no valid flags where all rows are valid, intervals where none
-  /// is known, distances where its rows are its own samples: 1, -1 and 0 stand there. `rows`: of
-  /// all the take's groups, as long as a window; `groups`: which of them are the streams.
+  /// Appends a window. If a take lacks an array, values replace it: valid flags 1 (all rows are
+  /// valid), intervals -1 (none is known), distances 0 (its rows are its own samples). `rows`: of
+  /// all the take's groups, as long as a window. `groups`: the indices of the streams.
   Result<void> append(const WindowOrigin& origin, const std::vector<std::size_t>& groups,
                       const TakeSlab& rows);
   Result<void> finish() { return writer_.finish(); }

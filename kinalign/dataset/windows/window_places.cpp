@@ -13,6 +13,7 @@ struct Stretch {
   std::uint64_t begin = 0, end = 0;
 };
 
+/// Cuts the rows at steps longer than 1.5 times the median.
 std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   if (stamps.empty()) return {};
   std::vector<Duration> steps;
@@ -30,16 +31,16 @@ std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   return out;
 }
 
-/// Rows that the windows' grid has in a stretch.
+/// The number of rows of the windows' grid in a stretch.
 std::uint64_t grid_rows(std::span<const Time> stamps, const Stretch& stretch, double rate_hz) {
   if (rate_hz <= 0.0) return stretch.end - stretch.begin;
   const double seconds =
       std::chrono::duration<double>(stamps[stretch.end - 1] - stamps[stretch.begin]).count();
-  constexpr double rounding = 1e-6;  // of a row
+  constexpr double rounding = 1e-6;  // share of a row
   return static_cast<std::uint64_t>(seconds * rate_hz + rounding) + 1;
 }
 
-/// The window of `rows` rows whose first one is row `offset` of the stretch's grid.
+/// The window of `rows` rows that begins at row `offset` of the stretch's grid.
 WindowPlace place_at(std::span<const Time> stamps, const Stretch& stretch, double rate_hz,
                      std::uint64_t offset, std::uint64_t rows) {
   if (rate_hz <= 0.0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the windows of a take lie, by its stamps alone.
+// Places the windows of a take, by its stamps alone.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -16,20 +16,21 @@ struct WindowGrid {
 };
 
 struct WindowPlace {
-  Time begin{};                 // of its first row
+  Time begin{};                 // stamp of its first row
   std::uint64_t first = 0;      // row of the take at `begin` or before it
-  std::uint64_t take_rows = 0;  // rows of the take from there to the window's end, or just behind
-  std::uint64_t rows = 0;  // fewer than `length` where the take, or the stretch before a gap, ends
+  std::uint64_t take_rows = 0;  // rows of the take from there to the window's end, or just after it
+  std::uint64_t rows = 0;  // less than `length` at the end of the take, or of a stretch before a
+                           // gap
 };
 
 struct WindowPlaces {
   std::vector<WindowPlace> places;
-  std::uint64_t rows_left_out = 0;  // of the take: in stretches shorter than half a window
+  std::uint64_t rows_left_out = 0;  // rows of the take in stretches shorter than half a window
 };
 
-/// Windows each `step` rows. None crosses a gap, which is a step of more than 1.5 times the median.
-/// The last one of a stretch ends with it, so that each of its rows lies in a window. A stretch of
-/// half a window and more gives one window with fewer rows. `stamps` rise.
+/// Places a window each `step` rows. No window crosses a gap, which is a step of more than 1.5
+/// times the median. The last window of a stretch ends with it, so that each row is in a window. A
+/// stretch of at least half a window gives one window with fewer rows. `stamps` rise.
 WindowPlaces place_windows(std::span<const Time> stamps, const WindowGrid& grid);
 
 }  // namespace kinalign

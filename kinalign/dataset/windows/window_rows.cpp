@@ -12,12 +12,14 @@ namespace kinalign {
 
 namespace {
 
-/// A row of a window between two of the take's.
+/// A row of a window between two rows of the take.
 struct Between {
-  std::size_t row = 0;  // of the take's rows that were read: the one at it or before
-  double share = 0.0;   // of the way to the next one; 0: the row itself
+  std::size_t row = 0;  // index of the row read at this time or before it
+  double share = 0.0;   // share of the way to the next row; 0: the row itself
 };
 
+/// Finds, for each row of the window, the take's row before it and the share of the way to the
+/// next.
 std::vector<Between> between(const std::vector<Time>& stamps, const WindowPlace& place,
                              double rate_hz) {
   std::vector<Between> out;
@@ -39,7 +41,7 @@ bool is_rotation(std::string_view name) {
   return name == "orientation" || name == "local_rotations";
 }
 
-/// Makes the values of one row, `width` of them, from the take's row at `from` and the next one.
+/// Makes the `width` values of one row from the take's row at `from` and the one after it.
 using Blend = void (*)(const double* from, std::size_t width, double share, double* to);
 
 void on_line(const double* from, std::size_t width, double share, double* to) {
@@ -51,11 +53,12 @@ void on_arc(const double* from, std::size_t width, double share, double* to) {
   const std::span<double> out(to, width);
   for (std::size_t j = 0; j < width / 4; ++j) {
     const Quat a = quat(one, j), b = quat(next, j);
-    // A sample that is not valid holds zeros.
+    // An invalid sample contains zeros.
     put_quat(out, j, a.norm() > 0.5 && b.norm() > 0.5 ? a.slerp(share, b).normalized() : a);
   }
 }
 
+/// Blends all rows of one array.
 void blend(std::string_view name, const std::vector<Between>& rows, std::size_t width,
            const std::vector<double>& from, std::vector<double>& to) {
   const Blend make = is_rotation(name) ? on_arc : on_line;
@@ -69,7 +72,7 @@ void blend(std::string_view name, const std::vector<Between>& rows, std::size_t 
   }
 }
 
-/// A row between two is known no better than the worse one.
+/// The uncertainty between two rows is that of the worse one.
 std::int64_t worse(std::int64_t a, std::int64_t b) {
   return std::min(a, b) < 0 ? -1 : std::max(a, b);
 }
@@ -89,13 +92,14 @@ void blend(std::string_view, const std::vector<Between>& rows, std::size_t width
   }
 }
 
-/// Calls use(name, array of one, array of the other) for each array of two streams of one kind.
+/// Calls use(name, array of one, array of the other) for each array of two streams of the same
+/// kind.
 template <class Rows, class Use>
 void for_each_pair(const Rows& from, Rows& to, Use&& use) {
   for_each_column<Rows>([&](std::string_view name, auto of) { use(name, of(from), of(to)); });
 }
 
-/// Cells that are not valid hold zeros, as in a take. A skeleton's rows keep their pose.
+/// Sets invalid cells to zero, as in a take. A skeleton's rows keep their pose.
 void clear_invalid(std::vector<double>& values, const std::vector<std::uint8_t>& valid) {
   if (values.empty()) return;
   const std::size_t width = values.size() / valid.size();
@@ -112,6 +116,7 @@ void clear_invalid(ImuRows& rows) {
   }
 }
 
+/// Fills the window at its own rate from the take's rows.
 void resample(const TakeSlab& raw, const WindowPlace& place, double rate_hz, TakeSlab& out) {
   const std::vector<Between> rows = between(raw.stamps, place, rate_hz);
   out.stamps.clear();
@@ -135,7 +140,7 @@ void resample(const TakeSlab& raw, const WindowPlace& place, double rate_hz, Tak
   }
 }
 
-/// Repeats the last row up to `length` rows.
+/// Repeats the last row until there are `length` rows.
 template <class Value>
 void pad(std::vector<Value>& values, std::size_t rows, std::size_t length) {
   const std::size_t width = values.size() / rows;
@@ -143,6 +148,7 @@ void pad(std::vector<Value>& values, std::size_t rows, std::size_t length) {
   for (std::size_t i = rows; i < length; ++i) values.insert(values.end(), last.begin(), last.end());
 }
 
+/// Extends a window to its full length; the added rows are invalid.
 void pad(TakeSlab& slab, std::size_t length) {
   const std::size_t rows = slab.stamps.size();
   for (auto& stream : slab.rows) {

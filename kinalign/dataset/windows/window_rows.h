@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of one window, out of a take's.
+// Reads the rows of one window from a take.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -8,13 +8,13 @@
 
 namespace kinalign {
 
-/// Reads the `grid.length` rows of a window into `out`. Where the window has fewer rows, its last
-/// one is repeated, and no cell of these rows is valid.
-/// At the take's own rate rows are copied. At another rate they lie between two of the take's:
+/// Reads the `grid.length` rows of a window into `out`. If the window has fewer rows, its last row
+/// is repeated, and no cell of the added rows is valid.
+/// At the take's own rate rows are copied. At another rate they lie between two rows of the take:
 /// vectors on the line between both, rotations on the shorter arc (slerp). Such a cell is valid if
-/// both are, its state is the lesser, its interval and its distance are the larger. No filter is
-/// applied before: motion faster than half the new rate folds back.
-/// `raw`: room for the take's rows.
+/// both are, has the worse state of both, and the larger interval and distance. No filter is
+/// applied before, so motion faster than half the new rate is aliased.
+/// `raw`: memory for the take's rows.
 Result<void> read_window(TakeReader& reader, const WindowPlace& place, const WindowGrid& grid,
                          TakeSlab& raw, TakeSlab& out);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two passes over the takes: the first finds the windows that are kept, since an NPZ has the sizes
-// of its arrays at its beginning; the second writes them.
+// The takes are read twice: the first pass finds the windows that are kept, since an NPZ states the
+// sizes of its arrays at its beginning; the second pass writes them.
 #include "kinalign/dataset/windows/windows.h"
 
 #include "kinalign/dataset/windows/window_arrays.h"
@@ -27,7 +27,7 @@ std::set<std::string> streams_of(const WindowTake& take) {
   return out;
 }
 
-/// The first of the streams that a take does not have; empty where it has all.
+/// The first of the streams that a take lacks; empty if it has all.
 std::string lacking(const std::vector<std::string>& names, const WindowTake& take) {
   const auto there = streams_of(take);
   const auto lacks = std::find_if(names.begin(), names.end(),
@@ -35,7 +35,7 @@ std::string lacking(const std::vector<std::string>& names, const WindowTake& tak
   return lacks == names.end() ? "" : *lacks;
 }
 
-/// The streams that were asked for; without any, those that all takes have.
+/// The wanted streams; if none are given, those that all takes have.
 Result<std::vector<std::string>> chosen_streams(const WindowSource& source,
                                                 const WindowOptions& options) {
   if (!options.streams.empty()) return options.streams;
@@ -50,6 +50,7 @@ Result<std::vector<std::string>> chosen_streams(const WindowSource& source,
   return Failure(Error{"", 0, "a stream that all takes have, or --streams", "none"});
 }
 
+/// Without --rate all takes must have the same rate, within 0.5 %.
 Result<void> check_rates(const WindowSource& source, const WindowOptions& options) {
   if (options.rate_hz > 0.0) return {};
   const double rate = source.takes.front().summary.rate_hz;
@@ -65,7 +66,7 @@ Result<void> check_rates(const WindowSource& source, const WindowOptions& option
   return {};
 }
 
-/// The job of both passes.
+/// The data of both passes.
 class Job {
  public:
   Job(FileSystem& files, const WindowSource& source, const WindowOptions& options,
@@ -126,7 +127,7 @@ std::vector<TakeGroup> groups_of(const TakeHeader& header, const std::vector<std
 /// Windows have the streams of the first take in the spaces that most takes have.
 Result<void> Job::set_streams(const std::vector<std::string>& names) {
   struct Spaces {
-    std::vector<TakeGroup> groups;  // of the first take that has them
+    std::vector<TakeGroup> groups;  // from the first take with these spaces
     std::size_t takes = 0;
   };
   std::vector<Spaces> all;
@@ -148,7 +149,7 @@ Result<void> Job::set_streams(const std::vector<std::string>& names) {
   return {};
 }
 
-/// Why takes were left out: "has no stream imu (2 takes); ...".
+/// The reasons for leaving out takes: "has no stream imu (2 takes); ...".
 std::string Job::reasons() const {
   std::map<std::string, std::size_t> counts;
   for (const TakeLeftOut& one : made.takes_left_out) ++counts[one.why];
@@ -168,6 +169,7 @@ Result<bool> Job::is_valid(TakeReader& reader, const WindowPlace& place,
   });
 }
 
+/// The windows of one take that have enough valid cells.
 Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
   WindowedTake out{take, KA_TRY(streams_.find_in(reader.header())), {}, {}};
   for (const std::size_t group : out.groups) {
@@ -184,6 +186,7 @@ Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
   return out;
 }
 
+/// The first pass: finds the windows, and the takes that have none.
 Result<void> Job::find(const std::vector<std::string>& names) {
   parts_ = {names, window_array_names()};
   made.windows.assign(source_.parts.size(), 0);
@@ -214,6 +217,7 @@ Result<void> Job::find(const std::vector<std::string>& names) {
   return Failure(Error{source_.folder, 0, "a window in one of the takes at least", reasons()});
 }
 
+/// The second pass: writes the windows.
 Result<void> Job::write(const NewFile& target) {
   WindowFile file = KA_TRY(
       WindowFile::create(files_, target, window_layout(source_, options_, streams_, takes_)));
@@ -229,6 +233,7 @@ Result<void> Job::write(const NewFile& target) {
   return file.finish();
 }
 
+/// The result of the child process as text.
 std::string text_of(const WindowsMade& made) {
   Json out{{"windows", made.windows},
            {"rows", made.rows_left_out},
@@ -240,7 +245,7 @@ std::string text_of(const WindowsMade& made) {
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Reads what text_of() wrote in the child process.
+/// Parses the text of text_of(), which the child process wrote.
 WindowsMade made_from(const std::string& text) {
   const Json json = Json::parse(text);
   WindowsMade made{json.at("windows").get<std::vector<std::uint64_t>>(),

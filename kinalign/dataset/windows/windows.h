@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Windows of a data set's takes as arrays for training: one NPZ (docs/windows.md), schema
+// Cuts windows from a data set's takes into arrays for training: one NPZ (docs/windows.md), schema
 // kinalign.windows/1.
 #pragma once
 
@@ -17,8 +17,8 @@ namespace kinalign {
 
 struct WindowOptions {
   std::int64_t length = 64, step = 32;  // rows
-  double rate_hz = 0.0;                 // 0: the takes' own, which must be one
-  double valid = 0.5;                   // least share of valid cells, of each stream of a window
+  double rate_hz = 0.0;                 // 0: the takes' own, which must all be the same
+  double valid = 0.5;                   // least share of valid cells, for each stream of a window
   std::vector<std::string> streams;     // empty: those that all takes have
 };
 
@@ -30,9 +30,9 @@ struct WindowTake {
 };
 
 struct WindowSource {
-  std::string folder;                   // of the data set
-  std::string name, licence, citation;  // of the data set
-  std::vector<std::string> parts;       // of the split; one, "all", without a split
+  std::string folder;                   // the data set's
+  std::string name, licence, citation;  // the data set's
+  std::vector<std::string> parts;       // the split's; only "all" without a split
   std::vector<WindowTake> takes;
 };
 
@@ -42,9 +42,9 @@ struct TakeLeftOut {
 };
 
 struct WindowsMade {
-  std::vector<std::uint64_t> windows;  // of each part
-  std::uint64_t rows_left_out = 0;     // of takes: in stretches shorter than half a window
-  std::uint64_t too_little_valid = 0;  // windows that were left out for that
+  std::vector<std::uint64_t> windows;  // for each part
+  std::uint64_t rows_left_out = 0;     // rows of takes in stretches shorter than half a window
+  std::uint64_t too_little_valid = 0;  // windows that were left out for that reason
   std::vector<TakeLeftOut> takes_left_out;
 };
 
@@ -53,10 +53,10 @@ struct NewFile {
   Overwrite overwrite = Overwrite::no;
 };
 
-/// Writes `target`, in a child process since HDF5 can crash on a hostile file. Takes are left out
-/// that lack a stream, that stand in other spaces than most takes, or whose joints or nodes are
-/// others than those of the first take in these spaces. Fails where rates
-/// differ and `rate_hz` is 0, where no stream is in all takes, and where no window is left.
+/// Writes `target` in a child process, since HDF5 can crash on a hostile file. Left out are takes
+/// that lack a stream, whose streams are in other spaces than in most takes, or whose joints or
+/// nodes differ from those of the first take in these spaces. Fails if rates differ and `rate_hz`
+/// is 0, if no stream is in all takes, or if no window is left.
 Result<WindowsMade> write_windows(FileSystem& files, const WindowSource& source,
                                   const WindowOptions& options, const NewFile& target,
                                   const Progress& progress);

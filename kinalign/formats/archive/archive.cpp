@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t longest_name = 1000, longest_part = 255;
 constexpr std::uint64_t not_judged = std::uint64_t{64} << 20;
 
-/// The source of libarchive's callbacks. A failure is kept, since callbacks can hand on only -1.
+/// State of libarchive's read callbacks. It keeps the failure, because a callback can return only
+/// -1.
 struct Feed {
   const ArchiveBytes& bytes;
   std::uint64_t at = 0;
@@ -43,6 +44,8 @@ la_ssize_t read_more(archive*, void* data, const void** out) {
   return static_cast<la_ssize_t>(*got);
 }
 
+/// libarchive's seek callback: moves to `offset` from the start, the current position or the end.
+/// Positions outside of the archive are refused.
 la_int64_t seek_to(archive*, void* data, la_int64_t offset, int whence) {
   Feed& feed = *static_cast<Feed*>(data);
   const auto size = static_cast<la_int64_t>(feed.bytes.size);
@@ -54,8 +57,8 @@ la_int64_t seek_to(archive*, void* data, la_int64_t offset, int whence) {
   return static_cast<la_int64_t>(feed.at);
 }
 
-/// Names are UTF-8 while it lives: libarchive drops those that the locale's letters can't spell. Of
-/// this thread alone.
+/// Sets this thread's locale to UTF-8 for the object's lifetime. libarchive drops names that the
+/// locale's characters can't spell.
 class NamesInUtf8 {
  public:
   NamesInUtf8() : own_(newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
@@ -78,10 +81,11 @@ struct Free {
 };
 using Owned = std::unique_ptr<archive, Free>;
 
-/// Names that were given out, and the folders that they lie in.
+/// Names that were passed to the user so far, and the folders in which they lie.
 class GivenNames {
  public:
-  /// False where the name, or a file in place of one of its folders, was there before.
+  /// Adds a name. False if the name was there before, or if a file has the name of one of its
+  /// folders.
   bool add(const std::string& name) {
     if (folders_.contains(name) || !files_.insert(name).second) return false;
     for (auto slash = name.find('/'); slash != std::string::npos;
@@ -102,6 +106,7 @@ class ArchiveReader {
   ArchiveReader(const ArchiveBytes& bytes, const ArchiveLimits& limits)
       : feed_{bytes}, limits_(limits), archive_(archive_read_new()) {}
 
+  /// Reads entry after entry; checks the name and kind of each before `use` sees it.
   Result<void> read(const UseArchiveFile& use) {
     KA_TRY(open());
     std::uint64_t entries = 0;
@@ -149,6 +154,7 @@ class ArchiveReader {
                  said == nullptr ? "damaged bytes" : shown(said)};
   }
 
+  /// True for an entry that names the archive's top folder, such as "./".
   static bool is_top(std::string_view name) {
     return name.find_first_not_of("./") == std::string_view::npos && name.find("..") == name.npos &&
            !name.starts_with('/');
@@ -160,6 +166,7 @@ class ArchiveReader {
     return name == nullptr ? "" : as_utf8(name);
   }
 
+  /// Refuses links, devices and encrypted files; their kinds could reach outside of the target.
   Result<void> check_kind(archive_entry* entry, const std::string& name) const {
     const auto type = archive_entry_filetype(entry);
     const bool is_link = type == AE_IFLNK || archive_entry_hardlink(entry) != nullptr ||
@@ -174,7 +181,8 @@ class ArchiveReader {
     return {};
   }
 
-  /// Counted as they come: an archive's own numbers are not trusted.
+  /// The next bytes of the current file. It counts the bytes itself, because the sizes that an
+  /// archive states are not trusted.
   Result<std::string_view> next_piece(const std::string& name) {
     const la_ssize_t got = archive_read_data(archive_.get(), piece_.data(), piece_.size());
     if (got < 0) {

@@ -15,8 +15,8 @@ namespace {
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40;
 constexpr std::size_t longest_header = 65536, most_dimensions = 32;
 
-/// The header's dict: {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }. numpy evaluates
-/// it as Python; here only what numpy writes is taken.
+/// Parser of the header's dict: {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }. numpy
+/// evaluates it as Python; this parser takes only the form that numpy writes.
 class HeaderText {
  public:
   explicit HeaderText(std::string_view text) : text_(text) {}
@@ -70,7 +70,7 @@ class HeaderText {
     return value;
   }
 
-  /// "<f4", "|u1", "<U12".
+  /// Reads the type of the values: "<f4", "|u1", "<U12".
   bool parse_descr(NpyHeader& out) {
     const auto descr = quoted();
     if (!descr || descr->size() < 3) return false;
@@ -114,6 +114,7 @@ Value value_at(const NpyArray& array, std::size_t index) {
   return value;
 }
 
+/// Appends a Unicode character as UTF-8; '?' for a number that is no character.
 void put_utf8(std::string& out, std::uint32_t code) {
   const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
   if (code < 0x80) return put(code);

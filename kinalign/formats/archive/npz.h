@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arrays of numpy's NPZ, a ZIP of .npy members, all of them in memory.
+// Reads the arrays of numpy's NPZ, a ZIP of .npy members, all into memory.
 #pragma once
 
 #include "kinalign/formats/archive/archive.h"
@@ -16,12 +16,12 @@ using Shape = std::vector<std::uint64_t>;
 
 class Npz {
  public:
-  /// Members that are no arrays are refused; all of them together have at most `limits.bytes`.
+  /// Members other than .npy are refused. All members together may have at most `limits.bytes`.
   static Result<Npz> read(const ArchiveBytes& bytes, const ArchiveLimits& limits);
 
   bool has(const std::string& name) const { return arrays_.contains(name); }
-  /// Each fails where there is no such array, of such values, of that shape. A length of 0 in
-  /// `shape` stands for any.
+  /// Each fails if the array is absent, or if its values or its shape differ from the wanted ones.
+  /// A length of 0 in `shape` accepts any length.
   Result<std::vector<std::int64_t>> integers(const std::string& name, const Shape& shape) const;
   Result<std::vector<double>> numbers(const std::string& name, const Shape& shape) const;
   Result<std::vector<std::string>> texts(const std::string& name, const Shape& shape) const;

@@ -28,8 +28,8 @@ struct Place {
   std::uint64_t at = 0, size = 0;
 };
 
-/// The list of contents ends where the end record begins; the record states its size. Absent for
-/// ZIP64, whose records stand between.
+/// Finds the central directory. It ends where the end record begins, and that record states its
+/// size. Absent for ZIP64, which has more records between the two.
 Result<std::optional<Place>> find_list(const ArchiveBytes& bytes) {
   const std::uint64_t tail = std::min<std::uint64_t>(bytes.size, end_size + longest_comment);
   const std::string text = KA_TRY(part(bytes, bytes.size - tail, tail));

@@ -43,7 +43,7 @@ constexpr std::array<Unit, 17> bids_units{{{"POS", "m", 1.0},
                                            {"LATENCY", "s", 1.0},
                                            {"LATENCY", "seconds", 1.0}}};
 
-/// Channels of one tracked point and type.
+/// Adds the channels of one tracked point and one type.
 template <std::size_t n>
 void add(const std::string& point, const std::array<const char*, n>& parts, const BidsChannel& like,
          std::vector<BidsChannel>& out) {
@@ -86,7 +86,7 @@ void add_channels(const ImuHeader& nodes, std::vector<BidsChannel>& out) {
   }
 }
 
-/// To the right, forwards and up: a right-handed space.
+/// The direction of a letter in a right-handed space: x to the right, y forwards, z up.
 std::optional<Vec3> direction(char letter) {
   switch (letter) {
     case 'R':
@@ -169,7 +169,7 @@ std::optional<Axes> axes_of_letters(std::string_view letters) {
   if (letters.size() != 3) return std::nullopt;
   Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
   bool all = true;
-  int up = 0;  // the axis that points up, from 1, negative: down
+  int up = 0;  // number of the axis that points up, from 1; negative: it points down
   for (int k = 0; k < 3; ++k) {
     const auto points_to = direction(letters[static_cast<std::size_t>(k)]);
     all = all && points_to.has_value();

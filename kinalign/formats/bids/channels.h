@@ -21,26 +21,27 @@ struct BidsChannel {
   std::string name, component, type, tracked_point, units, placement, reference_frame;
 };
 
-/// What the channels of a stream are made from.
+/// The header of a stream, from which its channels are made.
 using BidsSource = std::variant<Skeleton, PointHeader, ImuHeader>;
 
-/// A column LATENCY, then of a skeleton's joints POS and ORNT, of points POS, of nodes ORNT, ACCEL
-/// and GYRO as far as there are any. Places and orientations stand in the frame "global",
-/// accelerations and angular velocities in the frame "sensor".
+/// The channels of a stream. LATENCY comes first. Then follow POS and ORNT of a skeleton's joints,
+/// POS of points, or ORNT, ACCEL and GYRO of nodes as far as the stream has them. Positions and
+/// orientations use the reference frame "global", accelerations and angular velocities "sensor".
 std::vector<BidsChannel> bids_channels(const BidsSource& source);
 
 TsvTable channels_table(std::span<const BidsChannel> channels);
-/// Fails where one of the first five columns is missing; `file` appears in messages.
+/// Reads the channels back. Fails if one of the first five columns is missing; `file` appears in
+/// messages.
 Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_view file);
 
-/// The types of BIDS 1.9, in capitals.
+/// True for a channel type of BIDS 1.9, in capitals.
 bool is_bids_type(std::string_view type);
 bool is_bids_component(std::string_view component);
-/// Metres, radians, m/s2, ... of one unit; 0: it is none of the type's.
+/// Our units (m, rad, m/s2, ...) per `unit`; 0 if the type has no such unit.
 double unit_scale(std::string_view type, std::string_view unit);
 
-/// Ours from a space whose x, y and z point to the letters A or P, L or R, S or I: "ALS". Empty
-/// where no letter says what is up, or where they say an axis twice.
+/// Our axes from a space whose x, y and z point towards the given letters, such as "ALS": A or P, L
+/// or R, S or I. Empty if no letter says which axis is up, or if two letters name the same axis.
 std::optional<Axes> axes_of_letters(std::string_view letters);
 
 }  // namespace kinalign

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data set as a whole: places and names of files, and the tables about all of them.
+// Checks of the data set as a whole: positions and names of files, and the tables about all of
+// them.
 #include "kinalign/formats/bids/check.h"
 
 #include "kinalign/core/files.h"
@@ -61,7 +62,7 @@ std::vector<std::string_view> parts_of(std::string_view path) {
   }
 }
 
-/// '*' stands for any characters but '/'.
+/// True if the whole text matches the pattern. '*' stands for any characters except '/'.
 bool matches_wildcard(std::string_view pattern, std::string_view text) {
   if (pattern.empty()) return text.empty();
   if (pattern.front() != '*') {
@@ -75,7 +76,8 @@ bool matches_wildcard(std::string_view pattern, std::string_view text) {
   }
 }
 
-/// As .gitignore: a name anywhere, a path from the top, or a folder with all below it.
+/// True if a pattern names the path. Patterns follow .gitignore: a name at any depth, a path from
+/// the top, or a folder with everything below it.
 bool is_ignored(const std::vector<std::string>& patterns, std::string_view path) {
   for (std::string_view pattern : patterns) {
     if (pattern.starts_with('/')) pattern.remove_prefix(1);
@@ -90,6 +92,8 @@ bool is_ignored(const std::vector<std::string>& patterns, std::string_view path)
   return false;
 }
 
+/// The usable patterns of .bidsignore. Long patterns and those with many '*' are dropped, since
+/// matching would take too long.
 std::vector<std::string> ignore_patterns(BidsCheck& check) {
   std::vector<std::string> out;
   if (!check.listing.has(".bidsignore")) return out;
@@ -105,14 +109,14 @@ std::vector<std::string> ignore_patterns(BidsCheck& check) {
   return out;
 }
 
-/// Letters and digits, and '+', which BIDS 1.11 adds.
+/// True for letters and digits, and '+', which BIDS 1.11 allows.
 bool is_label(std::string_view label) {
   std::string without(label);
   std::erase(without, '+');
   return !label.empty() && (without.empty() || is_bids_label(without));
 }
 
-/// Entities of a name: known, in BIDS' order, with good labels.
+/// Checks the entities of a name: known ones only, in the order of BIDS, with valid labels.
 void check_entities(const std::string& path, const BidsName& name, BidsCheck& check) {
   std::size_t next = 0;
   for (const auto& [key, label] : name.entities) {
@@ -130,10 +134,10 @@ void check_entities(const std::string& path, const BidsName& name, BidsCheck& ch
 }
 
 struct Place {
-  std::string subject, session;  // labels of the folders
+  std::string subject, session;  // labels of the folders in which the file lies
 };
 
-/// A file below sub-.../, or sub-.../ses-.../.
+/// Checks the name of a file below sub-.../ or sub-.../ses-.../ against these folders.
 void check_file_name(const std::string& path, const Place& place, std::string_view type,
                      BidsCheck& check) {
   const auto name = parse_bids_name(file_name(path));
@@ -165,12 +169,13 @@ void check_file_name(const std::string& path, const Place& place, std::string_vi
   if (of_system && name->label("tracksys").empty()) check.error(path, "a tracksys", "none");
 }
 
-/// A file that stands in a subject's or session's own folder.
+/// True for a table that lies directly in a subject's or session's folder.
 bool is_table_of_subject(std::string_view ending) {
   return ending == "scans.tsv" || ending == "scans.json" || ending == "sessions.tsv" ||
          ending == "sessions.json";
 }
 
+/// Checks the path of a file below a subject's folder; `parts` are its folders and its name.
 void check_subject_path(const std::string& path, std::vector<std::string_view> parts,
                         BidsCheck& check) {
   Place place{std::string(parts.front().substr(4)), ""};
@@ -199,6 +204,8 @@ void check_subject_path(const std::string& path, std::vector<std::string_view> p
   check.error(path, "a folder of a data type of BIDS, such as motion", shown(parts.front()));
 }
 
+/// Checks the path of any file: it is at the top, below a subject's folder or below another folder
+/// of BIDS.
 void check_path(const std::string& path, BidsCheck& check) {
   const auto parts = parts_of(path);
   const std::string_view first = parts.front();
@@ -218,6 +225,7 @@ void check_path(const std::string& path, BidsCheck& check) {
               shown(first));
 }
 
+/// Checks dataset_description.json: required keys, types of values, a license.
 void check_description(BidsCheck& check) {
   const std::string path = "dataset_description.json";
   if (!check.listing.has(path)) return check.error(path, "this file", "none");
@@ -258,7 +266,7 @@ std::set<std::string> subjects_of(const BidsListing& listing) {
   return out;
 }
 
-/// Rows of participants.tsv against the folders.
+/// Compares the rows of participants.tsv with the subjects' folders.
 void check_participant_rows(const std::string& path, const TsvTable& table, BidsCheck& check) {
   const std::set<std::string> subjects = subjects_of(check.listing);
   std::set<std::string> listed;
@@ -281,6 +289,7 @@ void check_participant_rows(const std::string& path, const TsvTable& table, Bids
   }
 }
 
+/// Checks participants.tsv, and that participants.json describes each further column.
 void check_participants(BidsCheck& check) {
   const std::string path = "participants.tsv", described = "participants.json";
   if (!check.listing.has(path)) return check.warning(path, "this file", "none");
@@ -298,6 +307,8 @@ void check_participants(BidsCheck& check) {
   }
 }
 
+/// Checks one scans.tsv: each row names an existing file, and each motion.tsv of the folder has a
+/// row.
 void check_scans(const std::string& path, BidsCheck& check) {
   const auto table = check.table_of(path);
   if (!table) return;
@@ -328,7 +339,8 @@ void check_scans(const std::string& path, BidsCheck& check) {
   }
 }
 
-/// A sidecar that describes nothing is a motion.tsv that was lost or misnamed.
+/// Checks that a sidecar file has its motion.tsv. A sidecar without one means that the data was
+/// lost or misnamed.
 void check_orphans(const std::string& path, BidsCheck& check) {
   for (const std::string_view ending : {"motion.json", "channels.tsv"}) {
     if (path.find("/motion/") == std::string::npos || !path.ends_with("_" + std::string(ending)))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a BIDS-Motion data set, also what the official validator does not find. Rules:
-// docs/formats/bids.md.
+// Checks a BIDS-Motion data set. Finds some faults that the official validator does not find.
+// Rules: docs/formats/bids.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -13,19 +13,19 @@
 
 namespace kinalign {
 
-/// A data set as its checker sees it: which files there are, and what is in them.
+/// The checker's view of a data set: the paths of its files and their content.
 struct BidsListing {
-  std::set<std::string> paths;  // of files, below the data set's folder, "/" between
-  /// Hands on the file's bytes in pieces of any size. Fails where the file can't be read.
+  /// Paths of the files, relative to the data set's folder, with "/" as separator.
+  std::set<std::string> paths;
+  /// Passes the file's bytes to `use` in pieces of any size. Fails if the file can't be read.
   std::function<Result<void>(const std::string& path, const FileSink& use)> read;
 
   bool has(const std::string& path) const { return paths.contains(path); }
 };
 
-/// Reads every file of motion, and the tables and JSON files about them; other data types are
-/// passed over. Findings name files by their paths in the listing. Errors break BIDS, warnings and
-/// notes do not. Memory goes by the tables, of at most 16 MiB each, and by one line of a
-/// motion.tsv.
+/// Reads every motion file, and the tables and JSON files about them. Other data types are skipped.
+/// Findings name files by their paths in the listing. Errors break the BIDS standard; warnings and
+/// notes do not. Memory holds tables of at most 16 MiB each and one line of a motion.tsv.
 Findings check_bids(const BidsListing& listing);
 
 }  // namespace kinalign

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of the checker share: the listing, the findings, and files read once.
+// State shared by the parts of the checker: the listing, the findings and functions that read
+// files.
 #pragma once
 
 #include "kinalign/formats/bids/check.h"
@@ -26,25 +27,27 @@ class BidsCheck {
   void warning(const std::string& path, std::string expected, std::string found,
                std::int64_t line = 0);
 
-  /// A whole file of at most 16 MiB; where it can't be read, that is an error, and nothing
-  /// returned.
+  /// The content of a file of at most 16 MiB. If the file can't be read, that becomes an error and
+  /// the result is empty.
   std::optional<std::string> text_of(const std::string& path);
   std::optional<TsvTable> table_of(const std::string& path);
   std::optional<nlohmann::ordered_json> json_of(const std::string& path);
 
-  /// Files with that ending that hold for the file `path` by BIDS' rule of inheritance: in its
-  /// folder or above it, with no entity that `path` does not have. The nearest comes last.
+  /// Files with the given ending that also apply to `path` by BIDS' inheritance principle. They lie
+  /// in its folder or above it and have no entity that `path` lacks. The nearest file comes last.
   std::vector<std::string> inherited(const std::string& path, std::string_view ending) const;
 };
 
-/// The files of one tracking system, by its motion.tsv.
+/// Checks the files of the tracking system to which this motion.tsv belongs.
 void check_bids_system(const std::string& motion_tsv, BidsCheck& check);
-/// motion.tsv alone, against its channels: types, components and tracked points.
+/// Results of check_bids_rows(); latencies are those of the first and the last row that has one.
 struct BidsRowsSummary {
   std::uint64_t rows = 0, latencies = 0;
   std::optional<double> first_latency_s, last_latency_s;
 };
 struct BidsChannel;
+/// Checks a motion.tsv against its channels: number of cells, numbers, rising latencies, lengths of
+/// quaternions.
 BidsRowsSummary check_bids_rows(const std::string& path, const std::vector<BidsChannel>& channels,
                                 BidsCheck& check);
 

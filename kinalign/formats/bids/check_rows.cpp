@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every cell of a motion.tsv. A fault that repeats is one finding, with the line of its first.
+// Checks every cell of a motion.tsv. A repeated fault is one finding, with the line of its first
+// occurrence.
 #include "kinalign/core/lines.h"
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/bids/channels.h"
@@ -16,7 +17,7 @@ namespace kinalign {
 
 namespace {
 
-/// How often, and where first.
+/// Count of a fault, with the place and text of its first occurrence.
 struct Repeated {
   std::uint64_t times = 0;
   std::int64_t line = 0;
@@ -48,6 +49,8 @@ class RowsCheck {
     }
   }
 
+  /// Checks one row. A first line that is mostly text is reported as a line of names and not
+  /// checked further.
   Result<void> use(std::string_view line, std::int64_t number) {
     if (line.empty()) {
       blank_.add(number, "an empty line");
@@ -74,6 +77,7 @@ class RowsCheck {
     return {};
   }
 
+  /// Turns the counted faults into findings, one for each kind of fault.
   void report(const std::string& path, BidsCheck& check) const {
     const auto tell = [&](const Repeated& fault, const std::string& expected) {
       if (fault.times > 0) check.error(path, expected, fault.found(), fault.line);
@@ -97,7 +101,8 @@ class RowsCheck {
   BidsRowsSummary summary;
 
  private:
-  /// Whether it is a number or says that there is none.
+  /// Appends the cell to the row. False if the cell is neither a number nor a mark of a missing
+  /// value.
   bool read_cell(std::string_view cell, std::int64_t line) {
     double value = NAN;
     bool good = true;
@@ -119,6 +124,7 @@ class RowsCheck {
     if (values_.size() != width_) lengths_.add(line, std::to_string(values_.size()));
   }
 
+  /// Checks a row of the right length: latencies must rise, quaternions must have length 1.
   void check_values(std::int64_t line) {
     if (latency_) {
       const double latency = values_[*latency_];
@@ -144,7 +150,7 @@ class RowsCheck {
   const std::vector<BidsChannel>& channels_;
   std::optional<std::size_t> latency_;
   std::vector<std::array<std::size_t, 4>> quaternions_;
-  std::vector<double> values_;  // of a row; NaN: missing
+  std::vector<double> values_;  // the current row; NaN: missing
   std::size_t width_ = 0;
   Repeated names_, blank_, lengths_, nan_, no_number_, latencies_, quaternion_;
 };

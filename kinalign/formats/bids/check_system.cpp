@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tracking system: channels.tsv, channels.json, motion.json and motion.tsv against each other.
+// Checks the files of one tracking system against each other: channels.tsv, channels.json,
+// motion.json and motion.tsv.
 #include "kinalign/core/files.h"
 #include "kinalign/formats/bids/channels.h"
 #include "kinalign/formats/bids/check_context.h"
@@ -23,7 +24,7 @@ bool is_one_of(std::string_view text, std::initializer_list<std::string_view> al
   return std::find(all.begin(), all.end(), text) != all.end();
 }
 
-/// Which components a type can have.
+/// True if the channel's type can have its component.
 bool fits(const BidsChannel& channel) {
   const bool axis = is_one_of(channel.component, {"x", "y", "z"});
   if (channel.type == "ORNT") return axis || channel.component.starts_with("quat_");
@@ -39,6 +40,7 @@ std::string in_capitals(std::string text) {
   return text;
 }
 
+/// Checks the header line of channels.tsv: five required columns in their order, no name twice.
 void check_columns(const std::string& path, const TsvTable& table, BidsCheck& check) {
   constexpr std::array<const char*, 5> needed{"name", "component", "type", "tracked_point",
                                               "units"};
@@ -52,6 +54,7 @@ void check_columns(const std::string& path, const TsvTable& table, BidsCheck& ch
     check.error(path, "columns of different names", "one twice", 1);
 }
 
+/// Checks one row of channels.tsv: type, component and unit.
 void check_channel(const std::string& path, std::int64_t line, const BidsChannel& channel,
                    BidsCheck& check) {
   if (!is_bids_type(channel.type)) {
@@ -77,7 +80,7 @@ void check_channel(const std::string& path, std::int64_t line, const BidsChannel
   }
 }
 
-/// All three axes, or all four parts of a quaternion, of each tracked point and type.
+/// Checks that a quaternion has all four parts, for each tracked point and type.
 void check_groups(const std::string& path, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> groups;
@@ -106,6 +109,7 @@ void check_status(const std::string& path, const TsvTable& table, BidsCheck& che
   }
 }
 
+/// Checks channels.tsv row by row. Returns its channels; none if the table can't be understood.
 std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& check) {
   const auto table = check.table_of(path);
   if (!table) return {};
@@ -130,7 +134,7 @@ std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& chec
   return *channels;
 }
 
-/// Names and SpatialAxes of the reference frames in a channels.json; axes that are none are told.
+/// Names of the reference frames in a channels.json. Invalid SpatialAxes become a warning.
 std::set<std::string> described_frames(const std::string& path, BidsCheck& check) {
   std::set<std::string> out;
   const auto json = check.json_of(path);
@@ -149,7 +153,7 @@ std::set<std::string> described_frames(const std::string& path, BidsCheck& check
   return out;
 }
 
-/// Each reference frame stands in channels.json.
+/// Checks that channels.json describes each reference frame in use.
 void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
   std::set<std::string> frames;
@@ -168,7 +172,8 @@ void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>&
   }
 }
 
-/// Keys of all motion.json that hold for the file, the nearest one's last.
+/// Keys of all motion.json files that apply to the motion.tsv. A nearer file overrides the ones
+/// above.
 std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& check) {
   const auto paths = check.inherited(motion_tsv, "motion.json");
   if (paths.empty()) {
@@ -184,6 +189,7 @@ std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& c
   return all;
 }
 
+/// Compares the keys of motion.json with the channels and the rows.
 class FactsCheck {
  public:
   FactsCheck(std::string path, const FoundJson& json, BidsCheck& check)
@@ -208,6 +214,8 @@ class FactsCheck {
     }
   }
 
+  /// Checks TaskName and TrackingSystemName. The letters and digits of TaskName must give the task
+  /// label.
   void names(std::string_view task) const {
     const std::string name = text("TaskName");
     std::string label;
@@ -222,6 +230,7 @@ class FactsCheck {
     if (text("TrackingSystemName").empty()) check_.warning(path_, "a TrackingSystemName", "none");
   }
 
+  /// Compares the stated counts of channels and tracked points with channels.tsv.
   void counts(const std::vector<BidsChannel>& channels) const {
     std::map<std::string, std::size_t> of_type;
     std::set<std::string> points;
@@ -239,6 +248,7 @@ class FactsCheck {
     count("MiscChannelCount", of_type["MISC"]);
   }
 
+  /// Compares the stated rates and duration with the number of rows and the latencies.
   void times(const BidsRowsSummary& rows) const {
     const auto rate = number("SamplingFrequency");
     if (!rate || !(*rate > 0.0)) {

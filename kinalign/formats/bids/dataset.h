@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of a whole BIDS data set: what it is, who took part, when each file began.
+// Writes the files that describe a whole BIDS data set: its description, its participants and the
+// start time of each file.
 #pragma once
 
 #include "kinalign/formats/bids/tsv_table.h"
@@ -16,7 +17,7 @@ namespace kinalign {
 struct BidsDataset {
   std::string name, license;
   std::vector<std::string> authors;
-  /// A derivative (aligned, cleaned) names the program that made it; empty: raw data.
+  /// Program that made a derivative (an aligned or cleaned data set); empty: raw data.
   std::string generated_by, generated_by_version;
   std::string how_to_acknowledge{};  // the publication to cite
 };
@@ -24,7 +25,7 @@ struct BidsDataset {
 /// dataset_description.json
 std::string dataset_description_json(const BidsDataset& dataset);
 
-/// A column of participants.tsv behind participant_id.
+/// A column of participants.tsv after participant_id.
 struct BidsColumn {
   std::string name, description, units;
   std::map<std::string, std::string> levels;  // value -> meaning
@@ -37,8 +38,8 @@ struct BidsParticipants {
 std::string participants_tsv(const BidsParticipants& participants);
 std::string participants_json(const BidsParticipants& participants);
 
-/// A row of scans.tsv: the file's path below the subject's (or session's) folder, its onset. An
-/// onset that nobody knows is n/a.
+/// A row of scans.tsv: the file's path below the subject's or session's folder, and its start. An
+/// unknown start is n/a.
 using BidsScan = std::pair<std::string, std::optional<Time>>;
 std::string scans_tsv(const std::vector<BidsScan>& scans);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON files of a BIDS data set, to and from text. No exception leaves these functions.
+// Converts the JSON files of a BIDS data set to and from text. No exception leaves these functions.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,10 +11,10 @@
 
 namespace kinalign {
 
-/// Indented by two, with a line end; bytes that are no UTF-8 become U+FFFD.
+/// Indented by two blanks, with a line end. Bytes that are no UTF-8 become U+FFFD.
 std::string bids_json_text(const nlohmann::ordered_json& json);
 
-/// Fails where the text is no JSON object.
+/// Fails if the text is no JSON object.
 Result<nlohmann::ordered_json> parse_bids_json(std::string_view text, std::string_view file);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder as the checker of BIDS sees it.
+// Lists a folder for the checker of BIDS.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// All files below `folder`, which `files` must outlive; links are not followed. Fails where the
+/// All files below `folder`; links are not followed. `files` must outlive the result. Fails if the
 /// folder can't be read.
 Result<BidsListing> list_bids_folder(FileSystem& files, const std::string& folder);
 

@@ -18,12 +18,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr int six = 6, nine = 9;  // decimals
 
-/// The joint's place and turn in space, w,x,y,z.
+/// A joint's position, m, and rotation in the space of the skeleton's root.
 struct Global {
   Vec3 place;
   Quat turn;
 };
 
+/// Forward kinematics of frame t. A root's local values are global already.
 std::vector<Global> global_of(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t) {
   std::vector<Global> out(skeleton.joints());
   for (std::size_t j = 0; j < out.size(); ++j) {
@@ -40,6 +41,8 @@ std::vector<Global> global_of(const Skeleton& skeleton, const ClipFrames& frames
   return out;
 }
 
+/// Text of channels.json: the reference frames in use. `letters` are the SpatialAxes of the global
+/// one.
 std::string channels_json(const std::vector<BidsChannel>& channels, const std::string& letters) {
   std::set<std::string> used;
   for (const BidsChannel& channel : channels) used.insert(channel.reference_frame);
@@ -62,6 +65,7 @@ std::string channels_json(const std::vector<BidsChannel>& channels, const std::s
   return bids_json_text(out);
 }
 
+/// Adds the counts of channels and tracked points that motion.json states.
 void add_counts(const std::vector<BidsChannel>& channels, Json& out) {
   std::set<std::string> points;
   for (const BidsChannel& channel : channels) {
@@ -85,7 +89,8 @@ BidsMotionWriter::BidsMotionWriter(BidsSource source, TextOut& out)
 void BidsMotionWriter::begin_row(Time stamp) {
   if (rows_++ == 0) {
     const std::int64_t ns = to_ns(stamp), below = ((ns % 1000) + 1000) % 1000;
-    onset_ = utc_time(ns - below);  // acq_time has microseconds
+    // acq_time is written to the microsecond, so the latencies count from a whole one.
+    onset_ = utc_time(ns - below);
   }
   last_ = stamp;
   out_->text(seconds_text((stamp - onset_).count()));

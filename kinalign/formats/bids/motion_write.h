@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tracking system of a BIDS-Motion data set: motion.tsv row by row, then what stands beside it.
+// Writes one tracking system of a BIDS-Motion data set: motion.tsv row by row, then the texts of
+// its sidecar files.
 #pragma once
 
 #include "kinalign/core/text_out.h"
@@ -13,35 +14,34 @@
 
 namespace kinalign {
 
-/// What nobody can count out of the samples. Empty texts are left out.
+/// Facts for motion.json that can't be computed from the samples. Empty texts are left out.
 struct BidsSystemFacts {
   std::string task_name, system_name;  // "Walking and turning", "Kinect v2"
   double rate_hz = 0.0;                // nominal
   std::string task_description, manufacturer, model, serial_number, software_versions;
-  /// To where x, y and z point for a person at the beginning: A or P, L or R, S or I.
+  /// Directions of the x, y and z axes, as seen by a person at the start: A or P, L or R, S or I.
   std::string spatial_axes = "LSA";
 };
 
-/// The texts of the files beside motion.tsv.
+/// The texts of the sidecar files of a motion.tsv.
 struct BidsSidecars {
   std::string channels_tsv, channels_json, motion_json;
-  Time onset{};  // for scans.tsv: latencies count from here
+  Time onset{};  // for scans.tsv: time zero of the latencies
 };
 
-/// Writes positions to a micrometre, quaternions to nine decimals, accelerations and angular
-/// velocities to a millionth, latencies to a nanosecond. Positions and orientations of a skeleton
-/// are global. What is missing or not valid is n/a. The caller commits `out`, which must outlive
-/// the writer.
+/// Writes a motion.tsv. Positions have six decimals, quaternions nine, accelerations and angular
+/// velocities six, latencies nine. Positions and orientations of a skeleton are global. Missing and
+/// invalid values are n/a. The caller commits `out`, which must outlive the writer.
 class BidsMotionWriter {
  public:
   BidsMotionWriter(BidsSource source, TextOut& out);
 
-  /// The next rows; of the kind that the source is of.
+  /// Appends the next rows. Their kind must match that of the source.
   Result<void> append(const ClipFrames& frames);
   Result<void> append(const PointFrames& frames);
   Result<void> append(const ImuSamples& samples);
 
-  /// After the last row.
+  /// Call after the last row.
   BidsSidecars sidecars(const BidsSystemFacts& facts) const;
 
  private:

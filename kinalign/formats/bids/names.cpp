@@ -20,7 +20,7 @@ struct TimeParts {
   std::chrono::nanoseconds fraction{};
 };
 
-/// The digits at `at`, which must be as many; -1 where they are none.
+/// The number made of `count` digits from `at` on; -1 if other characters stand there.
 int digits_at(std::string_view text, std::size_t at, std::size_t count) {
   if (text.size() < at + count) return -1;
   int value = 0;
@@ -31,7 +31,7 @@ int digits_at(std::string_view text, std::size_t at, std::size_t count) {
   return value;
 }
 
-/// ".25" as nanoseconds; digits behind the ninth are cut off.
+/// ".25" as nanoseconds; digits after the ninth are cut off.
 std::optional<std::chrono::nanoseconds> fraction_of(std::string_view text) {
   if (text.empty()) return std::chrono::nanoseconds{0};
   if (text.size() < 2 || text[0] != '.') return std::nullopt;
@@ -42,6 +42,7 @@ std::optional<std::chrono::nanoseconds> fraction_of(std::string_view text) {
   return std::chrono::nanoseconds{ns};
 }
 
+/// Parses a time and checks the range of each part; a leap second, 60, is allowed.
 std::optional<TimeParts> time_parts_of(std::string_view text) {
   constexpr std::size_t whole = 19;  // YYYY-MM-DDThh:mm:ss
   if (text.ends_with('Z')) text.remove_suffix(1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names and places of files in a BIDS-Motion data set, and times as scans.tsv writes them. Layout:
-// docs/formats/bids.md.
+// Names and paths of files in a BIDS-Motion data set, and times in the notation of scans.tsv.
+// Layout: docs/formats/bids.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,44 +14,44 @@
 
 namespace kinalign {
 
-/// Letters and digits, one or more.
+/// True for one or more letters and digits.
 bool is_bids_label(std::string_view text);
 
-/// What a tracking system's files are called by; session, acquisition and run may be empty.
+/// Labels in the file names of a tracking system. Session, acquisition and run may be empty.
 struct BidsEntities {
   std::string subject, session, task, system, acquisition, run;
 };
 
-/// Fails where a label isn't made of letters and digits, or a run of digits.
+/// Fails if a label has other characters than letters and digits, or a run other than digits.
 Result<void> check_labels(const BidsEntities& entities);
 
 /// "sub-01_ses-a_task-walk_tracksys-kinect_run-2"
 std::string bids_stem(const BidsEntities& entities);
 /// "sub-01/ses-a/"
 std::string bids_subject_folder(const BidsEntities& entities);
-/// "sub-01/ses-a/motion/sub-01_ses-a_task-walk_tracksys-kinect_run-2_motion.tsv": ending is
-/// "motion.tsv".
+/// For the ending "motion.tsv":
+/// "sub-01/ses-a/motion/sub-01_ses-a_task-walk_tracksys-kinect_run-2_motion.tsv".
 std::string bids_path(const BidsEntities& entities, std::string_view ending);
 /// "sub-01/ses-a/sub-01_ses-a_scans.tsv"
 std::string bids_scans_path(const BidsEntities& entities);
 
-/// A file's name taken apart: sub-01_task-walk_motion.tsv has sub and task, and the ending
-/// motion.tsv. Empty where a part is no key-label.
+/// The parts of a file name: sub-01_task-walk_motion.tsv has the entities sub and task and the
+/// ending motion.tsv. Parsing gives nothing if a part is not of the form key-label.
 struct BidsName {
   std::vector<std::pair<std::string, std::string>> entities;  // in the order of the name
   std::string ending;
 
-  /// Empty where the name has no such entity.
+  /// The label of an entity; empty if the name has no such entity.
   std::string_view label(std::string_view key) const;
 };
 std::optional<BidsName> parse_bids_name(std::string_view file_name);
 
-/// "2026-11-26T10:22:50.000001Z"; what is below a microsecond is cut off.
+/// "2026-11-26T10:22:50.000001Z"; fractions of a microsecond are cut off.
 std::string acq_time_text(Time time);
-/// Reads YYYY-MM-DDThh:mm:ss, with fractions and Z or without; without Z it is taken for UTC. Empty
-/// where it is none, or outside 1850 to 2090.
+/// Reads YYYY-MM-DDThh:mm:ss, optionally with fractions and a Z. A time without Z is taken as UTC.
+/// Empty if the text is no such time, or if its year is not within 1850 to 2090.
 std::optional<Time> parse_acq_time(std::string_view text);
-/// The same of any year, without the value.
+/// True for a time in that notation, of any year.
 bool is_acq_time(std::string_view text);
 
 }  // namespace kinalign

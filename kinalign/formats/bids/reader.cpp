@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of a motion.tsv as points or as nodes.
+// Reads the rows of a motion.tsv as points or as nodes.
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/bids/system.h"
 #include "kinalign/formats/cells.h"
@@ -22,6 +22,7 @@ namespace kinalign {
 
 namespace {
 
+/// Larger numbers can't be meant and are refused.
 constexpr double largest_number = 1e15;
 constexpr TimeScale latency_seconds{1'000'000'000, 0};
 
@@ -29,7 +30,8 @@ Failure refuse(std::string expected, std::string found) {
   return Failure(Error{"", 0, std::move(expected), std::move(found)});
 }
 
-/// Columns of one quantity of a tracked point, in the order of our arrays.
+/// The n columns of one quantity of a tracked point, in the order of our arrays, with their unit
+/// factors.
 template <std::size_t n>
 struct Quantity {
   std::array<std::size_t, n> columns{};
@@ -37,6 +39,7 @@ struct Quantity {
   std::string frame;
 };
 
+/// The quantity's columns in channels.tsv; empty if one of the components is missing.
 template <std::size_t n>
 std::optional<Quantity<n>> find_quantity(const BidsSystem& system, std::string_view point,
                                          std::string_view type,
@@ -58,7 +61,7 @@ std::optional<Quantity<n>> find_quantity(const BidsSystem& system, std::string_v
 constexpr std::array<const char*, 3> xyz{"x", "y", "z"};
 constexpr std::array<const char*, 4> wxyz{"quat_w", "quat_x", "quat_y", "quat_z"};
 
-/// In the order of their first channels.
+/// Names of the tracked points, in the order of their first channels.
 std::vector<std::string> tracked_points(const BidsSystem& system) {
   std::vector<std::string> out;
   std::set<std::string> known;
@@ -68,8 +71,8 @@ std::vector<std::string> tracked_points(const BidsSystem& system) {
   return out;
 }
 
-/// Ours from a reference frame, y up where nothing is known of it. Empty where its letters are no
-/// axes.
+/// Our axes from those of a reference frame; y up if nothing is known about the frame. Empty if its
+/// letters are no valid axes.
 std::optional<Axes> axes_of_frame(const BidsSystem& system, const std::string& frame) {
   const auto letters = system.letters.find(frame);
   if (letters == system.letters.end() || letters->second == "n/a") return y_up;
@@ -86,7 +89,7 @@ Result<Axes> space_of(const BidsSystem& system, const std::string& frame,
   return axes_of(axes.value_or(y_up), options);
 }
 
-/// Lines of numbers; of each wanted column the value, or that it is missing.
+/// Splits the lines into numbers: for each wanted column its value, or that the value is missing.
 class BidsRows {
  public:
   BidsRows(const BidsSystem& system, const StreamOptions& options, std::string_view file)
@@ -108,11 +111,12 @@ class BidsRows {
   }
 
   template <std::size_t n>
+  /// Marks the columns of a quantity, so that read() parses them.
   void want(const Quantity<n>& quantity) {
     for (const std::size_t column : quantity.columns) wanted_[column] = true;
   }
 
-  /// False for an empty line.
+  /// Reads a line into `values` and `missing`. False for an empty line.
   Result<bool> read(std::string_view line) {
     if (trimmed(line).empty()) return false;
     std::size_t c = 0;
@@ -142,6 +146,7 @@ class BidsRows {
   std::uint64_t nan_cells = 0;
 
  private:
+  /// Parses cell c: the latency, or the number of a wanted column. Other cells are not looked at.
   Result<void> read_cell(std::string_view cell, std::size_t c) {
     if (latency_ && c == *latency_) {
       const auto ns = parse_stamp(cell, latency_seconds);
@@ -165,7 +170,8 @@ class BidsRows {
   std::int64_t latency_ns_ = 0, onset_ns_ = 0;
 };
 
-/// What both readers share; Base is PointReader or ImuReader.
+/// The part that both readers share: stamps, kept rows and findings. Base is PointReader or
+/// ImuReader.
 template <class Base>
 class BidsReader : public Base {
  public:
@@ -242,6 +248,7 @@ class BidsPointReader final : public BidsReader<PointReader> {
   const PointHeader* header() const override { return &header_; }
 
  private:
+  /// Appends a row of points; a point that lacks one of its coordinates is missing.
   void append_row(PointFrames& out) override {
     for (std::size_t j = 0; j < points_.size(); ++j) {
       bool there = true;
@@ -257,8 +264,8 @@ class BidsPointReader final : public BidsReader<PointReader> {
 
   std::vector<TrackedPoint> points_;
   PointUnits units_;
-  std::vector<double> raw_;       // [J,3] of a row
-  std::vector<Tracking> states_;  // [J] of a row
+  std::vector<double> raw_;       // [J,3] the current row, in the file's axes
+  std::vector<Tracking> states_;  // [J] the current row
   PointHeader header_;
 };
 
@@ -294,6 +301,7 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
   const ImuContent& content() const { return header_.content; }
 
  private:
+  /// Appends a row of samples; a node's sample that lacks a number is invalid.
   void append_row(ImuSamples& out) override {
     for (const TrackedNode& node : nodes_) {
       bool valid = true;
@@ -324,7 +332,7 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
   ImuHeader header_;
 };
 
-/// Fails where a channel's unit is none that its type can have.
+/// Fails if a channel's unit is no unit of its type.
 template <std::size_t n>
 Result<void> check_unit(const BidsSystem& system, const Quantity<n>& quantity) {
   for (std::size_t k = 0; k < n; ++k) {
@@ -341,6 +349,7 @@ Failure in_channels(Error error, std::string_view file) {
   return Failure(std::move(error));
 }
 
+/// Reader of all tracked points that have x, y and z; all must use one reference frame.
 Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
                                                const StreamOptions& options,
                                                std::string_view file) {
@@ -359,6 +368,7 @@ Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
   return std::make_unique<BidsPointReader>(system, options, file, std::move(points), axes);
 }
 
+/// Reader of all tracked points that have an orientation, an acceleration or an angular velocity.
 Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const StreamOptions& options,
                                             std::string_view file) {
   std::vector<TrackedNode> nodes;

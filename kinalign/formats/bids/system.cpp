@@ -17,10 +17,11 @@ constexpr std::string_view motion_ending = "motion.tsv";
 constexpr std::size_t largest_table = std::size_t{16} << 20, largest_json = std::size_t{1} << 20;
 
 struct SidecarPaths {
-  std::string channels_tsv, motion_json, channels_json, scans_tsv;  // the last may be empty
+  // scans_tsv is empty if the path has no folder motion/.
+  std::string channels_tsv, motion_json, channels_json, scans_tsv;
 };
 
-/// scans.tsv lies in the folder above motion/, and is named by subject and session.
+/// scans.tsv lies in the folder above motion/. Its name has the subject and the session.
 std::string scans_path_of(const std::string& path) {
   const auto name = parse_bids_name(file_name(path));
   std::string_view above = folder(path);
@@ -40,6 +41,7 @@ bool is_there(FileSystem& files, const std::string& path) {
   return !path.empty() && InputFile::open(files, path, 1).has_value();
 }
 
+/// SpatialAxes of each reference frame in channels.json; empty if there is no such file.
 Result<std::map<std::string, std::string>> read_letters(FileSystem& files,
                                                         const std::string& path) {
   std::map<std::string, std::string> out;
@@ -67,6 +69,7 @@ Result<double> read_rate(FileSystem& files, const std::string& path) {
                        number ? std::to_string(hz) : "none"});
 }
 
+/// The file's start in scans.tsv; empty if there is no such file, row or valid time.
 Result<std::optional<Time>> read_onset(FileSystem& files, const std::string& scans,
                                        const std::string& path) {
   std::optional<Time> out;

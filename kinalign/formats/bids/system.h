@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands beside a motion.tsv, and the reader that it describes.
+// Reads the sidecar files of a motion.tsv and makes the reader that they describe.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,34 +16,35 @@
 
 namespace kinalign {
 
-/// What a reader of motion.tsv has to know.
+/// Facts from the sidecar files that a reader of motion.tsv needs.
 struct BidsSystem {
   std::vector<BidsChannel> channels;           // one for each column
   std::map<std::string, std::string> letters;  // reference frame -> SpatialAxes
   double rate_hz = 0.0;
-  std::optional<Time> onset;  // of scans.tsv
+  std::optional<Time> onset;  // time zero of the latencies, from scans.tsv
 };
 
-/// channels.tsv and motion.json stand in the same folder as the motion.tsv `path`; channels.json
-/// there and scans.tsv above it may be missing. Fails where one of the first two is missing or
-/// can't be understood.
+/// Reads the sidecar files of the motion.tsv `path`. channels.tsv and motion.json lie in its
+/// folder; reading fails if one of them is missing or can't be understood. channels.json, in the
+/// same folder, and scans.tsv, one folder up, are optional.
 Result<BidsSystem> read_bids_system(FileSystem& files, const std::string& path);
 
-/// Those of the four that are there.
+/// Paths of those of the four sidecar files that exist.
 std::vector<std::string> bids_sidecar_paths(FileSystem& files, const std::string& path);
 
-/// POS channels as points. A point with n/a is missing.
+/// Reads POS channels as points. A point with an n/a is missing.
 Result<std::unique_ptr<PointReader>> make_bids_point_reader(const BidsSystem& system,
                                                             const StreamOptions& options,
                                                             std::string_view file);
-/// ORNT of quaternions, ACCEL and GYRO as nodes. Only quantities that all nodes have are read.
+/// Reads ORNT channels of quaternions, ACCEL and GYRO channels as nodes. Only quantities that all
+/// nodes have are read.
 Result<std::unique_ptr<ImuReader>> make_bids_node_reader(const BidsSystem& system,
                                                          const StreamOptions& options,
                                                          std::string_view file);
 
-/// ..._tracksys-..._motion.tsv
+/// True for a name of the form ..._tracksys-..._motion.tsv.
 bool named_as_bids_motion(std::string_view path);
-/// Some channel is POS.
+/// True if at least one channel is POS.
 bool has_positions(const BidsSystem& system);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small tab-separated table with a line of names: channels.tsv, participants.tsv, scans.tsv.
+// A small tab-separated table with a header line: channels.tsv, participants.tsv, scans.tsv.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -19,10 +19,10 @@ struct TsvTable {
   std::optional<std::size_t> column(std::string_view name) const;
 };
 
-/// Rows may be longer or shorter than the line of names; the last line may be empty.
+/// Rows may be longer or shorter than the header line. The last line may be empty.
 TsvTable read_tsv(std::string_view text);
 
-/// A cell for `text`: "n/a" where it is empty; tabs and line ends become blanks.
+/// A cell for `text`: "n/a" if it is empty; tabs and line ends become blanks.
 std::string tsv_cell(std::string_view text);
 
 std::string write_tsv(const TsvTable& table);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Biovision BVH, read and written. Layout: docs/formats/bvh.md.
+// Reads and writes Biovision BVH. Layout: docs/formats/bvh.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -21,48 +21,49 @@ namespace kinalign {
 struct BvhOptions {
   double metres_per_unit = 0.01;  // most writers, Axis Neuron among them, use centimetres
   bool z_up = false;              // the file's up axis is z; y otherwise
-  Time start{};                   // stamp of frame 0; the file itself knows none
+  Time start{};                   // stamp of frame 0; the file itself has none
 };
 
-/// As a stream's user has it; the click's latency is added to its stamp.
+/// The options of a BVH for a stream. The click's latency is added to the start stamp.
 BvhOptions bvh_options(const StreamOptions& options);
 
 /// One channel of a joint: 0..2 position x, y, z; 3..5 rotation about x, y, z.
 using Channel = std::uint8_t;
 
-/// What stands above the rows, in the file's own units and words.
+/// The hierarchy above the rows, in the file's own units and names.
 struct BvhHierarchy {
   std::vector<std::string> names;              // [J] as written; may repeat
   std::vector<int> parents;                    // [J] -1: a root
   std::vector<Vec3> offsets;                   // [J]
   std::vector<std::vector<Channel>> channels;  // [J] in the order of the row
   std::vector<EndSite> end_sites;
-  int offset_decimals = 6;   // digits behind the point of the OFFSETs
-  std::uint64_t frames = 0;  // as stated; the rows decide
-  std::int64_t frames_line = 0;
+  int offset_decimals = 6;       // digits behind the point of the OFFSETs
+  std::uint64_t frames = 0;      // number stated in the file; the rows decide
+  std::int64_t frames_line = 0;  // line of "Frames:", from 1
   double frame_seconds = 0.0;
-  std::string frame_time;  // as written
+  std::string frame_time;  // text of the number in the file
 
   std::size_t row_size() const;  // values in a frame, C
 };
 
+/// A whole BVH in memory.
 struct BvhFile {
   BvhHierarchy hierarchy;
   Clip clip;                   // T frames, J joints; repeated names are name#2, name#3, ...
   std::vector<double> values;  // [T,C] as read: the file's units, degrees, beyond +-180 too
-  int decimals = 6;            // of the file, for writing
-  Findings findings;           // read all the same: "Frames: 900" above 899 rows, ...
+  int decimals = 6;            // decimals of the file's values, for writing
+  Findings findings;  // faults that did not stop the reading: "Frames: 900" above 899 rows, ...
 };
 
-/// Parses everything up to the rows; `text` must reach to the end of the "Frame Time:" number.
-/// Fails where the hierarchy cannot be understood. Sets `rows` to where the first row begins.
+/// Parses everything above the rows. `text` must reach to the end of the "Frame Time:" number. Sets
+/// `rows` to the position of the first row. Fails if the hierarchy can't be understood.
 Result<BvhHierarchy> parse_bvh_hierarchy(std::string_view text, std::string_view name,
                                          std::size_t& rows, Findings& findings);
 
-/// "HIERARCHY" stands first.
+/// True if the first word is "HIERARCHY".
 bool looks_like_bvh(std::string_view head);
 
-/// The skeleton in metres; repeated names are told apart by name#2, with a finding.
+/// The skeleton in metres. Repeated names become name#2, name#3, ..., with a finding.
 Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
                      std::string_view name, Findings& findings);
 
@@ -73,8 +74,9 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
 Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
                     std::span<const double> rows, const BvhOptions& options, std::string_view name);
 
-/// Local positions and rotations of rows of channel values [n,C], appended to `out`. Position
-/// channels replace the components of OFFSET; angles apply in the order of the channels.
+/// Converts rows of channel values [n,C] into local positions and rotations, which it appends to
+/// `out`. Position channels replace the components of OFFSET. Angles apply in the order of the
+/// channels.
 class BvhPoser {
  public:
   BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options);
@@ -100,28 +102,29 @@ class BvhPoser {
   BvhPoser& operator=(const BvhPoser&) = delete;
 };
 
-/// A reader in pieces (reader.h). Values are counted, not lines: a wrong frame count or an
-/// incomplete last frame is a finding. But where the first frames stand on a line each, a line
-/// that shifts the following frames is an error, not a wrapped row.
+/// A reader that takes the file in pieces (reader.h). It counts values, not lines: a wrong frame
+/// count or an incomplete last frame is a finding. If each of the first frames stands on one line,
+/// however, a line that shifts the following frames is an error.
 std::unique_ptr<ClipReader> make_bvh_reader(const BvhOptions& options, const std::string& name);
 
-/// Reads a whole file. `name` appears in messages only. Memory goes by the values present.
+/// Reads a whole file. `name` appears in messages only. Memory use depends on the values that are
+/// present.
 Result<BvhFile> read_bvh(std::string_view text, std::string_view name, const BvhOptions& options);
 
-/// The first pass over a file: its hash, its skeleton, its number of frames. The numbers are read
-/// only if the word count does not give the promised number of frames, or if the file ends within
-/// the last word.
+/// The first pass over a file: its hash, its skeleton and its number of frames. It parses the
+/// numbers only if the word count does not fit the promised number of frames, or if the file ends
+/// within its last word.
 Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
                               const Progress& progress);
 
 using TextSink = FileSink;
 
-/// Writes `values` in the file's decimals: read, write, read gives every channel exactly. A Clip
-/// made elsewhere gets its channels from bvh_from_clip first; nothing else computes on angles.
-/// BvhWriter and copy_bvh write files that are larger than memory.
+/// Writes `values` with the file's number of decimals: read, write, read gives every channel
+/// exactly. A clip from elsewhere first gets its channels from bvh_from_clip(). For files larger
+/// than memory there are BvhWriter and copy_bvh().
 Result<void> write_bvh(const BvhFile& file, const TextSink& sink);
 
-/// A clip made elsewhere, with the channels that BvhChannels gives it.
+/// Makes a BVH from a clip of another source, with the channels of BvhChannels.
 BvhFile bvh_from_clip(Clip clip, double frame_seconds);
 
 /// Writes a BVH block by block. The number of frames must be known before the first block.
@@ -131,7 +134,7 @@ class BvhWriter {
 
   /// The next rows of channel values [n,C].
   Result<void> append(std::span<const double> values);
-  /// Fails where other than the promised frames were given.
+  /// Fails if the number of rows differs from the promised number of frames.
   Result<void> finish();
 
  private:
@@ -139,22 +142,24 @@ class BvhWriter {
   std::size_t row_size_;
   int decimals_;
   std::uint64_t frames_, written_ = 0;
-  std::string text_;  // not yet handed on
+  std::string text_;  // text that the sink has not received yet
 };
 
-/// Channels for a clip made elsewhere: centimetres, y up, rotations Z X Y, six decimals; position
-/// channels for roots and for joints that leave their offset by more than a micrometre, or for all
-/// joints, as suits write them. Joints come in the order in which a BVH nests them.
+/// Makes channels for a clip of another source: centimetres, y up, rotations Z X Y, six decimals.
+/// Roots get position channels, and so do joints that leave their offset by more than a micrometre,
+/// or all joints, as motion suits write them. Joints come in the order in which a BVH nests them.
 class BvhChannels {
  public:
   enum class Positions { of_what_moves, of_all };
   explicit BvhChannels(const Skeleton& skeleton, Positions positions = Positions::of_what_moves);
 
-  /// All frames' local positions [n,J,3], in blocks: which joints move.
+  /// First pass: takes the local positions [n,J,3] of all frames, in blocks, to find the joints
+  /// that move.
   void see(std::span<const double> local_positions);
   BvhHierarchy hierarchy(std::uint64_t frames, double frame_seconds) const;
 
-  /// Then their values: local positions [n,J,3] and rotations [n,J,4] become rows [n,C], appended.
+  /// Second pass: converts local positions [n,J,3] and rotations [n,J,4] to rows [n,C], which it
+  /// appends to `values`.
   void append(std::span<const double> local_positions, std::span<const double> local_rotations,
               std::vector<double>& values) const;
 
@@ -162,8 +167,8 @@ class BvhChannels {
   bool has_position(std::size_t j) const { return moves_[j] || skeleton_.parents[j] < 0; }
 
   Skeleton skeleton_;
-  std::vector<std::size_t> order_;  // [J] the skeleton's joints as they are written
-  std::vector<bool> moves_;         // [J]
+  std::vector<std::size_t> order_;  // [J] the skeleton's joints in the order of writing
+  std::vector<bool> moves_;         // [J] true: the joint leaves its offset
 };
 
 /// Copies a BVH with its own channels, values and decimals; every number stays as it is. Reads the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A BVH's words, the parser of its hierarchy, and the head that is collected from pieces.
+// Splits a BVH into words, parses its hierarchy, and collects the head from pieces.
 #include "kinalign/formats/bvh/head.h"
 
 #include "kinalign/core/numbers.h"
@@ -24,7 +24,8 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// Without such at both ends; a cell of a table loses less (cells.h).
+/// `text` without blanks and control characters at both ends. trimmed() in cells.h drops fewer
+/// characters.
 std::string_view stripped(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
@@ -51,7 +52,7 @@ class BvhWords {
     return word;
   }
 
-  /// The line's rest, without a brace at its end: a name may hold blanks.
+  /// The rest of the line, up to a brace: a joint's name may hold blanks.
   std::string_view rest_of_line() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '{') ++at_;
@@ -80,13 +81,14 @@ class BvhWords {
 constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
                                                         "xrotation", "yrotation", "zrotation"};
 
-constexpr double largest_offset = 1e15;  // as of the rows' values
+constexpr double largest_offset = 1e15;  // the limit of the rows' values
 
 class HierarchyParser {
  public:
   HierarchyParser(std::string_view text, std::string_view name, Findings& findings)
       : words_(text, name), name_(name), findings_(&findings) {}
 
+  /// Parses the hierarchy and the two lines below MOTION.
   Result<BvhHierarchy> parse(std::size_t& rows) {
     std::string_view word = words_.next();
     if (word.starts_with("\xEF\xBB\xBF")) word.remove_prefix(3);
@@ -110,7 +112,8 @@ class HierarchyParser {
   }
 
   Result<void> open_joint(int parent) {
-    // No body and no crowd comes near these; what follows may be quadratic in them.
+    // No body or group of people has so many joints. The limits matter because later work may be
+    // quadratic in them.
     constexpr std::size_t most_joints = 10'000, deepest = 500;
     if (out_.names.size() == most_joints || open_.size() == deepest) {
       return Failure(words_.wrong("at most 10000 joints, 500 deep", "one more"));
@@ -151,6 +154,7 @@ class HierarchyParser {
     return {};
   }
 
+  /// Parses an End Site; it has an offset and no channels.
   Result<void> end_site() {
     words_.rest_of_line();
     EndSite site;
@@ -182,6 +186,7 @@ class HierarchyParser {
     return out;
   }
 
+  /// Parses the channels of a joint: their number, then their names, in the order of the row.
   Result<void> channels(std::vector<Channel>& out) {
     std::string_view word = words_.next();
     double count = 0;
@@ -203,7 +208,7 @@ class HierarchyParser {
     return {};
   }
 
-  /// "Frames: 12" and "Frame Time: 0.0083333"; blanks may stand before the colon.
+  /// Parses "Frames: 12" and "Frame Time: 0.0083333". Blanks may stand before the colon.
   Result<void> timing() {
     const std::string_view frames = KA_TRY(value_of("frames", "Frames:"));
     out_.frames_line = words_.line();
@@ -217,7 +222,8 @@ class HierarchyParser {
     }
     words_.next();
     out_.frame_time = KA_TRY(value_of("time", "Frame Time:"));
-    constexpr double longest = 1e4;  // s: nobody waits longer, and a clip's end stays countable
+    // s: no recording has a longer step, and the stamp of the last frame stays in range.
+    constexpr double longest = 1e4;
     if (!parse_number(out_.frame_time, out_.frame_seconds) || out_.frame_seconds <= 0.0 ||
         out_.frame_seconds > longest) {
       return Failure(words_.wrong("a frame time above 0 s", out_.frame_time));
@@ -232,7 +238,7 @@ class HierarchyParser {
     return {};
   }
 
-  /// The word behind `key` and its colon, however they are spaced.
+  /// The word after `key` and its colon, with or without blanks around the colon.
   Result<std::string_view> value_of(std::string_view key, std::string_view wanted) {
     std::string_view word = words_.next();
     if (!lower(word).starts_with(key)) return Failure(words_.wrong(std::string(wanted), word));
@@ -246,11 +252,12 @@ class HierarchyParser {
   std::string_view name_;
   Findings* findings_;
   BvhHierarchy out_;
-  std::vector<int> open_;  // joints whose brace is open, innermost last
-  int offset_decimals_ = 0;
+  std::vector<int> open_;    // joints with an open brace, innermost last
+  int offset_decimals_ = 0;  // most digits behind the point in any OFFSET
 };
 
-/// Names that differ: a repeated one counts on to a number that no other name has.
+/// The names, made unique: a repeated name gets #2, #3, ..., the first number that gives no other
+/// joint's name.
 std::vector<std::string> told_apart(const std::vector<std::string>& names) {
   std::set<std::string> taken(names.begin(), names.end());
   std::map<std::string_view, int> times;
@@ -265,23 +272,24 @@ std::vector<std::string> told_apart(const std::vector<std::string>& names) {
   return out;
 }
 
-/// True where `text` reaches beyond the number of the line "Frame Time: ...".
+/// True if `text` reaches beyond the number in the line "Frame Time: ...".
 bool is_whole(std::string_view text) {
   BvhWords words(text, "");
   std::string word;
-  const auto next = [&] {  // false where nothing ends the word yet
+  const auto next = [&] {  // false if the word may go on in the next piece
     word = lower(words.next().substr(0, 64));
     return words.at() < text.size();
   };
   bool motion = false, frame = false;
   while (next()) {
-    if (motion && frame && word.starts_with("time")) {  // as the hierarchy's parser reads it
+    if (motion && frame && word.starts_with("time")) {  // the rule of HierarchyParser::value_of
       word.erase(0, 4);
       if (word.empty() && !next()) return false;
       if (word.starts_with(':')) word.erase(0, 1);
       return !word.empty() || next();
     }
-    if (word == "root" || word == "joint" || word == "end") words.rest_of_line();  // any name
+    // A joint may have any name, also "motion".
+    if (word == "root" || word == "joint" || word == "end") words.rest_of_line();
     frame = word == "frame";
     motion = motion || word == "motion";
   }
@@ -336,7 +344,7 @@ Result<bool> BvhHead::add(std::string_view piece, Findings& findings) {
     return true;
   }
   if (text_.size() <= longest) return false;
-  KA_TRY(finish(findings));  // says what is wrong with the text, if anything is but its length
+  KA_TRY(finish(findings));  // reports a fault in the text, if there is one besides its length
   return Failure(Error{name_, 0, "MOTION within the first 8 MiB", "none"});
 }
 
@@ -361,7 +369,7 @@ void BvhHead::forget_text() {
 
 std::string BvhHead::alone() const {
   const std::string head = text_.substr(0, rows_);
-  // The word MOTION is the last one of its kind: only Frames and Frame Time stand behind it.
+  // The last word "motion" is the keyword: only Frames and Frame Time follow it.
   const std::size_t motion = lower(head).rfind("motion");
   return head.substr(0, motion) + "MOTION\nFrames: 0\nFrame Time: " + hierarchy.frame_time + "\n";
 }
@@ -369,7 +377,7 @@ std::string BvhHead::alone() const {
 Result<std::string> read_bvh_head(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   BvhHead head(path);
-  Findings findings;  // what is doubtful in it is told where it is used
+  Findings findings;  // the reader of the whole file reports them
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
     if (piece.empty()) {

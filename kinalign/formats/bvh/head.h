@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands above a BVH's rows, gathered from pieces until it is whole.
+// Collects the part of a BVH above its rows, the head, from pieces of the file.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -11,24 +11,24 @@
 
 namespace kinalign {
 
-/// Everything up to the blank separates words: tabs, returns and other control characters too.
+/// Words are separated by blanks, tabs, returns and all other control characters.
 inline bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
 class BvhHead {
  public:
   explicit BvhHead(std::string name) : name_(std::move(name)) {}
 
-  /// True once the head is whole: then `hierarchy` is read and rows() is what came behind it.
-  /// Fails where the hierarchy can't be understood or does not end within 8 MiB.
+  /// True once the head is complete: then `hierarchy` is parsed and rows() is the text after the
+  /// head. Fails if the hierarchy can't be understood or does not end within 8 MiB.
   Result<bool> add(std::string_view piece, Findings& findings);
-  /// The file has ended: a head that nothing follows is whole now. Fails as add does.
+  /// Call at the end of the file: a head without rows is complete now. Fails as add() does.
   Result<void> finish(Findings& findings);
 
   BvhHierarchy hierarchy;
   std::string_view rows() const { return std::string_view(text_).substr(rows_); }
   std::int64_t first_row_line() const;
   void forget_text();
-  /// The head as a BVH of its own, without rows.
+  /// The head as a BVH file without rows.
   std::string alone() const;
 
  private:
@@ -36,10 +36,10 @@ class BvhHead {
 
   std::string name_;  // for messages
   std::string text_;
-  std::size_t rows_ = 0;  // where they begin
+  std::size_t rows_ = 0;  // position of the first row
 };
 
-/// The head of a file as a BVH of its own, without rows.
+/// Reads the head of a file and returns it as a BVH file without rows.
 Result<std::string> read_bvh_head(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

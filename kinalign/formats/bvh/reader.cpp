@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A BVH in pieces: rows of channels become local positions and rotations.
+// Reads a BVH in pieces: converts rows of channels into local positions and rotations.
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/rows.h"
 #include "kinalign/motion/kinematics.h"
@@ -14,7 +14,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr double half_root = 0.70710678118654752440;  // of 2: z up to y up is -90 degrees about x
+// Square root of 1/2: z up to y up is -90 degrees about x.
+constexpr double half_root = 0.70710678118654752440;
 
 class BvhReader final : public ClipReader {
  public:
@@ -22,7 +23,7 @@ class BvhReader final : public ClipReader {
       : options_(options),
         name_(name),
         values_(name, [this](const BvhHierarchy& h) { begin(h); }) {}
-  BvhReader(const BvhReader&) = delete;  // values_ knows where it lies
+  BvhReader(const BvhReader&) = delete;  // a callback in values_ holds the address of this object
   BvhReader& operator=(const BvhReader&) = delete;
   ~BvhReader() override = default;
 
@@ -43,18 +44,20 @@ class BvhReader final : public ClipReader {
 
   BvhHierarchy& hierarchy() { return values_.hierarchy(); }
   int decimals() const { return values_.decimals(); }
+  /// Appends all channel values to `values` too, for read_bvh(); counts their decimals.
   void keep_values(std::vector<double>& values) {
     kept_ = &values;
     values_.count_decimals = true;
   }
 
  private:
+  /// Called once the head is complete, before the first row.
   void begin(const BvhHierarchy& hierarchy) {
     skeleton_ = skeleton_of(hierarchy, options_, name_, findings);
     poser_.emplace(hierarchy, options_);
   }
 
-  /// Hands out the complete frames.
+  /// Poses the complete frames into `out`.
   void release(ClipFrames& out) {
     if (!values_.has_rows()) return;
     const auto values = values_.frames();
@@ -64,6 +67,7 @@ class BvhReader final : public ClipReader {
     values_.drop_frames();
   }
 
+  /// Checks size and upward axis once, with the first rows.
   void judge(std::span<const double> rows) {
     append(findings, judge_size(values_.hierarchy(), skeleton_, rows, options_, name_));
     judged_ = true;
@@ -72,10 +76,10 @@ class BvhReader final : public ClipReader {
   BvhOptions options_;
   std::string name_;
   BvhValues values_;
-  bool judged_ = false;  // size and axis
+  bool judged_ = false;  // size and upward axis were checked
   Skeleton skeleton_;
   std::optional<BvhPoser> poser_;
-  std::vector<double>* kept_ = nullptr;
+  std::vector<double>* kept_ = nullptr;  // target of keep_values(); nullptr: none
 };
 
 }  // namespace
@@ -90,8 +94,9 @@ BvhOptions bvh_options(const StreamOptions& options) {
 }
 
 struct BvhPoser::Joint {
-  std::array<int, 3> position{-1, -1, -1};  // column of x, y, z; -1: the offset
-  std::array<int, 3> angle{-1, -1, -1};     // column of the order's first, second, third; -1: zero
+  std::array<int, 3> position{-1, -1, -1};  // column of x, y, z; -1: none, the offset applies
+  // Column of the first, second and third rotation; -1: none, the angle is zero.
+  std::array<int, 3> angle{-1, -1, -1};
   EulerOrder order;
   Vec3 offset = Vec3::Zero();  // m, in the file's axes
   bool root = false;
@@ -127,6 +132,8 @@ BvhPoser::~BvhPoser() = default;
 BvhPoser::BvhPoser(BvhPoser&&) noexcept = default;
 BvhPoser& BvhPoser::operator=(BvhPoser&&) noexcept = default;
 
+/// Fills one joint's positions in all frames. Array offsets: `positions` begins at the joint's
+/// first frame.
 void BvhPoser::place(const Joint& joint, std::span<const double> values,
                      std::span<double> positions) const {
   const std::size_t stride = 3 * joints_.size(), frames = values.size() / row_size_;
@@ -149,6 +156,7 @@ void BvhPoser::place(const Joint& joint, std::span<const double> values,
   }
 }
 
+/// Fills one joint's rotations in all frames. `rotations` begins at the joint's first frame.
 void BvhPoser::turn(const Joint& joint, std::span<const double> values,
                     std::span<double> rotations) const {
   const std::size_t stride = 4 * joints_.size(), frames = values.size() / row_size_;
@@ -175,7 +183,8 @@ void BvhPoser::append(std::span<const double> values, ClipFrames& out) {
   for (std::size_t i = 0; i < frames; ++i) {
     out.stamps.push_back(frame_stamp(options_.start, frame_ns_, frames_++));
   }
-  // All joints of a few frames, then the next few: rows stay in the first cache.
+  // Handles all joints of a few frames, then the next few frames, so that the rows stay in the
+  // first-level cache.
   for (std::size_t first = 0; first < frames; first += euler_frames) {
     const std::size_t some = std::min(euler_frames, frames - first);
     const auto rows = values.subspan(first * row_size_, some * row_size_);

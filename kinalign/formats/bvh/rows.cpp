@@ -14,7 +14,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t longest_word = 512;
-constexpr double largest = 1e15;  // as in tables (cells.cpp): nothing can be computed with more
+constexpr double largest = 1e15;  // the limit of tables (cells.cpp): larger numbers can't be meant
 
 }  // namespace
 
@@ -56,7 +56,7 @@ Result<void> BvhRows::feed(std::string_view piece, Findings& findings) {
 
 Result<void> BvhRows::finish(Findings& findings) {
   if (!carry_.empty() && !ended_) findings.push_back(unended_finding(head_.name, head_.line));
-  KA_TRY(feed("\n", findings));  // ends the last number
+  KA_TRY(feed("\n", findings));  // the blank ends the last number
   const std::size_t left = count_ % head_.row_size;
   if (left == 0) return {};
   findings.push_back(
@@ -75,6 +75,7 @@ void BvhRows::drop_frames() {
   count_ -= whole;
 }
 
+/// Keeps the beginning of a word for the next piece.
 Result<void> BvhRows::hold(std::string_view word) {
   carry_ += word.substr(0, longest_word + 1);
   if (carry_.size() <= longest_word) return {};
@@ -89,7 +90,7 @@ bool BvhRows::end_line(std::size_t count) {
   return rule_.line_end(dropped_ * head_.row_size + count, head_.line++);
 }
 
-// [at, end) ends in a blank, so that no number touches `end`.
+// The text [at, end) ends in a blank, so that no number touches `end`.
 Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings) {
   const std::size_t most = count_ + static_cast<std::size_t>(end - at) / 2 + 1;
   if (values_.size() < most) values_.resize(most);
@@ -120,6 +121,7 @@ Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings)
   return {};
 }
 
+/// Handles a word that is no number: a finding after all promised frames, otherwise a failure.
 Result<void> BvhRows::strange_word(const char* at, const char* end, Findings& findings) {
   const char* behind = at;
   while (behind < end && !is_blank(*behind)) ++behind;
@@ -154,7 +156,7 @@ Result<void> BvhValues::finish(Findings& findings) {
   return {};
 }
 
-/// The head is whole: what stands behind it are rows.
+/// Called once the head is complete: the text after it belongs to the rows.
 Result<void> BvhValues::begin_rows(Findings& findings) {
   const BvhHierarchy& hierarchy = head_.hierarchy;
   if (on_head_) on_head_(hierarchy);

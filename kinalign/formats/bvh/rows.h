@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of a BVH as they are written, from pieces cut anywhere: the rows alone (BvhRows) and
-// the rows with the head above them (BvhValues).
+// Parses the numbers of a BVH from pieces cut anywhere: the rows alone (BvhRows), or the head and
+// the rows (BvhValues).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,15 +16,16 @@
 
 namespace kinalign {
 
-/// Judges where lines end against where frames end, in numbers of values.
+/// Compares the ends of lines with the ends of frames, both counted in values.
 class BvhRowRule {
  public:
   explicit BvhRowRule(std::size_t row_size) : row_size_(row_size) {}
 
-  /// A line has ended after `values` values in all. False: its frames are shifted for good.
+  /// Call at the end of each line, with the number of values so far. False if all frames from
+  /// shift_line() on are shifted: that line does not end with its frame, and neither does this one.
   bool line_end(std::uint64_t values, std::int64_t line);
 
-  // The line from which on frames are shifted, and how many values it holds.
+  // The line that shifts the frames, and the number of its values.
   std::int64_t shift_line() const { return shift_line_; }
   std::uint64_t shift_values() const { return shift_values_; }
 
@@ -32,27 +33,27 @@ class BvhRowRule {
   std::size_t row_size_;
   std::uint64_t line_start_ = 0;  // values before the current line
   bool judged_ = false;           // the first line has been seen
-  bool strict_ = false;           // and held whole frames
+  bool strict_ = false;           // the first line held whole frames
   std::int64_t shift_line_ = 0;
   std::uint64_t shift_values_ = 0;
 };
 
-/// Where a file's rows begin and what its head promised of them.
+/// Start of a file's rows, and the size and number of frames that its head promises.
 struct BvhRowsHead {
-  std::string name;          // of the file, for messages
+  std::string name;          // the file's name, for messages
   std::size_t row_size = 0;  // values in a frame
   std::uint64_t frames = 0;  // promised
-  std::int64_t line = 1;     // where the rows begin
+  std::int64_t line = 1;     // line on which the rows begin
 };
 
 class BvhRows {
  public:
   explicit BvhRows(BvhRowsHead head) : head_(std::move(head)), rule_(head_.row_size) {}
 
-  /// All numbers that end in the piece; the piece's last word waits for its end. Fails at a word
-  /// that is no number, except behind all the frames that were promised: that is a finding.
+  /// Parses all numbers that end in the piece; the last word waits for its end. Fails at a word
+  /// that is no number. If all promised frames came before that word, it is only a finding.
   Result<void> feed(std::string_view piece, Findings& findings);
-  /// The file has ended; an incomplete last frame is a finding.
+  /// Call at the end of the file. An incomplete last frame is a finding.
   Result<void> finish(Findings& findings);
 
   /// The whole frames [n, row_size] that have not been dropped yet.
@@ -62,7 +63,7 @@ class BvhRows {
   void drop_frames();
 
   std::uint64_t frames_read() const { return dropped_ + count_ / head_.row_size; }
-  int decimals() const { return decimals_; }  // most digits behind a point, with count_decimals
+  int decimals() const { return decimals_; }  // most digits behind a point, if count_decimals
   bool count_decimals = false;
 
  private:
@@ -75,28 +76,28 @@ class BvhRows {
   BvhRowsHead head_;
   BvhRowRule rule_;
   std::string carry_;           // a word cut by the end of a piece
-  std::vector<double> values_;  // room; the first count_ are values
+  std::vector<double> values_;  // capacity; the first count_ elements are values
   std::size_t count_ = 0;
   std::uint64_t dropped_ = 0;  // frames
-  bool ended_ = false;         // by strange text
+  bool ended_ = false;         // all further text is ignored, because it is no number
   int decimals_ = 0;
 };
 
 class BvhValues {
  public:
-  /// `on_head` is called once, with the hierarchy, before the first row is looked at.
+  /// `on_head` is called once, with the hierarchy, before the first row is parsed.
   using OnHead = std::function<void(const BvhHierarchy&)>;
 
   explicit BvhValues(std::string name, OnHead on_head = {})
       : name_(std::move(name)), on_head_(std::move(on_head)), head_(name_) {}
 
   Result<void> feed(std::string_view piece, Findings& findings);
-  /// The file has ended; another number of frames than promised is a finding.
+  /// Call at the end of the file. A number of frames other than the promised one is a finding.
   Result<void> finish(Findings& findings);
 
   bool has_rows() const { return rows_.has_value(); }
   BvhHierarchy& hierarchy() { return head_.hierarchy; }
-  /// The complete frames not yet dropped, values [n,C].
+  /// The complete frames that have not been dropped yet, values [n,C].
   std::span<const double> frames() const {
     return rows_ ? rows_->frames() : std::span<const double>();
   }
@@ -104,7 +105,7 @@ class BvhValues {
     if (rows_) rows_->drop_frames();
   }
   std::uint64_t frames_read() const { return rows_ ? rows_->frames_read() : 0; }
-  int decimals() const { return rows_ ? rows_->decimals() : 0; }  // with count_decimals
+  int decimals() const { return rows_ ? rows_->decimals() : 0; }  // if count_decimals
   bool count_decimals = false;
 
  private:

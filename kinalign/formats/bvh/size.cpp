@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// No BVH says its unit or its up axis: whether the values assumed give a person who stands.
+// Checks the assumed unit and upward axis. A BVH states neither, so the skeleton must have the size
+// of a person who stands.
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/kinematics.h"
 
@@ -13,7 +14,8 @@ namespace kinalign {
 
 namespace {
 
-/// The rest pose from its first root, m: all rotations the identity, in the axes of the file.
+/// Bounding box of the rest pose, m, relative to the first root: all rotations are the identity.
+/// Axes of the file.
 Eigen::AlignedBox3d rest_box(const Skeleton& skeleton) {
   std::vector<Vec3> at(skeleton.joints(), Vec3::Zero());
   Eigen::AlignedBox3d box(Vec3::Zero());
@@ -33,15 +35,15 @@ struct Unit {
   std::string_view name;
 };
 
-// Units met in the wild (docs/formats/bvh.md); the last one is the CMU database's.
+// Units found in public files (docs/formats/bvh.md); the last one is that of the CMU database.
 constexpr std::array<Unit, 5> units{{{0.01, "centimetres"},
                                      {1.0, "metres"},
                                      {0.001, "millimetres"},
                                      {0.0254, "inches"},
                                      {0.056444, "CMU units of 5.64 cm"}}};
 
-/// The unit in which a hip height is nearest to a grown person's 0.9 m: 0.53 of a stature of 1.7 m
-/// (Drillis and Contini, 1964).
+/// The unit in which the hip height comes nearest to an adult's 0.9 m, which is 0.53 of a stature
+/// of 1.7 m (Drillis and Contini, 1964).
 const Unit& best_unit(double hip_in_units) {
   const Unit* best = units.data();
   for (const Unit& unit : units) {
@@ -55,8 +57,9 @@ const Unit& best_unit(double hip_in_units) {
 
 constexpr int y = 1, z = 2;
 
-/// Whether the person of the first row stands: upright with arms spread one is narrow along z, and
-/// who lies is low along y, which is up. Nothing where neither is so.
+/// True if the person stands upright in the first row, false if the person lies. y is up. A
+/// standing person, even with spread arms, is narrow along z; a lying person is low along y. Empty
+/// if neither holds.
 std::optional<bool> stands(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
                            std::span<const double> rows, const BvhOptions& options) {
   if (rows.empty()) return std::nullopt;
@@ -84,7 +87,7 @@ Finding lying(std::string_view name, const std::string& expected, const std::str
 Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
                     std::span<const double> rows, const BvhOptions& options,
                     std::string_view name) {
-  constexpr std::size_t body = 10;  // fewer joints are no whole person
+  constexpr std::size_t body = 10;  // fewer joints are not a whole person
   Findings findings;
   if (skeleton.joints() < body) return findings;
   const Eigen::AlignedBox3d rest = rest_box(skeleton);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first pass over a BVH: hashed, its frames counted without reading their numbers.
+// The first pass over a BVH: hashes the file and counts its frames without parsing the numbers.
 #include "kinalign/core/hash.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/head.h"
@@ -15,12 +15,13 @@ namespace kinalign {
 
 namespace {
 
-/// How many words begin in [at, end); at[-1] must be readable.
+/// Number of words that begin in [at, end); at[-1] must be readable.
 KA_EVERY_PROCESSOR
 std::uint64_t words_begun(const char* at, const char* end) {
   std::uint64_t words = 0;
   while (at < end) {
-    // Sums of a byte each, which vector code adds 16 or more at a time.
+    // Counts in single bytes, which the vector unit adds 16 or more at a time; 255 characters can't
+    // overflow them.
     const char* stop = at + std::min<std::ptrdiff_t>(end - at, 255);
     unsigned char some = 0;
     for (; at < stop; ++at) {
@@ -33,7 +34,7 @@ std::uint64_t words_begun(const char* at, const char* end) {
   return words;
 }
 
-/// Counts words of a text that comes in pieces.
+/// Counts the words of a text that comes in pieces.
 class WordCount {
  public:
   void add(std::string_view piece) {
@@ -51,35 +52,37 @@ class WordCount {
   std::uint64_t words_ = 0;
 };
 
-/// What the file promises, where it keeps the promise by number of words and ends behind the last.
+/// Result of the counting pass.
 struct Counted {
   BvhHierarchy hierarchy;
   Findings findings;
   InputFacts facts;
-  std::vector<double> first_row;  // where it ends within the rows' first piece or 64 KiB
+  /// Empty if the row is not complete within the rows' first piece or 64 KiB.
+  std::vector<double> first_row;
+  /// The words are those of the promised number of frames, and the last word has ended.
   bool kept = false;
 };
 
-/// The first row of a text that begins with it; empty where it holds none.
+/// The first row of a text that begins with that row; empty if it is incomplete.
 std::vector<double> first_row(std::string_view text, const std::string& path, std::size_t size) {
   BvhRows rows({path, size, 1, 1});
-  Findings ignored;  // of what stands behind the row
+  Findings ignored;  // faults after the row
   if (!rows.feed(text, ignored) || !rows.finish(ignored) || rows.frames_read() == 0) return {};
   return {rows.frames().begin(), rows.frames().begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
-/// What follows a head, in pieces.
+/// Collects the text after a head, which comes in pieces.
 struct RowsText {
   WordCount words;
-  std::string start;
+  std::string start;  // beginning of the text
 
   void add(std::string_view piece) {
-    constexpr std::size_t longest_start = 64 * 1024;  // a row of 3,000 joints
+    constexpr std::size_t longest_start = 64 * 1024;  // long enough for a row of 3,000 joints
     words.add(piece);
     if (start.size() < longest_start) start += piece;
   }
 
-  /// Whether the words are those of the frames that the head promises.
+  /// True if the number of words is that of the frames that the head promises.
   bool keeps(const BvhHierarchy& head) const {
     const std::uint64_t row_size = head.row_size();
     return row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
@@ -87,6 +90,7 @@ struct RowsText {
   }
 };
 
+/// Reads the whole file once: hash, head, number of words, first row.
 Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   Counted out;
@@ -116,6 +120,7 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
   return out;
 }
 
+/// Stamps of `frames` frames at an even step, computed without reading them.
 StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t frames) {
   StampSurvey survey;
   survey.samples = frames;
@@ -126,7 +131,8 @@ StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t f
   return survey;
 }
 
-/// Reads all numbers, for files that break their promise: faults fail, oddities are found.
+/// Parses all numbers of a file whose word count does not fit its head. Faults fail or become
+/// findings.
 Result<ClipSurvey> read_all(FileSystem& files, const std::string& path, const BvhOptions& options,
                             const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From channel values to text, from a clip to channel values, and from file to file.
+// Writes channel values as text, converts a clip to channel values, and copies a file.
 #include "kinalign/core/numbers.h"
 #include "kinalign/core/unchanged.h"
 #include "kinalign/formats/bvh/bvh.h"
@@ -35,7 +35,7 @@ void put_offset(std::string& text, const std::string& indent, const Vec3& offset
   text += '\n';
 }
 
-/// Joint `first` and all below it, without recursion: a chain may be deep.
+/// Writes the hierarchy as text, without recursion, because a chain of joints may be deep.
 class HierarchyText {
  public:
   explicit HierarchyText(const BvhHierarchy& h) : h_(h) {}
@@ -65,6 +65,7 @@ class HierarchyText {
     text_ += '\n';
   }
 
+  /// Closes the braces of all open joints below `parent`. A joint's end sites come last in it.
   void close_down_to(int parent) {
     while (!open_.empty() && open_.back() != parent) {
       for (const EndSite& site : h_.end_sites) {
@@ -90,21 +91,22 @@ std::array<double, 3> zxy_angles(const Quat& rotation) {
   const Eigen::Matrix3d r = rotation.normalized().toRotationMatrix();
   constexpr double degrees = 180.0 / std::numbers::pi;
   const double sin_x = std::clamp(r(2, 1), -1.0, 1.0);
-  if (std::abs(sin_x) > 1.0 - 1e-12) {  // both other turns are about one axis: give it to z
+  if (std::abs(sin_x) > 1.0 - 1e-12) {  // z and y then turn about one axis: z gets the whole turn
     return {std::atan2(r(1, 0), r(0, 0)) * degrees, std::asin(sin_x) * degrees, 0.0};
   }
   return {std::atan2(-r(0, 1), r(1, 1)) * degrees, std::asin(sin_x) * degrees,
           std::atan2(-r(2, 0), r(2, 2)) * degrees};
 }
 
-/// Every joint directly followed by all below it, children in the order they had.
+/// Order of joints in which each joint is directly followed by all joints below it. Siblings keep
+/// their order.
 std::vector<std::size_t> nested_order(const std::vector<int>& parents) {
-  std::vector<std::vector<std::size_t>> children(parents.size() + 1);  // the last: roots
+  std::vector<std::vector<std::size_t>> children(parents.size() + 1);  // the last element: roots
   for (std::size_t j = parents.size(); j-- > 0;) {
     children[parents[j] < 0 ? parents.size() : static_cast<std::size_t>(parents[j])].push_back(j);
   }
   std::vector<std::size_t> order;
-  std::vector<std::size_t> open = children.back();  // the next one last
+  std::vector<std::size_t> open = children.back();  // the next joint comes last
   while (!open.empty()) {
     order.push_back(open.back());
     open.pop_back();
@@ -114,7 +116,7 @@ std::vector<std::size_t> nested_order(const std::vector<int>& parents) {
   return order;
 }
 
-/// A pass over the file and how it is told.
+/// A pass over the file, with the texts of its progress reports.
 struct CopyPass {
   FileSystem& files;
   const std::string& path;
@@ -122,7 +124,7 @@ struct CopyPass {
   std::string_view what;
 };
 
-/// Feeds a whole file; `use()` after each piece.
+/// Feeds a whole file to `values` and calls `use()` after each piece.
 template <class Use>
 Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
   const std::string& path = pass.path;
@@ -204,7 +206,7 @@ void BvhChannels::see(std::span<const double> local_positions) {
 
 BvhHierarchy BvhChannels::hierarchy(std::uint64_t frames, double frame_seconds) const {
   BvhHierarchy h;
-  std::vector<int> place(skeleton_.joints());  // of a joint in the order written
+  std::vector<int> place(skeleton_.joints());  // index of each joint in the order of writing
   for (const std::size_t j : order_) {
     const int parent = skeleton_.parents[j];
     place[j] = static_cast<int>(h.names.size());
@@ -228,7 +230,7 @@ BvhHierarchy BvhChannels::hierarchy(std::uint64_t frames, double frame_seconds) 
 void BvhChannels::append(std::span<const double> local_positions,
                          std::span<const double> local_rotations,
                          std::vector<double>& values) const {
-  // Rounded to the written decimals, so that the text holds exactly these values.
+  // Rounds to the six decimals of the file, so that the text holds exactly these values.
   const auto keep = [&values](double value) {
     values.push_back(std::nearbyint(value * 1e6) / 1e6);
   };

@@ -15,8 +15,8 @@ namespace kinalign {
 
 namespace {
 
-/// VAX F: sign, 8 bits of exponent, 23 of fraction, in two little-endian halves, the upper one
-/// first; the value is 0.1fraction * 2^(exponent - 128).
+/// VAX F format: sign, 8 bits of exponent, 23 bits of fraction, in two little-endian halves, the
+/// upper half first. The value is 0.1fraction * 2^(exponent - 128).
 double vax_f32(const std::uint8_t* at) {
   const std::uint32_t bits =
       static_cast<std::uint32_t>(at[1]) << 24 | at[0] << 16 | at[3] << 8 | at[2];
@@ -27,7 +27,7 @@ double vax_f32(const std::uint8_t* at) {
   return (bits >> 31) != 0 ? -value : value;
 }
 
-/// Takes entries from the front of the section.
+/// Reads bytes and numbers from the front of the section.
 class Entries {
  public:
   Entries(std::span<const std::uint8_t> section, C3dProcessor processor)
@@ -70,7 +70,8 @@ std::size_t size_of(C3dType type) {
   return static_cast<std::size_t>(std::abs(static_cast<int>(type)));
 }
 
-/// Type, dimensions and values; false where they reach beyond the section or are of no type.
+/// Reads type, dimensions and values. False if the type is unknown or the values reach beyond the
+/// section.
 bool take_values(Entries& entries, C3dParameter& out) {
   if (!entries.has(2)) return false;
   const int type = entries.i8();
@@ -91,17 +92,18 @@ bool take_values(Entries& entries, C3dParameter& out) {
   return true;
 }
 
-constexpr std::size_t most_parameters = 10'000;  // programs write some hundred
+constexpr std::size_t most_parameters = 10'000;  // programs write some hundreds
 
-/// A group may follow its parameters.
+/// Names of groups by their id. They are collected, because a group may come after its parameters.
 struct Groups {
   std::map<int, std::string> names;
+  /// group id of each parameter
   std::vector<int> of_parameter;
 };
 
 enum class Taken { entry, last, outside, bad_values };
 
-/// One group or one parameter, and on to the next entry.
+/// Reads one group or one parameter and moves on to the next entry.
 Taken take_entry(Entries& entries, Groups& groups, std::vector<C3dParameter>& parameters) {
   if (!entries.has(2)) return Taken::last;
   const auto length = static_cast<std::size_t>(std::abs(entries.i8()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A C3D in pieces: header, parameters, then frame after frame.
+// Reads a C3D in pieces: header, parameters, then frame after frame.
 #include "kinalign/formats/c3d/c3d.h"
 #include "kinalign/formats/c3d/parameters.h"
 #include "kinalign/formats/point_rows.h"
@@ -19,13 +19,13 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_zeros = 4096;  // before the header
-constexpr double largest_number = 1e15;   // as in tables (formats/cells.h)
+constexpr std::size_t most_zeros = 4096;  // zero bytes before the header
+constexpr double largest_number = 1e15;   // the limit of tables (formats/cells.h)
 constexpr std::uint16_t saturated = 65'535;
 
 std::size_t begin_of_block(std::size_t number) { return (number - 1) * c3d_block; }
 
-/// The header's numbers, read as those of the parameters' processor.
+/// The numbers of the header block, in the number format of the parameters' processor.
 struct HeaderBlock {
   std::size_t points = 0, analog_values = 0;
   std::size_t first_frame = 0, last_frame = 0;
@@ -48,7 +48,7 @@ struct HeaderBlock {
   }
 };
 
-/// Frames as the file states them; empty where it only says that there are 65,535 or more.
+/// Number of frames that the file states. Empty if it states only that there are 65,535 or more.
 std::optional<std::uint64_t> stated_frames(const HeaderBlock& header,
                                            const C3dParameters& parameters) {
   const auto field = [&](const char* name) -> std::optional<double> {
@@ -69,7 +69,7 @@ std::optional<std::uint64_t> stated_frames(const HeaderBlock& header,
   return header.frames();
 }
 
-/// The shortest decimal that is this f32, as a person typed it: 59.94, and not 59.93999863.
+/// The shortest decimal that rounds to this f32, as a person typed it: 59.94, not 59.93999863.
 double as_typed(double f32) {
   std::array<char, 32> room{};
   const char* end =
@@ -79,6 +79,7 @@ double as_typed(double f32) {
   return typed;
 }
 
+/// Metres per unit of POINT:UNITS; 0 if the unit is unknown.
 double metres_of(std::string_view unit) {
   if (unit == "mm" || unit.empty()) return 0.001;
   if (unit == "cm") return 0.01;
@@ -86,7 +87,7 @@ double metres_of(std::string_view unit) {
   return unit == "m" ? 1.0 : 0.0;
 }
 
-/// The axis that Y_SCREEN names is up.
+/// Our axes if the axis that Y_SCREEN names is up; empty for another text.
 std::optional<Axes> axes_with_up(std::string_view axis) {
   if (axis.empty() || axis == "+Z" || axis == "Z") return z_up;
   if (axis == "+Y" || axis == "Y") return y_up;
@@ -133,7 +134,7 @@ class C3dReader final : public PointReader {
 
   const std::uint8_t* bytes() const { return octets(held_).data(); }
 
-  /// Waits for all bytes up to the data.
+  /// Parses header and parameters once all bytes up to the data are present.
   Result<void> read_head() {
     if (held_.size() < c3d_block) return {};
     const std::size_t parameter_block = bytes()[0];
@@ -157,6 +158,7 @@ class C3dReader final : public PointReader {
     return {};
   }
 
+  /// Takes the parts of the head one after the other.
   Result<void> take_head(const HeaderBlock& read, const C3dParameters& parameters) {
     processor_ = parameters.processor();
     KA_TRY(take_sizes(read, parameters));
@@ -170,7 +172,8 @@ class C3dReader final : public PointReader {
     return {};
   }
 
-  /// The length of a frame. Whatever disagrees here would shift every number behind it.
+  /// Finds the length of a frame. Every disagreement between header and parameters here would shift
+  /// all following numbers, so it fails.
   Result<void> take_sizes(const HeaderBlock& read, const C3dParameters& parameters) {
     points_ = read.points;
     const double used = parameters.number("POINT", "USED").value_or(static_cast<double>(points_));
@@ -206,6 +209,7 @@ class C3dReader final : public PointReader {
     return {};
   }
 
+  /// Finds unit and axes. An unknown unit fails; an unknown axis is a finding, and z is then up.
   Result<void> take_units(const C3dParameters& parameters) {
     const auto one = [&](const char* name) {
       const auto texts = parameters.texts("POINT", name);
@@ -227,6 +231,7 @@ class C3dReader final : public PointReader {
     return {};
   }
 
+  /// Finds the rate. The parameter wins over the header; a difference above 0.1 % is a finding.
   Result<void> take_rate(const HeaderBlock& read, const C3dParameters& parameters) {
     const double rate = as_typed(parameters.number("POINT", "RATE").value_or(read.rate_hz));
     const double used = options_.rate_hz > 0.0 ? options_.rate_hz : rate;
@@ -246,6 +251,7 @@ class C3dReader final : public PointReader {
     return {};
   }
 
+  /// Finds the number of frames. The parameters win over the header; a difference is a finding.
   void take_frames(const HeaderBlock& read, const C3dParameters& parameters) {
     stated_ = stated_frames(read, parameters);
     if (!stated_ || *stated_ == read.frames() || read.last_frame == saturated) return;
@@ -255,6 +261,7 @@ class C3dReader final : public PointReader {
                         "the parameters were believed", ""});
   }
 
+  /// Takes the points' names. Absent names become numbers, repeated names get #2, #3, ...
   void take_names(const C3dParameters& parameters) {
     std::vector<std::string> names = parameters.all_texts("POINT", "LABELS");
     if (names.size() < points_) {
@@ -282,6 +289,7 @@ class C3dReader final : public PointReader {
     header_ = PointHeader{std::move(names)};
   }
 
+  /// Adds a note that names the analog channels, which are not read.
   void note_analog(const HeaderBlock& read, const C3dParameters& parameters) {
     if (read.analog_values == 0) return;
     const std::size_t channels = read.analog_values / std::max<std::size_t>(read.analog_samples, 1);
@@ -301,6 +309,8 @@ class C3dReader final : public PointReader {
          "the analog channels were not read", ""});
   }
 
+  /// Parses all complete frames of the bytes kept. Bytes after the last stated frame are only
+  /// counted.
   Result<void> read_frames(PointFrames& out) {
     std::size_t at = 0;
     while (held_.size() - at >= frame_bytes_ && (!stated_ || stamps_.rows() < *stated_)) {
@@ -315,8 +325,9 @@ class C3dReader final : public PointReader {
     return {};
   }
 
-  /// Zeros fill the last block. In a file that does not state its frames, frames of zeros therefore
-  /// wait until they are a block or another frame follows.
+  /// Appends one frame. Zeros fill up the last block of a file. If the file does not state its
+  /// number of frames, frames of zeros are kept until they are as long as a block or another frame
+  /// follows.
   Result<void> read_frame(const std::uint8_t* at, PointFrames& out) {
     if (!stated_ && (zero_frames_ + 1) * frame_bytes_ < c3d_block &&
         std::all_of(at, at + frame_bytes_, [](std::uint8_t b) { return b == 0; })) {
@@ -328,6 +339,7 @@ class C3dReader final : public PointReader {
     return append_frame(at, out);
   }
 
+  /// Converts one frame. The fourth number of a point is negative if the point is invalid.
   Result<void> append_frame(const std::uint8_t* at, PointFrames& out) {
     const Time stamp = KA_TRY(stamp_of_next());
     for (std::size_t j = 0; j < points_; ++j) {
@@ -384,16 +396,16 @@ class C3dReader final : public PointReader {
   std::string file_;
   StreamOptions options_;
   RowStamps stamps_;
-  std::string held_;         // bytes of the head, later of the frame that is not whole
-  std::uint64_t zeros_ = 0;  // before the header
+  std::string held_;         // bytes of the head, later of the incomplete frame
+  std::uint64_t zeros_ = 0;  // zero bytes before the header
   C3dProcessor processor_ = C3dProcessor::intel;
   std::size_t points_ = 0, frame_bytes_ = 0;
-  double scale_ = 0.0;  // negative: floats
+  double scale_ = 0.0;  // factor of integers; negative: the values are floats
   PointUnits units_;
-  std::optional<std::uint64_t> stated_;  // frames
+  std::optional<std::uint64_t> stated_;  // number of frames, if the file states it
   std::uint64_t zero_frames_ = 0, behind_ = 0, no_numbers_ = 0;
-  std::vector<Tracking> states_;  // [J] of a frame
-  std::vector<double> numbers_;   // [J,3] of a frame
+  std::vector<Tracking> states_;  // [J] of the current frame
+  std::vector<double> numbers_;   // [J,3] of the current frame
   std::optional<PointHeader> header_;
 };
 

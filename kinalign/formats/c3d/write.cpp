@@ -17,15 +17,15 @@ namespace {
 
 constexpr std::size_t longest_name = 120;  // 255 of them fit into one parameter
 constexpr std::size_t names_a_parameter = 255;
-constexpr std::size_t most_blocks = 255;  // of parameters
+constexpr std::size_t most_blocks = 255;  // for the parameters
 constexpr double millimetres = 1000.0;
-constexpr std::size_t most_held = std::size_t{1} << 20;
+constexpr std::size_t most_held = std::size_t{1} << 20;  // bytes kept before they go to the sink
 
 void put_float(double value, std::string& out) {
   append_little(std::bit_cast<std::uint32_t>(static_cast<float>(value)), out);
 }
 
-/// The parameters' section, entry after entry.
+/// Builds the parameter section, entry after entry.
 class Section {
  public:
   void group(int id, std::string_view name) {
@@ -50,7 +50,7 @@ class Section {
     end(head(-1, {text.size()}) + std::string(text));
   }
 
-  /// All as long as the longest, filled with blanks.
+  /// Writes texts padded with blanks to the length of the longest.
   void texts(int group, std::string_view name, std::span<const std::string> texts) {
     std::size_t longest = 1;
     for (const std::string& text : texts) longest = std::max(longest, text.size());
@@ -60,7 +60,7 @@ class Section {
     end(head(-1, {longest, texts.size()}) + data);
   }
 
-  /// The whole section, zeros to the end of its last block.
+  /// The whole section, padded with zeros to the end of its last block.
   std::string finished() const {
     std::string out = entries_;
     out += std::string(2, '\0');  // an entry without a name ends the section
@@ -76,7 +76,7 @@ class Section {
     return out;
   }
 
-  /// Of `type` bytes a number; a single one has no dimension.
+  /// Writes numbers of `type` bytes each. A single number has no dimension.
   void numbers(int group, std::string_view name, int type, const std::string& data) {
     const std::size_t count = data.size() / static_cast<std::size_t>(type);
     begin(group, name);
@@ -89,7 +89,7 @@ class Section {
     entries_ += name;
   }
 
-  /// `body` and an empty description.
+  /// Writes the entry's `body` and an empty description.
   void end(const std::string& body) {
     append_little(static_cast<std::uint16_t>(2 + body.size() + 1), entries_);
     entries_ += body + '\0';
@@ -104,6 +104,7 @@ std::uint16_t at_most_u16(std::uint64_t value) {
   return static_cast<std::uint16_t>(std::min<std::uint64_t>(value, 0xffff));
 }
 
+/// The parameter section; the points' names are spread over LABELS, LABELS2, ...
 std::string parameters_of(const C3dPoints& points, std::uint16_t data_block) {
   constexpr int point = 1, analog = 2, trial = 3, force_platform = 4;
   Section out;
@@ -133,6 +134,7 @@ std::string parameters_of(const C3dPoints& points, std::uint16_t data_block) {
   return out.finished();
 }
 
+/// The header block; its fields are those of HeaderBlock in reader.cpp.
 std::string header_of(const C3dPoints& points, std::uint16_t data_block) {
   std::string out = "\x02\x50";
   append_little(at_most_u16(points.names.size()), out);
@@ -148,7 +150,8 @@ std::string header_of(const C3dPoints& points, std::uint16_t data_block) {
   return out;
 }
 
-/// Four numbers: x, y, z with z up, and the residual.
+/// Writes a point as four numbers: x, y, z with z up, and the residual, which is -1 for a missing
+/// point.
 void put_point(const double* ours, Tracking state, std::string& out) {
   const bool missing = state == Tracking::missing;
   for (const double coordinate : {ours[0], -ours[2], ours[1]}) {

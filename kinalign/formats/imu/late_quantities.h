@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quantities of nodes that begin behind the rows by which a file's content was settled.
+// Counts rows with quantities that first appear after the rows by which a file's content was
+// decided.
 #pragma once
 
 #include "kinalign/motion/streams.h"
@@ -15,7 +16,8 @@ inline bool is_any(const ImuContent& content) {
 
 class LateQuantities {
  public:
-  /// `here` has values in a row; `read` is the content that was settled.
+  /// Call for each row. `here`: the quantities with values in this row; `read`: those that are
+  /// read.
   void add(const ImuContent& here, const ImuContent& read) {
     const bool turn = here.orientation && !read.orientation,
                force = here.acceleration && !read.acceleration,
@@ -26,7 +28,7 @@ class LateQuantities {
     what_.angular_velocity |= rate;
   }
 
-  /// How many rows had one.
+  /// Number of rows with at least one such quantity.
   std::uint64_t rows() const { return rows_; }
 
   /// "orientation, angular velocity"

@@ -14,6 +14,7 @@ namespace {
 
 constexpr TimeScale sto_seconds{1'000'000'000, 0};
 
+/// Reads a .sto line by line: head up to endheader, names, then rows.
 class StoReader final : public ImuReader {
  public:
   StoReader(const StreamOptions& options, std::string_view file)
@@ -47,6 +48,7 @@ class StoReader final : public ImuReader {
     return in_head_ ? read_head(trimmed(line)) : read_names(split_cells(line, '\t'));
   }
 
+  /// Reads a line of the head. Only DataType and endheader matter.
   Result<void> read_head(std::string_view line) {
     if (line.starts_with("DataType=")) {
       const std::string_view type = trimmed(line.substr(line.find('=') + 1));
@@ -59,6 +61,7 @@ class StoReader final : public ImuReader {
     return {};
   }
 
+  /// Reads the line of column names, which makes the header complete.
   Result<void> read_names(const std::vector<std::string>& names) {
     if (names.size() < 2 || names[0] != "time") {
       return Failure(
@@ -73,6 +76,7 @@ class StoReader final : public ImuReader {
     return {};
   }
 
+  /// Reads a row: its time and the quaternion of each node.
   Result<void> read_row(std::string_view line, ImuSamples& out) {
     KA_TRY(row_.read(line));
     const auto ns = parse_stamp(row_.texts[0], sto_seconds);
@@ -87,6 +91,7 @@ class StoReader final : public ImuReader {
     return {};
   }
 
+  /// Reads one cell "w,x,y,z". A missing cell or part makes the node's sample invalid.
   Result<void> read_quaternion(std::string_view cell, std::size_t node) {
     valid_[node] = says_missing(cell) ? 0 : 1;
     if (valid_[node] == 0) return {};
@@ -104,8 +109,8 @@ class StoReader final : public ImuReader {
   ImuConverter samples_;
   RowParser row_, parts_;
   bool in_head_ = true, quaternions_ = false;
-  std::vector<double> raw_;          // [S,4]
-  std::vector<std::uint8_t> valid_;  // [S]
+  std::vector<double> raw_;          // [S,4] of the current row
+  std::vector<std::uint8_t> valid_;  // [S] of the current row
   std::optional<ImuHeader> header_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenSim .sto of quaternions, one column a node, read and written. Layout: docs/formats/imu.md.
+// Reads and writes OpenSim .sto files of quaternions, one column a node. Layout:
+// docs/formats/imu.md.
 #pragma once
 
 #include "kinalign/core/text_out.h"
@@ -15,26 +16,27 @@
 
 namespace kinalign {
 
-/// Orientations of the nodes that the columns name ("pelvis_imu"). The world is z up, as
-/// OpenSense's readers of sensor exports write it, unless `up` says y. Seconds of the time column,
-/// moved so that the first row has start_ns where that is given. Other DataTypes than Quaternion
-/// fail.
+/// Reads the orientations of the nodes that the columns name ("pelvis_imu"). The world is z up, as
+/// OpenSense's readers of sensor exports write it, unless `up` says y. Stamps are the seconds of
+/// the time column; if start_ns is given, they are shifted so that the first row gets it. A
+/// DataType other than Quaternion fails.
 std::unique_ptr<ImuReader> make_opensim_sto_reader(const StreamOptions& options,
                                                    std::string_view file);
 
 bool looks_like_opensim_sto(std::string_view head);
 
-/// What stands above the rows.
+/// The head of the file, above the rows.
 struct OpensimStoHead {
-  std::vector<std::string> names;  // [S] "pelvis_imu", as the OpenSim model calls its sensors
-  ImuContent content;              // with orientation
+  /// [S] "pelvis_imu", the names of the sensors in the OpenSim model.
+  std::vector<std::string> names;
+  ImuContent content;  // orientation must be present
   double rate_hz = 0.0;
   Time zero{};  // the stamp of time 0
 };
 
-/// Writes orientations: z up, to nine decimals, seconds to the nanosecond. A sample that is not
-/// valid is four nan. Accelerations and angular velocities are left out. The caller commits `out`,
-/// which must outlive the writer.
+/// Writes orientations, z up, to nine decimals, and times to the nanosecond. An invalid sample is
+/// written as four nan. Accelerations and angular velocities are left out. The caller commits
+/// `out`, which must outlive the writer.
 class OpensimStoWriter {
  public:
   static Result<OpensimStoWriter> begin(const OpensimStoHead& head, TextOut& out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's own count of its packets, in 16 bits or 32.
+// Unwraps a device's own packet counter of 16 or 32 bits.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,12 +12,12 @@
 
 namespace kinalign {
 
-/// Counts on over a counter's wraps.
+/// Continues a counter over its wraps.
 class PacketCount {
  public:
-  /// The packet's place among all. It falls where a packet was overtaken by the next, and leads by
-  /// far where a counter is wild, which the one behind it shows; StampRule knows both. Fails,
-  /// without a place, on what is no counter.
+  /// Number of the packet among all packets. It is smaller than the last one if a packet arrived
+  /// late. It leaps ahead if a counter value is wrong; the next counter then shows the error.
+  /// StampRule handles both cases. Fails, without a place, if `cell` is no counter.
   Result<std::int64_t> next(double cell) {
     constexpr double most = 4294967295.0;
     if (!(cell >= 0.0) || cell > most || cell != std::floor(cell)) {
@@ -32,21 +32,23 @@ class PacketCount {
   }
 
   std::int64_t lost() const { return now_.lost; }
-  /// The longest loss that is only guessed, since the counter fell: a device that began anew?
+  /// The longest loss that is only a guess, because the counter fell. The device may have
+  /// restarted.
   std::int64_t guessed() const { return now_.guessed; }
 
  private:
-  /// Chosen: ten seconds at 100 Hz. A packet is not overtaken by more, and a longer loss is
-  /// believed only when the next counter goes on from it.
+  /// Chosen: ten seconds at 100 Hz. No packet is later than that. A longer loss counts only if the
+  /// next counter continues from it.
   static constexpr std::int64_t near = 1000;
   static constexpr std::int64_t narrow = 65'536, wide = std::int64_t{1} << 32;
 
+  /// `place`: number of the last packet; `highest`: the largest number so far.
   struct State {
     std::int64_t rows = 0, last = 0, place = 0, highest = 0, lost = 0, guessed = 0;
-    std::int64_t wrap = narrow;  // wide where a counter has shown more than 16 bits
+    std::int64_t wrap = narrow;  // `wide` once a counter has needed more than 16 bits
   };
 
-  /// How far `counter` lies behind the last one, on the shorter way around.
+  /// Step from the last counter to `counter`, by the shorter way around the wrap.
   static std::int64_t around(std::int64_t counter, const State& s) {
     const std::int64_t wrap = counter < narrow ? s.wrap : wide;
     const std::int64_t forward = ((counter - s.last) % wrap + wrap) % wrap;
@@ -58,7 +60,8 @@ class PacketCount {
 
   void take(std::int64_t counter) {
     State& s = now_;
-    // The first counter may be the wild one: what falls behind it counts anew.
+    // The first counter may be a wrong value. A counter that falls far behind it begins a new
+    // count.
     const bool anew = s.rows == 1 && counter < s.last && !follows(counter, s);
     const std::int64_t step = s.rows == 0 ? counter : anew ? counter - s.last : around(counter, s);
     if (anew) {
@@ -73,13 +76,13 @@ class PacketCount {
       s.lost += s.rows == 0 ? 0 : s.place - s.highest - 1;
       s.highest = s.place;
     } else if (s.lost > 0 && s.place < s.highest) {
-      --s.lost;  // it was only late
+      --s.lost;  // the packet was late, not lost
     }
     ++s.rows;
   }
 
   State now_, before_;
-  bool leapt_ = false;  // the last one, out of what `before_` was
+  bool leapt_ = false;  // the last packet leapt ahead of `before_`
 };
 
 }  // namespace kinalign

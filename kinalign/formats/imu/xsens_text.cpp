@@ -21,7 +21,8 @@ namespace kinalign {
 
 namespace {
 
-/// A group of columns of RowParser::values; empty: not all of them are in the file.
+/// The columns of one quantity in RowParser::values. Empty: at least one of them is not in the
+/// file.
 struct XsensGroup {
   std::vector<std::size_t> slots;
 
@@ -37,6 +38,7 @@ struct XsensColumns {
   XsensGroup counter, quaternion, matrix, euler, acceleration, free_acceleration, angular_velocity;
 };
 
+/// Finds groups of columns by name and gives each column found a slot in RowParser::values.
 class ColumnFinder {
  public:
   explicit ColumnFinder(const std::vector<std::string>& names)
@@ -69,7 +71,7 @@ double value(const XsensGroup& group, const RowParser& row, std::size_t i) {
   return row.values[group.slots[i]];
 }
 
-/// The delimiter of a line of names: tab, comma, semicolon, bar, colon or blank.
+/// The delimiter of the line of column names: tab, comma, semicolon, bar, colon or blank.
 std::optional<char> xsens_delimiter(std::string_view names) {
   for (const char delimiter : {'\t', ',', ';', '|', ':', ' '}) {
     if (names.find(delimiter) != std::string_view::npos) return delimiter;
@@ -77,6 +79,7 @@ std::optional<char> xsens_delimiter(std::string_view names) {
   return std::nullopt;
 }
 
+/// Finds the columns of each quantity by the names that MT Manager writes.
 XsensColumns find_xsens_columns(const std::vector<std::string>& names) {
   ColumnFinder finder(names);
   XsensColumns columns;
@@ -95,13 +98,13 @@ XsensColumns find_xsens_columns(const std::vector<std::string>& names) {
   return columns;
 }
 
-// Each gives world_from_sensor of a row, world z up, not normalised. The group must be whole in the
-// row.
+// Each of the following functions gives world_from_sensor of a row, world z up, not normalised. All
+// columns of the group must have values in the row.
 Quat xsens_quaternion(const XsensGroup& group, const RowParser& row) {
   return {value(group, row, 0), value(group, row, 1), value(group, row, 2), value(group, row, 3)};
 }
 
-/// Mat[row][column].
+/// From the columns Mat[row][column].
 Quat xsens_from_matrix(const XsensGroup& group, const RowParser& row) {
   Eigen::Matrix3d matrix;
   for (Eigen::Index i = 0; i < 9; ++i) {
@@ -110,7 +113,7 @@ Quat xsens_from_matrix(const XsensGroup& group, const RowParser& row) {
   return Quat(matrix);
 }
 
-/// Roll, pitch and yaw in degrees: R = Rz Ry Rx.
+/// From roll, pitch and yaw in degrees: R = Rz Ry Rx.
 Quat xsens_from_euler(const XsensGroup& group, const RowParser& row) {
   constexpr double degree = std::numbers::pi / 180.0;
   const Eigen::AngleAxisd roll(value(group, row, 0) * degree, Vec3::UnitX());
@@ -119,7 +122,8 @@ Quat xsens_from_euler(const XsensGroup& group, const RowParser& row) {
   return yaw * pitch * roll;
 }
 
-/// "MT_012005D6_009-001_00B421E6.txt" -> "00B421E6"; else the name without its ending.
+/// "MT_012005D6_009-001_00B421E6.txt" -> "00B421E6". Another name is returned without its
+/// extension.
 std::string device_of(std::string_view file) {
   std::string_view name = file_name(file);
   name = name.substr(0, name.rfind('.'));
@@ -183,6 +187,7 @@ class XsensReader final : public ImuReader {
     return named_ ? read_row(line, out) : read_names(line);
   }
 
+  /// Takes the rate from the comment "Update Rate: ...", unless the user states one.
   Result<void> read_comment(std::string_view line) {
     constexpr std::string_view key = "Update Rate:";
     const auto at = line.find(key);
@@ -193,6 +198,7 @@ class XsensReader final : public ImuReader {
     return Failure(Error{"", 0, "Update Rate: 100.0Hz", shown(trimmed(line))});
   }
 
+  /// Reads the line of column names.
   Result<void> read_names(std::string_view line) {
     const auto delimiter = xsens_delimiter(trimmed(line));
     if (!delimiter) return Failure(Error{"", 0, "names of columns", shown(line)});
@@ -208,12 +214,14 @@ class XsensReader final : public ImuReader {
     return {};
   }
 
+  /// Reads a row. The first rows are kept until the file's quantities are decided.
   Result<void> read_row(std::string_view line, ImuSamples& out) {
     KA_TRY(row_.read(line));
     const bool packet = columns_.counter.whole(row_);
     if (!packet) return Failure(Error{"", 0, "a whole PacketCounter", "an empty cell"});
     const ImuContent here = content_of_row();
-    if (!header_ && waiting_.empty() && !is_any(here)) return {};  // nothing was measured yet
+    // No quantity has been measured yet.
+    if (!header_ && waiting_.empty() && !is_any(here)) return {};
     const auto count = KA_TRY(packets_.next(row_.values[columns_.counter.slots[0]]));
     const Time stamp = KA_TRY(stamp_of(count));
     if (!header_) {
@@ -227,7 +235,7 @@ class XsensReader final : public ImuReader {
     return {};
   }
 
-  /// What this row has whole: a named column may be empty.
+  /// The quantities with complete values in this row; a column of the file may be empty here.
   ImuContent content_of_row() const {
     ImuContent here;
     here.orientation = columns_.quaternion.whole(row_) || columns_.matrix.whole(row_) ||
@@ -239,7 +247,7 @@ class XsensReader final : public ImuReader {
     return here;
   }
 
-  /// Of the rows that wait: which quantities they have, in how many rows.
+  /// Counts, over the rows kept, how many rows have each quantity.
   void see(const ImuContent& here) {
     for (std::size_t k = 0; k < turns_.size(); ++k) {
       turns_[k].rows += turns_[k].group->whole(row_) ? 1 : 0;
@@ -249,8 +257,8 @@ class XsensReader final : public ImuReader {
     seen_.angular_velocity |= here.angular_velocity;
   }
 
-  /// The content stands from here on, of what is told in two ways by the one that more rows have;
-  /// the rows that waited for it go out.
+  /// Decides the file's quantities and appends the rows kept. If the file has an orientation or
+  /// acceleration in several forms, the form that most rows have is read.
   void settle(ImuSamples& out) {
     if (waiting_.empty()) return;
     const auto best = std::max_element(
@@ -268,6 +276,7 @@ class XsensReader final : public ImuReader {
     waiting_.clear();
   }
 
+  /// The stamp of packet `count`: by the rate, from packet 0 or, with start_ns, from the first row.
   Result<Time> stamp_of(std::int64_t count) {
     if (!first_count_) first_count_ = count;
     const std::int64_t packets = options_.start_ns ? count - *first_count_ : count;
@@ -278,6 +287,7 @@ class XsensReader final : public ImuReader {
     return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(count) + " packets"});
   }
 
+  /// Converts the current row to a sample. It is invalid if one of the file's quantities is absent.
   void append_sample(Time stamp, ImuSamples& out) {
     const ImuContent& content = header_->content;
     const XsensGroup& force = content.gravity ? columns_.acceleration : columns_.free_acceleration;
@@ -314,10 +324,10 @@ class XsensReader final : public ImuReader {
     for (std::size_t i = 0; i < 3; ++i) to[i] = row_.values[group.slots[i]];
   }
 
-  /// FreeAcc stands in the world's space.
+  /// Turns a FreeAcc vector, which is in world space, into sensor space.
   static void into_sensor(const std::array<double, 4>& orientation, std::array<double, 3>& vector) {
     const Quat q = quat(orientation, 0);
-    if (q.norm() < 1e-6) return;  // makes the sample invalid
+    if (q.norm() < 1e-6) return;  // such a quaternion makes the sample invalid
     const Vec3 world(vector[0], vector[1], vector[2]);
     const Vec3 sensor = q.normalized().conjugate() * world;
     std::copy_n(sensor.data(), 3, vector.begin());
@@ -330,28 +340,29 @@ class XsensReader final : public ImuReader {
   ImuConverter samples_;
   bool named_ = false;
   XsensColumns columns_;
-  const XsensGroup* orientation_ = nullptr;  // of columns_
+  const XsensGroup* orientation_ = nullptr;  // points into columns_
   RowParser row_;
   PacketCount packets_;
   std::optional<std::int64_t> first_count_;
   std::optional<ImuHeader> header_;
 
-  /// A row read before it is known which quantities the file has.
+  /// A row that was read before the file's quantities were decided.
   struct Waiting {
     Time stamp;
     std::vector<double> values;
     std::vector<std::uint8_t> missing;
   };
-  static constexpr std::size_t patience = 32;  // rows
+  static constexpr std::size_t patience = 32;  // rows until the quantities are decided
   std::vector<Waiting> waiting_;
+  /// One form of the orientation.
   struct Told {
     const XsensGroup* group;
-    std::size_t rows = 0;  // of those that wait
+    std::size_t rows = 0;  // number of kept rows that have it
   };
   std::array<Told, 3> turns_{{{&columns_.quaternion}, {&columns_.matrix}, {&columns_.euler}}};
   std::size_t with_gravity_ = 0, free_ = 0;
   ImuContent seen_;
-  LateQuantities late_;  // that none of these had
+  LateQuantities late_;  // quantities that none of the kept rows had
 };
 
 }  // namespace

@@ -14,14 +14,15 @@ namespace kinalign {
 namespace {
 
 constexpr double largest_number = 1e15;
-constexpr std::size_t most_things = 20'000;  // segments, points, sensors and joints of one head
+constexpr std::size_t most_things = 20'000;  // segments, points, sensors and joints in one head
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Numbers between blanks; none where anything else stands.
+/// The numbers of a text, separated by blanks; none if the text holds anything else.
 std::vector<double> numbers_of(std::string_view text) {
   std::vector<double> out;
-  const std::string ended(text);  // the character behind a number must be readable
+  // A copy, because parse_number() reads the character after a number.
+  const std::string ended(text);
   const char* at = ended.data();
   const char* end = at + ended.size();
   for (;;) {
@@ -40,7 +41,7 @@ std::optional<double> number_of(std::optional<std::string_view> text) {
   return value;
 }
 
-/// "Pelvis/jL5S1"
+/// Splits "Pelvis/jL5S1" into a segment and a point.
 std::pair<std::string, std::string> place_of(std::string_view text) {
   text = trimmed(text);
   const auto slash = text.find('/');
@@ -70,7 +71,8 @@ Result<void> MvnxDocument::feed(std::string_view piece) {
   if (piece.empty()) return {};
   if (!begun_) {
     begun_ = true;
-    if (piece.front() == '\x1f') gunzip_.emplace();  // its second byte may come later
+    // The first byte decides; the second one may come in the next piece.
+    if (piece.front() == '\x1f') gunzip_.emplace();
   }
   if (!gunzip_) return xml_.feed(piece, *this);
   auto fed = gunzip_->feed(piece, [this](std::string_view text) { return xml_.feed(text, *this); });
@@ -85,7 +87,7 @@ Result<void> MvnxDocument::finish(Findings& findings) {
                         "the first one was read", "export a file for each subject"});
   }
   Result<void> ended = xml_.finish(*this);
-  // Expat puts off a token that is not whole, so other faults may show only now.
+  // Expat delays an incomplete token, so other faults may show only now.
   if (!ended && !xml_.ends_too_early()) return ended;
   if (ended && gunzip_ && !gunzip_->complete()) {
     ended = Failure(Error{file_, 0, "a whole gzip archive", "the end of the file"});
@@ -110,6 +112,7 @@ Result<void> MvnxDocument::begin(std::string_view name, const XmlAttributes& att
   return in_frame_ ? Result<void>{} : begin_in_head(name, attributes);
 }
 
+/// Adds an element of the head; the number of elements is limited.
 Result<void> MvnxDocument::begin_in_head(std::string_view name, const XmlAttributes& attributes) {
   const std::string label(attributes.find("label").value_or(""));
   if (name == "subject") head_.rate_hz = number_of(attributes.find("frameRate")).value_or(0.0);
@@ -150,6 +153,7 @@ Result<void> MvnxDocument::end(std::string_view name, std::string_view text) {
   return used;
 }
 
+/// Takes the text of an element of the head: a point's position or an end of a joint.
 Result<void> MvnxDocument::end_in_head(std::string_view name, std::string_view text) {
   if (name == "pos_b" && !head_.segments.empty() && !head_.segments.back().points.empty()) {
     const auto numbers = numbers_of(text);

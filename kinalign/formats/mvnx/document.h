@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an MVNX file says, in its own units and axes: head and frames. Layout: docs/formats/mvnx.md.
+// Reads the content of an MVNX file, head and frames, in its own units and axes. Layout:
+// docs/formats/mvnx.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -26,19 +27,20 @@ struct MvnxSegment {
   std::vector<MvnxPoint> points;
 };
 
-/// "Pelvis/jL5S1" and "L5/jL5S1".
+/// A joint connects a point of each of two segments: "Pelvis/jL5S1" and "L5/jL5S1".
 struct MvnxJoint {
   std::string parent, parent_point, child, child_point;
 };
 
 struct MvnxHead {
-  double rate_hz = 0.0;  // 0: not stated
+  double rate_hz = 0.0;  // 0: the file does not state it
   std::vector<MvnxSegment> segments;
   std::vector<std::string> sensors;
   std::vector<MvnxJoint> joints;
 };
 
-/// Arrays are empty where the frame lacks them, or where they hold anything but numbers below 1e15.
+/// One frame. An array is empty if the frame lacks it, or if it holds anything but numbers below
+/// 1e15.
 struct MvnxFrame {
   std::string type;                              // "normal", "identity", "tpose", "tpose-isb"
   std::optional<double> index;                   // from 0
@@ -51,16 +53,16 @@ struct MvnxFrame {
   std::vector<double> sensor_angular_velocity;   // [sensors,3] rad/s, in the sensor's space
 };
 
-/// Fed a file in pieces, packed by gzip or not. Only the first subject is read.
+/// Takes a file in pieces, plain or packed by gzip. Only the first subject is read.
 class MvnxDocument final : private XmlHandler {
  public:
   using UseFrame = std::function<Result<void>(const MvnxHead&, const MvnxFrame&)>;
 
-  /// `use` gets each frame, calibration poses too, in the order of the file.
+  /// `use` is called for each frame, also for calibration poses, in the order of the file.
   MvnxDocument(std::string_view file, UseFrame use);
 
   Result<void> feed(std::string_view piece);
-  /// The file has ended. Where it was cut behind its first frame, that is a finding.
+  /// Call at the end of the file. If the file was cut after its first frame, that is a finding.
   Result<void> finish(Findings& findings);
 
   const std::string& file() const { return file_; }
@@ -80,7 +82,7 @@ class MvnxDocument final : private XmlHandler {
   bool begun_ = false, root_ = false, in_frame_ = false;
   std::size_t subjects_ = 0, things_ = 0;
   std::uint64_t frames_ = 0;
-  std::int64_t line_ = 0;  // where the frame begins
+  std::int64_t line_ = 0;  // line on which the frame begins
   MvnxHead head_;
   MvnxFrame frame_;
 };

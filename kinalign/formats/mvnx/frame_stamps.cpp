@@ -68,7 +68,7 @@ void MvnxStamps::report(const std::string& file, Findings& findings) const {
                         Error{file, 0, "each frame", fmt::format("{} missing indices", missing_)},
                         "they are a gap", ""});
   }
-  // Milliseconds are rounded, to half of one at each end.
+  // Milliseconds are rounded, by up to half a millisecond at each end.
   if (largest_off_s_ > 0.001 + 1.5 / std::max(rate_hz_, 1e-3)) {
     findings.push_back({Severity::warning,
                         Error{file, 0, fmt::format("times of frameRate {:g}", rate_hz_),

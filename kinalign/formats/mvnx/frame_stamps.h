@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stamps of an MVNX file's frames: by their index and the frame rate, from the first frame's time
-// of day. The file's own milliseconds are rounded, so they are only compared.
+// Stamps for the frames of an MVNX file: from the frame's index and rate, starting at the first
+// frame's time of day. The file's own milliseconds are rounded, so they are only compared.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -19,12 +19,13 @@ class MvnxStamps {
  public:
   explicit MvnxStamps(const StreamOptions& options) : options_(options) {}
 
-  /// Empty, and counted, where the frame's index does not rise. Fails where there is no rate, and
-  /// where a stamp lies outside +-4e18 ns.
+  /// The stamp of the next frame. If the frame's index does not rise, it is counted and the result
+  /// is empty. Fails if there is no rate, or if the stamp lies outside +-4e18 ns.
   Result<std::optional<Time>> next(const MvnxHead& head, const MvnxFrame& frame);
   void report(const std::string& file, Findings& findings) const;
 
  private:
+  /// Takes rate, index and start from the first frame.
   Result<void> begin(const MvnxHead& head, const MvnxFrame& frame);
 
   StreamOptions options_;
@@ -33,6 +34,7 @@ class MvnxStamps {
   double first_ms_ = 0.0, last_index_ = -1.0;
   std::int64_t start_ns_ = 0;
   std::uint64_t not_rising_ = 0, missing_ = 0;
+  /// largest difference between the file's milliseconds and the stamps
   double largest_off_s_ = 0.0;
 };
 

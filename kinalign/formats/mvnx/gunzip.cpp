@@ -31,7 +31,7 @@ Result<void> Gunzip::feed(std::string_view piece,
   z_stream& s = state_->stream;
   auto& text = state_->text;
   while (!piece.empty()) {
-    if (state_->complete) {  // another archive follows, as `cat a.gz b.gz` makes it
+    if (state_->complete) {  // another archive follows, as in the output of `cat a.gz b.gz`
       if (inflateReset(&s) != Z_OK) throw std::bad_alloc();
       state_->complete = false;
     }
@@ -44,7 +44,8 @@ Result<void> Gunzip::feed(std::string_view piece,
       s.next_out = reinterpret_cast<Bytef*>(text.data());
       s.avail_out = static_cast<uInt>(text.size());
       status = inflate(&s, Z_NO_FLUSH);
-      // What was unpacked before the damage is handed on first, however the file is cut.
+      // The text before the damage goes to the user first, so the result does not depend on how the
+      // file is cut into pieces.
       const std::size_t made = text.size() - s.avail_out;
       if (made > 0) KA_TRY(use({text.data(), made}));
       if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A gzip file (RFC 1952) unpacked in pieces.
+// Unpacks a gzip file (RFC 1952) in pieces.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -19,12 +19,12 @@ class Gunzip {
   Gunzip(const Gunzip&) = delete;
   Gunzip& operator=(const Gunzip&) = delete;
 
-  /// Calls `use(text)` for pieces of at most 64 KiB. Fails, without a place, where the bytes are
-  /// damaged, and where `use` does.
+  /// Calls `use(text)` for pieces of at most 64 KiB. Fails, without a place, if the bytes are
+  /// damaged or if `use` fails.
   Result<void> feed(std::string_view piece,
                     const std::function<Result<void>(std::string_view)>& use);
 
-  /// The last archive in the file is complete.
+  /// True if the last archive in the file is complete.
   bool complete() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments of an MVNX file as a skeleton and its motion.
+// Reads the segments of an MVNX file as a skeleton and its motion.
 #include "kinalign/formats/axes.h"
 #include "kinalign/formats/mvnx/document.h"
 #include "kinalign/formats/mvnx/frame_stamps.h"
@@ -17,14 +17,14 @@ namespace kinalign {
 
 namespace {
 
-/// Global places and turns of all segments in our axes; a segment's own axes are turned with the
-/// space, so that a segment at rest has no rotation.
+/// Global positions, m, and rotations of all segments in our axes. A segment's own axes are turned
+/// like the space, so that a segment at rest has no rotation.
 struct GlobalPose {
   std::vector<Vec3> places;
   std::vector<Quat> turns;
 };
 
-/// What a frame is turned and scaled by.
+/// Turn and scale from the file's axes and unit to ours.
 struct MvnxUnits {
   PointUnits units;
   Quat turn;
@@ -35,7 +35,8 @@ struct MvnxUnits {
   Vec3 ours(const Vec3& file) const { return turned(units.axes, file.data()) * units.metres; }
 };
 
-/// Empty where the frame lacks a segment, or a quaternion's length is off by more than a hundredth.
+/// The pose of a frame. Empty if the frame lacks a segment, or if a quaternion's length is not
+/// within 0.99 to 1.01.
 std::optional<GlobalPose> pose_of(const MvnxFrame& frame, std::size_t segments,
                                   const MvnxUnits& units) {
   if (frame.orientation.size() != 4 * segments || frame.position.size() != 3 * segments) return {};
@@ -49,7 +50,7 @@ std::optional<GlobalPose> pose_of(const MvnxFrame& frame, std::size_t segments,
   return out;
 }
 
-/// The parent of each segment, by the joints; -1: a root.
+/// The parent of each segment according to the joints; -1: a root.
 std::vector<int> parents_of(const MvnxHead& head) {
   const auto index = [&](const std::string& label) {
     const auto found = std::find_if(head.segments.begin(), head.segments.end(),
@@ -70,7 +71,8 @@ const MvnxPoint* point_named(const MvnxSegment& segment, const std::string& labe
   return found == segment.points.end() ? nullptr : &*found;
 }
 
-/// From the parent's origin to the segment's, by the points that their joint connects.
+/// Offset from the parent's origin to the child's, in the file's axes, by the points that their
+/// joint connects. Empty if the file lacks the joint or one of the points.
 std::optional<Vec3> offset_by_points(const MvnxHead& head, std::size_t child, std::size_t parent) {
   for (const MvnxJoint& joint : head.joints) {
     if (joint.child != head.segments[child].label || joint.parent != head.segments[parent].label) {
@@ -91,7 +93,8 @@ class MvnxReader final : public ClipReader {
         document_(file, [this](const MvnxHead& head, const MvnxFrame& frame) {
           return use(head, frame);
         }) {}
-  MvnxReader(const MvnxReader&) = delete;  // document_ knows where it lies
+  // A callback in document_ holds the address of this object.
+  MvnxReader(const MvnxReader&) = delete;
   MvnxReader& operator=(const MvnxReader&) = delete;
   ~MvnxReader() override = default;
 
@@ -122,6 +125,7 @@ class MvnxReader final : public ClipReader {
   const Skeleton* header() const override { return header_ ? &*header_ : nullptr; }
 
  private:
+  /// Called for each frame: keeps calibration poses, appends normal frames.
   Result<void> use(const MvnxHead& head, const MvnxFrame& frame) {
     const auto pose = pose_of(frame, head.segments.size(), units_);
     if (frame.type != "normal") {
@@ -139,12 +143,13 @@ class MvnxReader final : public ClipReader {
     return {};
   }
 
-  /// The identity pose is the best rest pose, a T-pose the second best.
+  /// Keeps a calibration pose as rest pose. The identity pose wins over a T-pose.
   void keep_rest(const std::string& type, const std::optional<GlobalPose>& pose) {
     if (!pose || (rest_ && type != "identity")) return;
     rest_ = pose;
   }
 
+  /// Makes the skeleton at the first normal frame.
   Result<void> begin(const MvnxHead& head, const GlobalPose& first) {
     if (head.segments.empty()) return Failure(Error{"", 0, "segments above the frames", "none"});
     Skeleton skeleton;
@@ -167,7 +172,8 @@ class MvnxReader final : public ClipReader {
     return rest.turns[p].conjugate() * (rest.places[k] - rest.places[p]);
   }
 
-  /// A leaf ends at its first point that is no joint: MVN lists the tips first.
+  /// Gives each segment without children an end site: its first point whose label begins with p,
+  /// which is no joint. MVN lists the tips first.
   void add_end_sites(const MvnxHead& head, Skeleton& skeleton) const {
     for (std::size_t k = 0; k < head.segments.size(); ++k) {
       const auto& parents = skeleton.parents;
@@ -180,6 +186,7 @@ class MvnxReader final : public ClipReader {
     }
   }
 
+  /// Appends a global pose as local positions and rotations.
   void append(const GlobalPose& pose, Time stamp) {
     const std::size_t segments = pose.places.size();
     const std::size_t first = out_->size() * segments;
@@ -203,7 +210,7 @@ class MvnxReader final : public ClipReader {
   MvnxUnits units_;
   MvnxStamps stamps_;
   MvnxDocument document_;
-  ClipFrames* out_ = nullptr;  // of the call in progress
+  ClipFrames* out_ = nullptr;  // target of the call in progress
   std::optional<GlobalPose> rest_;
   std::uint64_t incomplete_ = 0;
   std::optional<Skeleton> header_;
@@ -225,7 +232,7 @@ bool looks_like_mvnx(std::string_view head) {
   }
   std::string text;
   Gunzip gunzip;
-  // An error, or enough text, ends it.
+  // The unpacking stops at an error or once the text is long enough.
   const auto unpacked =
       gunzip.feed(head.substr(0, searched), [&](std::string_view more) -> Result<void> {
         text += more.substr(0, searched);

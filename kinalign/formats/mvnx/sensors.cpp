@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sensors of an MVNX file as inertial nodes.
+// Reads the sensors of an MVNX file as inertial nodes.
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/formats/mvnx/document.h"
 #include "kinalign/formats/mvnx/frame_stamps.h"
@@ -21,7 +21,8 @@ class MvnxSensorReader final : public ImuReader {
         document_(file, [this](const MvnxHead& head, const MvnxFrame& frame) {
           return use(head, frame);
         }) {}
-  MvnxSensorReader(const MvnxSensorReader&) = delete;  // document_ knows where it lies
+  // A callback in document_ holds the address of this object.
+  MvnxSensorReader(const MvnxSensorReader&) = delete;
   MvnxSensorReader& operator=(const MvnxSensorReader&) = delete;
   ~MvnxSensorReader() override = default;
 
@@ -61,6 +62,7 @@ class MvnxSensorReader final : public ImuReader {
     return {};
   }
 
+  /// Decides, at the first normal frame, which quantities are read.
   Result<void> begin(const MvnxHead& head, const MvnxFrame& frame) {
     const std::size_t sensors = head.sensors.size();
     const bool turn = sensors > 0 && frame.sensor_orientation.size() == 4 * sensors;
@@ -75,6 +77,7 @@ class MvnxSensorReader final : public ImuReader {
     return {};
   }
 
+  /// Appends a frame's sample of each sensor. All are invalid if an array is incomplete.
   void append(const MvnxFrame& frame) {
     const std::size_t sensors = header_->node_names.size();
     const ImuContent& content = header_->content;
@@ -107,7 +110,7 @@ class MvnxSensorReader final : public ImuReader {
   MvnxStamps stamps_;
   ImuConverter samples_;
   MvnxDocument document_;
-  ImuSamples* out_ = nullptr;  // of the call in progress
+  ImuSamples* out_ = nullptr;  // target of the call in progress
   bool free_ = false;          // accelerations are global and without gravity
   std::uint64_t incomplete_ = 0;
   std::optional<ImuHeader> header_;

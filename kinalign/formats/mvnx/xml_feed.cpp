@@ -28,12 +28,13 @@ std::optional<std::string_view> XmlAttributes::find(std::string_view name) const
   return std::nullopt;
 }
 
+/// Expat's callbacks, and the error of the handler, which Expat can't pass on.
 struct XmlFeed::State {
   std::string file;
   XML_Parser parser = nullptr;
   XmlHandler* handler = nullptr;
   std::string text;
-  std::string start;  // of the document, until Expat has it
+  std::string start;  // first bytes of the document, until Expat has got them
   bool started = false;
   int depth = 0;
   std::uint64_t fed = 0, last_event = 0;  // bytes
@@ -129,14 +130,15 @@ Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handl
     return Failure(
         Error{s.file, s.line(), "well-formed XML", XML_ErrorString(XML_GetErrorCode(s.parser))});
   }
-  // Expat holds a tag or a comment until it is whole.
+  // Expat keeps a tag or a comment until it is complete, so its length must be limited here.
   if (!last && s.fed - std::min(s.last_event, s.fed) > longest) {
     return Failure(Error{s.file, s.line(), "tags and comments of 1 MiB at most", "a longer one"});
   }
   return {};
 }
 
-/// Expat guesses the encoding by the bytes that it gets first, by one alone otherwise than by four.
+/// Expat guesses the encoding from its first piece. It must get four bytes at once; otherwise it
+/// would guess from a single one.
 Result<void> XmlFeed::feed(std::string_view piece, XmlHandler& handler) {
   constexpr std::size_t enough = 4;
   State& s = *state_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An XML document fed in pieces, element by element. Expat parses; no other file includes it.
+// Parses an XML document in pieces, element by element, with Expat. No other file includes Expat.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -13,7 +13,7 @@ namespace kinalign {
 
 class XmlAttributes {
  public:
-  /// name, value, name, value, ..., nullptr
+  /// `pairs`: name, value, name, value, ..., nullptr
   explicit XmlAttributes(const char* const* pairs) : pairs_(pairs) {}
   std::optional<std::string_view> find(std::string_view name) const;
 
@@ -21,17 +21,18 @@ class XmlAttributes {
   const char* const* pairs_;
 };
 
-/// Names come without a prefix: `frame` of `<mvn:frame>`. An error without a place gets the line.
+/// Receives the elements. Names come without a prefix: `frame` for `<mvn:frame>`. An error without
+/// a place gets the line.
 class XmlHandler {
  public:
   virtual ~XmlHandler() = default;
   virtual Result<void> begin(std::string_view name, const XmlAttributes& attributes) = 0;
-  /// `text`: the characters since the last tag.
+  /// `text`: the characters since the previous tag.
   virtual Result<void> end(std::string_view name, std::string_view text) = 0;
 };
 
-/// Hostile documents fail: entities of their own, elements nested above 64, tags or texts above
-/// 1 MiB.
+/// Hostile documents fail: those that define entities, nest elements deeper than 64, or have tags
+/// or texts above 1 MiB.
 class XmlFeed {
  public:
   explicit XmlFeed(std::string file);
@@ -40,9 +41,9 @@ class XmlFeed {
   XmlFeed& operator=(const XmlFeed&) = delete;
 
   Result<void> feed(std::string_view piece, XmlHandler& handler);
-  /// The document has ended. Fails where its elements are not closed.
+  /// Call at the end of the document. Fails if an element is still open.
   Result<void> finish(XmlHandler& handler);
-  /// The failure is that the document ends too early; what stands there is well-formed.
+  /// True if the only fault is that the document ends too early; the part before is well-formed.
   bool ends_too_early() const;
   std::int64_t line() const;
 

@@ -24,7 +24,7 @@ Failure refuse(std::string expected, std::string found) {
 
 }  // namespace
 
-/// The values of a frame and what they are called.
+/// The columns of the file: their names, and their values in each frame.
 class MotWriter::Columns {
  public:
   explicit Columns(const MotHead& head)
@@ -43,7 +43,7 @@ class MotWriter::Columns {
 
   const std::vector<std::string>& names() const { return names_; }
 
-  /// [T, names]
+  /// The values of the frames, [T, names], to be multiplied by scale().
   const std::vector<double>& values(const ClipFrames& frames) {
     values_.clear();
     if (angles_) {
@@ -57,9 +57,10 @@ class MotWriter::Columns {
   double scale(std::size_t column) const { return scales_[column]; }
 
  private:
+  /// Names the columns by the channels that a BVH of the skeleton would have.
   void name_channels() {
     constexpr std::array<const char*, 6> ends{"_tx", "_ty", "_tz", "_rx", "_ry", "_rz"};
-    constexpr double metres = 0.01;  // channels are in centimetres and degrees
+    constexpr double metres = 0.01;  // the channels are in centimetres and degrees
     const BvhHierarchy hierarchy = channels_.hierarchy(0, 1.0);
     for (std::size_t j = 0; j < hierarchy.names.size(); ++j) {
       for (const Channel channel : hierarchy.channels[j]) {

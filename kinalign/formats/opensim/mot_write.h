@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenSim .mot of a skeleton's motion. Layout, and what is lost: docs/formats/opensim.md.
+// Writes a skeleton's motion as OpenSim .mot. Layout and losses: docs/formats/opensim.md.
 #pragma once
 
 #include "kinalign/core/text_out.h"
@@ -11,8 +11,8 @@
 namespace kinalign {
 
 enum class MotColumns {
-  joint_angles,  // of each joint Hips_rz, Hips_rx, Hips_ry in degrees; of roots Hips_tx, ... in m
-  global_positions  // of each joint Hips_X, Hips_Y, Hips_Z in m
+  joint_angles,  // each joint: Hips_rz, Hips_rx, Hips_ry in degrees; roots also Hips_tx, ... in m
+  global_positions  // each joint: Hips_X, Hips_Y, Hips_Z in m
 };
 
 struct MotHead {
@@ -22,14 +22,14 @@ struct MotHead {
   Time zero{};  // the stamp of time 0
 };
 
-/// Writes frame after frame: y up, seconds to the nanosecond, micrometres and millionths of a
-/// degree. The caller commits `out`, which must outlive the writer.
+/// Writes frame after frame: y up, times to the nanosecond, metres and degrees to six decimals. The
+/// caller commits `out`, which must outlive the writer.
 class MotWriter {
  public:
-  /// Fails where a joint's name can't stand in a tab-separated cell or has a blank.
+  /// Fails if a joint's name has a blank or can't stand in a tab-separated cell.
   static Result<MotWriter> begin(const MotHead& head, TextOut& out);
   Result<void> append(const ClipFrames& frames);
-  /// Fails where other than the promised frames were given.
+  /// Fails if the number of frames differs from the promised one.
   Result<void> finish() const;
 
   ~MotWriter();

@@ -14,9 +14,10 @@ namespace {
 constexpr std::size_t most_kept = 1000;
 constexpr std::uint64_t most_counted = 1000;  // bodies of a frame, joints of a body
 
-/// Follows the counts of the file; joints are skipped.
+/// Follows the counts in the file and skips the joints.
 class BodyCount {
  public:
+  /// Reads one line. The counts before it tell what the line holds.
   Result<void> read(std::string_view line) {
     line = trimmed(line);
     if (line.empty()) return {};

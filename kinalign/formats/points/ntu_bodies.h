@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which bodies an NTU RGB+D .skeleton has, for whoever chooses one (ntu_skeleton.h reads it).
+// Lists the bodies of an NTU RGB+D .skeleton, from which the user can choose one (ntu_skeleton.h
+// reads it).
 #pragma once
 
 #include "kinalign/formats/points/ui_prmd_kinect.h"
@@ -12,12 +13,12 @@ namespace kinalign {
 
 struct NtuBody {
   std::string id;
-  std::uint64_t frames = 0;  // in which it is seen
+  std::uint64_t frames = 0;  // number of frames with this body
 };
 
-/// The longest seen first, of equal ones the first seen. Fails where a count can't be understood; a
-/// last frame that is not whole counts too. At most 1000 bodies are kept apart. `name`: the file's,
-/// for messages.
+/// The bodies, the one with the most frames first; equal ones in the order of the file. An
+/// incomplete last frame counts too. At most 1000 bodies are listed. Fails if a count can't be
+/// understood. `name`: the file's, for messages.
 Result<std::vector<NtuBody>> ntu_bodies(const TextPieces& text, const std::string& name);
 
 }  // namespace kinalign

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t joint_count = kinect_joints.size();
 constexpr std::size_t body_cells = 10, joint_cells = 12;
-constexpr std::uint64_t most_bodies = 1000;  // in a frame; the sensor knows six
+constexpr std::uint64_t most_bodies = 1000;  // in a frame; the sensor tracks at most six
 
 std::vector<ColumnUse> joint_columns() {
   std::vector<ColumnUse> uses(joint_cells);  // x y z depthX depthY colorX colorY qw qx qy qz state
@@ -41,6 +41,7 @@ std::string_view first_word(std::string_view line) {
   return line.substr(0, line.find_first_of(" \t"));
 }
 
+/// Reads the file line by line; next_ is the kind of the next line.
 class NtuReader final : public PointReader {
  public:
   NtuReader(const StreamOptions& options, std::string_view file)
@@ -92,6 +93,7 @@ class NtuReader final : public PointReader {
     return {};
   }
 
+  /// A frame begins: `bodies` bodies follow.
   Result<void> begin_frame(std::uint64_t bodies, PointFrames& out) {
     bodies_left_ = bodies;
     frame_ = {};
@@ -101,6 +103,7 @@ class NtuReader final : public PointReader {
     return {};
   }
 
+  /// Reads a body's line. The joints after it are used only if it is the wanted body.
   Result<void> begin_body(std::string_view line) {
     const std::size_t cells = split_cells(line, runs_of_blanks).size();
     if (cells != body_cells) {
@@ -129,6 +132,7 @@ class NtuReader final : public PointReader {
     return {};
   }
 
+  /// Reads a joint's line. After the last joint of the last body, the frame is complete.
   Result<void> read_joint(std::string_view line, PointFrames& out) {
     KA_TRY(row_.read(line));
     const double state = row_.values[3];
@@ -184,6 +188,7 @@ class NtuReader final : public PointReader {
     return list.empty() ? "none" : list;
   }
 
+  /// [J,3] in the file's axes and unit; joints start as missing unless the body is seen.
   struct Frame {
     std::array<double, 3 * joint_count> positions{};
     std::array<Tracking, joint_count> states{};
@@ -213,6 +218,8 @@ std::unique_ptr<PointReader> make_ntu_skeleton_reader(const StreamOptions& optio
   return std::make_unique<NtuReader>(options, file);
 }
 
+/// Checks the first four lines: frames, bodies, a body's cells, and 25 joints. The first frame may
+/// have no body.
 bool looks_like_ntu_skeleton(std::string_view head) {
   std::vector<std::string_view> first;
   while (first.size() < 4 && !head.empty()) {

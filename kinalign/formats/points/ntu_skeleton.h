@@ -11,9 +11,10 @@
 
 namespace kinalign {
 
-/// One body of the file, a row per frame; a frame without it is a row of missing joints. The body
-/// is select["body"] (its id), by default the first that is seen; a finding names the others.
-/// rate_hz (30), start_ns, metres_per_unit and up are used. A wrong count of frames is a finding.
+/// Reads one body of the file, a row per frame. A frame without the body is a row of missing
+/// joints. The body is select["body"] (its id), by default the first one in the file; a finding
+/// names the others. Uses the options rate_hz (default 30), start_ns, metres_per_unit and up. A
+/// wrong count of frames is a finding.
 std::unique_ptr<PointReader> make_ntu_skeleton_reader(const StreamOptions& options,
                                                       std::string_view file);
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr TimeScale trc_seconds{1'000'000'000, 0};
 
+/// Reads a TRC: five lines of head, then rows.
 class TrcReader final : public PointReader {
  public:
   TrcReader(const StreamOptions& options, std::string_view file)
@@ -63,6 +64,7 @@ class TrcReader final : public PointReader {
     return Failure(Error{"", 0, std::move(expected), shown(found)});
   }
 
+  /// Reads line 3, the values of the keys in line 2.
   Result<void> read_facts(const std::vector<std::string>& facts) {
     for (std::size_t i = 0; i < std::min(keys_.size(), facts.size()); ++i) {
       if (keys_[i] == "NumFrames") {
@@ -82,6 +84,7 @@ class TrcReader final : public PointReader {
     return {};
   }
 
+  /// Reads line 4: names of columns and markers.
   Result<void> read_names(std::vector<std::string> cells) {
     std::erase(cells, "");
     KA_TRY(expect(cells.size() > 2 && cells[0] == "Frame#" && cells[1] == "Time",
@@ -98,7 +101,7 @@ class TrcReader final : public PointReader {
     return {};
   }
 
-  /// X1 Y1 Z1 X2 ...: how many there are is how wide a row is.
+  /// Reads line 5, the labels X1 Y1 Z1 X2 ... Their number gives the width of a row.
   Result<void> read_labels(std::vector<std::string> cells, std::string_view line) {
     std::erase(cells, "");
     KA_TRY(expect(cells.size() == 3 * names_.size() && cells[0] == "X1",
@@ -112,9 +115,10 @@ class TrcReader final : public PointReader {
     return {};
   }
 
+  /// Reads a row. Lines after a blank line are counted but not read.
   Result<void> read_row(std::string_view line, PointFrames& out) {
     if (trimmed(line).empty()) {
-      ended_ = stamps_.rows() > 0;  // before the rows it may stand
+      ended_ = stamps_.rows() > 0;  // a blank line before the rows is allowed
       return {};
     }
     if (ended_) {
@@ -174,9 +178,9 @@ class TrcReader final : public PointReader {
   std::vector<std::string> keys_, names_;
   std::string markers_fact_;
   double declared_ = 0.0, data_rate_ = 0.0;
-  std::int64_t first_ns_ = 0, last_ns_ = 0;  // of the column Time
+  std::int64_t first_ns_ = 0, last_ns_ = 0;  // Time of the first and the last row
   RowParser row_;
-  std::vector<Tracking> states_;  // [J] of a row
+  std::vector<Tracking> states_;  // [J] of the current row
   bool ended_ = false;
   std::uint64_t behind_the_end_ = 0;
   std::optional<PointHeader> header_;

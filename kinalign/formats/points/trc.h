@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TRC, tab-separated optical markers, read and written. Layout: docs/formats/points.md.
+// Reads and writes TRC, tab-separated optical markers. Layout: docs/formats/points.md.
 #pragma once
 
 #include "kinalign/core/text_out.h"
@@ -14,29 +14,30 @@
 
 namespace kinalign {
 
-/// Units mm, cm or m as the file says; y up unless `up` says z; seconds of the Time column, moved
-/// so that the first frame has start_ns where that is given. A marker whose cells are empty or
-/// "nan" is missing. A wrong NumFrames is a finding; a blank line behind the rows ends them.
+/// Reads TRC. The file states its unit, mm, cm or m. y is up unless `up` says z. Stamps are the
+/// seconds of the Time column; if start_ns is given, they are shifted so that the first frame gets
+/// it. A marker with empty cells or "nan" is missing. A wrong NumFrames is a finding. A blank line
+/// after the rows ends them.
 std::unique_ptr<PointReader> make_trc_reader(const StreamOptions& options, std::string_view file);
 
 bool looks_like_trc(std::string_view head);
 
-/// What stands above the rows.
+/// The head of the file, above the rows.
 struct TrcHead {
   std::vector<std::string> names;  // [J] without tabs and line ends
   double rate_hz = 0.0;
   std::uint64_t frames = 0;
-  std::string file;  // the name that the file states of itself
+  std::string file;  // the name that the file states for itself
   Time zero{};       // the stamp of Time 0
 };
 
-/// Writes frame after frame: millimetres to 0.00001, y up, seconds to the nanosecond, empty cells
-/// for a missing marker. The caller commits `out`, which must outlive the writer.
+/// Writes frame after frame: millimetres to five decimals, y up, times to the nanosecond, empty
+/// cells for a missing marker. The caller commits `out`, which must outlive the writer.
 class TrcWriter {
  public:
   static Result<TrcWriter> begin(const TrcHead& head, TextOut& out);
   Result<void> append(const PointFrames& frames);
-  /// Fails where other than the promised frames were given.
+  /// Fails if the number of frames differs from the promised one.
   Result<void> finish() const;
 
  private:

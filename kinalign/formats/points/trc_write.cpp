@@ -9,14 +9,15 @@ namespace kinalign {
 
 namespace {
 
-constexpr int decimals = 5;  // of millimetres: 0.005 um
+constexpr int decimals = 5;  // in millimetres, so values are rounded to 0.005 um
 constexpr double millimetres = 1000.0;
 
 Failure refuse(std::string expected, std::string found) {
   return Failure(Error{"", 0, std::move(expected), std::move(found)});
 }
 
-/// Six lines: keys and facts, names, labels, an empty one.
+/// Writes the six lines above the rows: three of keys and their values, names, labels, an empty
+/// line.
 Result<void> put_head(const TrcHead& head, TextOut& out) {
   const std::string file = fits_a_cell(head.file) ? head.file : "points.trc";
   const std::string rate = fmt::format("{}", head.rate_hz);

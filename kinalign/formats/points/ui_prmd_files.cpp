@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> words{
     {{"positions", "angles"}, {"Positions", "Angles"}}};
 
-/// With the last "positions" made "angles"; unchanged where there is none.
+/// `name` with its last "positions" replaced by "angles"; unchanged if it has none.
 std::string angles_for(std::string_view name) {
   std::string out(name);
   for (const auto& [positions, angles] : words) {
@@ -22,7 +22,7 @@ std::string angles_for(std::string_view name) {
   return out;
 }
 
-/// "a/Positions/" becomes "a/Angles/"; other folders stay.
+/// Replaces "a/Positions/" by "a/Angles/"; other folders stay unchanged.
 std::string angles_folder(std::string_view path) {
   const std::string_view whole = folder(path);
   const std::string_view name = file_name(whole.substr(0, whole.empty() ? 0 : whole.size() - 1));

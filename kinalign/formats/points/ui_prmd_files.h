@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of UI-PRMD's files belong together. Layout: docs/formats/kinect.md.
+// Finds the files of UI-PRMD that belong together. Layout: docs/formats/kinect.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -9,14 +9,15 @@
 
 namespace kinalign {
 
-/// "m02_s01_e01_positions.txt", or a file of a folder Positions: the one of a pair that its user
-/// names.
+/// True for "m02_s01_e01_positions.txt" or a file in a folder Positions. The user names this file
+/// of a pair.
 bool named_as_ui_prmd_positions(std::string_view path);
-/// "m02_s01_e01_angles.txt": the other one.
+/// True for "m02_s01_e01_angles.txt" or a file in a folder Angles.
 bool named_as_ui_prmd_angles(std::string_view path);
 
-/// The file of angles of a file of positions: by its name, in the folder Angles beside Positions or
-/// in the same folder, whichever is there. Never the file itself. Fails where none is.
+/// The file of angles for a file of positions. It has the corresponding name, and lies in the
+/// folder Angles next to Positions or in the same folder. Never the file itself. Fails if there is
+/// no such file.
 Result<std::string> ui_prmd_angles_of(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

@@ -41,13 +41,13 @@ Quat rotation(const double* degrees) {
          Eigen::AngleAxisd(degrees[1] * degree, Vec3::UnitY());
 }
 
-/// The rows of the angles' file, one at a time.
+/// Yields the rows of the file of angles, one at a time.
 class AngleRows {
  public:
   AngleRows(std::string_view file, TextPieces pieces)
       : lines_(file), pieces_(std::move(pieces)), row_(numbers_parser()) {}
 
-  /// The next row; false at the end.
+  /// Reads the next row; false at the end.
   Result<bool> next(std::vector<double>& angles) {
     while (rows_.empty() && !ended_) {
       const std::string_view piece = KA_TRY(pieces_());
@@ -75,11 +75,12 @@ class AngleRows {
   NamedLines lines_;
   TextPieces pieces_;
   RowParser row_;
-  std::deque<std::vector<double>> rows_;  // of one piece
+  std::deque<std::vector<double>> rows_;  // rows of the current piece
   bool ended_ = false;
 };
 
-/// The files' z points to the camera, a Kinect's away from it: half a turn about y.
+/// Turns the joints half a turn about y: the files' z points towards the camera, a Kinect's away
+/// from it.
 void turn_forward(std::vector<double>& places) {
   for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
     places[3 * j] = -places[3 * j];
@@ -87,6 +88,7 @@ void turn_forward(std::vector<double>& places) {
   }
 }
 
+/// Combines row i of the offsets with row i of the angles.
 class UiPrmdReader final : public PointReader {
  public:
   UiPrmdReader(const StreamOptions& options, std::string_view offsets_file,
@@ -193,7 +195,8 @@ std::unique_ptr<PointReader> make_ui_prmd_kinect_reader(const StreamOptions& opt
 
 bool looks_like_ui_prmd_kinect(std::string_view head) {
   const auto end = head.find('\n');
-  const std::string line(trimmed(head.substr(0, end)));  // ends in what can't belong to a number
+  // A copy, because parse_number() reads the character after a number.
+  const std::string line(trimmed(head.substr(0, end)));
   RowParser row = numbers_parser();
   return row.read(line) && !row.any_missing;
 }

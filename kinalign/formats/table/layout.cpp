@@ -27,6 +27,7 @@ const Choices<TableField>& field_names() {
 
 bool of_points(TableField field) { return field <= TableField::state; }
 
+/// The choice that the key's text names; `otherwise` without the key. The error lists all choices.
 template <class T>
 Result<T> chosen(const LayoutKeys& keys, std::string_view key, const Choices<T>& choices,
                  T otherwise) {
@@ -40,6 +41,7 @@ Result<T> chosen(const LayoutKeys& keys, std::string_view key, const Choices<T>&
   return Failure(keys.error(key, std::string(key) + " = one of " + expected, shown(text)));
 }
 
+/// Reads the keys about lines and cells.
 Result<void> read_shape(const LayoutKeys& keys, TableLayout& layout) {
   layout.kind = KA_TRY(chosen<TableKind>(
       keys, "kind", {{"points", TableKind::points}, {"imu", TableKind::imu}}, TableKind::points));
@@ -63,6 +65,7 @@ Result<ColumnChoice> column_choice(const LayoutKeys& keys, std::string_view key)
   return choice;
 }
 
+/// Reads the table `time`; without it, rows come at rate_hz.
 Result<void> read_time(const LayoutKeys& top, TableLayout& layout) {
   if (!top.has("time")) return {};
   const LayoutKeys keys = KA_TRY(top.table("time", {"column", "unit", "epoch"}));
@@ -77,6 +80,7 @@ Result<void> read_time(const LayoutKeys& top, TableLayout& layout) {
   return {};
 }
 
+/// The field of that name, if tables of that kind can have it.
 Result<TableField> field_of(const LayoutKeys& keys, std::string_view name, TableKind kind) {
   for (const auto& [known, field] : field_names()) {
     const bool fits = field == TableField::skip || of_points(field) == (kind == TableKind::points);
@@ -124,6 +128,8 @@ Result<void> read_state(const LayoutKeys& top, TableLayout& layout) {
   return {};
 }
 
+/// Reads `up` or the table `axes`. Axes that mirror need mirrored = true, so that nobody mirrors by
+/// mistake.
 Result<void> read_axes(const LayoutKeys& top, TableLayout& layout) {
   layout.axes = KA_TRY(chosen<Axes>(top, "up", {{"y", y_up}, {"z", z_up}}, y_up));
   if (!top.has("axes")) return {};
@@ -146,6 +152,7 @@ Result<void> read_axes(const LayoutKeys& top, TableLayout& layout) {
                                       : "a mirror image without mirrored = true"));
 }
 
+/// Reads the units and the values of a joint that was not seen.
 Result<void> read_units(const LayoutKeys& keys, TableLayout& layout) {
   constexpr double g = 9.80665;
   layout.metres_per_unit = KA_TRY(keys.positive("metres_per_unit", 1.0));
@@ -175,7 +182,7 @@ bool has_field(const TableLayout& layout, TableField field) {
                      [&](const FieldColumn& each) { return each.field == field; });
 }
 
-/// Each quantity with all its components or not at all, and no component twice.
+/// Checks that each quantity has all its components or none, and that no component occurs twice.
 Result<void> check_fields(const LayoutKeys& keys, TableLayout& layout) {
   using enum TableField;
   for (const FieldColumn& one : layout.fields) {
@@ -200,6 +207,7 @@ Result<void> check_fields(const LayoutKeys& keys, TableLayout& layout) {
   return Failure(keys.error("fields", "x, y and z, or a quantity of an IMU", "none"));
 }
 
+/// Checks that columns are given in a form that the file allows, and computes the width of a row.
 Result<void> check_columns(const LayoutKeys& keys, TableLayout& layout) {
   if (layout.by_name && !layout.header) {
     return Failure(

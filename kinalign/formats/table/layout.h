@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A declared layout: what the columns of a table mean, so that a format that is only a matter of
-// columns needs no program. For users: docs/formats/layouts.md.
+// A declared layout: it tells what the columns of a table mean. A format that differs only in its
+// columns then needs no program. For users: docs/formats/layouts.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -19,10 +19,10 @@ namespace kinalign {
 
 enum class TableKind { points, imu };
 
-/// What a column of a joint or node holds.
+/// The meaning of a column of a joint or node.
 enum class TableField { x, y, z, state, qw, qx, qy, qz, ax, ay, az, gx, gy, gz, skip };
 
-/// A column by its name, or by its number from 1 where the name is empty.
+/// A column, given by its name or, if the name is empty, by its number from 1.
 struct ColumnChoice {
   std::string name;
   std::size_t number = 0;
@@ -33,12 +33,14 @@ struct TableTime {
   TimeScale scale;
 };
 
-/// A field and, where the columns have names, its column's with {joint} or {node} in it.
+/// A field and its column's name with the placeholder {joint} or {node}. The pattern is empty if
+/// the columns have no names.
 struct FieldColumn {
   TableField field = TableField::skip;
   std::string pattern;
 };
 
+/// The numbers that stand for each tracking state.
 struct StateValues {
   std::vector<double> missing{0}, inferred{1}, tracked{2};
 };
@@ -47,37 +49,39 @@ struct TableLayout {
   std::string name;
   TableKind kind = TableKind::points;
 
-  char delimiter = ',';        // or runs_of_blanks
-  std::string comment;         // lines that begin so are skipped; empty: there are none
-  std::size_t skip_lines = 0;  // at the front, comments counted
-  bool header = true;          // then a line of column names
-  std::size_t columns = 0;     // cells of a row, where no names say it
+  char delimiter = ',';        // a character, or runs_of_blanks
+  std::string comment;         // lines that begin with this text are skipped; empty: none
+  std::size_t skip_lines = 0;  // lines to skip at the front, comments included
+  bool header = true;          // the next line holds the names of the columns
+  std::size_t columns = 0;     // cells of a row, if the columns have no names
 
   std::optional<TableTime> time;  // absent: rows come at rate_hz
   double rate_hz = 0.0;           // nominal; 0: unknown
 
-  std::vector<std::string> names;   // of joints or nodes; imu: may be empty (one node)
-  std::vector<FieldColumn> fields;  // per joint or node
-  bool by_name = true;              // by patterns; else in order from first_column on
-  std::size_t first_column = 1;     // from 1
+  std::vector<std::string> names;   // joints or nodes; imu: may be empty (one node)
+  std::vector<FieldColumn> fields;  // the same for each joint or node
+  /// Columns are found by patterns; else they follow in order from first_column.
+  bool by_name = true;
+  std::size_t first_column = 1;  // counted from 1
 
-  Axes axes = y_up;              // imu: of the world, not of the sensors
-  double metres_per_unit = 1.0;  // points
+  Axes axes = y_up;              // ours from the file's; imu: of the world, not of the sensors
+  double metres_per_unit = 1.0;  // for points
   StateValues state;
-  std::vector<double> missing_point;  // [3] the file's x, y, z of an unseen joint; empty: none
+  /// [3] x, y, z in the file of a joint that was not seen; empty: none.
+  std::vector<double> missing_point;
 
-  double acceleration_unit = 1.0;      // m/s2
-  double angular_velocity_unit = 1.0;  // rad/s
-  bool gravity = true;                 // stands in the acceleration
+  double acceleration_unit = 1.0;      // m/s2 per unit of the file
+  double angular_velocity_unit = 1.0;  // rad/s per unit of the file
+  bool gravity = true;                 // true: gravity is part of the acceleration
 
-  std::map<std::string, std::string> select;  // rows to take: column -> value
-  std::string body;  // the column that tells several bodies apart; empty: there is one body
+  std::map<std::string, std::string> select;  // rows to read: column -> value
+  std::string body;                           // column with the number of the body; empty: one body
 };
 
-/// `name` appears in messages. Fails at the first key or value that is not understood.
+/// Reads a layout file. `name` appears in messages. Fails at the first unknown key or value.
 Result<TableLayout> parse_layout(std::string_view toml, std::string_view name);
 
-/// The layouts that the program carries (layouts/*.toml).
+/// The layouts that are part of the program (layouts/*.toml).
 std::optional<std::string_view> builtin_layout(std::string_view name);
 std::vector<std::string_view> builtin_layout_names();
 

@@ -24,6 +24,7 @@ std::int64_t line_of(const toml::source_region& region) {
   return static_cast<std::int64_t>(region.begin.line);
 }
 
+/// Text of a value for messages.
 std::string as_text(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   std::ostringstream out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys of a layout file, each with its line for messages. toml++ stays behind this.
+// Reads the keys of a layout file, each with its line for messages. Only its .cpp includes toml++.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,10 +17,10 @@ class LayoutKeys {
  public:
   using Names = std::vector<std::string_view>;
 
-  /// Fails where the text is no TOML and at a key that is not among `known`.
+  /// Fails if the text is no TOML, or at a key that is not in `known`.
   static Result<LayoutKeys> parse(std::string_view toml, std::string_view file, const Names& known);
 
-  /// A table in this one; `known` empty: any keys.
+  /// An inner table. If `known` is empty, it may have any keys.
   Result<LayoutKeys> table(std::string_view key, const Names& known) const;
 
   bool has(std::string_view key) const;
@@ -28,15 +28,15 @@ class LayoutKeys {
   bool is_text(std::string_view key) const;
   std::vector<std::string> keys() const;  // in alphabetical order
 
-  Result<std::string> text(std::string_view key) const;  // a number as its text
+  Result<std::string> text(std::string_view key) const;  // a number is returned as its text
   Result<std::string> text(std::string_view key, std::string_view otherwise) const;
   Result<bool> truth(std::string_view key, bool otherwise) const;
-  Result<std::size_t> count(std::string_view key, std::size_t otherwise) const;  // up to 1e5
-  Result<double> positive(std::string_view key, double otherwise) const;         // 1e-9 to 1e9
-  Result<std::vector<double>> numbers(std::string_view key) const;               // or one number
+  Result<std::size_t> count(std::string_view key, std::size_t otherwise) const;  // up to 100,000
+  Result<double> positive(std::string_view key, double otherwise) const;         // from 1e-9 to 1e9
+  Result<std::vector<double>> numbers(std::string_view key) const;  // an array or a single number
   Result<std::vector<std::string>> texts(std::string_view key) const;
 
-  /// An error at the key's line, or at the table's where the key is absent.
+  /// An error at the key's line; if the key is absent, at the table's line.
   Error error(std::string_view key, std::string expected, std::string found) const;
 
  private:
@@ -45,7 +45,7 @@ class LayoutKeys {
   Failure wrong(std::string_view key, std::string expected) const;
   Result<void> check_known(const Names& known) const;
 
-  std::shared_ptr<const Document> document_;  // shared by a table and the tables in it
+  std::shared_ptr<const Document> document_;  // shared by all tables of the file
   const void* table_;                         // a toml::table of the document
 };
 

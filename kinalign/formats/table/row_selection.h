@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rows of a table are taken, and what is to be said of a choice that was wrong or not made.
+// Decides which rows of a table are read, and reports a selection that fits no row or is missing.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,14 +12,14 @@
 
 namespace kinalign {
 
-/// Rows whose cell says `value` are taken; numbers are compared as numbers.
+/// A condition: the cell of `column` must equal `value`. Numbers are compared as numbers.
 struct RowChoice {
-  std::string column;    // as the file names it, or its number
-  std::size_t text = 0;  // of RowParser::texts
+  std::string column;    // name or number of the column in the file
+  std::size_t text = 0;  // index in RowParser::texts
   std::string value;
 };
 
-/// Texts of one column that were seen: the first few that differ.
+/// The first few different texts of one column, for messages.
 class SeenValues {
  public:
   void see(std::string_view value);
@@ -36,21 +36,22 @@ class SeenValues {
 class RowSelection {
  public:
   RowSelection() = default;
-  /// `body` is the choice of the column that tells bodies apart, whatever its value; none where its
-  /// column is empty.
+  /// `body.column` is the column with the number of the body; empty: there is none. `body.value` is
+  /// not used.
   RowSelection(std::vector<RowChoice> choices, RowChoice body);
 
-  /// Whether all choices hold for a row, of which `texts` are RowParser's.
+  /// True if the row meets all choices. `texts` are those of RowParser.
   bool takes(const std::vector<std::string_view>& texts);
 
-  /// After the last row: a selection that took nothing, bodies that nobody took apart.
+  /// Call after the last row. Reports a selection that fits no row, and rows of several bodies that
+  /// were read as one.
   void report(const std::string& file, Findings& findings) const;
 
  private:
   std::vector<RowChoice> choices_;
   RowChoice body_;
-  std::vector<SeenValues> seen_;  // of the choices' columns, until a row is taken
-  SeenValues bodies_;             // of the rows taken
+  std::vector<SeenValues> seen_;  // values of the choices' columns, until a row is taken
+  SeenValues bodies_;             // bodies in the rows taken
   std::uint64_t rows_ = 0, taken_ = 0;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using enum TableField;
 
-/// A quantity: its fields in the order of its slots, and where its first slot is noted.
+/// A quantity: its fields in the order of its slots, and the member that gets its first slot.
 struct Quantity {
   std::vector<TableField> fields;
   int TableColumns::*first;
@@ -38,6 +38,7 @@ std::string with_member(std::string pattern, const std::string& member) {
   return pattern;
 }
 
+/// Looks up columns by name and hands out slots and texts of the row parser.
 class Finder {
  public:
   Finder(const TableLayout& layout, const std::vector<std::string>& members,
@@ -67,6 +68,7 @@ class Finder {
   }
 
  private:
+  /// First column of a name, and how many columns have that name.
   struct Place {
     explicit Place(std::size_t i) : column(i) {}
     std::size_t column;
@@ -79,12 +81,14 @@ class Finder {
     return names;
   }
 
+  /// The error for an absent column; it proposes the most similar name.
   Failure no_column(const std::string& name) const {
     const std::string near = nearest_name(name, known());
     const std::string hint = near.empty() ? "" : " (nearest: " + shown(near) + ")";
     return Failure(Error{"", 0, "a column " + shown(name), "none of that name" + hint});
   }
 
+  /// A column that the user selects by: its name or, if the file has no such name, its number.
   ColumnChoice choice_of(const std::string& column) const {
     std::size_t number = 0;
     const char* end = column.data() + column.size();
@@ -93,6 +97,8 @@ class Finder {
     return {column, 0};
   }
 
+  /// Index of the chosen column. A name must occur exactly once, because it would be ambiguous
+  /// otherwise.
   Result<std::size_t> column_of(const ColumnChoice& choice) const {
     if (choice.number != 0) {
       if (choice.number <= found_.uses.size()) return choice.number - 1;
@@ -112,7 +118,8 @@ class Finder {
     return Failure(unknown_name(column, "a column of the file to select by", known()));
   }
 
-  /// The columns of a quantity, members outside, fields inside; a missing one is `none`.
+  /// The columns of a quantity: outer loop over members, inner loop over fields. `missing` gets the
+  /// first name that the file lacks.
   Result<std::vector<std::size_t>> columns_of(const Quantity& quantity,
                                               std::string& missing) const {
     std::vector<std::size_t> columns;
@@ -136,6 +143,7 @@ class Finder {
     return columns;
   }
 
+  /// Gives the columns of a quantity consecutive slots. A column may have one meaning only.
   Result<void> place(const Quantity& quantity) {
     std::string missing;
     const auto columns = KA_TRY(columns_of(quantity, missing));

@@ -18,7 +18,7 @@ namespace kinalign {
 
 namespace {
 
-/// Makes points of parsed rows.
+/// Makes points from parsed rows.
 class PointBuilder {
  public:
   using ReaderType = PointReader;
@@ -79,7 +79,7 @@ class PointBuilder {
   MirrorWatch mirror_;
 };
 
-/// Makes samples of parsed rows.
+/// Makes samples from parsed rows.
 class ImuBuilder {
  public:
   using ReaderType = ImuReader;
@@ -112,6 +112,7 @@ class ImuBuilder {
   void report(const std::string& file, Findings& findings) const { rows_.report(file, findings); }
 
  private:
+  /// Pointer to a node's numbers of one quantity; clears `valid` if one of them is missing.
   static const double* quantity(const RowParser& row, int first, std::size_t parts,
                                 std::size_t node, bool& valid) {
     if (first < 0) return nullptr;
@@ -125,6 +126,7 @@ class ImuBuilder {
   ImuConverter rows_;
 };
 
+/// The reader of both kinds of tables; the builder turns rows into points or samples.
 template <class Builder>
 class TableReader final : public Builder::ReaderType {
  public:
@@ -167,8 +169,8 @@ class TableReader final : public Builder::ReaderType {
   const Header* header() const override { return header_ ? &*header_ : nullptr; }
 
  private:
-  /// A name misspelt in a user's layout, or in the file, looks like a quantity that the file does
-  /// not have.
+  /// Reports quantities that the file lacks. A misspelt name, in a user's layout or in the file,
+  /// looks the same.
   void report_absent() {
     if (!own_layout_ && columns_.unread == 0) return;
     for (const std::string& column : columns_.absent) {
@@ -194,6 +196,7 @@ class TableReader final : public Builder::ReaderType {
     return read_row(line, out);
   }
 
+  /// Finds the columns, by the line of names or without it.
   Result<void> read_head(const std::vector<std::string>& names) {
     if (!layout_.time && stamps_.rate_hz() <= 0.0) {
       return Failure(lines_.error("rate_hz for rows without stamps", "none"));
@@ -261,13 +264,13 @@ std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
 
 namespace {
 
-/// `use(reader, good)` of a reader that was fed a file's beginning.
+/// Calls `use(reader, good)` with a reader that was fed the beginning of a file.
 template <class Use>
 bool read_head_of_file(const TableLayout& layout, std::string_view head, Use&& use) {
   StreamOptions options;
   options.rate_hz = layout.rate_hz > 0.0 ? layout.rate_hz : 1.0;
   const std::size_t whole = head.rfind('\n');
-  if (whole != std::string_view::npos) head = head.substr(0, whole + 1);  // its last line is cut
+  if (whole != std::string_view::npos) head = head.substr(0, whole + 1);  // the last line is cut
   const auto reads = [&](auto reader) {
     typename std::decay_t<decltype(*reader)>::Frames frames;
     const bool good = reader->feed(head, frames) && reader->finish(frames);

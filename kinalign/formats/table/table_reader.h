@@ -11,25 +11,25 @@
 
 namespace kinalign {
 
-/// A reader of points; the layout's kind must be points. `file` appears in messages. Of `options`
-/// select, metres_per_unit, up, rate_hz and start_ns are used.
-/// Rows keep the file's stamps, repeated and backward ones too. A row of the wrong shape fails, a
-/// last line without a line end is dropped with a finding; empty and "nan" cells are missing
-/// joints.
+/// A reader of points; the layout's kind must be points. `file` appears in messages. Uses the
+/// options select, metres_per_unit, up, rate_hz and start_ns. Rows keep the file's stamps, also
+/// repeated and falling ones. A row with a wrong number of cells fails. A last line without a line
+/// end that can't be read is dropped, with a finding. Joints with empty or "nan" cells are missing.
 std::unique_ptr<PointReader> make_point_table_reader(const TableLayout& layout,
                                                      const StreamOptions& options,
                                                      std::string_view file);
 
-/// A reader of nodes; the layout's kind must be imu. Where the layout names no nodes, there is one,
-/// called `node` or, where that is empty, as the file without folder and ending.
+/// A reader of nodes; the layout's kind must be imu. If the layout names no nodes, there is one
+/// node with the name `node`. If that is empty, its name is the file's without folder and
+/// extension.
 std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
                                                  const StreamOptions& options,
                                                  std::string_view file, std::string_view node);
 
-/// The beginning of a file (some 4 KiB) looks as the layout says.
+/// True if the beginning of a file (some 4 KiB) can be read with the layout.
 bool matches(const TableLayout& layout, std::string_view head);
 
-/// Its line of names does, whatever the rows below it hold.
+/// True if the line of column names fits the layout, whatever the rows hold.
 bool knows_columns(const TableLayout& layout, std::string_view head);
 
 }  // namespace kinalign

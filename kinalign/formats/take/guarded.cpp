@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From child to parent goes a sequence of messages: one letter ('d' data, 'p' progress, 'e' an
-// error,
-// '.' done), four bytes of length, that many bytes. The parent believes no length above
+// The child sends messages to the parent. Each has one letter ('d' data, 'p' progress, 'e' an
+// error, '.' done), four bytes of length, and that many bytes. The parent accepts no length above
 // `message_most`.
 #include "kinalign/formats/take/guarded.h"
 
@@ -48,6 +47,7 @@ bool send(int pipe, char kind, std::string_view bytes) {
   return write_all(pipe, {head, head_size}) && write_all(pipe, bytes);
 }
 
+/// An error as the bytes of a message: its parts, separated by NUL.
 std::string packed(const Error& error) {
   std::string out =
       std::to_string(error.line) + '\0' + std::to_string(static_cast<int>(error.kind));
@@ -57,7 +57,7 @@ std::string packed(const Error& error) {
   return out;
 }
 
-/// Bytes of address space in use.
+/// Bytes of address space that the process uses.
 [[maybe_unused]] rlim_t mapped_bytes() {
   unsigned long pages = 0;
   std::FILE* file = std::fopen("/proc/self/statm", "re");
@@ -77,14 +77,15 @@ void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
 void set_limits(const GuardLimits& limits) {
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1);
-#ifndef KINALIGN_SANITIZED  // sanitizers reserve terabytes of addresses
+#ifndef KINALIGN_SANITIZED  // sanitizers reserve terabytes of address space
   const rlim_t memory = mapped_bytes() + limits.memory_bytes;
   limit(RLIMIT_AS, memory, memory);
 #endif
   std::set_new_handler([] { ::_exit(no_memory_code); });
 }
 
-/// A crash shall kill, and so shall Ctrl-C, whatever the parent does with these signals.
+/// Resets signals to their default, so that a crash and Ctrl-C end the child, whatever the parent
+/// does with these signals.
 void reset_signals() {
   for (const int number : {SIGINT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
     ::signal(number, SIG_DFL);
@@ -95,7 +96,7 @@ void reset_signals() {
 using Work = std::function<Result<void>(const GuardSend&, const Progress&)>;
 using Receive = std::function<Result<void>(std::string_view)>;
 
-/// How far a job is, as bytes of a message.
+/// Progress of a job; sent as the bytes of a message.
 struct Step {
   std::uint64_t done = 0, total = 0;
 };
@@ -106,6 +107,7 @@ std::string packed(const Step& step, std::string_view what) {
   return out.append(what.substr(0, message_most / 8));
 }
 
+/// Runs the work in the child, sends its result, and ends the process.
 [[noreturn]] void run_child(int pipe, const GuardLimits& limits, const Work& work) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   reset_signals();
@@ -123,12 +125,12 @@ std::string packed(const Step& step, std::string_view what) {
   };
   const Result<void> done = work(send_data, tell);
   const bool told = done ? send(pipe, '.', "") : send(pipe, 'e', packed(done.error()));
-  ::_exit(told ? 0 : 1);  // no destructors or buffers of the parent's
+  ::_exit(told ? 0 : 1);  // skips destructors and buffers that belong to the parent
 }
 
 // ---- the parent
 
-/// Ends the child where it still runs, and takes note of how it ended.
+/// Owns the child: kills it if it still runs, and keeps its exit status.
 class Child {
  public:
   Child(pid_t id, int pipe) : id_(id), pipe_(pipe) {}
@@ -140,8 +142,9 @@ class Child {
   }
 
   int pipe() const { return pipe_; }
-  /// Of one that has closed its end of the pipe, or is not to be listened to any more: how it
-  /// ended. One that ends by itself has done so when its pipe closes, and can't be killed then.
+  /// Ends the child and returns its exit status. Call it once the child has closed its pipe, or if
+  /// its messages are no longer wanted. A child that ended by itself did so before its pipe closed,
+  /// and can't be killed any more.
   int end() {
     ::kill(id_, SIGKILL);
     return wait();
@@ -161,6 +164,8 @@ class Child {
   bool ended_ = false;
 };
 
+/// The error in the bytes that packed() makes. It accepts any bytes, because the child may be
+/// damaged.
 Error unpacked(std::string_view bytes) {
   Error error;
   std::string line, kind;
@@ -181,7 +186,7 @@ Error blamed(const Error& blame, const std::string& found) {
   return {blame.file, blame.line, blame.expected, found};
 }
 
-/// How a child ended that did not say so itself.
+/// Text for the end of a child that sent no error.
 std::string cause(int status, const GuardLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
@@ -198,13 +203,13 @@ std::string cause(int status, const GuardLimits& limits) {
   return "one that ended the program that read it";
 }
 
-/// Takes messages apart as their bytes arrive.
+/// Splits the received bytes into messages.
 class Inbox {
  public:
   Inbox(const Receive& receive, const Progress& progress)
       : receive_(receive), progress_(progress) {}
 
-  /// False: a message that no child of ours sends.
+  /// Takes the next bytes. False at a message that no child of ours sends.
   Result<bool> take(std::string_view bytes) {
     pending_ += bytes;
     std::size_t at = 0;
@@ -233,7 +238,7 @@ class Inbox {
   const std::optional<Error>& error() const { return error_; }
 
  private:
-  /// False: the user wants no more.
+  /// Passes on a progress report. False if the user stops the job.
   bool pass_on(std::string_view body) const {
     Step step;
     if (body.size() < sizeof step) return true;
@@ -248,8 +253,8 @@ class Inbox {
   bool done_ = false, strange_ = false;
 };
 
-/// Reads until the child closes its end or sends what no child of ours sends. False: its time is
-/// up. Fails where a signal came that the program handles, which is Ctrl-C.
+/// Reads until the child closes its pipe or sends an invalid message. False if its time is up.
+/// Fails at a signal that the program handles, which is Ctrl-C.
 Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbox) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -269,6 +274,7 @@ Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbo
   }
 }
 
+/// Starts the child, receives its messages, and turns a bad end into an error.
 Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work,
                  const Receive& receive, const Progress& progress) {
   int ends[2] = {-1, -1};

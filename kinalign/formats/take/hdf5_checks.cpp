@@ -15,7 +15,7 @@ std::string written(const std::vector<std::uint64_t>& sizes) {
   return out + "]";
 }
 
-/// Sizes of a space of at most four dimensions; none where it is another thing.
+/// Lengths of a data space of at most four dimensions; empty for anything else.
 std::optional<std::vector<std::uint64_t>> sizes_of(const Handle& space) {
   const int rank = H5Sget_simple_extent_ndims(space.id());
   if (rank < 0 || rank > 4) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<std::vector<std::uint64_t>> sizes_of(const Handle& space) {
   return std::vector<std::uint64_t>(sizes.begin(), sizes.end());
 }
 
-/// The product; none where it does not fit.
+/// The number of bytes; empty if it overflows.
 std::optional<std::uint64_t> product(std::uint64_t value_bytes,
                                      const std::vector<std::uint64_t>& sizes) {
   std::uint64_t bytes = value_bytes;
@@ -50,7 +50,7 @@ struct Checked::Place {
 };
 
 bool has(hid_t group, const char* name) {
-  // No link that leads elsewhere: such a name counts as absent.
+  // Only hard links count: a link to another file is treated as absent.
   H5L_info_t info{};
   return H5Lexists(group, name, H5P_DEFAULT) > 0 &&
          H5Lget_info(group, name, &info, H5P_DEFAULT) >= 0 && info.type == H5L_TYPE_HARD;
@@ -77,7 +77,7 @@ Failure Checked::other(const char* name, const std::string& expected,
   return Failure(Error{bytes_.path(), 0, std::string(name) + " as " + expected, found});
 }
 
-/// A data set that lies in one piece inside the file.
+/// Type, size and position of a data set. Fails unless it is stored in one piece inside the file.
 Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
   if (!has(group, name)) return other(name, "a data set", "none");
   const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
@@ -213,7 +213,7 @@ Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t f
   if (source.stored == Stored::float64) {
     return read_rows(bytes, source, first, count, static_cast<void*>(to));
   }
-  // By pieces that stay in the cache between being read and being widened.
+  // Works in pieces that stay in the cache between reading and widening.
   constexpr std::uint64_t piece_bytes = std::uint64_t{256} << 10;
   const std::uint64_t row_bytes = source.row_values * sizeof(float);
   const std::uint64_t piece =

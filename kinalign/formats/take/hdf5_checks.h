@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading from an HDF5 file that nobody vouches for: every data set must be of the type and shape
-// that is asked for, lie in one piece, uncompressed, inside the file; only then is memory taken.
-// That also keeps filters, plug-ins and links to other files out of it.
+// Reads an HDF5 file that may be hostile. A data set must have the expected type and shape, and be
+// stored in one piece, uncompressed, inside the file. Memory is allocated only after these checks.
+// They also exclude filters, plug-ins and links to other files.
 #pragma once
 
 #include "kinalign/formats/take/hdf5_file.h"
@@ -14,19 +14,20 @@
 
 namespace kinalign::hdf5 {
 
-/// Values at a known place of the file, row after row.
+/// Values at a known position of the file, row after row.
 struct Source {
   Stored stored = Stored::uint8;
   std::uint64_t at = 0;
   std::uint64_t row_values = 1;
+  /// Values in one row.
 };
 
 bool has(Id group, const char* name);
 
-/// The name of HDF5's type for what we store.
+/// HDF5's type for a type of ours.
 Id type_of(Stored stored);
 
-/// Reads rows into values of their own type; floats into doubles.
+/// Reads rows into values of their own type, or floats into doubles.
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
                        std::uint64_t count, void* to);
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
@@ -45,8 +46,9 @@ class Checked {
   explicit Checked(const Bytes& bytes) : bytes_(bytes) {}
   const Bytes& bytes() const { return bytes_; }
 
-  /// The first size of a data set.
+  /// Length of a data set's first dimension.
   Result<std::uint64_t> rows(Id group, const char* name) const;
+  /// The data set's position, after checking its type and its `sizes`.
   Result<Source> find(Id group, const char* name, Stored stored,
                       const std::vector<std::uint64_t>& sizes) const;
 
@@ -59,12 +61,12 @@ class Checked {
     return values;
   }
 
-  /// A scalar text, and a list of texts.
+  /// A scalar text, or a list of texts.
   Result<std::string> text(Id group, const char* name) const;
   Result<std::vector<std::string>> texts(Id group, const char* name) const;
   Result<std::string> text_attribute(Id object, const char* name) const;
   Result<std::vector<std::string>> text_attributes(Id object, const char* name) const;
-  /// The files that a stream came from.
+  /// The files from which a stream was made.
   Result<std::vector<InputFacts>> inputs(Id group) const;
 
  private:

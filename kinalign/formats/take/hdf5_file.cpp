@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three parts: the check of a file's first bytes, which does not need HDF5 (its File Format
-// Specification, III.A); HDF5's "virtual file driver" over core's files (HDF5 1.10, H5FDpublic.h);
-// and what is created in a file.
+// Three parts: the check of a file's first bytes, without HDF5 (its File Format Specification,
+// III.A); HDF5's "virtual file driver" over core's files (HDF5 1.10, H5FDpublic.h); and functions
+// that create objects in a file.
 #include "kinalign/formats/take/hdf5_file.h"
 
 #include "kinalign/formats/unknown_file.h"
@@ -23,10 +23,10 @@ namespace {
 
 constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
 
-/// The first bytes: they contain a superblock of any version with its addresses.
+/// First bytes of the file; they contain a superblock of any version with its addresses.
 constexpr std::size_t start_bytes = 128;
 
-/// An integer of `size` bytes, the lowest first.
+/// An integer of `size` bytes, little-endian. Empty if it reaches beyond `head`.
 std::optional<std::uint64_t> number_at(std::string_view head, std::size_t at, std::size_t size) {
   if (size == 0 || size > 8 || at + size > head.size()) return std::nullopt;
   std::uint64_t out = 0;
@@ -34,7 +34,7 @@ std::optional<std::uint64_t> number_at(std::string_view head, std::size_t at, st
   return out;
 }
 
-/// The address where the file says that it ends.
+/// Position at which the file's own superblock says that the file ends.
 std::optional<std::uint64_t> stated_end(std::string_view head) {
   const auto version = number_at(head, 8, 1);
   if (!version || *version > 3) return std::nullopt;
@@ -42,7 +42,8 @@ std::optional<std::uint64_t> stated_end(std::string_view head) {
   const std::size_t addresses = *version == 0 ? 24 : *version == 1 ? 28 : 12;
   const auto width = number_at(head, size_of_addresses, 1);
   if (!width) return std::nullopt;
-  return number_at(head, addresses + 2 * *width, *width);  // behind base and another one
+  // After the base address and one other address.
+  return number_at(head, addresses + 2 * *width, *width);
 }
 
 /// Fails if a file of `size` bytes that begins with `head` is no HDF5 ("found 'HIERARCHY'"), or if
@@ -63,10 +64,10 @@ Result<void> check_start(const std::string& path, std::string_view head, std::ui
     return Failure(
         Error{path, 0, "a whole HDF5 file", "one cut short: " + std::to_string(size) + " bytes"});
   }
-  return {};  // what else there may be HDF5 itself has to say
+  return {};  // HDF5 itself reports any other fault
 }
 
-/// HDF5 casts between its own H5FD_t and this: the first member must be that.
+/// The driver's file. HDF5 casts between its own H5FD_t and this struct, so `base` must come first.
 struct Driven {
   H5FD_t base;
   Bytes* bytes;
@@ -125,7 +126,7 @@ herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, cons
   return 0;
 }
 
-/// The file must reach as far as HDF5 has given out addresses.
+/// Extends the file to the last address that HDF5 has assigned.
 herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
   const haddr_t end = reinterpret_cast<Driven*>(file)->end_of_addresses;
   const Bytes& bytes = bytes_of(file);
@@ -134,6 +135,7 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
   return write(file, H5FD_MEM_DEFAULT, H5P_DEFAULT, end - 1, 1, &zero);
 }
 
+/// The driver's table of functions for HDF5.
 H5FD_class_t driver_class() {
   H5FD_class_t c{};
   c.name = "kinalign_files";
@@ -154,7 +156,7 @@ H5FD_class_t driver_class() {
   return c;
 }
 
-/// The property list by which HDF5 opens `bytes`.
+/// The property list with which HDF5 opens `bytes`.
 Handle access_to(Bytes& bytes) {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -166,11 +168,12 @@ Handle access_to(Bytes& bytes) {
   if (H5Pset_driver(access.id(), registered, &info) < 0) return {};
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
   H5Pset_small_data_block_size(access.id(), 0);
-  H5Pset_alignment(access.id(), 32768, 4096);  // large arrays at pages: the system copies faster
+  // Large arrays begin at pages: the system copies them faster.
+  H5Pset_alignment(access.id(), 32768, 4096);
   return access;
 }
 
-/// Of HDF5's stack of messages the one that was said first, in the innermost function.
+/// Keeps the message of the innermost function, which is the first one in HDF5's error stack.
 herr_t keep_innermost(unsigned, const H5E_error2_t* said, void* into) {
   if (said->desc != nullptr) *static_cast<std::string*>(into) = said->desc;
   return 0;

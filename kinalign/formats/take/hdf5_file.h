@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// HDF5's C API as this room uses it: handles that close themselves, failures as errors, and a
-// driver of ours below, so that every byte goes through core's files. A failed write is remembered
-// and told to HDF5 as done: HDF5 1.10 can't close a file that it could not write.
+// Wraps HDF5's C API: handles that close themselves, failures as errors, and a file driver of our
+// own, so that every byte goes through core's files. A failed write is kept and reported to HDF5 as
+// successful, because HDF5 1.10 can't close a file that it could not write.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,11 +17,11 @@
 
 namespace kinalign::hdf5 {
 
-// HDF5's own types, so that <hdf5.h> stays in .cpp files; hdf5_file.cpp holds them to it.
+// Aliases of HDF5's types, so that <hdf5.h> stays in .cpp files; hdf5_file.cpp checks them.
 using Id = std::int64_t;          // hid_t
 using Size = unsigned long long;  // hsize_t
 
-/// Owns one of HDF5's numbered things.
+/// Owns one of HDF5's identifiers.
 class Handle {
  public:
   using Close = int (*)(Id);
@@ -46,41 +46,41 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Where a file's bytes lie: one of the two. Must not move while HDF5 has the file open.
+/// The file below HDF5: `input` or `output` is set. Must not move while HDF5 has the file open.
 struct Bytes {
   InputFile* input = nullptr;
   OutputFile* output = nullptr;
   std::uint64_t size = 0;
-  std::optional<Error> failure;  // the first that HDF5 was not told of
+  std::optional<Error> failure;  // the first failure that HDF5 does not know of
 
   std::string path() const { return input != nullptr ? input->path() : output->path(); }
   Result<void> write(std::uint64_t at, std::string_view bytes);
 };
 
-/// An empty file that old HDF5 and MATLAB read.
+/// Creates an empty file in a version that old HDF5 and MATLAB can read.
 Result<Handle> create(Bytes& bytes);
-/// Opens for reading only. Runs no plug-in that a file might ask for.
+/// Opens a file for reading only. Loads no plug-in that the file might ask for.
 Result<Handle> open(Bytes& bytes);
-/// "expected `expected`, found (what HDF5 says of its last failure)".
+/// The error "expected `expected`, found (HDF5's message about its last failure)".
 Failure failure(const Bytes& bytes, std::string expected);
 
-/// What a data set or an attribute holds.
+/// Type and size of a data set or an attribute.
 struct Shape {
-  Id type = -1;             // HDF5's
-  std::vector<Size> sizes;  // none: a scalar
+  Id type = -1;             // HDF5's type
+  std::vector<Size> sizes;  // empty: a scalar
 };
 
-Handle text_type(std::size_t bytes);  // fixed, UTF-8, padded with NUL
+Handle text_type(std::size_t bytes);  // fixed length, UTF-8, padded with NUL
 Handle space(const std::vector<Size>& sizes);
 Handle create_group(Id parent, const std::string& name);
-/// Contiguous, with its place in the file but no bytes yet.
+/// Creates a contiguous data set: it has a position in the file, but no bytes yet.
 Handle create_dataset(Id parent, const std::string& name, const Shape& shape);
 
 bool put_attribute(Id object, const char* name, const Shape& shape, const void* value);
 bool put_text(Id object, const char* name, std::string_view text);
 bool put_texts(Id object, const char* name, const std::vector<std::string>& texts);
 
-/// Texts of one length, padded, one behind the other; at least one byte each.
+/// Texts padded to one length, at least one byte, one after the other.
 struct PackedTexts {
   std::size_t width = 1;
   std::string bytes;

@@ -14,16 +14,18 @@ namespace kinalign {
 
 namespace {
 
-/// Puts the last valid row's pose in the place of rows that are not valid.
+/// Replaces the pose of invalid rows by that of the last valid row.
 class PoseHolder {
  public:
   explicit PoseHolder(std::size_t joints) : positions_(3 * joints), rotations_(4 * joints) {}
 
-  /// The pose for rows before the first valid one: that one's, found on a pass before.
+  /// Sets the pose for rows before the first valid one. The first pass calls it with each valid
+  /// row; only the first call counts.
   void begin_with(const ClipRows& rows, std::size_t i) {
     if (!std::exchange(known_, true)) keep(rows, i);
   }
 
+  /// Second pass: replaces the invalid rows among the first `count` rows.
   void hold(ClipRows& rows, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       if (is_valid(rows, i)) {
@@ -53,11 +55,11 @@ class PoseHolder {
   bool known_ = false;
 };
 
-/// What the first pass learns.
+/// Counts and steps of the rows, from the first pass.
 struct RowSurvey {
   std::uint64_t rows = 0, invalid = 0;
   Time first{}, last{};
-  Duration shortest = Duration::max(), longest = Duration::min();  // steps
+  Duration shortest = Duration::max(), longest = Duration::min();  // between consecutive rows
 
   void add(const std::vector<Time>& stamps, const ClipRows& clip) {
     for (std::size_t i = 0; i < stamps.size(); ++i) {
@@ -77,7 +79,7 @@ struct RowSurvey {
   }
 };
 
-/// The stream to write: the first skeleton's. `others` are further ones.
+/// The stream to write: that of the first skeleton. `others`: names of the further ones.
 struct Chosen {
   std::size_t group = 0;
   std::string name, others;
@@ -99,6 +101,7 @@ Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
   return Failure(Error{path, 0, "a take with a skeleton's stream", "none"});
 }
 
+/// Findings about everything that the BVH does not hold.
 Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& survey) {
   Findings out;
   if (!chosen.others.empty()) {
@@ -123,7 +126,7 @@ Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& su
   return out;
 }
 
-/// All slabs of a take: `use(stamps, rows of the group)`.
+/// Calls `use(stamps, rows of the group)` for all slabs of a take.
 template <class Use>
 Result<void> for_each_slab(TakeReader& reader, std::size_t group, Use&& use) {
   TakeSlab slab;
@@ -132,13 +135,14 @@ Result<void> for_each_slab(TakeReader& reader, std::size_t group, Use&& use) {
 }
 
 Result<void> check_size(const std::string& path, const ClipRows& rows) {
-  constexpr double largest = 1e12;  // m: in centimetres still a number that a BVH may hold
+  constexpr double largest = 1e12;  // m: a BVH can still hold the number in centimetres
   const auto small = [](double x) { return std::abs(x) < largest; };
   const auto& values = rows.local_positions;
   if (std::all_of(values.begin(), values.end(), small)) return {};
   return Failure(Error{path, 0, "positions below 1e12 m", "larger ones"});
 }
 
+/// Results of the first pass: skeleton's channels, rows that are invalid, steps.
 struct FirstPass {
   FirstPass(Chosen stream, const Skeleton& skeleton)
       : chosen(std::move(stream)),
@@ -150,7 +154,7 @@ struct FirstPass {
   BvhChannels channels;
   PoseHolder holder;
   RowSurvey survey;
-  std::size_t row;  // values of a row's positions
+  std::size_t row;  // numbers in a row's positions
 
   void add(const std::vector<Time>& stamps, const ClipRows& rows) {
     survey.add(stamps, rows);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every data set must lie whole inside the file before any memory is taken for it.
+// Reads a take. Each data set must lie whole inside the file before memory is allocated for it.
 #include "kinalign/documents/parameters_json.h"
 #include "kinalign/formats/take/hdf5_checks.h"
 #include "kinalign/formats/take/hdf5_file.h"
@@ -21,7 +21,7 @@ using hdf5::Bytes;
 using hdf5::Handle;
 using hdf5::Source;
 
-/// A column that has been found as the header says it must be.
+/// A column that was found in the file, with the type and shape that the header requires.
 struct Found {
   std::string name;
   Source source;
@@ -35,7 +35,8 @@ bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) 
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-/// NaN and infinity stay NaN through 0 * x. Several sums at once, so that none waits for the last.
+/// True if all values are finite: 0 * x is NaN for NaN and infinity. Keeps several sums, so that an
+/// addition need not wait for the one before.
 bool finite(std::span<const double> values) {
   constexpr std::size_t lanes = 16;
   std::array<double, lanes> sums{};
@@ -47,6 +48,7 @@ bool finite(std::span<const double> values) {
   return std::accumulate(sums.begin(), sums.end(), 0.0) == 0.0;
 }
 
+/// Reads the end sites of a skeleton and checks that their joints exist.
 Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t group,
                                             std::uint64_t joints) {
   const Handle sites(H5Gopen2(group, "end_sites", H5P_DEFAULT), H5Gclose);
@@ -65,6 +67,7 @@ Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t gro
   return out;
 }
 
+/// Reads a skeleton and checks it.
 Result<Skeleton> read_skeleton(const hdf5::Checked& file, hid_t group) {
   Skeleton out;
   out.joint_names = KA_TRY(file.texts(group, "joint_names"));
@@ -78,6 +81,7 @@ Result<Skeleton> read_skeleton(const hdf5::Checked& file, hid_t group) {
   return out;
 }
 
+/// Reads the names and content of a stream of nodes.
 Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   ImuGroup out;
   out.node_names = KA_TRY(file.texts(group, "node_names"));
@@ -91,12 +95,13 @@ Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   return out;
 }
 
-/// The space that the positions of joints say they are in; the take's where they say none.
+/// The space of the joints' positions; "take" if the file states none.
 std::string space_of(const hdf5::Checked& file, hid_t group) {
   const Handle positions(H5Dopen2(group, "positions", H5P_DEFAULT), H5Dclose);
   return file.text_attribute(positions.id(), "space").value_or("take");
 }
 
+/// Reads the header of one stream, without its rows.
 Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string name) {
   TakeGroup out;
   out.name = std::move(name);
@@ -119,6 +124,7 @@ Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string
 
 }  // namespace
 
+/// The open file, the header, and the position of each column.
 struct TakeReader::State {
   explicit State(InputFile opened) : input(std::move(opened)) {
     bytes.input = &input;
@@ -164,7 +170,7 @@ struct TakeReader::State {
   }
 };
 
-/// Attributes and parameters.
+/// Reads the root's text attributes and the parameters.
 Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
   const hid_t root = file.id();
   software = KA_TRY(checked.text_attribute(root, "software"));
@@ -191,6 +197,7 @@ Result<void> TakeReader::State::check_format(const hdf5::Checked& checked) const
   return {};
 }
 
+/// Reads everything but the rows, and chooses the size of a slab.
 Result<void> TakeReader::State::read_header(const TakeParts& parts) {
   const hdf5::Checked checked(bytes);
   const hid_t root = file.id();
@@ -219,6 +226,7 @@ Result<void> TakeReader::State::find_stream(const std::string& name, const TakeP
   return {};
 }
 
+/// Finds the columns of a stream that the parts select, in the order of columns_of().
 Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
                                              const TakeParts& parts, std::uint64_t& row_bytes) {
   const hdf5::Checked checked(bytes);
@@ -244,6 +252,7 @@ Result<void> TakeReader::State::read_stamps(std::uint64_t first, std::uint64_t c
   return bad_value(input.path(), "stamps that rise", "time_ns");
 }
 
+/// Reads rows of all streams. A column that the parts leave out becomes empty.
 Result<void> TakeReader::State::read_slab(std::uint64_t first, std::uint64_t count,
                                           TakeSlab& slab) {
   slab.first = first;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// HDF5 lays out the file and writes its small parts; rows go straight to the places it gave them.
+// Writes a take. HDF5 lays out the file and writes its small parts. Rows are written directly to
+// the positions that HDF5 assigned.
 #include "kinalign/documents/parameters_json.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/hdf5_checks.h"
@@ -23,7 +24,7 @@ using hdf5::Shape;
 
 constexpr const char* can_hold = "a take that HDF5 can hold";
 
-/// A column whose place in the file is known.
+/// A column whose position in the file is known.
 struct Placed {
   std::string name;
   Stored stored = Stored::uint8;
@@ -31,11 +32,12 @@ struct Placed {
   std::uint64_t at = 0;
 };
 
-/// Makes groups and data sets.
+/// Creates groups and data sets.
 class Layout {
  public:
   explicit Layout(Bytes& bytes) : bytes_(bytes) {}
 
+  /// Creates a column of all rows; its values are written later.
   Result<Placed> column(hid_t parent, std::uint64_t frames, const TakeColumn& column) const {
     std::vector<hsize_t> sizes{frames};
     sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
@@ -48,6 +50,7 @@ class Layout {
     return Placed{column.name, column.stored, column.row_bytes(), H5Dget_offset(made.id())};
   }
 
+  /// Creates a data set and writes its values.
   Result<void> whole(hid_t parent, const char* name, const Shape& shape, const void* data,
                      const char* units = nullptr) const {
     const Handle made = hdf5::create_dataset(parent, name, shape);
@@ -71,6 +74,7 @@ class Layout {
     return whole(parent, name, {type.id(), {texts.size()}}, packed.bytes.data());
   }
 
+  /// Writes a skeleton's arrays into the group.
   Result<void> skeleton(hid_t group, const Skeleton& skeleton) const {
     static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(int) == 4);
     const std::size_t joints = skeleton.joints();
@@ -86,7 +90,7 @@ class Layout {
     return whole(made.id(), "offsets", {H5T_IEEE_F64LE, {count, 3}}, sites.offsets.data(), "m");
   }
 
-  /// A failed write, which HDF5 was not told of.
+  /// The failure of an earlier write, which HDF5 does not know of.
   Result<void> check() const {
     if (bytes_.failure) return Failure(*bytes_.failure);
     return {};
@@ -96,6 +100,7 @@ class Layout {
   Bytes& bytes_;
 };
 
+/// Stores names, hashes and sizes of the files from which a stream was made.
 bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
   std::vector<std::string> names;
   std::vector<std::string> hashes;
@@ -111,6 +116,7 @@ bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
           hdf5::put_attribute(group, "input_bytes", {H5T_STD_U64LE, {sizes.size()}}, sizes.data()));
 }
 
+/// Stores the attributes of the whole take.
 bool put_root_attributes(hid_t root, const TakeHeader& header) {
   std::vector<std::string> names;
   for (const TakeGroup& group : header.groups) names.push_back(group.name);
@@ -126,6 +132,7 @@ bool put_root_attributes(hid_t root, const TakeHeader& header) {
 
 }  // namespace
 
+/// The file that is being written, and the position of each column.
 struct TakeWriter::State {
   explicit State(OutputFile opened) : output(std::move(opened)) { bytes.output = &output; }
 
@@ -144,7 +151,7 @@ struct TakeWriter::State {
   Result<void> reserve();
   Result<void> write_stamps(std::span<const Time> stamps);
 
-  /// Writes an array of rows behind the rows that are there.
+  /// Writes values of a column for the rows that follow those written so far.
   template <class Value>
   Result<void> write(const Placed& column, std::span<const Value> values) {
     std::uint64_t at = column.at + rows * column.row_bytes;
@@ -161,6 +168,7 @@ struct TakeWriter::State {
   }
 };
 
+/// Creates all groups and data sets of the file.
 Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
   frames = header.frames;
   const Layout layout(bytes);
@@ -183,6 +191,7 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
   return reserve();
 }
 
+/// Reserves disk space for the whole file, so that a full disk fails now and not in the middle.
 Result<void> TakeWriter::State::reserve() {
   hsize_t size = 0;
   if (H5Fget_filesize(file.id(), &size) < 0) return hdf5::failure(bytes, can_hold);
@@ -191,6 +200,7 @@ Result<void> TakeWriter::State::reserve() {
   return {};
 }
 
+/// Creates the group of a stream with its columns.
 Result<void> TakeWriter::State::lay_out(const TakeGroup& group, Precision precision) {
   const Layout layout(bytes);
   const Handle made = hdf5::create_group(file.id(), group.name);

@@ -46,6 +46,7 @@ std::vector<TakeColumn> point_columns(std::uint64_t joints, const TakeGroup& gro
           {"valid", Stored::uint8, {joints}, {{"values", "0 no, 1 yes"}}}};
 }
 
+/// The columns of a group of nodes, with the space in which each vector is given.
 std::vector<TakeColumn> imu_columns(const ImuGroup& group, Stored number) {
   const std::uint64_t nodes = group.node_names.size();
   const std::string& root = group.root_node;

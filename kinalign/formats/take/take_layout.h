@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in a take, column by column, for every file format that carries one: the names,
-// shapes, units and spaces of docs/formats/take.md, said once.
+// Describes the content of a take, column by column, for every file format that can hold one. The
+// names, shapes, units and spaces of docs/formats/take.md are stated here only.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,19 +17,20 @@
 
 namespace kinalign {
 
-/// A skeleton's end sites as they are stored.
+/// A skeleton's end sites in the form in which files store them.
 struct EndSiteArrays {
-  std::vector<int> parents;   // [E]
+  std::vector<int> parents;   // [E] index of the joint
   std::vector<Vec3> offsets;  // [E] m
 };
 EndSiteArrays end_site_arrays(const Skeleton& skeleton);
 
-/// How numbers are stored; computed are they in double.
+/// Precision of stored numbers; all computation is in double.
 enum class Precision { single, full };
 inline Precision precision_of(const TakeHeader& header) {
   return header.parameters.align.store_double ? Precision::full : Precision::single;
 }
 
+/// Type of a stored value.
 enum class Stored : std::uint8_t { float32, float64, int64, int32, uint8 };
 
 /// Bytes of one value.
@@ -38,47 +39,48 @@ inline Stored stored_number(Precision precision) {
   return precision == Precision::single ? Stored::float32 : Stored::float64;
 }
 
-/// One array of a stream with a value, vector or rotation in every row.
+/// One array of a stream, with a value, vector or rotation in every row.
 struct TakeColumn {
   std::string name;                  // "positions"
-  Stored stored = Stored::float32;   // as it stands in the file
-  std::vector<std::uint64_t> shape;  // of one row: {59, 3}; {}: one value a row
-  std::vector<std::pair<std::string, std::string>> facts;  // units, space, order
+  Stored stored = Stored::float32;   // type in the file
+  std::vector<std::uint64_t> shape;  // shape of one row: {59, 3}; {}: one value a row
+  std::vector<std::pair<std::string, std::string>> facts;  // units, space, order of components
 
   std::uint64_t row_values() const;
   std::uint64_t row_bytes() const { return row_values() * size_of(stored); }
 };
 
-/// "clip", "points", "imu".
+/// The stream's kind: "clip", "points" or "imu".
 std::string_view kind_of(const TakeGroup& group);
 
-/// What a take says of a node: gravity stands in its acceleration, or not.
+/// The texts that tell whether a node's acceleration includes gravity.
 constexpr const char* gravity_included = "included";
 constexpr const char* gravity_removed = "removed";
-std::vector<std::string> gravity_texts(const ImuGroup& group);  // [S]
+std::vector<std::string> gravity_texts(const ImuGroup& group);  // [S] of each node
 
-/// The columns that a group's rows fill, in the order of for_each_row_array.
+/// The columns of a group's rows, in the order of for_each_row_array.
 std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision);
 
-/// Joints or nodes.
+/// Names of the group's joints or nodes.
 const std::vector<std::string>& names_of(const TakeGroup& group);
-/// What each number of a column's row is: "Hips.x"; "row" where there is one a row.
+/// A label for each number in a row of the column: "Hips.x"; "row" if there is one number a row.
 std::vector<std::string> labels_of(const TakeColumn& column, const TakeGroup& group);
-/// The group without its samples, as JSON: name, kind, names; of a skeleton parents, rest_offsets
-/// and end_sites; of nodes root_node and gravity.
+/// The group without its samples, as JSON: name, kind and names; for a skeleton also parents,
+/// rest_offsets and end_sites; for nodes also root_node and gravity.
 std::string stream_json(const TakeGroup& group);
 
-/// Fails where a take of this header could not be told from another or not be read again: group
-/// and joint names that repeat, are empty, or hold '/' or NUL; a skeleton out of order.
+/// Fails if a take with this header could not be read back. Names of groups and of joints must be
+/// unique, not empty, and without '/' or NUL. A skeleton's parents must come before their children.
 Result<void> validate(const TakeHeader& header);
 
 using AnyRows = std::variant<ClipRows, PointRows, ImuRows>;
 
-/// Empty rows of the group's kind.
+/// Empty rows of the kind that the group has.
 AnyRows rows_for(const TakeGroup& group);
 
-/// Calls use(name, array) -> Result<void> for each array of rows (a variant's member, const or
-/// not), in the order of columns_of; also for the arrays that this stream leaves empty.
+/// Calls use(name, array), which returns Result<void>, for each array of `rows`, in the order of
+/// columns_of. `rows` is one of the types in AnyRows, const or not. Arrays that the stream leaves
+/// empty are included.
 template <class Rows, class Use>
 Result<void> for_each_row_array(Rows& rows, Use&& use) {
   Result<void> done;
@@ -88,7 +90,7 @@ Result<void> for_each_row_array(Rows& rows, Use&& use) {
   return done;
 }
 
-/// The bytes of an array as they lie in memory, which is how files hold them.
+/// The bytes of an array as they lie in memory, which is the form that files hold.
 template <class Value>
 std::string_view bytes_of(std::span<const Value> values) {
   static_assert(std::endian::native == std::endian::little && sizeof(Time) == 8);
@@ -96,13 +98,14 @@ std::string_view bytes_of(std::span<const Value> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
-/// Numbers on their way into a file: a piece at a time, small enough to stay in the cache
-/// between being made and being copied by the system, large enough for the system to like.
+/// Converts numbers for a file, piece by piece. A piece is small enough to stay in the cache
+/// between conversion and copying, and large enough for an efficient write.
 class NumberStore {
  public:
   NumberStore() : singles_(piece) {}
 
-  /// Calls put(bytes) -> Result<void> with all of `values` as `stored` holds them.
+  /// Calls put(bytes), which returns Result<void>, until all of `values` have been passed on in the
+  /// form `stored`.
   template <class Put>
   Result<void> store(std::span<const double> values, Stored stored, Put&& put) {
     check_numbers(values);
@@ -117,7 +120,8 @@ class NumberStore {
   }
 
  private:
-  static constexpr std::size_t piece = 128 * 1024;  // values: 0.5 MiB of floats, measured best
+  /// Values: 0.5 MiB of floats, the fastest size measured.
+  static constexpr std::size_t piece = 128 * 1024;
   static void check_numbers(std::span<const double> values);
   void narrow(std::span<const double> values);
 

@@ -12,10 +12,10 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t most32 = 0xffffffffU;  // as a size: look in the ZIP64 field
+constexpr std::uint64_t most32 = 0xffffffffU;  // such a size refers to the ZIP64 field
 constexpr std::size_t local_size = 30;
 
-/// Little-endian numbers, one behind the other.
+/// Collects little-endian numbers, one after the other.
 class Record {
  public:
   Record& u16(std::uint64_t value) { return put(value, 2); }
@@ -38,7 +38,8 @@ class Record {
 constexpr bool large(std::uint64_t value) { return value >= most32; }
 constexpr std::uint64_t cut(std::uint64_t value) { return std::min(value, most32); }
 
-/// From "version needed" to "uncompressed size", the same in both headers of a member.
+/// Adds the fields from "version needed" to "uncompressed size", which both headers of a member
+/// have.
 Record& facts(Record& record, std::uint32_t checksum, std::uint64_t size, bool zip64) {
   const std::uint64_t first_of_1980 = 0x21;
   record.u16(zip64 ? 45 : 20).u16(0).u16(0).u16(0).u16(first_of_1980).u32(checksum);
@@ -58,6 +59,7 @@ struct Place {
   std::uint64_t size = 0;
 };
 
+/// A member's entry in the central directory; numbers that are too large go to the ZIP64 field.
 std::string central_header(const std::string& name, std::uint32_t checksum, const Place& place) {
   Record extra;
   if (large(place.size)) extra.u64(place.size).u64(place.size);
@@ -71,6 +73,7 @@ std::string central_header(const std::string& name, std::uint32_t checksum, cons
   return record.bytes();
 }
 
+/// The end record, preceded by the ZIP64 records if a number is too large for it.
 std::string end_of_directory(std::uint64_t count, const Place& directory) {
   Record record;
   if (large(directory.at) || large(directory.size) || count >= 0xffff) {
@@ -84,7 +87,8 @@ std::string end_of_directory(std::uint64_t count, const Place& directory) {
   return record.u32(cut(directory.size)).u32(cut(directory.at)).u16(0).bytes();
 }
 
-/// A byte that begins no character stands for itself.
+/// The characters of a text in UTF-8. A byte that begins no character becomes the character of its
+/// value.
 std::u32string characters(std::string_view text) {
   std::u32string out;
   while (!text.empty()) {
@@ -95,13 +99,13 @@ std::u32string characters(std::string_view text) {
   return out;
 }
 
-/// Arrays of known contents, and where they stand among all.
+/// Content that is known before the rows, and the index of its array among all members.
 struct Fixed {
   std::size_t array;
   std::string bytes;
 };
 
-/// The members of the file, in order.
+/// Collects the members of the file, in order.
 struct Members {
   std::vector<NpzArray> arrays;
   std::vector<Fixed> fixed;
@@ -147,7 +151,8 @@ void add_names(Members& members, const std::string& prefix, const TakeGroup& gro
   }
 }
 
-/// A stream's name and an array's may make the same member as another stream's.
+/// Fails if two members have the same name. The name of a stream and of its array together may
+/// equal those of another stream.
 Result<void> check_names(const std::vector<NpzArray>& arrays, const std::string& path) {
   std::set<std::string_view> seen;
   for (const NpzArray& array : arrays) {
@@ -186,6 +191,7 @@ NpzArray npz_numbers(std::string name, Stored stored, std::vector<std::uint64_t>
           std::move(shape)};
 }
 
+/// Pads all texts with zeros to the length of the longest, as numpy does.
 NpzTexts npz_texts(std::string name, const std::vector<std::string>& texts) {
   std::vector<std::u32string> all;
   std::size_t width = 1;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take, or one stream alone, as numpy's NPZ. The names are those of the HDF5 file:
-// mocap_positions for /mocap/positions; positions for one stream alone. docs/formats/take.md.
-// An NPZ is a ZIP of .npy members, stored. It is written here and not by libzip, which pulls one
-// member after the other, while a take comes in slabs of all arrays at once. Lengths are known
-// before, so every byte has its place; checksums follow at the end. Dates are 1980-01-01: the same
-// arrays give the same bytes. ZIP64 is used if a number needs it (APPNOTE 6.3.10, 4.3 and 4.5.3).
+// Writes a take, or one stream, as numpy's NPZ. The names are those of the HDF5 file:
+// mocap_positions for /mocap/positions, or positions for a single stream. See docs/formats/take.md.
+// An NPZ is a ZIP of .npy members, here without compression. libzip is not used: it takes one
+// member after the other, while a take comes in slabs of all arrays at once. All lengths are known
+// in advance, so every byte has a fixed position; the checksums are written at the end. Dates are
+// 1980-01-01, so the same arrays give the same bytes. ZIP64 is used if a number needs it (APPNOTE
+// 6.3.10, 4.3 and 4.5.3).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -22,18 +23,19 @@ namespace kinalign {
 
 struct NpzArray {
   std::string name;   // "positions": numpy.load(path)["positions"]
-  std::string descr;  // numpy's: "<f4", "<i8", "|u1", "<U12"
+  std::string descr;  // numpy's type: "<f4", "<i8", "|u1", "<U12"
   std::uint64_t value_bytes = 0;
   std::vector<std::uint64_t> shape;  // {}: a scalar
 
   std::uint64_t bytes() const;
 };
 
-/// What stands in front of the values of a .npy file: numpy/lib/format.py, version 1.0. Values
-/// begin at a multiple of 64.
+/// The bytes before the values of a .npy file: numpy/lib/format.py, version 1.0. The values begin
+/// at a multiple of 64.
 std::string npy_header(const NpzArray& array);
 
-/// An array of numbers, and what numpy makes of a list of texts: UTF-32, padded with zeros.
+/// npz_numbers() describes an array of numbers. npz_texts() makes an array of texts as numpy stores
+/// it: UTF-32, padded with zeros.
 NpzArray npz_numbers(std::string name, Stored stored, std::vector<std::uint64_t> shape);
 struct NpzTexts {
   NpzArray array;
@@ -43,13 +45,14 @@ NpzTexts npz_texts(std::string name, const std::vector<std::string>& texts);
 
 class NpzWriter {
  public:
-  /// The members in this order. Nothing stands at `path` until finish() has succeeded.
+  /// Creates a file with these members in this order. The file at `path` appears only when finish()
+  /// has succeeded.
   static Result<NpzWriter> create(FileSystem& files, std::string path, Overwrite overwrite,
                                   const std::vector<NpzArray>& arrays);
 
-  /// The next bytes of array number `array`.
+  /// Appends the next bytes of array number `array`.
   Result<void> append(std::size_t array, std::string_view bytes);
-  /// After all bytes of all arrays.
+  /// Call after all bytes of all arrays.
   Result<void> finish();
 
  private:
@@ -57,7 +60,7 @@ class NpzWriter {
     std::string name;
     std::uint64_t header_at = 0;  // the member's local header
     std::uint64_t size = 0;       // .npy header and values
-    std::uint64_t at = 0;         // where the next bytes go
+    std::uint64_t at = 0;         // position of the next bytes
     std::uint64_t end = 0;
     std::uint32_t checksum = 0;
   };
@@ -76,16 +79,16 @@ class TakeNpzWriter {
  public:
   static Result<TakeNpzWriter> create(FileSystem& files, std::string path, Overwrite overwrite,
                                       const TakeHeader& header, NpzNames names);
-  /// The next rows of all streams.
+  /// Appends the next rows of all streams.
   Result<void> append(const TakeSlab& slab);
-  /// After header.frames rows.
+  /// Call after header.frames rows.
   Result<void> finish() { return writer_.finish(); }
 
  private:
   struct Column {
     std::string name;
     Stored stored;
-    std::size_t array;
+    std::size_t array;  // index of the column's member in the file
   };
   TakeNpzWriter(NpzWriter writer, std::vector<std::vector<Column>> groups)
       : writer_(std::move(writer)), groups_(std::move(groups)) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A WebDataset shard: a tar in which the members of a sample stand one behind the other. Layout:
+// Writes a WebDataset shard: a tar in which the members of a sample follow one another. Layout:
 // docs/formats/webdataset.md.
 #pragma once
 
@@ -13,7 +13,8 @@
 
 namespace kinalign {
 
-/// "positions.npy" and its bytes; the member is called key.ending.
+/// A member of a sample: its name after the key, such as "positions.npy", and its bytes. The full
+/// name is key.ending.
 struct ShardMember {
   std::string_view ending, bytes;
 };
@@ -22,9 +23,9 @@ class ShardWriter {
  public:
   explicit ShardWriter(FileSink sink) : tar_(std::move(sink)) {}
 
-  /// WebDataset takes what stands before the first dot of a name for the key. Fails where the key
-  /// is empty, has a dot or a slash, or was there before; where an ending is empty, repeated or
-  /// begins with a dot.
+  /// Adds a sample. WebDataset uses the part of a name before its first dot as the key. Fails if
+  /// the key is empty, has a dot or a slash, or occurred before. Fails if an ending is empty,
+  /// repeated, has a slash or begins with a dot.
   Result<void> add(std::string_view key, std::span<const ShardMember> members);
   Result<void> finish() { return tar_.finish(); }
 

@@ -18,11 +18,12 @@ Failure refuse(std::string expected, std::string found) {
   return Failure(Error{"", 0, std::move(expected), std::move(found)});
 }
 
-/// "0000644": digits - 1 octal digits and a zero byte.
+/// Writes "0000644": digits - 1 octal digits; the zero byte after them is there already.
 void put_octal(std::string& header, std::size_t at, std::size_t digits, std::uint64_t value) {
   header.replace(at, digits - 1, fmt::format("{:0{}o}", value, digits - 1));
 }
 
+/// Header block of a member. The checksum is computed over the header with blanks in its own field.
 std::string header_of(std::string_view name, std::uint64_t size, char kind) {
   std::string out(block, '\0');
   out.replace(0, name.size(), name);
@@ -44,7 +45,8 @@ std::string header_of(std::string_view name, std::uint64_t size, char kind) {
   return out;
 }
 
-/// "20 size=8589934592\n": the number at the front counts itself.
+/// A record such as "20 size=8589934592\n". The number at its front is the record's length,
+/// including itself.
 std::string pax_record(std::string_view key, std::string_view value) {
   const std::string rest = fmt::format(" {}={}\n", key, value);
   std::size_t length = rest.size() + 1;

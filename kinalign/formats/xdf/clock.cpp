@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robust line for each stretch between two resets of the sender's clock, as pyxdf fits it: the
-// Huber loss above 0.1 ms. docs/formats/xdf.md.
+// Fits a robust line to each stretch between two resets of the sender's clock, as pyxdf does: Huber
+// loss above 0.1 ms. See docs/formats/xdf.md.
 #include "kinalign/formats/xdf/xdf.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using Offsets = std::span<const XdfClockOffset>;
 
 enum class Step { none, outlier, reset };
 
-/// The k-th offset against the last one that was no outlier.
+/// Compares offset k with offset `before`, the last one that was no outlier.
 Step step_of(Offsets offsets, std::size_t before, std::size_t k) {
   const auto& level = offsets[before];
   const auto& now = offsets[k];
@@ -40,7 +40,7 @@ double residual(const XdfClockLine& line, const XdfClockOffset& o) {
   return o.offset - (line.offset + line.slope * (o.time - line.origin));
 }
 
-/// The weighted line; the weights are Huber's for the residuals of `line`.
+/// One round of the weighted fit. The weights are Huber's for the residuals of `line`.
 XdfClockLine next_round(const XdfClockLine& line, Offsets offsets) {
   double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0;
   for (const auto& o : offsets) {
@@ -59,6 +59,8 @@ XdfClockLine next_round(const XdfClockLine& line, Offsets offsets) {
   return next;
 }
 
+/// Fits a line, starting from the median offset with slope 0, until it moves by less than rounding
+/// errors.
 XdfClockLine fit_line(Offsets offsets) {
   XdfClockLine line;
   line.first = offsets.front().time;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
 
+/// Appends the character number c in UTF-8.
 void append_utf8(std::uint32_t c, std::string& out) {
   const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
   if (c < 0x80) return put(c);
@@ -32,7 +33,7 @@ void append_utf8(std::uint32_t c, std::string& out) {
   put(0x80 | (c & 0x3f));
 }
 
-/// Of "#65" and "#x41"; false: no character.
+/// Appends the character of "#65" or "#x41"; false if there is no such character.
 bool append_numbered(std::string_view name, std::string& out) {
   name.remove_prefix(1);
   const bool hex = name.starts_with('x') || name.starts_with('X');
@@ -61,6 +62,7 @@ bool append_entity(std::string_view name, std::string& out) {
   return false;
 }
 
+/// Appends text and resolves its entities. An '&' that begins none is kept.
 void append_text(std::string_view text, std::string& out) {
   constexpr std::size_t longest_entity = 10;
   while (!text.empty()) {
@@ -83,6 +85,7 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+/// Parses the XML from tag to tag; path_ and texts_ belong to the open elements.
 class Walk {
  public:
   Walk(std::string_view text, const XmlVisitor& visit) : text_(text), visit_(visit) {}
@@ -99,6 +102,7 @@ class Walk {
   }
 
  private:
+  /// Handles one tag, comment, instruction or CDATA section.
   Result<void> tag() {
     if (skipped("<!--", "-->") || skipped("<?", "?>")) return {};
     constexpr std::string_view verbatim = "<![CDATA[";
@@ -121,7 +125,7 @@ class Walk {
     return empty ? close(path_.back()) : Result<void>{};
   }
 
-  /// The '>' that stands in no attribute's value.
+  /// Position of the '>' that ends the tag: one outside of the attributes' values.
   std::size_t end_of_tag() const {
     char quote = 0;
     for (std::size_t k = at_; k < text_.size(); ++k) {
@@ -181,7 +185,7 @@ bool is(Path path, std::initializer_list<std::string_view> names) {
   return std::equal(path.begin(), path.end(), names.begin(), names.end());
 }
 
-/// The first name of a format is the usual one.
+/// If a format has two names, the first one is the usual one.
 constexpr std::array<std::pair<std::string_view, XdfFormat>, 9> formats{
     {{"int8", XdfFormat::int8},
      {"int16", XdfFormat::int16},
@@ -200,11 +204,12 @@ std::optional<XdfFormat> format_of(std::string_view word) {
   return std::nullopt;
 }
 
+/// Texts of the header that are parsed once the header is complete.
 struct Words {
   std::string channel_count, rate, format;
 };
 
-/// The members that an element of the header fills; nullptr: another one.
+/// The text that this element of the header fills; nullptr for any other element.
 std::string* place_of(Path path, XdfStream& stream, Words& words) {
   if (path.size() != 2 || path[0] != "info") return nullptr;
   const std::array<std::pair<std::string_view, std::string*>, 8> places{
@@ -222,6 +227,7 @@ std::string* place_of(Path path, XdfStream& stream, Words& words) {
   return nullptr;
 }
 
+/// Takes the label, unit or type of a channel; adds the channel at its end.
 void fill_channel(Path path, const std::string& text, XdfStream& stream, XdfChannel& channel) {
   if (path.size() == 4 && is(path, {"info", "desc", "channels", "channel"})) {
     stream.channels.push_back(std::move(channel));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chunks of an XDF file, and the samples in them. Layout: docs/formats/xdf.md.
+// Reads the chunks of an XDF file and the samples in them. Layout: docs/formats/xdf.md.
 #include "kinalign/formats/xdf/header.h"
 #include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/wire/little_endian.h"
@@ -21,7 +21,7 @@ constexpr std::string_view magic = "XDF:";
 constexpr std::array<std::uint8_t, 16> boundary{0x43, 0xa5, 0x46, 0xdc, 0xcb, 0xf5, 0x41, 0x0f,
                                                 0xb3, 0x0e, 0xd5, 0x46, 0x73, 0x83, 0xcb, 0xe4};
 constexpr std::size_t tag_size = 2, id_size = 4;
-constexpr double largest = 1e15;  // s; nothing can be computed with more
+constexpr double largest = 1e15;  // s; larger times can't be meant
 
 bool is_gzip(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
@@ -47,7 +47,7 @@ XdfValues room_for(XdfFormat format) {
   return real ? XdfValues(std::vector<double>{}) : XdfValues(std::vector<std::int64_t>{});
 }
 
-/// Takes from the front of the content; what is not all there is not taken.
+/// Takes values from the front of a chunk's content. An incomplete value is not taken.
 class Content {
  public:
   explicit Content(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -63,7 +63,7 @@ class Content {
     return little_at<T>(bytes_, at_ - sizeof(T));
   }
 
-  /// A length in 1, 4 or 8 bytes, as the byte in front says.
+  /// A length in 1, 4 or 8 bytes; the byte before it gives this width.
   std::optional<std::uint64_t> take_length() {
     const auto width = take<std::uint8_t>();
     if (width == 1) return take<std::uint8_t>();
@@ -90,6 +90,7 @@ std::int64_t as_signed(std::uint64_t bits) {
   return static_cast<T>(bits);
 }
 
+/// Appends an integer of the stream's format; false if its bytes are incomplete.
 bool append_whole(XdfFormat format, Content& content, std::vector<std::int64_t>& out) {
   const auto put = [&out](auto value, auto convert) {
     if (value) out.push_back(convert(*value));
@@ -118,6 +119,7 @@ bool append_real(XdfFormat format, Content& content, std::vector<double>& out) {
   return bits.has_value();
 }
 
+/// Appends a value of the stream's format; false if its bytes are incomplete.
 bool append_value(XdfFormat format, Content& content, XdfValues& values) {
   if (auto* text = std::get_if<std::vector<std::string>>(&values)) {
     auto value = content.take_text();
@@ -131,7 +133,7 @@ bool append_value(XdfFormat format, Content& content, XdfValues& values) {
   return append_whole(format, content, std::get<std::vector<std::int64_t>>(values));
 }
 
-/// One sample, all of it or none.
+/// Appends one sample; if it is incomplete, nothing is appended and the result is false.
 bool append_sample(const XdfStream& stream, Content& content, double& last_stamp, XdfSamples& out) {
   const std::size_t before = std::visit([](const auto& v) { return v.size(); }, out.values);
   const auto width = content.take<std::uint8_t>();
@@ -145,7 +147,7 @@ bool append_sample(const XdfStream& stream, Content& content, double& last_stamp
   } else {
     return false;
   }
-  // A number of channels is not believed before the bytes are there.
+  // Memory for the channels is allocated only if their bytes are present.
   const bool text = stream.format == XdfFormat::string;
   if (stream.channel_count > content.left() / (text ? 2 : bytes_of(stream.format))) return false;
   for (std::uint32_t c = 0; c < stream.channel_count; ++c) {
@@ -159,9 +161,10 @@ bool append_sample(const XdfStream& stream, Content& content, double& last_stamp
   return true;
 }
 
-/// The whole samples in `bytes`, which begin with the number of samples. `last_stamp` is the
-/// stream's; stamps are deduced from it. `what_is_wrong` is set if the number of samples differs
-/// from the stated number or if bytes follow the last sample.
+/// The complete samples in `bytes`, which begin with the number of samples. Stamps that the file
+/// omits are deduced from `last_stamp`, which the stream keeps from chunk to chunk. `what_is_wrong`
+/// is set if the number of samples differs from the stated number, or if bytes follow the last
+/// sample.
 XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> bytes,
                          double& last_stamp, std::optional<Error>& what_is_wrong) {
   XdfSamples samples;
@@ -200,6 +203,7 @@ Result<void> XdfReader::feed(std::string_view piece, std::vector<XdfItem>& out) 
   return {};
 }
 
+/// Checks the file's first bytes; false until they are complete.
 Result<bool> XdfReader::begun() {
   if (begun_) return true;
   if (is_gzip(held_)) {
@@ -238,7 +242,7 @@ void XdfReader::take(std::size_t bytes) {
   searched_ = 0;
 }
 
-// False: more bytes are needed.
+// Handles one chunk. False if more bytes are needed.
 bool XdfReader::step(std::vector<XdfItem>& out) {
   if (lost_) return resynchronise();
   if (ahead().empty()) return false;
@@ -280,7 +284,7 @@ XdfReader::Found XdfReader::find_chunk(Chunk& chunk) const {
   return chunk.size < tag_size ? Found::damage : Found::chunk;
 }
 
-// Where the sixteen bytes of a boundary begin that end within the next `end` bytes.
+// Position of the first boundary (sixteen bytes) that lies within the next `end` bytes.
 std::optional<std::size_t> XdfReader::boundary_before(std::size_t end) {
   const auto bytes = ahead().first(end);
   const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(searched_, end));
@@ -290,7 +294,8 @@ std::optional<std::size_t> XdfReader::boundary_before(std::size_t end) {
   return std::nullopt;
 }
 
-// Skips to behind the next boundary; what can't begin one is not kept.
+// Skips all bytes up to the end of the next boundary. Bytes that can't belong to a boundary are
+// dropped.
 bool XdfReader::resynchronise() {
   const auto found = boundary_before(ahead().size());
   if (!found) {
@@ -302,6 +307,7 @@ bool XdfReader::resynchronise() {
   return true;
 }
 
+/// Handles a complete chunk; `bytes` are its tag and content.
 void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>& out) {
   const auto tag = little_at<std::uint16_t>(bytes, 0);
   const auto content = bytes.subspan(tag_size);
@@ -318,6 +324,7 @@ void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>&
   if (tag == 0 || tag > 6) fault("chunks of kinds 1 to 6", fmt::format("one of kind {}", tag));
 }
 
+/// Parses a stream's header. The samples of a stream with a bad header are skipped.
 void XdfReader::stream_header(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
   const auto id = little_at<std::uint32_t>(content, 0);
   if (streams_.contains(id)) {
@@ -346,7 +353,7 @@ void XdfReader::samples(std::span<const std::uint8_t> content, std::vector<XdfIt
     fault("samples of streams with a header", fmt::format("some of stream {}", id));
     return;
   }
-  if (!known->second) return;  // its header was found fault with
+  if (!known->second) return;  // its header is damaged
   std::optional<Error> wrong;
   XdfSamples read = parse_samples(known->second->header, content.subspan(id_size),
                                   known->second->last_stamp, wrong);
@@ -354,6 +361,7 @@ void XdfReader::samples(std::span<const std::uint8_t> content, std::vector<XdfIt
   if (read.size() > 0) out.emplace_back(std::move(read));
 }
 
+/// Parses an offset of a sender's clock, as the recorder measured it.
 void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
   if (content.size() != id_size + 16) {
     fault("a clock offset of 20 bytes", std::to_string(content.size()));
@@ -370,6 +378,7 @@ void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<
   out.emplace_back(offset);
 }
 
+/// Counts a fault. After 100 kinds, all further ones count as the last kind.
 void XdfReader::fault(const std::string& expected, const std::string& found) {
   constexpr std::size_t most_kinds = 100;
   for (Fault& known : faults_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An XDF file read once: its streams, and what is wrong with them.
+// Reads an XDF file once and describes its streams and their faults.
 #include "kinalign/formats/xdf/xdf.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// What a pass over the items has found.
+/// Collects the results of a pass over the items.
 class Surveyor {
  public:
   void take(const XdfItem& item) {
@@ -50,6 +50,7 @@ class Surveyor {
     }
   }
 
+  /// Counts a stamp; stamps that are no numbers don't count as first or last.
   static void add_stamp(double stamp, XdfStreamSurvey& one, std::optional<double>& last) {
     constexpr double largest_stamp = 1e15;  // s
     if (!(std::abs(stamp) < largest_stamp)) {
@@ -66,8 +67,8 @@ class Surveyor {
   }
 
   XdfSurvey survey_;
-  std::map<std::uint32_t, std::size_t> places_;  // of streams' ids in the survey
-  std::vector<std::optional<double>> last_;      // stamps
+  std::map<std::uint32_t, std::size_t> places_;  // stream id -> index in the survey
+  std::vector<std::optional<double>> last_;      // last stamp of each stream
   std::map<std::uint32_t, std::vector<XdfClockOffset>> offsets_;
 };
 
@@ -97,6 +98,7 @@ double XdfStreamSurvey::rate_hz() const {
   return static_cast<double>(stamped - 1) / (*last - *first);
 }
 
+/// Reads the whole file without keeping the samples.
 Result<XdfSurvey> survey_xdf(FileSystem& files, const std::string& path, const Progress& progress) {
   Surveyor surveyor;
   const Findings findings =

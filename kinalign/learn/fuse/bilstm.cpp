@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's bidirectional LSTM (figure 10), which it names without sizes. One network is trained
-// for both devices, with each of them missing at times; two more for one device each.
+// The paper's bidirectional LSTM (figure 10); the paper gives no sizes. One network is trained for
+// both devices, with each of them missing at times. Two more are trained for one device each.
 #include "kinalign/learn/fuse/fuse_methods.h"
 
 namespace kinalign {
@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t bilstm_units = 192, bilstm_width = 256;
 
+/// The layers of the network.
 Architecture bilstm_architecture(const FuseLayout& layout) {
   const Layer recurrent{.kind = LayerKind::lstm, .out = bilstm_units, .bidirectional = true};
   return {layout.channels(),

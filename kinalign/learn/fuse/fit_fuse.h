@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From sequences and a method to a model that fuses.
+// Trains a model that fuses a Kinect and nodes, from sequences and a method.
 #pragma once
 
 #include "kinalign/learn/fit_denoise.h"
@@ -9,12 +9,13 @@
 namespace kinalign {
 
 struct FuseFit {
-  FuseModel model;  // without facts of its data
+  FuseModel model;  // in `facts` only task and method are set
   std::vector<TrainingPoint> points;
 };
 
 FuseLayout fuse_layout(const FuseData& data);
 
+/// `from`: a model of the same method to continue from.
 Result<FuseFit> fit_fuse(const FuseMethod& method, const FuseData& data, const FitOptions& options,
                          TrainingState state, const TrainingHooks& hooks,
                          const FuseModel* from = nullptr);

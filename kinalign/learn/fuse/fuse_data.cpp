@@ -19,9 +19,9 @@ namespace {
 constexpr double kinect_hz = 30.0;
 constexpr double nearest_m = 2.2, farthest_m = 3.2, camera_height_m = 0.9;
 constexpr double most_yaw_deg = 45.0;
-constexpr std::int64_t tick_100ns = 333'333;
+constexpr std::int64_t tick_100ns = 333'333;  // Kinect time between frames
 
-/// For each of the Kinect's 25 joints the body's. Tips of hands and thumbs lie at the fingers.
+/// For each of the Kinect's 25 joints the body's joint. Hand tips and thumbs use the fingers.
 std::array<std::size_t, kinect_joint_count> body_joints_of_kinect(const PoseBody& body) {
   const auto& names = body.skeleton.joint_names;
   std::array<std::size_t, kinect_joint_count> out{};
@@ -36,7 +36,7 @@ std::array<std::size_t, kinect_joint_count> body_joints_of_kinect(const PoseBody
   return out;
 }
 
-/// The 25 true joints of each frame [T,25,3] m, in the world.
+/// The true positions of the 25 joints in each frame [T,25,3] m, in the world.
 std::vector<double> true_joints(const PoseBody& body, const PoseSequence& sequence) {
   const auto which = body_joints_of_kinect(body);
   const std::size_t joints = body.skeleton.joints(), frames = sequence.frames();
@@ -55,7 +55,8 @@ std::vector<double> true_joints(const PoseBody& body, const PoseSequence& sequen
   return out;
 }
 
-/// A camera that looks level at the middle of the sequence, somewhere before the person's front.
+/// A camera at a random place in front of the person. It looks horizontally at the middle of the
+/// sequence.
 RigidTransform camera_of(const PoseSequence& sequence, const RandomStream& random) {
   Vec3 middle = Vec3::Zero(), front = Vec3::Zero();
   const auto roots = true_roots(sequence);
@@ -77,7 +78,7 @@ RigidTransform camera_of(const PoseSequence& sequence, const RandomStream& rando
   return {Quat(axes), place};
 }
 
-/// The joints that fusion sees of 25, brought into the world.
+/// Selects the joints that fusion uses from all 25, and brings them into the world.
 JointFrames seen_in_world(const PointFrames& said, const RigidTransform& world_from_kinect) {
   JointFrames out{.joints = fuse_joints.size(), .positions = {}, .seen = {}};
   for (std::size_t t = 0; t < said.size(); ++t) {
@@ -107,6 +108,7 @@ std::vector<Eigen::Quaternionf> true_roots(const PoseSequence& sequence) {
   return out;
 }
 
+/// Simulates one take of a Kinect at 30 Hz, one tick for each frame.
 JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
                              std::uint64_t person, std::uint64_t seed, std::uint64_t take) {
   const auto joints = true_joints(body, sequence);
@@ -132,7 +134,8 @@ JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
 
 namespace {
 
-/// Of every part; the same person has the same number in all of them.
+/// Simulates Kinects for all parts. A person has the same number in all parts, so the noise of that
+/// person is the same.
 class SimulatedKinects {
  public:
   SimulatedKinects(const PoseBody& body, std::uint64_t seed) : body_(body), seed_(seed) {}
@@ -158,7 +161,7 @@ class SimulatedKinects {
   std::uint64_t take_ = 0;
 };
 
-/// The file's own stream at the frames of each sequence.
+/// The file's own Kinect stream, at the frames of each sequence.
 Result<std::vector<std::vector<JointFrames>>> own_kinect(
     const Windows& windows, const std::string& stream, const std::vector<PoseSequence>& sequences) {
   const auto names = fuse_joint_names();

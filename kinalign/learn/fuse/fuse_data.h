@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequences to learn fusion from: those of pose_data.h, and what a Kinect before these people says:
-// the file's own, or simulated ones (docs/kinect_noise.md).
+// Sequences to learn fusion from: those of pose_data.h with the data of a Kinect in front of these
+// people. The Kinect is the file's own stream or simulated (docs/kinect_noise.md).
 #pragma once
 
 #include "kinalign/learn/pose/pose_data.h"
@@ -14,27 +14,28 @@ namespace kinalign {
 
 struct FuseData {
   PoseData pose;
-  /// Of each sequence of the part with that name, what a Kinect says in the world of its nodes, in
-  /// several draws of noise and of the camera's place.
+  /// For each sequence of the part with that name: the Kinect's joints in the world of the nodes,
+  /// for several draws of noise and camera place.
   std::vector<std::vector<JointFrames>> learnt, judged, tested;
 };
 
 struct FuseDataOptions {
   std::uint64_t seed = 1;
-  std::size_t draws = 2;  // of what is learnt from; else one
-  std::string kinect;     // the file's own stream of a Kinect in place of simulated ones
+  std::size_t draws = 2;  // draws for each training sequence; other sequences have one
+  std::string kinect;     // name of the file's Kinect stream; empty: simulate
 };
 
-/// As pose_data(), and where the file's own Kinect lacks its stream. A simulated one stands 2.2
-/// to 3.2 m before the middle of a sequence, within 45 degrees of the person's front.
+/// Reads sequences like pose_data(). Fails, too, if options.kinect names a stream that is absent. A
+/// simulated Kinect stands 2.2 to 3.2 m from the middle of a sequence, within 45 degrees of the
+/// person's front.
 Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
                            const std::vector<std::string>& nodes, const FuseDataOptions& options);
 
-/// What a Kinect says of one sequence [T,J], in the world of its nodes.
+/// The simulated Kinect's joints [T,J] for one sequence, in the world of its nodes.
 JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
                              std::uint64_t person, std::uint64_t seed, std::uint64_t take);
 
-/// The root's true rotations in the world [T].
+/// The true rotations of the root in the world [T].
 std::vector<Eigen::Quaternionf> true_roots(const PoseSequence& sequence);
 
 }  // namespace kinalign

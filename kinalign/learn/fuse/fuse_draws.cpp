@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// Lanes of the random numbers, one a decision.
+/// Lanes of the random stream, one for each decision.
 enum Lane : std::uint64_t {
   lane_heading,
   lane_device,
@@ -21,6 +21,7 @@ enum Lane : std::uint64_t {
   lane_length
 };
 
+/// Sets a limb of the Kinect or one node to missing, for a random time.
 void lose_a_part(FuseInput& input, const FuseLayout& layout, const FuseDraws& draws,
                  const RandomStream& random) {
   const double frames = static_cast<double>(input.frames());
@@ -75,7 +76,7 @@ FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws
     }
   }
   if (random.uniform(0, lane_part) < draws.lost_part) lose_a_part(input, layout, draws, random);
-  unexchange(layout, input);  // as at use
+  unexchange(layout, input);  // the same step as when a model is used
   return input;
 }
 

@@ -18,13 +18,13 @@ namespace {
 
 constexpr std::uint64_t fuse_marks_seed = 7;
 constexpr std::array<double, 4> hidden_s{0.5, 1.0, 2.0, 5.0};
-constexpr double between_s = 2.0;
-constexpr float invented_m = 0.2F;
+constexpr double between_s = 2.0;   // pause between two hidden limbs
+constexpr float invented_m = 0.2F;  // a joint farther off counts as hidden
 constexpr double heading_seconds = 60.0;
 
 enum class JointGroup : std::uint8_t { trunk, arms, legs };
 
-/// A joint that is scored: of the body, and where the Kinect says it is (none: SIZE_MAX).
+/// A joint that is scored: its index in the body, and in the Kinect's joints if the Kinect has it.
 struct ScoredJoint {
   std::size_t body = 0;
   std::optional<std::size_t> kinect;
@@ -39,6 +39,7 @@ JointGroup group_of(std::string_view name) {
   return std::any_of(arms.begin(), arms.end(), of) ? JointGroup::arms : JointGroup::trunk;
 }
 
+/// The joints that are scored, each with the Kinect's joint for it, if there is one.
 std::vector<ScoredJoint> scored_joints(const FuseLayout& layout, const PoseBody& body) {
   std::vector<ScoredJoint> out;
   for (std::size_t j = 0; j < body.skeleton.joints(); ++j) {
@@ -56,7 +57,7 @@ std::vector<ScoredJoint> scored_joints(const FuseLayout& layout, const PoseBody&
   return out;
 }
 
-/// Limbs in turn, for half a second to five, with two seconds between.
+/// Hides one limb after another for 0.5 to 5 s, with pauses of 2 s.
 void hide_limbs(const FuseLayout& layout, JointFrames& kinect) {
   const double rate_hz = layout.nodes.rate_hz;
   double at_s = 1.0;
@@ -83,7 +84,7 @@ struct MeanOf {
   double value() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
 };
 
-/// The turn about the vertical that brings an answer's headings to the true ones.
+/// The rotation about the vertical from the answer's headings to the true ones.
 Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& said,
                                 const std::vector<Eigen::Quaternionf>& roots) {
   double sine = 0.0, cosine = 0.0;
@@ -96,12 +97,13 @@ Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& said,
       Eigen::AngleAxisf(static_cast<float>(std::atan2(sine, cosine)), Eigen::Vector3f::UnitY()));
 }
 
+/// Sums the errors of a method's answers.
 class FuseScore {
  public:
   FuseScore(Devices devices, const FuseLayout& layout, const PoseBody& body)
       : devices_(devices), body_(body), joints_(scored_joints(layout, body)) {}
 
-  /// `kinect`: what it saw before devices were taken away.
+  /// `kinect`: the Kinect's joints before any device was removed.
   void add(const PoseSequence& truth, const JointFrames& kinect, const FusedPose& answer) {
     const auto roots = true_roots(truth);
     const auto said = bone_positions(body_, truth.rest_offsets, answer.rotations);
@@ -178,7 +180,7 @@ FuseInput without_others(FuseInput input, Devices devices) {
   return input;
 }
 
-/// A person's sequences one behind the other, with nodes whose errors stay.
+/// A person's sequences one after another. Each node's errors are constant over the session.
 struct Session {
   FuseInput input;
   std::vector<std::size_t> sequences;
@@ -186,6 +188,7 @@ struct Session {
 
 void append_rows(const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); }
 
+/// Joins the test sequences of each person and adds node errors.
 std::map<std::string, Session> sessions_of(const FuseData& data, const NodeErrors& errors) {
   std::map<std::string, Session> out;
   for (std::size_t i = 0; i < data.pose.tested.size(); ++i) {
@@ -217,7 +220,8 @@ NodeErrors session_errors(double yaw_deg) {
   return out;
 }
 
-/// The turn about the vertical from what a node says to its bone, rad; the mean over frames.
+/// The rotation about the vertical from a node's orientation to that of its bone, rad; mean over
+/// frames.
 double heading_error(const NodeFrames& clean, const NodeFrames& said, std::size_t n) {
   double sum = 0.0, count = 0.0;
   for (std::size_t t = 0; t < said.frames(); ++t) {
@@ -236,6 +240,7 @@ double size_deg(double radians) { return std::abs(radians) * 180.0 / std::number
 
 }  // namespace
 
+/// Runs the method once per person and device choice, and scores each sequence.
 Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout& layout,
                                          const FuseData& data,
                                          const std::vector<Devices>& devices) {
@@ -287,7 +292,8 @@ std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLay
     const FuseInput shown{crop_of(session.input.nodes, first, sides),
                           crop_of(session.input.kinect, first, sides)};
     const auto found = headings(shown);
-    // The states of the last frame, for all frames: what is known after that time.
+    // The heading of the last frame is applied to all frames: it contains all that is known after
+    // 60 s.
     std::vector<HeadingState> last;
     for (std::size_t t = 0; t < after; ++t) {
       last.insert(last.end(), found.end() - static_cast<std::ptrdiff_t>(out.size()), found.end());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a pose is found by a Kinect, by nodes, and by both, on people that were not learnt from.
-// Limbs of the Kinect are hidden again and again; errors of devices are the same for every method.
+// Measures how well a pose is found from a Kinect, from nodes, and from both, for people who were
+// not in the training. Limbs of the Kinect are hidden repeatedly. Errors of the devices are the
+// same for every method.
 #pragma once
 
 #include "kinalign/learn/fuse/fuse_data.h"
@@ -14,16 +15,18 @@
 
 namespace kinalign {
 
-/// Distances are means over joints and frames, about the root and in the world. Of nodes alone the
-/// heading of a whole sequence is taken from the truth: they cannot know it.
+/// Distances are means over joints and frames, with positions relative to the root and orientations
+/// in the world. For nodes alone the heading of each sequence is taken from the truth, because
+/// nodes cannot measure it.
 struct FuseErrors {
   double all_cm = 0.0;
-  /// Joints that the Kinect does not track, or that it puts more than 20 cm off.
+  /// Joints that the Kinect does not track or puts more than 20 cm off.
   double hidden_cm = 0.0;
-  double seen_trunk_cm = 0.0, seen_arms_cm = 0.0, seen_legs_cm = 0.0;  // all others
-  double place_cm = 0.0;               // of the root in the Kinect's world; not of nodes alone
-  double sip_deg = 0.0;                // global rotation of thighs and upper arms against the root
-  std::size_t frames = 0, hidden = 0;  // frames; joints in frames
+  double seen_trunk_cm = 0.0, seen_arms_cm = 0.0, seen_legs_cm = 0.0;  // all other joints
+  double place_cm = 0.0;  // of the root in the Kinect's world; no meaning for nodes alone
+  double sip_deg = 0.0;   // global rotation of thighs and upper arms against the root
+  /// Number of frames; number of hidden joints summed over frames.
+  std::size_t frames = 0, hidden = 0;
 };
 
 struct FuseMark {
@@ -32,26 +35,29 @@ struct FuseMark {
   std::map<std::string, FuseErrors> people{};  // by person
 };
 
-/// A method as a function from both devices, as they came, to a pose.
+/// A method as a function from both devices' data to a pose.
 using Fusion = std::function<FusedPose(const FuseInput& input)>;
 
-/// A row for each of `devices`, over data.tested. Fails where nobody is there to be tested.
+/// One result for each entry of `devices`, over data.tested. Fails if there is no test person.
 Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout& layout,
                                          const FuseData& data, const std::vector<Devices>& devices);
 
-/// How far headings are off, over the test people's sessions (their sequences one behind the
-/// other).
+/// Heading errors of one node, over the test people's sessions. A session is a person's sequences
+/// one after another.
 struct HeadingMark {
   std::string node;
-  double before_deg = 0.0, after_deg = 0.0;  // mean size, at first; after 60 s with a Kinect
-  double worst_deg = 0.0;                    // of all people, after 60 s
-  std::map<std::string, double> people{};    // whose sessions are that long: after 60 s
+  /// Mean absolute error at the start, and after 60 s with a Kinect.
+  double before_deg = 0.0, after_deg = 0.0;
+  double worst_deg = 0.0;  // largest error of any person after 60 s
+  /// Error after 60 s for each person whose session is long enough.
+  std::map<std::string, double> people{};
 };
 
-/// Headings [T,N] of nodes before a Kinect.
+/// A function that gives the headings [T,N] of nodes in front of a Kinect.
 using HeadingsOf = std::function<std::vector<HeadingState>(const FuseInput& input)>;
 
-/// Headings are off by up to 20 degrees at first. Only the first 60 s of a session are shown.
+/// Headings have errors of up to 20 degrees at the start. Only the first 60 s of a session are
+/// used.
 std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLayout& layout,
                                        const FuseData& data);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods that fuse, a file each.
+// Methods that fuse a Kinect and nodes, one file for each.
 #pragma once
 
 #include "kinalign/learn/fuse/fuse_task.h"
@@ -11,7 +11,7 @@ namespace kinalign {
 
 struct FuseMethod {
   std::string_view name, summary, source;
-  /// From the layout's channels to its answers.
+  /// The network from the layout's channels to its answers.
   Architecture (*architecture)(const FuseLayout& layout);
   FuseTraining training;
   TrainingOptions options;
@@ -19,7 +19,7 @@ struct FuseMethod {
 
 FuseMethod gated_method();
 FuseMethod gated_online_method();
-/// The paper's, for both devices, the Kinect alone, the nodes alone.
+/// The paper's network, for both devices, the Kinect alone, or the nodes alone.
 FuseMethod bilstm_method(Devices devices);
 
 std::vector<FuseMethod> fuse_methods();

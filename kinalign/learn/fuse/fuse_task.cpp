@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::uint64_t fuse_judging_seed = 5, scales_seed = 3;
 constexpr std::size_t scales_batches = 8;
-constexpr float least_scale_of_fusion = 0.05F;  // flags that hardly change stay small
+constexpr float least_scale_of_fusion = 0.05F;  // flags that hardly vary must not be scaled up
 
-/// Without a Kinect nobody knows in which direction a person looks: the truth is turned to where
-/// the root's node says.
+/// If no Kinect sees the person, the person's heading is unknown. The truth is then rotated to the
+/// heading of the root's node.
 Eigen::Quaternionf truth_turn(const FuseInput& input, const Eigen::Quaternionf& root) {
   const bool is_seen = std::any_of(input.kinect.seen.begin(), input.kinect.seen.end(),
                                    [](std::uint8_t seen) { return seen != 0; });
@@ -50,6 +50,7 @@ void FuseTask::use_scales(std::vector<float> mean, std::vector<float> scale) {
   make_judged();
 }
 
+/// Prepares the validation sequences: with node errors, without missing devices or parts.
 void FuseTask::make_judged() {
   judged_.clear();
   for (std::size_t i = 0; i < data_.pose.judged.size(); ++i) {
@@ -65,6 +66,7 @@ void FuseTask::make_judged() {
   }
 }
 
+/// Appends the features and the truth of one sequence to a batch.
 void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, Rows& rows) const {
   const FuseFeatures features = fuse_features(layout_, input);
   rows.input.insert(rows.input.end(), features.input.begin(), features.input.end());
@@ -89,6 +91,7 @@ void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, Rows& r
   }
 }
 
+/// Standardises the inputs, and copies a batch to the device.
 FuseTask::Batch FuseTask::tensors_of(Rows rows, std::size_t batch, std::size_t frames) const {
   const std::int64_t b = whole(batch), t = whole(frames);
   if (!input_mean_.empty()) standardise(input_mean_, input_scale_, rows.input);
@@ -122,6 +125,7 @@ FuseTask::Batch FuseTask::draw(std::uint64_t seed, std::uint64_t step,
   return tensors_of(std::move(rows), batch, crop);
 }
 
+/// Finds mean and scale of each channel from a few drawn batches.
 void FuseTask::find_scales() {
   const std::size_t channels = layout_.channels();
   ChannelSums sums(channels);
@@ -134,6 +138,8 @@ void FuseTask::find_scales() {
   }
 }
 
+/// The weighted sum of the errors of rotations, of the root's place, of the joints' positions and
+/// of their accelerations.
 torch::Tensor FuseTask::loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) {
   const BatchPart part = share().part(whole(training_.batch));
   const Batch batch = draw(seed, step, part);

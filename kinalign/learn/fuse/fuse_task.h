@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fusion as a task: crops of what both devices say, and the loss of a pose in their world.
+// Fusion as a training task: crops of both devices' data, and the loss of a pose in their world.
 #pragma once
 
 #include "kinalign/learn/fuse/fuse_data.h"
@@ -15,7 +15,8 @@ namespace kinalign {
 
 struct FuseTraining {
   PoseLoss loss{};
-  double place = 1.0;  // weight of the root's distance to its place, dm; where a Kinect sees it
+  /// Weight of the root's position error, dm; only in frames in which the Kinect sees the root.
+  double place = 1.0;
   FuseDraws draws{};
   Variety variety{};
   std::size_t batch = 32, crop = 64;
@@ -27,27 +28,29 @@ class FuseTask : public TrainingTask {
   FuseTask(FuseLayout layout, FuseTraining training, const FuseData& data, torch::Device device);
 
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override;
-  /// Position error about the root, cm, with both devices, or with the one that the method sees.
+  /// Mean position error relative to the root, cm, with the devices that the method uses.
   std::optional<double> judge(const TorchNetwork& network) override;
 
   struct Batch {
-    torch::Tensor input;      // [B,T,C] standardised
-    torch::Tensor rotations;  // [B,T,bones+1,3,3] in the space of the frame, the root's last
-    torch::Tensor offsets;    // [B,J,3] m
-    torch::Tensor way;        // [B,T,3] dm from the Kinect's SpineBase to the root, in that space
-    torch::Tensor placed;     // [B,T] 1 where the Kinect sees it
+    torch::Tensor input;  // [B,T,C] standardised
+    /// [B,T,bones+1,3,3] in the space of the frame; the last one is the root's.
+    torch::Tensor rotations;
+    torch::Tensor offsets;  // [B,J,3] m
+    /// [B,T,3] dm from the Kinect's SpineBase to the root, in the space of the frame.
+    torch::Tensor way;
+    torch::Tensor placed;  // [B,T] 1 if the Kinect sees SpineBase, else 0
   };
   Batch draw(std::uint64_t seed, std::uint64_t step) const { return draw(seed, step, all()); }
-  /// These examples of it.
+  /// Only the given part of the batch.
   Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
 
-  /// In place of those of the data: a model's, to go on from it.
+  /// Replaces the scales found from the data by those of a model, to continue its training.
   void use_scales(std::vector<float> mean, std::vector<float> scale);
   const std::vector<float>& input_mean() const { return input_mean_; }
   const std::vector<float>& input_scale() const { return input_scale_; }
 
  private:
-  /// Arrays of a batch while it is filled.
+  /// Arrays of a batch under construction.
   struct Rows {
     std::vector<float> input, offsets, way, placed;
     std::vector<Turn> rotations;
@@ -66,7 +69,7 @@ class FuseTask : public TrainingTask {
   CropDraws crops_;
   BodyTensors body_;
   std::vector<float> input_mean_, input_scale_;
-  std::vector<Batch> judged_;  // a sequence each
+  std::vector<Batch> judged_;  // one sequence each
 };
 
 }  // namespace kinalign

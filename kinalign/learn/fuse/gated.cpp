@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ours: a branch of temporal convolutions for each device, and a gate that looks at what each
-// device shows and weighs the branches, channel by channel. A Kinect's joint that is missing or
-// guessed closes its part of the gate, and the nodes answer.
+// Our network: a branch of temporal convolutions for each device, and a gate that weighs the
+// branches channel by channel, depending on both devices' data. If a joint of the Kinect is missing
+// or guessed, its part of the gate closes and the nodes decide.
 #include "kinalign/learn/fuse/fuse_methods.h"
 
 namespace kinalign {
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t gated_width = 160;
 
-/// x + linear(dropout(gelu(conv(x)))), over five frames that lie `dilation` apart.
+/// x + linear(dropout(gelu(conv(x)))), where conv covers five frames, `dilation` apart.
 Layer gated_block(std::size_t dilation, bool causal) {
   return {.kind = LayerKind::sum,
           .branches = {{},
@@ -24,7 +24,7 @@ Layer gated_block(std::size_t dilation, bool causal) {
                         {.kind = LayerKind::linear, .out = gated_width}}}};
 }
 
-/// The channels of a device from `begin` on, its convolutions, and its half of the gate.
+/// One device's channels from `begin` on, their convolutions, and their half of the gate.
 std::vector<Layer> gated_branch(std::size_t begin, std::size_t channels, bool causal) {
   return {
       {.kind = LayerKind::product,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // BRA: Li, Zhou, Zhu, Xie, Zhao, Liu, «Bidirectional recurrent autoencoder for 3D skeleton motion
-// data refinement», Computers & Graphics 81, 2019. Layer sizes are not published; these are those
-// of the nearest public successor. BRA-P: Li, Zhu, Zheng, Li, IEEE Access 8, 2020: the same network
-// with a loss on the features of a second one that knows clean motion, and that network behind it.
+// data refinement», Computers & Graphics 81, 2019. Its layer sizes are not published; these are
+// those of the nearest published successor. BRA-P: Li, Zhu, Zheng, Li, IEEE Access 8, 2020: the
+// same network with a loss on the features of a second network that has learnt clean motion. At use
+// the second network refines the answer of the first.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -13,7 +14,7 @@ constexpr std::size_t bra_units = 256;
 
 Layer bra_recurrent() { return {.kind = LayerKind::lstm, .out = bra_units, .bidirectional = true}; }
 
-/// Positions alone; encoder and decoder are one bidirectional LSTM each.
+/// Uses positions only; encoder and decoder are one bidirectional LSTM each.
 Architecture bra_architecture(const DenoiseLayout& layout) {
   return {layout.channels(),
           {{.kind = LayerKind::slice, .out = 3 * layout.inputs.size()},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // CNN: the convolutional autoencoder of Holden, Saito, Komura, «A deep learning framework for
-// character motion synthesis and editing», SIGGRAPH 2016. Paired mode: rough in, clean out.
-// Manifold mode, as published: it learns clean motion alone, from inputs a quarter of which are
-// dropped; a rough motion comes out as the clean one that its code stands for.
+// character motion synthesis and editing», SIGGRAPH 2016. The paired form learns from rough input
+// and clean output. The manifold form, as published, learns from clean motion only, with a quarter
+// of its inputs dropped; at use it maps a rough motion to the clean motion with the same code.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t cnn_hidden = 256, cnn_kernel = 25;
 
-/// What the network sees, its code, and the answer.
+/// Input channels `seen`, the code, and the answer.
 Architecture autoencoder(const DenoiseLayout& layout, const Layer& seen) {
   return {layout.channels(),
           {seen,
@@ -24,12 +24,12 @@ Architecture autoencoder(const DenoiseLayout& layout, const Layer& seen) {
            {.kind = LayerKind::conv, .out = layout.answers(), .kernel = cnn_kernel}}};
 }
 
-/// Positions and their differences.
+/// Uses positions and their differences.
 Architecture cnn_architecture(const DenoiseLayout& layout) {
   return autoencoder(layout, {.kind = LayerKind::slice, .out = 6 * layout.inputs.size()});
 }
 
-/// Positions of the truth's joints, which a Kinect's stand for at use.
+/// Uses positions of the output joints; at use the Kinect's joints take their place.
 Architecture manifold_architecture(const DenoiseLayout& layout) {
   return autoencoder(layout, chosen_positions(layout));
 }

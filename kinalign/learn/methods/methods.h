@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods that are trained, a file each in this folder.
+// The methods that are trained, one file for each in this folder.
 #pragma once
 
 #include "kinalign/learn/method.h"
@@ -19,7 +19,7 @@ DenoiseMethod smoothnet_method();
 
 std::vector<DenoiseMethod> denoise_methods();
 
-/// Of the input the positions of those joints alone that stand for the outputs, one for each.
+/// A layer that selects, for each output, the position of the input joint that stands for it.
 Layer chosen_positions(const DenoiseLayout& layout);
 
 }  // namespace kinalign

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ours: what the smoothed input joint and the mean offset leave over, corrected by a small
-// convolutional network over 35 frames. The spread of each joint is stated. The second form adds a
-// linear answer over nine frames: better where people, room and camera are those of the training,
-// worse where they are others (docs/models.md).
+// Our network: a small convolutional network over 35 frames corrects the smoothed input joint plus
+// the mean offset. It also states the spread of each joint. The second form adds a linear map of
+// nine frames: it is better for the people, rooms and cameras of the training and worse for others
+// (docs/models.md).
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t refine_width = 128;
 
-/// x + relu(conv(dropout(x))), over three frames that lie `dilation` apart.
+/// x + relu(conv(dropout(x))), where conv covers three frames, `dilation` apart.
 Layer refine_block(std::size_t dilation) {
   return {.kind = LayerKind::sum,
           .branches = {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SmoothNet: Zeng, Yang, Ju, Li, Wang, Xu, «SmoothNet: a plug-and-play network for refining human
 // poses in videos», ECCV 2022, in the size of its released 3DPW configuration. The same weights
-// smooth every coordinate of every joint. As the network knows no joint, what joints are off by on
-// average is added: it stands behind the method `offset`.
+// smooth every coordinate of every joint, so the network can't learn the mean offset of a joint.
+// That offset is added afterwards, as by the method `offset`.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t smooth_window = 32, smooth_hidden = 512, smooth_narrow = 16;
 
-/// x + a narrow network of x.
+/// x + f(x), where f is a network with a narrow middle.
 Layer smooth_block() {
   return {.kind = LayerKind::sum,
           .branches = {{},

@@ -17,7 +17,7 @@ torch::Tensor rotations_of(const torch::Tensor& answers) {
       torch::tensor(std::vector<float>(six_of_identity.begin(), six_of_identity.end()))
           .to(answers.device());
   const auto six = answers.reshape({answers.size(0), answers.size(1), bones, 6}) + identity;
-  // norm() has the gradient 0 at 0; the root of a sum of squares has none.
+  // norm() has the gradient 0 at 0; sqrt() of a sum of squares has none there.
   const auto unit = [&](const torch::Tensor& x) { return x / (x.norm(2, {-1}, true) + least); };
   const auto a = unit(six.slice(3, 0, 3)), second = six.slice(3, 3, 6);
   const auto b = unit(second - (a * second).sum(-1, true) * a);
@@ -43,6 +43,7 @@ torch::Tensor metres_of(const torch::Tensor& vectors) {
   return (vectors.pow(2).sum(-1) + 1e-10).sqrt();
 }
 
+/// Finds the carrier of each joint and the path to each scored joint.
 BodyTensors::BodyTensors(const PoseBody& body, torch::Device device)
     : bones_(whole(body.bones.size())) {
   const Skeleton& skeleton = body.skeleton;

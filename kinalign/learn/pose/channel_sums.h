@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean and deviation of channels over many frames.
+// Mean and standard deviation of channels over many frames.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ class ChannelSums {
  public:
   explicit ChannelSums(std::size_t channels) : sum_(channels, 0.0), squares_(channels, 0.0) {}
 
-  /// `input` [T,C].
+  /// Adds the frames of `input` [T,C].
   void add(const std::vector<float>& input) {
     for (std::size_t i = 0; i < input.size(); ++i) {
       const double value = static_cast<double>(input[i]);

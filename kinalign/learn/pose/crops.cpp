@@ -9,10 +9,10 @@ namespace kinalign {
 
 namespace {
 
-/// A moment between two frames.
+/// A time between two frames.
 struct Moment {
   std::size_t before = 0, after = 0;
-  float share = 0.0F;  // of the way from one to the other
+  float share = 0.0F;  // 0 at `before`, 1 at `after`
 
   template <typename T>
   T between(const T& a, const T& b) const {
@@ -41,8 +41,8 @@ void append_vector(std::vector<float>& out, const Eigen::Vector3f& vector) {
   out.insert(out.end(), vector.begin(), vector.end());
 }
 
-/// What a mirror in the plane x = 0 makes of them. A rotation turns the other way about the
-/// mirrored axis.
+/// The mirror images of vectors and rotations in the plane x = 0. A rotation turns the other way
+/// about the mirrored axis.
 Eigen::Vector3f in_mirror(const Eigen::Vector3f& v) { return {-v.x(), v.y(), v.z()}; }
 Eigen::Vector3f rate_in_mirror(const Eigen::Vector3f& v) { return {v.x(), -v.y(), -v.z()}; }
 Eigen::Quaternionf in_mirror(const Eigen::Quaternionf& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
@@ -51,11 +51,13 @@ Turn in_mirror(const Turn& turn) {
   return signs.asDiagonal() * turn * signs.asDiagonal();
 }
 
-/// Where the crop takes its node, bone or joint `at` from.
+/// The index of the node, bone or joint from which index `at` of the crop is taken.
 std::size_t source_of(const Crop& crop, const std::vector<std::size_t>& partners, std::size_t at) {
   return crop.variation.mirrored ? partners[at] : at;
 }
 
+/// Appends one sample of a node. Accelerations change with the square of the speed, rates with the
+/// speed.
 void append_node(const NodeFrames& nodes, const Moment& moment, std::size_t n,
                  const Variation& variation, NodeFrames& out) {
   const std::size_t a = moment.before * nodes.nodes + n, b = moment.after * nodes.nodes + n;
@@ -124,7 +126,7 @@ JointFrames crop_of(const JointFrames& kinect, const Crop& crop, const Sides& si
     const Moment moment = moment_of(crop, i, kinect.frames());
     for (std::size_t j = 0; j < kinect.joints; ++j) {
       const std::size_t a = moment.before * kinect.joints + j, b = moment.after * kinect.joints + j;
-      // A frame at the moment itself does not need the next one.
+      // If the time is exactly that of a frame, the next frame is not needed.
       const std::uint8_t seen =
           moment.share > 0.0F ? std::min(kinect.seen[a], kinect.seen[b]) : kinect.seen[a];
       const Eigen::Vector3f place =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Crops of sequences, as they are or as another person would have moved: the mirror image, faster
-// or slower, taller or smaller.
+// Crops of sequences, unchanged or as another person would have moved: mirrored, faster or slower,
+// taller or smaller.
 #pragma once
 
 #include "kinalign/learn/pose/pose_data.h"
@@ -13,11 +13,11 @@
 
 namespace kinalign {
 
-/// How far crops are varied.
+/// Limits of the random variation of crops.
 struct Variety {
-  double mirrored = 0.5;  // share of crops
-  double speed = 0.0;     // a crop is faster or slower by up to this share
-  double size = 0.0;      // a body and its way are larger or smaller by up to this share
+  double mirrored = 0.5;  // share of mirrored crops
+  double speed = 0.0;     // a crop is at most this share faster or slower
+  double size = 0.0;      // body and path are at most this share larger or smaller
 };
 
 inline constexpr Variety no_variety{.mirrored = 0.0, .speed = 0.0, .size = 0.0};
@@ -29,30 +29,30 @@ struct Variation {
 
 Variation draw_variation(const Variety& variety, const RandomStream& random);
 
-/// `count` frames from frame `begin` on. The last frame is repeated where the sequence ends sooner.
+/// `count` frames from frame `begin` on. If the sequence is too short, its last frame is repeated.
 struct Crop {
   std::size_t begin = 0, count = 0;
   Variation variation{};
 
-  /// Frames of the sequence that it covers.
+  /// Number of frames of the sequence that the crop covers.
   std::size_t source_frames() const;
 };
 
-/// Left and right of a body: for each node, bone and joint the one on the other side.
+/// For each node, bone and joint its counterpart on the other side of the body.
 struct Sides {
   std::vector<std::size_t> nodes, bones, joints, kinect;
-  /// No node is alone on its side. Other crops are never mirrored.
+  /// True if each node on one side has a counterpart on the other; else crops are never mirrored.
   bool can_mirror = true;
 
   Sides(const PoseBody& body, const std::vector<std::string>& node_names,
         const std::vector<std::string>& kinect_names);
 };
 
-/// In `crop`'s time, size and mirror. Between two frames rotations and vectors are interpolated;
-/// a sample or joint is there where it is in both of them.
+/// The crop, with its speed, size and mirroring applied. Rotations and vectors are interpolated
+/// between two frames; a sample or joint is valid if it is valid in both frames.
 NodeFrames crop_of(const NodeFrames& nodes, const Crop& crop, const Sides& sides);
 JointFrames crop_of(const JointFrames& kinect, const Crop& crop, const Sides& sides);
-/// Nodes, rotations, places and the person's rest offsets.
+/// Crops nodes, rotations, places and the person's rest offsets.
 PoseSequence crop_of(const PoseSequence& sequence, const Crop& crop, const Sides& sides);
 
 }  // namespace kinalign

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // DIP: Huang, Kaufmann, Aksan, Black, Hilliges, Pons-Moll, «Deep inertial poser», SIGGRAPH Asia
-// 2018: a bidirectional LSTM of two layers over rotations and accelerations against the root. It
-// answers with six numbers a bone instead of nine, so that each answer is a rotation. The square
-// distance of matrices stands in place of the published likelihood, whose deviations nothing here
-// uses.
+// 2018: a bidirectional LSTM with two layers, on rotations and accelerations against the root. It
+// outputs six numbers per bone instead of nine, so that each output is a rotation. The loss is the
+// squared distance of matrices instead of the published likelihood, because its deviations are not
+// used here.
 #include "kinalign/learn/pose/pose_methods.h"
 
 namespace kinalign {
 
 namespace {
 
+/// The method's layers with `units` in each direction.
 Architecture dip_layers(const PoseLayout& layout, std::size_t units) {
   const Layer recurrent{.kind = LayerKind::lstm, .out = units, .bidirectional = true};
   return {layout.channels(),
@@ -25,7 +26,7 @@ Architecture dip_layers(const PoseLayout& layout, std::size_t units) {
 
 Architecture dip_architecture(const PoseLayout& layout) { return dip_layers(layout, 256); }
 
-/// The published widths, with the layer of 256 before the answer.
+/// The published widths, with a layer of 256 before the output.
 Architecture dip_512_architecture(const PoseLayout& layout) {
   const Layer recurrent{.kind = LayerKind::lstm, .out = 512, .bidirectional = true};
   return {layout.channels(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From sequences and a method to a model.
+// Trains a model of poses, from sequences and a method.
 #pragma once
 
 #include "kinalign/learn/fit_denoise.h"
@@ -9,22 +9,23 @@
 namespace kinalign {
 
 struct PoseFit {
-  PoseModel model;  // without facts of its data
+  PoseModel model;  // in `facts` only task and method are set
   std::vector<TrainingPoint> points;
 };
 
+/// `from`: a model of the same method to continue from.
 Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const FitOptions& options,
                          TrainingState state, const TrainingHooks& hooks,
                          const PoseModel* from = nullptr);
 
-/// Begins with the network and the scales of `from`.
+/// Starts from the weights and the scales of `from`.
 template <class Task>
 Result<void> go_on_from(const BodyModel& from, Task& task, TorchNetwork& network) {
   task.use_scales(from.input_mean, from.input_scale);
   return take_tensors(from.tensors, "net.", network);
 }
 
-/// Puts what was learnt into a model.
+/// Copies the learnt weights and scales into a model.
 template <class Task>
 void put_learnt(const Task& task, const TorchNetwork& network, const PoseBody& body,
                 BodyModel& out) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ours: a temporal convolutional network over 61 frames. It sees what GlobalPose's inputs hold (Yi
-// et al., 2024: angular velocity, the vertical, the root's own acceleration) and which nodes are
-// valid, and it is trained with the errors of a calibration and with lost nodes.
+// Our network: a temporal convolutional network over 61 frames. Its inputs contain those of
+// GlobalPose (Yi et al., 2024: angular velocity, the vertical, the root's own acceleration) and a
+// flag for each valid node. It is trained with the errors of a calibration and with lost nodes.
 #include "kinalign/learn/pose/pose_methods.h"
 
 namespace kinalign {
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t inertial_width = 192;
 
-/// x + linear(dropout(gelu(conv(x)))), over five frames that lie `dilation` apart.
+/// x + linear(dropout(gelu(conv(x)))), where conv covers five frames, `dilation` apart.
 Layer inertial_block(std::size_t dilation, bool causal) {
   return {.kind = LayerKind::sum,
           .branches = {{},

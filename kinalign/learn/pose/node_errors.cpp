@@ -13,7 +13,7 @@ constexpr double drift_deg_of_a_minute = 3.0;
 
 double radians_of(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-/// Numbers of one stream, one after the other.
+/// Random numbers of one stream, in order.
 class Draws {
  public:
   explicit Draws(const RandomStream& random) : random_(random) {}
@@ -44,14 +44,15 @@ Eigen::Quaternionf turned_by_vector(const Eigen::Vector3f& vector) {
 
 /// Errors of one node that are constant over all frames.
 struct NodeError {
-  Eigen::Quaternionf world, mount;  // before and behind the orientation
-  Eigen::Vector3f leak;             // m/s2
+  // Multiplied to the orientation from the left and from the right.
+  Eigen::Quaternionf world, mount;
+  Eigen::Vector3f leak;  // m/s2, gravity left in the acceleration
   bool lost = false;
 };
 
 NodeError draw_error(const NodeErrors& errors, Draws& draws) {
   const double mount = radians_of(errors.mount_deg), tilt = radians_of(errors.tilt_deg);
-  // Each number is drawn by a statement of its own: C++ leaves the order of arguments open.
+  // One statement for each number: C++ does not define the order in which arguments are evaluated.
   Eigen::Vector3f mount_vector, tilt_vector = Eigen::Vector3f::Zero();
   for (float& value : mount_vector) value = draws.normal(mount);
   tilt_vector.x() = draws.normal(tilt);
@@ -68,6 +69,7 @@ NodeError draw_error(const NodeErrors& errors, Draws& draws) {
   return out;
 }
 
+/// Applies one node's errors to sample `at` and adds noise.
 void put_error(const NodeErrors& errors, const NodeError& error, std::size_t at, Draws& draws,
                NodeFrames& nodes) {
   float* q = &nodes.orientation[4 * at];

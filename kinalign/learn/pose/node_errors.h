@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random errors of calibrated nodes: those that a T-pose leaves, and the drift of the heading
-// since.
+// Random errors of calibrated nodes: those that remain after a T-pose, and heading drift since
+// then.
 #pragma once
 
 #include "kinalign/models/pose/pose_features.h"
@@ -11,25 +11,26 @@
 
 namespace kinalign {
 
-/// Each node's errors are constant over the frames; the noise is drawn for each sample. The
-/// defaults are the errors that a calibration leaves.
+/// Each node's errors are constant over the frames; noise is drawn for each sample. The defaults
+/// are the errors that remain after a calibration.
 struct NodeErrors {
-  double mount_deg = 5.0;     // of the node on its bone, about each axis, 1 sigma
-  double tilt_deg = 1.5;      // of the vertical, about x and z, 1 sigma
-  double yaw_deg = 10.0;      // of the heading, even within +- this
-  double drift_deg = 0.0;     // of the heading since the calibration, 1 sigma
+  double mount_deg = 5.0;     // rotation of the node on its bone, about each axis, 1 sigma
+  double tilt_deg = 1.5;      // error of the vertical, about x and z, 1 sigma
+  double yaw_deg = 10.0;      // heading error, uniform within +- this
+  double drift_deg = 0.0;     // heading drift since the calibration, 1 sigma
   double gravity_leak = 0.5;  // share of the gravity that the tilt leaves in the acceleration
   double acceleration_noise = 0.15;  // m/s2, 1 sigma
   double angular_noise = 0.02;       // rad/s, 1 sigma
-  double lost_share = 0.1;           // of the leaves: no sample at all
+  double lost_share = 0.1;           // share of the leaves that have no sample at all
 };
 
 /// No errors.
 NodeErrors no_node_errors();
-/// The drift of a heading that walks by 3 degrees in a minute, degrees, 1 sigma.
+/// The drift after a time of a heading that drifts 3 degrees in a minute (random walk), degrees, 1
+/// sigma.
 double drift_after(double minutes);
 
-/// `nodes` with errors. The last node, the root's, is never lost. The same stream gives the same
+/// Adds errors to `nodes`. The last node, the root's, is never lost. The same stream gives the same
 /// errors.
 NodeFrames with_errors(NodeFrames nodes, const NodeErrors& errors, const RandomStream& random);
 

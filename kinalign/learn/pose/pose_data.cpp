@@ -19,11 +19,11 @@ namespace {
 using Mat3 = Eigen::Matrix3d;
 
 constexpr double pose_rate_hz = 30.0;
-constexpr double acceleration_reach_s = 4.0 / 60.0;  // about the band of a node at 15 Hz
+constexpr double acceleration_reach_s = 4.0 / 60.0;  // similar to the band of a node at 15 Hz
 constexpr double least_seconds = 1.5;
 constexpr std::size_t least_upright = 60;  // frames
 
-/// A node's place: on a bone, at a share of the way to another joint, moved by a lever.
+/// A node's place: on a bone, a share of the way to another joint, plus a lever.
 struct NodePlace {
   std::string_view name, bone, towards;
   double share;
@@ -39,17 +39,17 @@ constexpr std::array<NodePlace, 6> node_places{{
     {"waist", "root", "root", 0.0, {0.0, 0.05, -0.1}},
 }};
 
-/// Indices into the joints of the file.
+/// A node's place with indices into pose_joints.
 struct NodeJoints {
   std::size_t bone, towards;
   double share;
   Vec3 lever;
 };
 
-/// Indices are those of pose_joints.
+/// A file's skeleton. Indices are those of pose_joints.
 struct FileSkeleton {
   PoseSkeleton pose;
-  std::vector<std::size_t> bones;  // [pose_bones] the joint of that name
+  std::vector<std::size_t> bones;  // [pose_bones] index of the joint with the bone's name
   std::vector<NodeJoints> nodes;
   std::size_t head = 0;
 };
@@ -63,6 +63,7 @@ std::vector<std::string> pose_joint_names() {
 
 std::vector<int> pose_joint_parents() { return pose_body({}).skeleton.parents; }
 
+/// The joints that carry and turn a node of that name; fails for an unknown name.
 Result<NodeJoints> node_joints(const std::string& node) {
   const auto place = std::find_if(node_places.begin(), node_places.end(),
                                   [&](const NodePlace& one) { return one.name == node; });
@@ -90,7 +91,8 @@ Result<FileSkeleton> file_skeleton(const Windows& windows, const std::string& st
   return out;
 }
 
-/// A stretch of the file: global rotations and positions of the pose's joints, frame by frame.
+/// A stretch of the file: global rotations and positions of the joints of pose_joints, frame by
+/// frame.
 class GlobalFrames {
  public:
   static Result<GlobalFrames> make(const FileSkeleton& skeleton, const Stretch& stretch,
@@ -111,7 +113,7 @@ class GlobalFrames {
 
   std::size_t frames() const { return rotations_->size() / (4 * skeleton_->file_joints()); }
 
-  /// Goes to frame `t`.
+  /// Selects frame `t`.
   void go_to(std::size_t t) {
     const std::size_t joints = skeleton_->file_joints();
     file_rotations_.resize(joints);
@@ -130,7 +132,7 @@ class GlobalFrames {
     frame_ = t;
   }
 
-  /// [pose_joints] global rotations, as the file has them.
+  /// [pose_joints] global rotations, with the file's own zero.
   const std::vector<Mat3>& rotations() const { return all_rotations_; }
 
   Vec3 position(std::size_t joint) const {
@@ -157,14 +159,14 @@ class GlobalFrames {
   std::vector<Mat3> file_rotations_, all_rotations_;
 };
 
-/// Nodes without errors at the file's rate.
+/// Nodes without errors, at the file's rate.
 struct NodeMotion {
   std::vector<Mat3> orientation;  // [T,N]
   std::vector<Vec3> position;     // [T,N] m
 };
 
-/// Angular velocity in the turned space, rad/s, between two frames that lie `step_s` apart. Exact
-/// to the third order of the angle.
+/// Angular velocity in the rotated space, rad/s, from two frames `step_s` apart. Exact up to the
+/// third order of the angle.
 Vec3 angular_velocity(const Mat3& from, const Mat3& to, double step_s) {
   const Mat3 turn = from.transpose() * to;
   return Vec3(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) /
@@ -175,7 +177,7 @@ void append(std::vector<float>& out, const Vec3& vector) {
   for (const double value : vector) out.push_back(static_cast<float>(value));
 }
 
-/// Makes sequences at 30 Hz.
+/// Makes sequences at 30 Hz from the frames of a file.
 class SequenceMaker {
  public:
   SequenceMaker(const FileSkeleton& skeleton, double file_rate_hz)
@@ -184,6 +186,7 @@ class SequenceMaker {
         stride_(static_cast<std::size_t>(std::lround(file_rate_hz / pose_rate_hz))),
         reach_(static_cast<std::size_t>(std::lround(file_rate_hz * acceleration_reach_s))) {}
 
+  /// Frames near both ends are dropped, because the acceleration needs frames on both sides.
   PoseSequence make(GlobalFrames frames, const std::vector<Mat3>& turns) const {
     PoseSequence out;
     out.nodes.nodes = skeleton_.nodes.size();
@@ -227,6 +230,8 @@ class SequenceMaker {
     }
   }
 
+  /// Appends the sample of node n in frame t. Its acceleration is the second difference over
+  /// `reach_` frames to each side.
   void add_sample(const NodeMotion& motion, std::size_t t, std::size_t n, NodeFrames& out) const {
     const std::size_t count = skeleton_.nodes.size();
     const auto at = [&](std::size_t frame) { return frame * count + n; };
@@ -255,6 +260,7 @@ bool is_all_valid(const Stretch& stretch, const std::string& stream) {
          std::all_of(valid->second.begin(), valid->second.end(), [](float v) { return v > 0.0F; });
 }
 
+/// The rest offsets of the person of a stretch.
 Result<std::vector<Vec3>> own_offsets(const Windows& windows, const std::string& stream,
                                       const Stretch& stretch, std::size_t joints) {
   const auto found = windows.rest_offsets.find(stream);
@@ -270,7 +276,7 @@ Result<std::vector<Vec3>> own_offsets(const Windows& windows, const std::string&
   return out;
 }
 
-/// The mean body of the people in `sequences`, each person once.
+/// The mean body of the people in `sequences`; each person counts once.
 std::vector<Vec3> mean_offsets(const std::vector<PoseSequence>& sequences) {
   std::map<std::string, const PoseSequence*> people;
   for (const PoseSequence& one : sequences) people.emplace(one.subject, &one);
@@ -282,7 +288,7 @@ std::vector<Vec3> mean_offsets(const std::vector<PoseSequence>& sequences) {
   return out;
 }
 
-/// Who and what a stretch shows.
+/// The take's facts (name, person, action) for a stretch.
 WindowsFacts::Take take_of(const Windows& windows, const Stretch& stretch) {
   const auto& takes = windows.facts.takes;
   return stretch.take < takes.size() ? takes[stretch.take] : WindowsFacts::Take{};
@@ -295,7 +301,8 @@ std::vector<PoseSequence>& part_of(const Windows& windows, const Stretch& stretc
   return name == "validation" ? out.judged : out.tested;
 }
 
-/// Upright frames of each person, over all parts: people's zeros come from their own frames.
+/// Upright frames of each person, over all parts. A person's zero is found from all frames of that
+/// person.
 Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windows,
                                                             const FileSkeleton& skeleton,
                                                             const std::string& stream) {
@@ -312,7 +319,7 @@ Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windo
   return out;
 }
 
-/// Of the trunk by the upright stand, of limbs by CMU's zero.
+/// The change of each joint's zero: of the trunk by the upright stand, of limbs by CMU's rest pose.
 std::vector<Mat3> all_turns(const UprightFrames& person, const PoseSkeleton& skeleton,
                             const std::vector<Vec3>& offsets) {
   std::vector<Mat3> out = person.turns();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a model does on people it was not trained on, with nodes that are less and less good. The
+// Measures a model on people who were not in the training, with nodes of decreasing quality. The
 // errors are the same for every model.
 #pragma once
 
@@ -14,14 +14,16 @@
 namespace kinalign {
 
 struct PoseMark {
-  std::string nodes;    // "clean", "calibrated", "20 minutes later", "wrist_left lost"
-  PoseErrors answer;    // as the network says it
-  PoseErrors smoothed;  // as PoseSolver::solve gives it
+  /// State of the nodes: "clean", "calibrated", "20 minutes later", "wrist_left lost".
+  std::string nodes;
+  PoseErrors answer;                           // the network's answer
+  PoseErrors smoothed;                         // the result of PoseSolver::solve()
   std::map<std::string, PoseErrors> people{};  // smoothed, by person
 };
 
-/// A row for each state of the nodes, over data.tested. `lost`: the leaf that is lost in the last
-/// row. Fails where the model's nodes or bones are not the data's, or nobody is there to be tested.
+/// One result for each state of the nodes, over data.tested. `lost`: the leaf that is lost in the
+/// last result. Fails if the model's nodes or bones are not those of the data, or if there is no
+/// test person.
 Result<std::vector<PoseMark>> pose_marks(PoseSolver& solver, const PoseData& data,
                                          std::size_t lost);
 

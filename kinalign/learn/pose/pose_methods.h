@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods that answer with a pose, a file each.
+// Methods that estimate a pose, one file for each.
 #pragma once
 
 #include "kinalign/learn/pose/pose_task.h"
@@ -14,12 +14,12 @@ namespace kinalign {
 struct PoseMethod {
   std::string_view name, summary, source;
   PoseInputs inputs = PoseInputs::ours;
-  /// From the layout's channels to its answers.
+  /// The network from the layout's channels to its answers.
   Architecture (*architecture)(const PoseLayout& layout);
   PoseTraining training;
   TrainingOptions options;
-  /// Sets the weights that training begins with, where they are not random ones; else nullptr. A
-  /// method of 0 steps keeps them.
+  /// Sets the initial weights if they are not random; else nullptr. A method with 0 steps keeps
+  /// these weights.
   void (*begin)(const PoseTask& task, std::uint64_t seed, TorchNetwork& network) = nullptr;
 };
 

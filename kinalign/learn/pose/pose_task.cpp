@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double length_power = 0.75;  // long takes repeat themselves
+constexpr double length_power = 0.75;  // below 1, because long takes repeat themselves
 constexpr std::uint64_t judging_seed = 5;
 constexpr float least_scale = 1e-3F;
 
@@ -30,6 +30,7 @@ CropDraws::CropDraws(const std::vector<PoseSequence>& sequences, const Sides& si
   }
 }
 
+/// Draws a sequence, a variation and a start such that the crop fits into the sequence if possible.
 CropDraws::Drawn CropDraws::draw(const RandomStream& random, std::size_t frames,
                                  const Variety& variety) const {
   const double weight = random.uniform(0, 0) * reached_.back();
@@ -63,6 +64,8 @@ void PoseTask::use_scales(std::vector<float> mean, std::vector<float> scale) {
   make_judged();
 }
 
+/// Makes the inputs of the judged people once: with the same errors at each judgement, so that
+/// judgements can be compared.
 void PoseTask::make_judged() {
   judged_.clear();
   for (std::size_t i = 0; i < data_.judged.size(); ++i) {
@@ -76,6 +79,8 @@ void PoseTask::make_judged() {
   }
 }
 
+/// Finds each input channel's mean and deviation over the training people, if the method
+/// standardises its inputs.
 void PoseTask::find_scales() {
   const std::size_t channels = layout_.channels();
   input_mean_.assign(channels, 0.0F);
@@ -93,6 +98,7 @@ void PoseTask::standardise(std::vector<float>& input) const {
   if (training_.standardised) kinalign::standardise(input_mean_, input_scale_, input);
 }
 
+/// Draws each crop from its own random streams, so that any process can draw any part.
 PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step,
                                const BatchPart& part) const {
   const auto first = static_cast<std::size_t>(part.begin);
@@ -122,6 +128,8 @@ PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step,
   return out;
 }
 
+/// The weighted sum of the errors of rotations, of the joints' positions and of their
+/// accelerations.
 torch::Tensor PoseTask::loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) {
   const BatchPart part = share().part(whole(training_.batch));
   const Batch batch = draw(seed, step, part);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses from nodes as a task: crops of sequences whose nodes get fresh errors, and their loss.
+// Poses from nodes as a training task: crops of sequences with fresh node errors, and their loss.
 #pragma once
 
 #include "kinalign/learn/pose/body_tensors.h"
@@ -15,9 +15,9 @@
 
 namespace kinalign {
 
-/// Weights of the parts.
+/// Weights of the terms of the loss.
 struct PoseLoss {
-  double matrices = 1.0;       // square distance of rotation matrices, summed over their entries
+  double matrices = 1.0;       // squared distance of rotation matrices, summed over their entries
   double position = 5.0;       // distance of joints, m
   double acceleration = 20.0;  // distance of the joints' second differences, m
 };
@@ -26,11 +26,11 @@ struct PoseTraining {
   PoseLoss loss{};
   NodeErrors errors{};        // drawn anew for each crop
   Variety variety{};          // drawn anew for each crop
-  bool standardised = false;  // channels with mean 0 and deviation 1, as DIP has them
+  bool standardised = false;  // scale channels to mean 0 and deviation 1, as DIP does
   std::size_t batch = 32, crop = 64;
 };
 
-/// Draws sequences of the parts that are learnt from, longer ones more often, and crops of them.
+/// Draws training sequences, longer ones more often, and random crops of them.
 class CropDraws {
  public:
   CropDraws(const std::vector<PoseSequence>& sequences, const Sides& sides);
@@ -44,7 +44,7 @@ class CropDraws {
  private:
   bool can_mirror_;
   std::vector<std::size_t> frames_;
-  std::vector<double> reached_;  // sums of the weights with which they are drawn
+  std::vector<double> reached_;  // cumulative weights of the sequences
 };
 
 class PoseTask : public TrainingTask {
@@ -53,7 +53,7 @@ class PoseTask : public TrainingTask {
   PoseTask(PoseLayout layout, PoseTraining training, const PoseData& data, torch::Device device);
 
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override;
-  /// Position error, cm, and a tenth of the SIP error, degrees, with the errors of a calibration.
+  /// Position error, cm, plus a tenth of the SIP error, degrees, with the errors of a calibration.
   std::optional<double> judge(const TorchNetwork& network) override;
 
   struct Batch {
@@ -62,9 +62,9 @@ class PoseTask : public TrainingTask {
     torch::Tensor offsets;    // [B,J,3] m
   };
   Batch draw(std::uint64_t seed, std::uint64_t step) const { return draw(seed, step, all()); }
-  /// These examples of it.
+  /// Only the given part of the batch.
   Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
-  /// In place of those of the data: a model's, to go on from it.
+  /// Replaces the scales found from the data by those of a model, to continue its training.
   void use_scales(std::vector<float> mean, std::vector<float> scale);
   const std::vector<float>& input_mean() const { return input_mean_; }
   const std::vector<float>& input_scale() const { return input_scale_; }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One zero for the rotations of all people. A motion capture system calibrates each person anew, so
-// the same bone name is not the same direction: a pelvis lies up to 24 degrees off the vertical in
-// a person who stands upright, a head up to 57. Here an upright stand is the identity for root,
-// trunk and head. Limbs keep their zero, the direction of their bone. No joint moves.
+// Gives the rotations of all people the same zero. A motion capture system calibrates each person
+// anew, so the same bone name has different directions: in upright persons the pelvis is up to 24
+// degrees off the vertical, the head up to 57. Here the upright stand is the identity for root,
+// trunk and head. Limbs keep their zero, the direction of their bone. Positions of joints do not
+// change.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -14,19 +15,20 @@
 
 namespace kinalign {
 
-/// Frames in which a person stands upright, summed over all takes of that person.
+/// Averages over frames in which a person stands upright, from all takes of that person.
 class UprightFrames {
  public:
-  /// `joint_names` [J] are CMU's; joint 0 is the root.
+  /// `joint_names` [J]: CMU's names; joint 0 is the root.
   explicit UprightFrames(const std::vector<std::string>& joint_names);
 
-  /// Counts a frame if its head is within 20 degrees above its root. `rotations` [J] global,
-  /// `root_to_head` m.
+  /// Counts a frame if the head is above the root within 20 degrees of the vertical. `rotations`
+  /// [J]: global. `root_to_head`: m.
   void add(std::span<const Eigen::Matrix3d> rotations, const Vec3& root_to_head);
 
   std::size_t count() const { return count_; }
 
-  /// For each joint the turn X [J]: its rotation G becomes G X. Needs one frame at least.
+  /// For each joint [J] the rotation X that changes its zero: its rotation G becomes G X. Needs at
+  /// least one frame.
   std::vector<Eigen::Matrix3d> turns() const;
 
  private:
@@ -36,7 +38,8 @@ class UprightFrames {
   std::size_t count_ = 0;
 };
 
-/// Offsets turn with the bone that carries them: X of the parent, transposed, before each.
+/// The rest offsets for the changed zeros: each offset is rotated by the transposed X of its
+/// parent.
 std::vector<Vec3> turned_offsets(const std::vector<int>& parents,
                                  const std::vector<Vec3>& rest_offsets,
                                  const std::vector<Eigen::Matrix3d>& turns);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A linear map of eleven stacked frames, after Wouda, Giuberti, Bellusci, Veltink, «Estimation of
-// full-body poses using only five inertial sensors», Sensors 16(12), 2016, who learn from stacked
-// orientations, too. Its weights are those of a convolution, found by ridge regression.
+// full-body poses using only five inertial sensors», Sensors 16(12), 2016, which also learns from
+// stacked orientations. The weights are those of a convolution, found by ridge regression.
 #include "kinalign/learn/pose/pose_methods.h"
 #include "kinalign/learn/tensors.h"
 
@@ -20,7 +20,8 @@ Architecture wouda_architecture(const PoseLayout& layout) {
   return {layout.channels(), {wouda_layer(layout)}};
 }
 
-/// Rows [B T, C taps + 1] as the convolution sees them: channel by channel its taps, then a 1.
+/// Rows [B T, C taps + 1] in the order of the convolution's weights: all taps channel by channel,
+/// then a 1.
 torch::Tensor stacked(const torch::Tensor& input, const Layer& conv) {
   const std::int64_t reach = whole(conv.kernel) - 1, before = conv.causal ? reach : reach / 2;
   const auto padded = torch::constant_pad_nd(input.transpose(1, 2), {before, reach - before});
@@ -29,11 +30,11 @@ torch::Tensor stacked(const torch::Tensor& input, const Layer& conv) {
   return torch::cat({rows, torch::ones({rows.size(0), 1}, rows.options())}, 1);
 }
 
-/// Ridge regression on batches drawn from `seed`, without gradients.
+/// Sets the weights by ridge regression on batches drawn from `seed`, without gradients.
 void begin_wouda(const PoseTask& task, std::uint64_t seed, TorchNetwork& network) {
   const Layer& conv = network.architecture().layers[0];
   torch::NoGradGuard guard;
-  // (squares + ridge) W = products, both summed over all frames.
+  // The solution W of (squares + ridge) W = products; both matrices are sums over all frames.
   torch::Tensor squares, products;
   double frames = 0.0;
   for (std::uint64_t step = 0; step < ridge_batches; ++step) {
@@ -48,7 +49,7 @@ void begin_wouda(const PoseTask& task, std::uint64_t seed, TorchNetwork& network
     frames += static_cast<double>(rows.size(0));
   }
   auto ridge = torch::full({squares.size(0)}, ridge_strength * frames, squares.options());
-  ridge.slice(0, ridge.size(0) - 1).zero_();  // the constant is free
+  ridge.slice(0, ridge.size(0) - 1).zero_();  // the constant is not penalised
   const auto weights = torch::linalg_solve(squares + torch::diag(ridge), products).t();
   const std::int64_t taps = weights.size(1) - 1;
   torch::Tensor& kept = network.tensors().at("0.weight");

@@ -15,12 +15,13 @@ namespace {
 
 constexpr float degrees = static_cast<float>(std::numbers::pi / 180.0);
 
-/// A bone, the bone above it ("" is the root), and its node.
+/// A bone, its parent bone ("" is the root), and the node it carries.
 struct FilteredBone {
   std::string_view bone, above, node;
 };
 
-/// Those above come first. Bones of the trunk that no Kinect shows turn with the one below.
+/// Parents come before their children. The Kinect shows no direction for some bones of the trunk;
+/// those keep their rotation against the bone below.
 constexpr std::array<FilteredBone, 15> filtered_bones{{
     {"lowerback", "", ""},
     {"upperback", "lowerback", ""},
@@ -39,13 +40,15 @@ constexpr std::array<FilteredBone, 15> filtered_bones{{
     {"rtibia", "rfemur", "ankle_right"},
 }};
 
-/// A FilteredBone with its indices; `above` B: the root.
+/// A FilteredBone with indices. `above` equal to the number of bones means the root.
 struct Part {
   std::size_t bone = 0, above = 0;
   std::optional<SeenBone> seen;
   std::optional<std::size_t> node;
 };
 
+/// The filtered bones that the body has. A bone may have a Kinect direction, a node, both or
+/// neither.
 std::vector<Part> parts_of(const FuseLayout& layout, const PoseBody& body) {
   std::vector<Part> out;
   const auto shown = seen_bones(body, layout.joints);
@@ -68,7 +71,8 @@ JointFrames smoothed_kinect(const FuseInput& input, const Smoothing& smoothing) 
   return out;
 }
 
-/// Goes over the frames. A bone that nothing shows holds to the one above it as it last did.
+/// Filters one frame after another. A bone that no device measures keeps its last rotation against
+/// its parent.
 class BoneFilter {
  public:
   BoneFilter(const FuseLayout& layout, const PoseBody& body, const BoneFilterOptions& options)
@@ -80,6 +84,8 @@ class BoneFilter {
         held_(body.bones.size(), Turn::Identity()),
         world_(body.bones.size() + 1, Turn::Identity()) {}
 
+  /// Turns root and bones in the world for frame t, and appends the pose. The root's node has
+  /// precedence over the Kinect.
   void step(const FuseInput& input, const JointFrames& kinect, std::size_t t, FusedPose& out) {
     Turn& root = world_.back();
     if (const auto node = orientation_at(input.nodes, t, layout_.nodes.leaves())) {
@@ -95,7 +101,7 @@ class BoneFilter {
   }
 
  private:
-  /// Without its node the root turns with the hips and the spine.
+  /// If the root has no valid node, its rotation comes from the Kinect's hips and spine.
   void turn_root(const JointFrames& kinect, std::size_t t, Turn& root) const {
     if (!hips_ || !spine_) return;
     const auto across = direction_at(kinect, t, *hips_), up = direction_at(kinect, t, *spine_);
@@ -107,6 +113,7 @@ class BoneFilter {
     root.col(2) = x.cross(y);
   }
 
+  /// Estimates one bone's rotation in the world. Its parent's rotation of this frame must be known.
   void turn_part(const Part& part, const FuseInput& input, const JointFrames& kinect,
                  std::size_t t) {
     const Turn& above = world_[part.above];
@@ -118,14 +125,15 @@ class BoneFilter {
     if (node) {
       own = node->toRotationMatrix();
     } else {
-      // From rest each time: turns along shortest ways one behind the other would add a twist.
+      // Starts from the rest rotation in each frame: a chain of shortest-way turns would add a
+      // twist.
       own = seen ? above : turned_back_to_rotation(above * held_[part.bone]);
     }
     if (seen) turn_along(part.seen->axis, *seen, node.has_value(), own);
     held_[part.bone] = above.transpose() * own;
   }
 
-  /// Turns `own` towards what the Kinect sees, along the shortest way.
+  /// Turns `own` towards the direction that the Kinect sees, along the shortest way.
   void turn_along(const Eigen::Vector3f& axis, const SeenDirection& seen, bool has_node,
                   Turn& own) const {
     const auto kinect_deg =
@@ -145,8 +153,8 @@ class BoneFilter {
   const BoneFilterOptions& options_;
   std::vector<Part> parts_;
   std::optional<SeenBone> hips_, spine_;
-  std::vector<Turn> held_;   // [B] against the bone above
-  std::vector<Turn> world_;  // [B+1] the last one is the root
+  std::vector<Turn> held_;   // rotations against the parent bone, in the last frame
+  std::vector<Turn> world_;  // rotations in the world; the last element is the root
 };
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr float smoothing_s = 0.15F;  // of the heading that the Kinect sees
-constexpr float least_width_m = 0.15F;
+constexpr float smoothing_s = 0.15F;    // time constant of the heading that the Kinect sees
+constexpr float least_width_m = 0.15F;  // mean width of hips and shoulders in the floor plane
 
 std::size_t place_of_joint(const std::vector<std::string>& joints, std::string_view name) {
   return static_cast<std::size_t>(std::find(joints.begin(), joints.end(), name) - joints.begin());
@@ -54,6 +54,8 @@ FuseFeatureMaker::FuseFeatureMaker(const FuseLayout& layout)
               {place_of_joint(layout.joints, "ShoulderLeft"),
                place_of_joint(layout.joints, "ShoulderRight")}}} {}
 
+/// Updates the space from frame `t`. A body seen from the side has no reliable heading, so its left
+/// direction is not updated.
 void FuseFeatureMaker::find_space(const FuseInput& input, std::size_t t) {
   const JointFrames& kinect = input.kinect;
   Eigen::Vector2f across = Eigen::Vector2f::Zero();
@@ -70,7 +72,7 @@ void FuseFeatureMaker::find_space(const FuseInput& input, std::size_t t) {
   if (const auto root = orientation_at(input.nodes, t, layout_->nodes.leaves())) {
     space_.turn = *root;
   } else if (left_ && left_->norm() > 1e-3F) {
-    // x of the body is its left: the turn about y that brings (1, 0, 0) there.
+    // The body's x axis points to its left: the turn about y that maps (1, 0, 0) to that direction.
     space_.turn = Eigen::AngleAxisf(std::atan2(-left_->y(), left_->x()), Eigen::Vector3f::UnitY());
   }
 }

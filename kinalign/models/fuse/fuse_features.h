@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Channels that a network sees of a Kinect and of inertial nodes, the same in training and at use.
-// Both devices have one grid and one world; each may be absent. All channels are in one space that
-// goes along with the body: the orientation of the root's node where that is valid, else the
-// heading of the hips and shoulders that the Kinect sees.
+// Input channels of a network that fuses a Kinect and inertial nodes, the same in training and at
+// use. Both devices share one grid and one world; each may be absent. All channels are in one space
+// that moves with the body: the orientation of the root's node if it is valid, else the heading of
+// the hips and shoulders that the Kinect sees.
 #pragma once
 
 #include "kinalign/models/joint_frames.h"
@@ -15,7 +15,7 @@
 
 namespace kinalign {
 
-/// T frames of both devices. A device that is absent has no valid sample and no joint that is seen.
+/// T frames of both devices. An absent device has no valid sample and no seen joint.
 struct FuseInput {
   NodeFrames nodes;    // calibrated, [T,N]
   JointFrames kinect;  // [T,J]
@@ -24,26 +24,27 @@ struct FuseInput {
 };
 
 struct FuseLayout {
-  PoseLayout nodes;                 // inputs `ours`; its bones are those that are answered
-  std::vector<std::string> joints;  // [J] the Kinect's (fuse_joints)
+  PoseLayout nodes;                 // inputs must be `ours`; its bones are the network's outputs
+  std::vector<std::string> joints;  // [J] names of the Kinect's joints (fuse_joints)
 
-  /// Position (3) and state of each joint, and whether the root and the body are seen.
+  /// Position (3) and state (1) of each joint, and one flag: is the Kinect's SpineBase seen?
   std::size_t kinect_channels() const { return 4 * joints.size() + 1; }
+  /// The nodes' channels and one flag: is the root's node valid?
   std::size_t node_channels() const { return nodes.channels() + 1; }
   std::size_t channels() const { return kinect_channels() + node_channels(); }
-  /// Six numbers of each bone and of the root, in the space of the frame, and the way from the
+  /// Six numbers for each bone and for the root, in the space of the frame, and the vector from the
   /// Kinect's SpineBase to the root.
   std::size_t answers() const { return 6 * (nodes.bones.size() + 1) + 3; }
 
   bool operator==(const FuseLayout&) const = default;
 };
 
-/// A joint of the Kinect, and the joint of pose_joints that lies there.
+/// A joint of the Kinect and the joint of pose_joints at the same place.
 struct FuseJoint {
   std::string_view kinect, body;
 };
 
-/// Without the tips of hands and the thumbs, which a Kinect only guesses.
+/// Hand tips and thumbs are left out because a Kinect only guesses them.
 inline constexpr std::array<FuseJoint, 21> fuse_joints{{
     {"SpineBase", "root"},     {"SpineMid", "upperback"},    {"Neck", "lowerneck"},
     {"Head", "head"},          {"ShoulderLeft", "lhumerus"}, {"ElbowLeft", "lradius"},
@@ -55,24 +56,25 @@ inline constexpr std::array<FuseJoint, 21> fuse_joints{{
 }};
 std::vector<std::string> fuse_joint_names();
 
-/// Fails where the nodes do not fit (pose_features.h) or a joint that the space is found from is
-/// not there: SpineBase, hips, shoulders.
+/// Fails if the nodes are not valid (pose_features.h) or if a joint is absent that the body's space
+/// needs: SpineBase, hips, shoulders.
 Result<void> validate(const FuseLayout& layout);
 
-/// The space of a frame, and a place to measure from.
+/// The space of one frame, and its origin.
 struct FuseSpace {
-  Eigen::Quaternionf turn = Eigen::Quaternionf::Identity();  // of the space in the world
-  Eigen::Vector3f place = Eigen::Vector3f::Zero();           // m, of the Kinect's SpineBase
+  Eigen::Quaternionf turn = Eigen::Quaternionf::Identity();  // the space's rotation in the world
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();  // m, the Kinect's SpineBase in the world
 };
 
-/// Makes the channels frame after frame. What neither device shows holds.
+/// Makes the channels frame after frame. If neither device shows the heading or the position, the
+/// last one is kept.
 class FuseFeatureMaker {
  public:
   explicit FuseFeatureMaker(const FuseLayout& layout);
 
   /// Fills `out` [channels] from frame `t`.
   void make(const FuseInput& input, std::size_t t, std::span<float> out);
-  /// Of the last frame made.
+  /// The space of the last frame made.
   const FuseSpace& space() const { return space_; }
 
  private:
@@ -81,9 +83,9 @@ class FuseFeatureMaker {
   const FuseLayout* layout_;
   PoseFeatureMaker nodes_;
   std::size_t base_;
-  std::array<std::array<std::size_t, 2>, 2> pairs_;  // left and right: hips, shoulders
+  std::array<std::array<std::size_t, 2>, 2> pairs_;  // {left, right} joints: hips, shoulders
   FuseSpace space_;
-  std::optional<Eigen::Vector2f> left_;  // smoothed, in the floor: x, z
+  std::optional<Eigen::Vector2f> left_;  // smoothed left direction in the floor plane: x, z
 };
 
 struct FuseFeatures {
@@ -91,6 +93,7 @@ struct FuseFeatures {
   std::vector<FuseSpace> space;  // [T]
 };
 
+/// The features of all frames.
 FuseFeatures fuse_features(const FuseLayout& layout, const FuseInput& input);
 
 }  // namespace kinalign

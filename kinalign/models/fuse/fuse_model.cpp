@@ -33,7 +33,7 @@ std::vector<SameJoint> body_joints_of(const std::vector<std::string>& kinect,
   return out;
 }
 
-/// Whether any frame shows the root's place.
+/// True if the Kinect sees at least one joint in any frame.
 bool is_placed(const FuseInput& input) {
   return std::any_of(input.kinect.seen.begin(), input.kinect.seen.end(),
                      [](std::uint8_t seen) { return seen != 0; });
@@ -157,7 +157,7 @@ void Fuser::place_at_seen(const FuseInput& input, std::size_t first, FusedPose& 
   }
 }
 
-/// `first`: the row of `input` that the pose begins at.
+/// Turns the pose towards the measurements. `first`: the row of `input` at which the pose begins.
 void Fuser::turn_to_measured(const FuseInput& input, std::size_t first, FusedPose& pose) const {
   JointFrames smoothed = input.kinect;
   fill_missing(smoothed, false);

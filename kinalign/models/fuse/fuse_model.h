@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model that answers with a person's pose to a Kinect and inertial nodes together: its network,
-// and everything needed to use it. Layout of its file: docs/formats/model.md.
+// A model that estimates a person's pose from a Kinect and inertial nodes together: its network and
+// all settings needed to use it. The file's layout: docs/formats/model.md.
 #pragma once
 
 #include "kinalign/infer/network.h"
@@ -15,7 +15,7 @@
 
 namespace kinalign {
 
-/// Metres of a network's 1, of the root's place against the Kinect's.
+/// Metres per unit of the network's output for the root's position against the Kinect's SpineBase.
 inline constexpr float fuse_place_unit_m = 0.1F;
 
 struct FuseModel : BodyModel {  // task "fuse"
@@ -25,19 +25,20 @@ struct FuseModel : BodyModel {  // task "fuse"
 /// The bytes of a model's file. The same model gives the same bytes.
 std::string write_fuse_model(const FuseModel& model);
 
-/// Fails where the file is no model of this task or its parts do not fit together.
+/// Fails if the file is not a model of this task or its parts do not fit together.
 Result<FuseModel> read_fuse_model(std::string_view bytes, const std::string& name);
 
-/// One frame of a network's answers [answers], brought into the world.
+/// One frame of a network's output, brought into the world.
 struct FusedFrame {
   Eigen::Quaternionf root = Eigen::Quaternionf::Identity();
   Eigen::Vector3f place = Eigen::Vector3f::Zero();
 };
-/// Fills `rotations` [B] against the root.
+/// Converts one frame of a network's output [answers]. Fills `rotations` [B], each against the
+/// root.
 FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
                        std::span<Turn> rotations);
 
-/// What a network says of rows `first` ... `end` - 1 of a sequence.
+/// A network's output for rows `first` ... `end` - 1 of a sequence.
 struct FuseAnswers {
   std::span<const FuseSpace> spaces;  // [T]
   std::span<const float> answers;     // [T,answers]
@@ -51,30 +52,33 @@ class Fuser {
 
   const FuseModel& model() const { return model_; }
 
-  /// `input`: the layout's, at its rate. The network answers to the Kinect alone first; that pose
-  /// shows the nodes' headings (node_headings.h), and with these it answers to both. The answer is
-  /// turned towards what the nodes and the Kinect measure (turn_to_nodes(), turn_to_seen()), placed
-  /// where the Kinect's joints lie, and smoothed.
+  /// Estimates the pose of a sequence. `input`: the layout's channels at its rate. The network
+  /// first runs on the Kinect alone; that pose gives the nodes' headings (node_headings.h). Then
+  /// the network runs on both devices with corrected headings. The result is turned towards the
+  /// measurements of nodes and Kinect (turn_to_nodes(), turn_to_seen()), placed where the
+  /// Kinect's joints lie, and smoothed.
   FusedPose solve(const FuseInput& input) { return solve(input, headings(input)); }
-  /// With headings that were found before.
+  /// The same with known headings.
   FusedPose solve(const FuseInput& input, const std::vector<HeadingState>& headings);
-  /// The headings alone [T,N].
+  /// Only the headings [T,N].
   std::vector<HeadingState> headings(const FuseInput& input);
-  /// The network's answer alone. `input`: with corrected headings.
+  /// Only the network's answer. `input`: with corrected headings.
   FusedPose answer(const FuseInput& input);
 
   const Network& network() const { return network_; }
-  /// The same of these rows, once the network has run.
+  /// The pose of the rows `said.first` ... `said.end` - 1 of a network's output.
   FusedPose pose_of(const FuseAnswers& said) const;
-  /// Turned to what `input` [T] measures, and smoothed. At both ends fewer rows are smoothed over.
+  /// The same pose, turned towards the measurements of `input` [T] and smoothed. Near both ends the
+  /// smoothing uses fewer rows.
   FusedPose measured_pose_of(const FuseAnswers& said, const FuseInput& input) const;
 
-  /// Of solve(): a skeleton with constant bones, at its place in the Kinect's world. Where no
-  /// Kinect has seen anything, x and z of the root are 0 and the lowest joint is at y = 0.
+  /// The result of solve() as a clip: a skeleton with constant bones at its place in the Kinect's
+  /// world. If no Kinect has seen anything, x and z of the root are 0 and the lowest joint is at y
+  /// = 0.
   Clip clip(const FuseInput& input, Time start) { return clip(input, headings(input), start); }
   Clip clip(const FuseInput& input, const std::vector<HeadingState>& headings, Time start);
 
-  /// As PoseSolver::use_body().
+  /// Replaces the model's mean skeleton by that of the person; see PoseSolver::use_body().
   void use_body(Skeleton body) { model_.body.skeleton = std::move(body); }
 
  private:

@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-/// Throws where a member is missing or of another type.
+/// Throws if a member is missing or of another type.
 Result<void> read_fuse_header(const ModelHeader& header, const std::string& name, FuseModel& out) {
   if (out.facts.task != "fuse") {
     return Failure(

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// A bone that a Kinect shows, and its mean length over UI-PRMD's people, m.
+/// A bone that a Kinect shows, and its mean length over UI-PRMD's seven people, m.
 struct KinectBone {
   std::string_view from, to;
   double length;
@@ -24,11 +24,12 @@ constexpr std::array<KinectBone, 7> kinect_bones{{{"SpineBase", "SpineShoulder",
                                                   {"HipRight", "KneeRight", 0.371},
                                                   {"KneeLeft", "AnkleLeft", 0.382},
                                                   {"KneeRight", "AnkleRight", 0.382}}};
-constexpr double legs_of_them = 0.837;  // m, their mean thigh and shank by Vicon
+/// M, mean length of thigh plus shank of UI-PRMD's people by Vicon.
+constexpr double legs_of_them = 0.837;
 constexpr std::size_t least_size_frames = 30;
 constexpr std::uint8_t is_tracked = 2;
 
-/// m; none in too few frames.
+/// The median distance of two joints, m, over frames that track both; empty if fewer than 30 do.
 std::optional<double> median_length(const JointFrames& kinect, std::size_t from, std::size_t to) {
   std::vector<double> lengths;
   for (std::size_t t = 0; t < kinect.frames(); ++t) {

@@ -27,7 +27,7 @@ constexpr std::array<CarriedNode, 5> carried_nodes{{{"wrist_left", "lwrist"},
                                                     {"ankle_right", "rtibia"},
                                                     {"waist", ""}}};
 
-/// The way on a bone that a Kinect sees; of the root across the hips.
+/// The bone that a Kinect sees; for the root the line across the hips.
 std::optional<SeenBone> seen_way(const FuseLayout& layout, const PoseBody& body,
                                  std::string_view bone) {
   if (bone.empty()) return seen_bone(body, layout.joints, "rfemur", "lfemur", "");
@@ -37,6 +37,7 @@ std::optional<SeenBone> seen_way(const FuseLayout& layout, const PoseBody& body,
   return std::nullopt;
 }
 
+/// The matrix C with C w = v x w.
 Eigen::Matrix3d crossing(const Eigen::Vector3d& v) {
   Eigen::Matrix3d out;
   out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
@@ -114,6 +115,8 @@ void HeadingFilter::predict(Filter& filter) const {
   filter.spread(0, 0) += walk * walk / (60.0 * layout_->nodes.rate_hz);
 }
 
+/// One update of the extended Kalman filter. The gate tests a single measurement's spread. The
+/// update uses a larger spread, because errors of successive Kinect frames are correlated.
 void HeadingFilter::measure(Filter& filter, const Eigen::Quaternionf& orientation,
                             const SeenDirection& seen) const {
   const HeadingState now = state_of(filter.mean, filter.spread);
@@ -156,7 +159,7 @@ HeadingState HeadingFilter::state(std::size_t node) const {
   return state_of(filters_[node].mean, filters_[node].spread);
 }
 
-/// Keeps what the filter says frame by frame, and goes back over it.
+/// Runs the filter forward, keeps its state in each frame, and smooths backwards.
 class HeadingSmoother {
  public:
   static std::vector<HeadingState> smoothed(HeadingFilter filter, const NodeFrames& input,
@@ -233,7 +236,7 @@ std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& 
                    heading_of(root->cast<double>()));
   }
   if (static_cast<double>(yaws.size()) < layout.nodes.rate_hz) return std::nullopt;
-  // About the mean direction, so that the median does not depend on where angles wrap.
+  // Angles relative to their mean, so that the median does not depend on where they wrap.
   double sine = 0.0, cosine = 0.0;
   for (const double yaw : yaws) {
     sine += std::sin(yaw);
@@ -248,7 +251,7 @@ std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& 
 
 namespace {
 
-/// The nodes of frame `t` with corrected numbers; `states` [N].
+/// Corrects all nodes of frame `t`; `states` [N].
 void correct_frame(NodeFrames& nodes, std::size_t t, std::span<const HeadingState> states) {
   for (std::size_t n = 0; n < nodes.nodes; ++n) {
     const auto orientation = orientation_at(nodes, t, n);

@@ -10,12 +10,12 @@ namespace kinalign {
 
 namespace {
 
-/// The way on a bone of the body that a Kinect sees.
+/// A bone of the body, and the two joints between which a Kinect sees it.
 struct SeenWay {
   std::string_view bone, from, to;
 };
-/// The trunk's lower bone goes the long way from the root to the neck, and its upper one across the
-/// shoulders: the Kinect's error is 10 degrees and more of a shorter way.
+/// The trunk's lower bone uses the long line from the root to the neck, and its upper bone the line
+/// across the shoulders. The Kinect's error for shorter lines is 10 degrees and more.
 constexpr std::array<SeenWay, 11> seen_ways{{{"lowerback", "root", "lowerneck"},
                                              {"thorax", "rhumerus", "lhumerus"},
                                              {"upperneck", "lowerneck", "head"},
@@ -27,7 +27,9 @@ constexpr std::array<SeenWay, 11> seen_ways{{{"lowerback", "root", "lowerneck"},
                                              {"ltibia", "ltibia", "lfoot"},
                                              {"rfemur", "rfemur", "rtibia"},
                                              {"rtibia", "rtibia", "rfoot"}}};
+// the largest share of an angle, for small angles
 constexpr float seen_share = 0.5F;
+// rad; at this angle the share is halved
 constexpr float far_turn = 0.25F * std::numbers::pi_v<float>;
 
 constexpr float least_length_m = 0.03F;
@@ -43,7 +45,8 @@ std::optional<std::size_t> kinect_joint_at(const std::vector<std::string>& kinec
   return static_cast<std::size_t>(at - kinect.begin());
 }
 
-/// Where a joint lies at rest, all bones unturned, m.
+/// The position of a joint at rest, with all rotations the identity, m; empty if there is no such
+/// joint.
 std::optional<Vec3> rest_place(const Skeleton& skeleton, std::string_view name) {
   const auto at = std::find(skeleton.joint_names.begin(), skeleton.joint_names.end(), name);
   if (at == skeleton.joint_names.end()) return std::nullopt;

@@ -10,19 +10,21 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t remembered_frames = 60;  // of a network that sees the whole sequence
-constexpr std::size_t filled_frames = 15;      // joints that are missing at the window's begin
+constexpr std::size_t remembered_frames = 60;  // kept if the network uses the whole sequence
+/// Extra frames, to fill joints that are missing at the start of the window.
+constexpr std::size_t filled_frames = 15;
 
+// frames on each side of the smoothed one
 std::size_t half(const Smoothing& how) { return how.window / 2; }
 
-/// Frames on each side that are seen beside what the network sees.
+/// Frames on each side that the smoothing uses in addition to the network's.
 std::size_t smoothed_frames(const DenoiseModel& model) {
   return half(model.layout.smoothing) + half(model.steadying.smoothing);
 }
 
-/// The row from which on `rows` differ from `before`, whose frames they begin with. Behind a row
-/// that is the same no earlier one counts: what lies at the window's begin is seen differently as
-/// the window moves on, and was seen better before.
+/// The first row at which the network must run again; `rows` and `before` begin with the same
+/// frames. Only changes after the last equal row count. Rows at the start of the window also change
+/// when the window moves, but their earlier values were computed with more frames and are better.
 std::size_t first_changed(std::span<const float> rows, std::span<const float> before,
                           std::size_t channels) {
   std::size_t row = std::min(rows.size(), before.size()) / channels;
@@ -69,7 +71,7 @@ std::optional<std::vector<float>> LiveCleaner::finish() {
   return joints_at(next_);
 }
 
-/// What the network says of rows `first` ... `end` - 1 [.., Jout, 3], in the body's frames.
+/// The network's joints of rows `first` ... `end` - 1 [.., Jout, 3], in the body's frames.
 std::vector<float> LiveCleaner::positions_of(Seen& seen, DenoiseFeatures features,
                                              std::size_t first, std::size_t end) {
   denoiser_->standardise(features);
@@ -81,7 +83,7 @@ std::vector<float> LiveCleaner::positions_of(Seen& seen, DenoiseFeatures feature
   return out;
 }
 
-/// The answer for that row, as Steadier has it without constant bones.
+/// The answer for `row`, post-processed as by Steadier but without constant bones.
 std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
   const DenoiseModel& model = denoiser_->model();
   const auto width = static_cast<std::ptrdiff_t>(model.layout.answers());
@@ -116,6 +118,7 @@ std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
   return {at, at + width};
 }
 
+/// Answers `row` and removes rows from the window that no later answer needs.
 std::vector<float> LiveCleaner::joints_at(std::size_t row) {
   std::vector<float> out = steadied_at(row);
   const DenoiseLayout& layout = denoiser_->model().layout;

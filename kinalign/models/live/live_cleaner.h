@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model that cleans skeletons frame by frame, some frames late: it runs over a window of the
-// newest frames. Bones have the lengths that they had in the last ten seconds.
+// Runs a model that cleans skeletons on live frames. Answers have a fixed delay, and the network
+// runs over a window of the newest frames. Bone lengths are the medians of the last ten seconds.
 #pragma once
 
 #include "kinalign/infer/window_network.h"
@@ -14,28 +14,29 @@ namespace kinalign {
 
 class LiveCleaner {
  public:
-  static constexpr std::size_t remembered_lengths = 300;  // frames
+  /// Frames, for the bone lengths: 10 s at 30 Hz.
+  static constexpr std::size_t remembered_lengths = 300;
 
-  /// `denoiser` must live longer. `look_ahead`: frames that an answer waits for; more than network
-  /// and smoothing see are not waited for.
+  /// `denoiser` must live longer. `look_ahead`: the delay of an answer in frames. It is reduced to
+  /// the number of later frames that network and smoothing use.
   LiveCleaner(Denoiser& denoiser, std::size_t look_ahead);
 
   std::size_t look_ahead() const { return ahead_; }
 
-  /// Takes the next frame of the layout's inputs. The joints [Jout,3] m of the frame look_ahead()
-  /// earlier; absent before there is one.
+  /// Takes the next frame of the layout's input joints. Returns the joints [Jout,3] m of the frame
+  /// look_ahead() frames earlier; empty if there is no such frame yet.
   std::optional<std::vector<float>> step(const JointFrames& frame);
-  /// No further frames come: the next of those that are left.
+  /// Call when no further frames come: returns the next remaining frame; empty if all are answered.
   std::optional<std::vector<float>> finish();
 
-  /// All answers [T,Jout,3] m as a file has them: each bone has one length over the whole.
+  /// All answers [T,Jout,3] m for a file: each bone has one length over the whole recording.
   std::vector<float> whole() const;
 
  private:
-  /// The window as a network sees it, which is run again only where it has changed.
+  /// The features of the window. The network runs again only for rows that have changed.
   struct Seen {
     WindowNetwork network;
-    std::vector<float> rows{};  // [window, channels] of the run before
+    std::vector<float> rows{};  // [window, channels], from the previous run
   };
 
   std::vector<float> positions_of(Seen& seen, DenoiseFeatures features, std::size_t first,
@@ -45,12 +46,13 @@ class LiveCleaner {
   void forget_first();
 
   Denoiser* denoiser_;
-  std::size_t ahead_, behind_;  // frames of the window on both sides of the one that is answered
+  /// Number of later and of earlier frames in the window, seen from the answered frame.
+  std::size_t ahead_, behind_;
   std::vector<std::size_t> inputs_, outputs_;  // each joint's partner on the other side
   JointFrames window_;
   Seen plain_, mirrored_;
-  std::size_t next_ = 0;        // row of the window that is answered next
-  std::vector<float> answers_;  // of all frames, with bones of any length
+  std::size_t next_ = 0;        // the row of the window that is answered next
+  std::vector<float> answers_;  // all answers so far, before bones get constant lengths
 };
 
 }  // namespace kinalign

@@ -10,9 +10,12 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t remembered_by_network = 60;  // of one that sees the whole sequence
-constexpr std::size_t smoothed_places = 4;  // frames on each side, Smoothing{} of the root's place
-/// Rows before one that it is smoothed over: of places at the window's end, of the Kinect's joints.
+/// Frames kept if the network uses the whole sequence.
+constexpr std::size_t remembered_by_network = 60;
+/// Frames on each side used by Smoothing{} for the root's position.
+constexpr std::size_t smoothed_places = 4;
+/// Earlier rows that smoothing needs: for positions at the window's end, and for the Kinect's
+/// joints.
 constexpr std::size_t smoothed_rows = 9;
 
 template <class T>
@@ -63,7 +66,7 @@ void forget_first(FuseInput& all) {
 
 }  // namespace
 
-/// Appends the network's channels of row `row` of `input`.
+/// Appends the network's channels for row `row` of `input`.
 void LiveFuser::Seen::make(const FuseModel& model, const FuseInput& input, std::size_t row) {
   const std::size_t channels = model.layout.channels(), begin = rows.size();
   rows.resize(begin + channels);
@@ -117,7 +120,7 @@ void LiveFuser::finish(std::vector<FusedFramePose>& out) {
   if (unanswered() > 0) answer_rows(unanswered(), out);
 }
 
-/// One frame into the window, in the Kinect's world.
+/// Moves one frame into the Kinect's world and appends it to the window.
 void LiveFuser::take(FuseInput input) {
   turn_world(input.nodes, *yaw_);
   unexchange(fuser_->model().layout, input);
@@ -126,8 +129,8 @@ void LiveFuser::take(FuseInput input) {
   kinect_.make(fuser_->model(), input, 0);
 }
 
-/// Of the rows before `end`, by the network's answer to the Kinect alone. All later rows have the
-/// headings of now.
+/// Estimates the headings of rows before `end` from the network's answer to the Kinect alone. All
+/// later rows get the newest headings.
 void LiveFuser::find_headings(std::size_t end) {
   const std::size_t bones = fuser_->model().layout.nodes.bones.size();
   const std::size_t nodes = states_.size(), frames = window_.frames();
@@ -148,8 +151,8 @@ void LiveFuser::find_headings(std::size_t end) {
   while (headings_.size() < frames * nodes) append_to(headings_, states_);
 }
 
-/// To the rows before `end`. Rows before next_ were made before; all others have new headings, and
-/// those before `answered` keep them.
+/// The network's answers for rows before `end`. Features of rows before next_ are already made.
+/// Features of later rows are made again with new headings; only those before `answered` are final.
 std::span<const float> LiveFuser::answers_to_both(const FuseInput& corrected, std::size_t answered,
                                                   std::size_t end) {
   const FuseModel& model = fuser_->model();
@@ -163,6 +166,7 @@ std::span<const float> LiveFuser::answers_to_both(const FuseInput& corrected, st
   return both_.network.run(both_.rows, frames, next_, end);
 }
 
+/// Answers the next `count` rows and removes rows from the window that no later answer needs.
 void LiveFuser::answer_rows(std::size_t count, std::vector<FusedFramePose>& out) {
   const std::size_t bones = fuser_->model().layout.nodes.bones.size();
   const std::size_t frames = window_.frames(), end = next_ + count;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model that fuses a Kinect and nodes frame by frame, some frames late: it runs over a window of
-// the newest frames. The headings of the nodes are found by earlier frames alone: those of a frame
-// that is answered stay as they were then, and later ones have the newest.
+// Runs a model that fuses a Kinect and nodes on live frames. Answers have a fixed delay, and the
+// network runs over a window of the newest frames. Node headings are estimated from earlier frames
+// only. An answered frame keeps the headings that it was answered with; later frames in the window
+// get the newest headings.
 #pragma once
 
 #include "kinalign/infer/window_network.h"
@@ -23,37 +24,40 @@ struct FusedFramePose {
 
 class LiveFuser {
  public:
-  /// Frames before both devices show how their worlds are turned are kept so long.
+  /// At most this many frames are kept while the rotation between the two devices' worlds is
+  /// unknown.
   static constexpr std::size_t most_waiting = 1800;
 
-  /// `fuser` must live longer and must not be moved. `look_ahead`: as LiveCleaner has it.
+  /// `fuser` must live longer and must not be moved. `look_ahead`: see LiveCleaner.
   LiveFuser(Fuser& fuser, std::size_t look_ahead);
 
   std::size_t look_ahead() const { return ahead_; }
-  /// Both devices were seen together for a second: only then frames are answered.
+  /// True once the rotation between the devices' worlds is known, which needs one second in which
+  /// both see the person. Frames are answered only then.
   bool is_turned() const { return yaw_.has_value(); }
-  /// The nodes have another calibration from the next frame on: their heading is looked for anew.
+  /// Call when the nodes have a new calibration: their headings are estimated anew from the next
+  /// frame on.
   void begin_headings();
 
-  /// Takes the next frame; `input` holds it alone.
+  /// Takes the next frame; `input` contains only this frame.
   void add(const FuseInput& input);
-  /// Appends the poses that can be answered now; the newest is of the frame look_ahead() before the
-  /// newest one. The network runs once for all of them, however many are due: a program that has
-  /// fallen behind catches up, and its frames see more later ones.
+  /// Appends all poses that can be answered now, up to the frame look_ahead() frames before the
+  /// newest. The network runs once for all of them. A program that has fallen behind thus catches
+  /// up, and its frames use more later frames.
   void answer(std::vector<FusedFramePose>& out);
-  /// No further frames come: the poses that are left.
+  /// Call when no further frames come: appends the remaining poses.
   void finish(std::vector<FusedFramePose>& out);
-  /// Frames that have come and wait for later ones, beside those that wait for a second in which
-  /// both devices are seen.
+  /// Frames in the window that wait for later frames. Frames received before is_turned() are not
+  /// counted.
   std::size_t unanswered() const { return window_.frames() - next_; }
-  /// Frames that were forgotten before both devices were seen.
+  /// Frames dropped because both devices were not seen together in time.
   std::size_t forgotten() const { return forgotten_; }
 
-  /// What the Kinect says of each node's heading [N], at the newest answer.
+  /// The Kinect's estimate of each node's heading [N], at the newest answer.
   const std::vector<HeadingState>& headings() const { return states_; }
 
  private:
-  /// The window as the network sees it: the Kinect alone, or both devices.
+  /// The features of the window, for the Kinect alone or for both devices.
   struct Seen {
     FuseFeatureMaker maker;
     WindowNetwork network;
@@ -71,14 +75,16 @@ class LiveFuser {
   void answer_rows(std::size_t count, std::vector<FusedFramePose>& out);
 
   Fuser* fuser_;
+  // number of later and of earlier frames in the window, seen from the answered frame
   std::size_t ahead_, behind_;
-  std::optional<double> yaw_;  // that brings the nodes' world to the Kinect's
-  FuseInput waiting_;          // frames that no yaw is known for
+  std::optional<double> yaw_;  // rad, rotates the nodes' world to the Kinect's
+  FuseInput waiting_;          // frames received before the yaw is known
   FuseInput window_;
-  Seen kinect_, both_;          // of both_ the maker stands at the row that is answered next
-  std::size_t kinect_run_ = 0;  // rows that the network has seen of the Kinect alone
+  Seen kinect_, both_;  // the state of both_.maker is that of row next_
+  /// Number of rows whose answer for the Kinect alone has been computed.
+  std::size_t kinect_run_ = 0;
   std::vector<HeadingState> headings_;  // [window,N]
-  std::size_t next_ = 0;                // row of the window that is answered next
+  std::size_t next_ = 0;                // the row of the window that is answered next
   std::size_t forgotten_ = 0;
   HeadingFilter filter_;
   std::vector<HeadingState> states_;

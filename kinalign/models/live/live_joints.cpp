@@ -11,8 +11,9 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t joints = kinect_joints.size();
-constexpr double longest_gap_s = 0.2;                    // between rows that are joined by a line
-constexpr Duration kept_rows = std::chrono::seconds(1);  // before the newest frame
+constexpr double longest_gap_s = 0.2;  // longest gap that is interpolated
+/// Age of the oldest kept row, before the newest frame.
+constexpr Duration kept_rows = std::chrono::seconds(1);
 constexpr std::size_t most_rows = 512;
 
 }  // namespace

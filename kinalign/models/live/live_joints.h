@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kinect's joints while they come, put onto the even grid of a model as even_frames() does it.
+// Resamples a Kinect's live joints to the even grid of a model, with the rules of even_frames().
 #pragma once
 
 #include "kinalign/models/even_grid.h"
@@ -12,33 +12,35 @@ namespace kinalign {
 
 class LiveJoints {
  public:
-  /// How long a frame waits for the Kinect's next frame.
+  /// The longest time that a frame waits for the Kinect's next row.
   static constexpr Duration patience = std::chrono::milliseconds(150);
-  /// A Kinect that is silent for longer is not waited for.
+  /// A Kinect without a row for longer than this is not waited for.
   static constexpr Duration silence = std::chrono::seconds(1);
 
-  /// `wanted`: the model's joints; those that a Kinect has not are missing.
+  /// `wanted`: the model's joints. Joints that a Kinect does not have are missing.
   LiveJoints(const std::vector<std::string>& wanted, double rate_hz);
 
-  /// One row of kinect_joints. Rows may overtake each other; one of a stamp that is there already
-  /// is left out.
+  /// Adds one row of kinect_joints. Rows may arrive out of order; a row with a duplicate stamp is
+  /// dropped.
   void add(const PointFrames& row, Time arrival);
 
-  /// The first stamp; absent before it.
+  /// The stamp of the first row; absent before any row.
   const std::optional<Time>& begin() const { return begin_; }
   std::optional<Time> newest() const;
-  /// Whether the frame at `time` need not wait for further rows. `now`: arrival of the newest
-  /// message of any device. A Kinect that has not come yet is not waited for.
+  /// True if the frame at `time` need not wait for further rows. `now`: arrival of the newest
+  /// message of any device. A Kinect that has not sent anything yet is not waited for.
   bool is_ready(Time time, Time now) const;
-  /// The frame at `time`. Times rise from call to call: what no later frame needs is forgotten.
+  /// The frame at `time`. Times must rise from call to call, because rows that no later frame needs
+  /// are dropped.
   JointFrames frame(Time time);
 
  private:
-  std::vector<std::optional<std::size_t>> places_;  // of the wanted joints
+  /// Column of each wanted joint; absent: the Kinect does not have it.
+  std::vector<std::optional<std::size_t>> places_;
   double rate_hz_;
-  PointFrames rows_;  // of the last second, rising
+  PointFrames rows_;  // rows of the last second, sorted by stamp
   std::optional<Time> begin_;
-  Time arrival_ = Time::min();  // of the newest row
+  Time arrival_ = Time::min();  // arrival of the newest row
 };
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person's pose while the samples of the nodes come: on their bones (live_worn.h), answered by a
+// A person's pose from live samples of the nodes: calibrates the nodes (live_worn.h) and solves a
 // window of frames (window_solver.h).
 #pragma once
 
@@ -14,21 +14,21 @@ namespace kinalign {
 struct LivePoseFrame {
   Time stamp{};
   FramePose pose;
-  std::vector<std::uint8_t> valid;  // [N] of the nodes
+  std::vector<std::uint8_t> valid;  // [N] per node
 };
 
 class LivePose {
  public:
-  /// `solver` must live longer and must not be moved. `look_ahead`: as WindowSolver has it.
+  /// `solver` must live longer and must not be moved. `look_ahead`: see WindowSolver.
   LivePose(const PoseSolver& solver, const LiveWornOptions& options, std::size_t look_ahead);
 
   LiveWorn& worn() { return worn_; }
   const LiveWorn& worn() const { return worn_; }
   std::size_t look_ahead() const { return solver_.look_ahead(); }
 
-  /// Answers as far as it can. `now`: arrival of the newest message.
+  /// Appends all frames that can be answered now. `now`: arrival of the newest message.
   void advance(Time now, std::vector<LivePoseFrame>& out);
-  /// Nothing more comes: all that is left is answered.
+  /// Call when no further samples come: answers all remaining frames.
   void finish(std::vector<LivePoseFrame>& out);
 
  private:

@@ -26,7 +26,7 @@ ModelHeader body_header(const PoseBody& body, bool smoothing) {
           {"smoothing", smoothing}};
 }
 
-/// Throws the JSON library's exception where a member is missing or of another type.
+/// Throws the JSON library's exception if a member is missing or of another type.
 void read_body(const ModelHeader& output, BodyModel& out) {
   out.body.bones = output.at("bones").get<std::vector<std::string>>();
   out.body.turned_by = output.at("turned_by").get<std::vector<int>>();

@@ -20,6 +20,7 @@ double seconds_between(Time from, Time to) {
   return static_cast<double>(to_ns(to) - to_ns(from)) * 1e-9;
 }
 
+/// Estimates the orientations from angular velocity and acceleration.
 void make_orientation(NodeTrack& track) {
   MahonyFilter filter;
   track.orientation.resize(4 * track.stamps.size());
@@ -40,7 +41,7 @@ void make_angular_velocity(NodeTrack& track) {
   }
 }
 
-/// One node's samples, ready to be asked for at any time.
+/// One node's samples, prepared for evaluation at any time.
 class NodeCurve {
  public:
   explicit NodeCurve(const NodeTrack& track) : track_(track) {
@@ -52,8 +53,8 @@ class NodeCurve {
     }
   }
 
-  /// Puts the node at `time` into place `at`, if it lies between two samples near enough. Times
-  /// rise from call to call.
+  /// Writes the node at `time` to place `at` if it lies between two samples at most 0.2 s apart.
+  /// Times must rise from call to call.
   void put(Time time, std::size_t at, double rate_hz, WornFrames& out) {
     const auto& stamps = track_.stamps;
     while (next_ < stamps.size() && stamps[next_] < time) ++next_;
@@ -74,7 +75,7 @@ class NodeCurve {
   }
 
  private:
-  /// The mean of samples nearer than `within_s`, weighted by 1 - distance / within_s.
+  /// The mean of the samples nearer than `within_s`, weighted by 1 - distance / within_s.
   void put_mean(const std::vector<double>& values, Time time, double within_s, float* out) const {
     const auto& stamps = track_.stamps;
     const Duration reach{std::llround(within_s * 1e9)};
@@ -92,8 +93,8 @@ class NodeCurve {
   }
 
   const NodeTrack& track_;
-  std::vector<double> world_;  // [T,3] m/s2, without gravity
-  std::size_t next_ = 0;       // the first sample that is not before the last time asked for
+  std::vector<double> world_;  // [T,3] m/s2, acceleration in the world without gravity
+  std::size_t next_ = 0;       // the first sample that is not before the last requested time
 };
 
 }  // namespace

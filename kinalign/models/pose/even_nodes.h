@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of nodes, each with its own stamps, on the even grid that a model of poses works on.
+// Resamples nodes, each with its own stamps, to the even grid that a model of poses needs.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,31 +12,31 @@
 
 namespace kinalign {
 
-/// T samples of one node in its own space. No samples: the node is lost. An array may be empty:
-/// complete() makes orientation and angular velocity of what there is.
+/// T samples of one node in its own space. Without samples the node is lost. Orientation or angular
+/// velocity may be empty; complete() computes it from the other arrays.
 struct NodeTrack {
   std::vector<Time> stamps;              // [T] rising
   std::vector<double> orientation;       // [T,4] world_from_node, world y up
   std::vector<double> acceleration;      // [T,3] m/s2
   std::vector<double> angular_velocity;  // [T,3] rad/s
-  bool gravity = true;                   // stands in the acceleration: at rest 9.8 upwards
+  bool gravity = true;                   // the acceleration contains gravity: 9.8 upwards at rest
 };
 
-/// Fills what the device did not say: the orientation by MahonyFilter, with a heading of the node's
-/// own; the angular velocity by the turn to the next sample. Fails without acceleration, with
-/// neither orientation nor angular velocity, and where an orientation has to be made of
-/// accelerations without gravity.
+/// Computes what the device did not send. A missing orientation comes from MahonyFilter, with an
+/// arbitrary heading. A missing angular velocity comes from the rotation to the next sample. Fails
+/// without acceleration, with neither orientation nor angular velocity, and if an orientation would
+/// have to be computed from accelerations without gravity.
 Result<void> complete(NodeTrack& track);
 
-/// The acceleration at a time is the mean of samples so near to it.
+/// An acceleration is the weighted mean of the samples within this distance in time.
 inline constexpr double acceleration_within_s = 4.0 / 60.0;
 
-/// Puts a complete node at place `node` of each frame of `out`, whose arrays have room for the
-/// grid. What is not known there stays as it is.
+/// Writes a complete node to place `node` of each frame of `out`, whose arrays have room for the
+/// grid. Frames without samples nearby are not changed.
 void put_node(const NodeTrack& track, const EvenSpan& grid, double rate_hz, std::size_t node,
               WornFrames& out);
 
-/// Room for frames in which every node is lost.
+/// Frames in which every node is lost.
 WornFrames lost_nodes(std::size_t frames, std::size_t nodes);
 
 struct EvenNodes {
@@ -44,14 +44,17 @@ struct EvenNodes {
   Time start{};
 };
 
-/// `tracks` [N], complete; the last one is the root's, whose first and last stamp bound the grid.
-/// Between two samples at most 0.2 s apart a node is valid. Its orientation lies on the shorter arc
-/// between both. Its acceleration is turned into the world, freed of gravity, and averaged with
-/// weights that fall in a line to 0 within 67 ms: the second difference of positions that models
-/// are trained on (pose_data.cpp) is the same mean. Its angular velocity is averaged likewise
-/// within half a frame. Samples that lie farther apart than that are joined by a line. Fails where
-/// the root has fewer than two samples or the grid has more than 10,000,000 frames. `span`: the
-/// frames, in place of the root's.
+/// Resamples `tracks` [N], which must be complete. The last one is the root's; its first and last
+/// stamp bound the grid unless `span` gives the frames.
+///
+/// A node is valid between two samples at most 0.2 s apart. Its orientation is interpolated on the
+/// shorter arc. Its acceleration is rotated into the world, gravity is removed, and the result is
+/// averaged with weights that fall linearly to 0 within 67 ms. Models are trained on second
+/// differences of positions (pose_data.cpp), which are the same mean. Angular velocity is averaged
+/// likewise within half a frame. If samples are farther apart than that, both are interpolated
+/// linearly.
+///
+/// Fails if the root has fewer than two samples or the grid has more than 10,000,000 frames.
 Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_hz,
                              std::optional<EvenSpan> span = std::nullopt);
 

@@ -8,8 +8,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr Duration kept = std::chrono::seconds(1);  // before the newest frame
-constexpr std::size_t most_kept = 4096;             // samples of a node
+// Age of the oldest kept sample, before the newest frame.
+constexpr Duration kept = std::chrono::seconds(1);
+constexpr std::size_t most_kept = 4096;  // samples per node
 
 void insert_numbers(std::size_t at, std::span<const double> numbers, std::vector<double>& all) {
   const auto place = all.begin() + static_cast<std::ptrdiff_t>(at * numbers.size());
@@ -25,6 +26,7 @@ void erase_front(std::size_t numbers, std::vector<double>& all) {
 
 LiveNodes::LiveNodes(std::size_t nodes, double rate_hz) : rate_hz_(rate_hz), nodes_(nodes) {}
 
+/// True if the sample has all that its node's first sample had and can be completed.
 bool LiveNodes::fits(const Node& node, const NodeReadings& sample) {
   if (!sample.acceleration) return false;
   if (!sample.orientation && (!sample.angular_velocity || !sample.gravity)) return false;
@@ -34,12 +36,14 @@ bool LiveNodes::fits(const Node& node, const NodeReadings& sample) {
          sample.gravity == node.track.gravity;
 }
 
-/// Orientations that are made of the rest need the samples in their order.
+/// Inserts a sample in the order of stamps. The orientation filter needs samples in that order, so
+/// add() drops those that arrive out of order if the node sends no orientation.
 void LiveNodes::insert(Node& node, const NodeReadings& sample) {
   Quat q = sample.orientation.value_or(Quat::Identity());
   if (!node.has_orientation) {
     const double step =
-        node.filtered ? seconds(sample.stamp - *node.filtered) : 1e-3;  // even_nodes.cpp's first
+        // The same first step as in even_nodes.cpp.
+        node.filtered ? seconds(sample.stamp - *node.filtered) : 1e-3;
     node.filter.update(step, {*sample.angular_velocity, *sample.acceleration});
     node.filtered = sample.stamp;
     q = node.filter.orientation();
@@ -91,7 +95,7 @@ bool LiveNodes::is_ready(Time time, Time now) const {
 
 void LiveNodes::forget_before(Time time, Node& node) {
   NodeTrack& track = node.track;
-  // The newest sample stays: it says that there is such a node, and what it measures.
+  // The newest sample is kept: it shows that the node exists and what it measures.
   const auto end = track.stamps.empty() ? track.stamps.end() : track.stamps.end() - 1;
   const auto count = std::lower_bound(track.stamps.begin(), end, time) - track.stamps.begin();
   track.stamps.erase(track.stamps.begin(), track.stamps.begin() + count);
@@ -106,7 +110,7 @@ WornFrames LiveNodes::frame(Time time) {
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     forget_before(time - kept, nodes_[n]);
     NodeTrack track = nodes_[n].track;
-    if (!complete(track)) continue;  // add() takes nothing that can't be completed
+    if (!complete(track)) continue;  // cannot happen: add() drops samples that can't be completed
     put_node(track, {time, 1}, rate_hz_, n, out);
   }
   made_ = time;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of nodes while they come, put onto the even grid of a model of poses: a frame can be made
-// as soon as the samples around it are there. The frames are those of even_nodes().
+// Resamples live samples of nodes to the even grid of a model of poses. A frame can be made as soon
+// as the samples around it have arrived. The frames equal those of even_nodes().
 #pragma once
 
 #include "kinalign/models/pose/even_nodes.h"
@@ -13,55 +13,57 @@
 
 namespace kinalign {
 
-/// What a node says at one time; absent: not measured.
+/// The measurements of one node at one time. Absent: not measured.
 struct NodeReadings {
   Time stamp{}, arrival{};
   std::optional<Quat> orientation;       // world_from_node, y up; not zero
   std::optional<Vec3> acceleration;      // m/s2
   std::optional<Vec3> angular_velocity;  // rad/s
-  bool gravity = true;                   // stands in the acceleration
+  bool gravity = true;                   // the acceleration contains gravity
 };
 
 class LiveNodes {
  public:
-  /// How long a frame waits for a node that is behind the others. A node's packets have 65 ms of
-  /// samples: when one is lost, the next one bridges the gap.
+  /// The longest time that a frame waits for a node that is late. One packet holds 65 ms of
+  /// samples, so after a lost packet the next one bridges the gap.
   static constexpr Duration patience = std::chrono::milliseconds(200);
-  /// A node that is silent for longer is not waited for.
+  /// A node without a sample for longer than this is not waited for.
   static constexpr Duration silence = std::chrono::seconds(1);
-  /// A frame needs samples up to so long after it: those that its acceleration is the mean of.
+  /// A frame needs samples up to this long after it, because its acceleration is their mean.
   static constexpr Duration reach{static_cast<std::int64_t>(acceleration_within_s * 1e9)};
 
   LiveNodes(std::size_t nodes, double rate_hz);
 
-  /// Samples of a node may overtake each other. One of a stamp that is there already, one without
-  /// acceleration, with neither orientation nor angular velocity, or without what the node's first
-  /// sample had, is left out and counted.
+  /// Adds a sample; samples of a node may arrive out of order. A sample is dropped and counted in
+  /// left_out() if its stamp is a duplicate, if it has no acceleration, if it has neither
+  /// orientation nor angular velocity, or if it lacks a quantity that the node's first sample had.
   void add(std::size_t node, const NodeReadings& sample);
 
-  /// Of the root, whose samples begin the grid; absent before the first one.
+  /// The stamp of the root's first sample, at which the grid begins; absent before it.
   const std::optional<Time>& begin() const { return begin_; }
-  /// The newest stamp of all nodes; of the root where that is what counts.
+  /// The newest stamp of the root's node; absent before its first sample.
   std::optional<Time> newest_of_root() const;
   bool has_samples(std::size_t node) const { return !nodes_[node].track.stamps.empty(); }
 
-  /// Whether the frame at `time` need not wait for further samples. `now`: arrival of the newest
+  /// True if the frame at `time` need not wait for further samples. `now`: arrival of the newest
   /// message of any device.
   bool is_ready(Time time, Time now) const;
-  /// The frame at `time`. Times rise from call to call: what no later frame needs is forgotten.
+  /// The frame at `time`. Times must rise from call to call, because samples that no later frame
+  /// needs are dropped.
   WornFrames frame(Time time);
 
+  /// Number of samples dropped by add().
   std::uint64_t left_out() const { return left_out_; }
-  /// Samples that came when a frame which needed them was made already.
+  /// Number of samples that arrived after a frame that needed them was made.
   std::uint64_t late() const { return late_; }
 
  private:
   struct Node {
-    NodeTrack track;  // of the last second; its angular velocities may be empty
+    NodeTrack track;  // samples of the last second; angular velocities may be empty
     bool has_orientation = true, has_angular_velocity = true;
-    MahonyFilter filter{};           // where the node sends no orientation
-    std::optional<Time> filtered{};  // its newest sample
-    Time arrival = Time::min();      // of the newest sample
+    MahonyFilter filter{};           // used if the node sends no orientation
+    std::optional<Time> filtered{};  // the newest sample given to `filter`
+    Time arrival = Time::min();      // arrival of the newest sample
   };
   static bool fits(const Node& node, const NodeReadings& sample);
   static void insert(Node& node, const NodeReadings& sample);
@@ -69,7 +71,7 @@ class LiveNodes {
 
   double rate_hz_;
   std::vector<Node> nodes_;
-  std::optional<Time> begin_, made_;  // made_: the last frame
+  std::optional<Time> begin_, made_;  // begin_: see begin(); made_: time of the last frame made
   std::uint64_t left_out_ = 0, late_ = 0;
 };
 

@@ -9,7 +9,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr double between_tries_s = 0.5;  // of a calibration that needs later frames
+// Between attempts at a calibration that needs later frames.
+constexpr double between_tries_s = 0.5;
 
 void append_frames(const WornFrames& from, WornFrames& to) {
   to.orientation.insert(to.orientation.end(), from.orientation.begin(), from.orientation.end());
@@ -24,7 +25,7 @@ void erase_front_of(std::vector<T>& values, std::size_t count) {
   values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// Without the first frames.
+/// Removes the first frames.
 void forget_frames(std::size_t frames, WornFrames& all) {
   const std::size_t samples = frames * all.nodes;
   erase_front_of(all.orientation, 4 * samples);
@@ -48,7 +49,8 @@ WornFrames frame_of(const WornFrames& all, std::size_t t) {
           part(all.angular_velocity, 3 * all.nodes), part(all.valid, all.nodes)};
 }
 
-/// The first node on an arm that is not in a T-pose, as far as its tilt shows that.
+/// The name of the first arm node whose tilt shows that the arm is not in a T-pose; null if there
+/// is none.
 const std::string* hanging_arm(const PoseLayout& layout, const NodeCalibration& calibration) {
   const bool is_checked = calibration.worn_as_told || calibration.headings == Headings::mounting;
   for (std::size_t n = 0; n < layout.nodes.size() && is_checked; ++n) {
@@ -86,6 +88,7 @@ void LiveWorn::finish(std::vector<LiveWornFrame>& out) {
   while (nodes_.begin() && time_of(made_) <= *nodes_.newest_of_root()) make_frame(out);
 }
 
+/// Makes the next frame, looks for a T-pose, and outputs calibrated frames.
 void LiveWorn::make_frame(std::vector<LiveWornFrame>& out) {
   append_frames(nodes_.frame(time_of(made_)), recent_);
   ++made_;
@@ -99,7 +102,7 @@ void LiveWorn::make_frame(std::vector<LiveWornFrame>& out) {
   handed_on_ -= std::min<std::size_t>(handed_on_, 1);
 }
 
-/// In frames of recent_; absent while it has not ended.
+/// The T-pose to calibrate by, in frames of recent_; absent if it has not ended yet.
 std::optional<TPose> LiveWorn::wanted_t_pose() const {
   const double rate = layout_->rate_hz;
   if (marked_ || options_.t_pose) {
@@ -114,12 +117,13 @@ std::optional<TPose> LiveWorn::wanted_t_pose() const {
   if (!still) return std::nullopt;
   const TPose found{still->first + searched_, still->count};
   const bool goes_on = found.first + found.count == recent_.frames() &&
-                       static_cast<double>(found.count) < 3.0 * rate;  // node_calibration.h
+                       // 3 s: the longest still stretch of first_still().
+                       static_cast<double>(found.count) < 3.0 * rate;
   return goes_on ? std::nullopt : std::optional(found);
 }
 
-/// Where the person faces may show itself only when the arms come down: so a T-pose that can't be
-/// used yet is tried again, until its frames are forgotten.
+/// Looks for a T-pose and calibrates by it. The person's heading may show only when the arms come
+/// down. A T-pose that can't be used yet is therefore tried again, until its frames are dropped.
 void LiveWorn::look_for_t_pose() {
   if (marked_ && *marked_ < time_of(forgotten_)) marked_.reset();
   if (calibration_ && !marked_) return;
@@ -133,8 +137,9 @@ void LiveWorn::look_for_t_pose() {
   marked_.reset();
 }
 
-/// Absent: none. A node that was calibrated before must not be lost by a later T-pose. A T-pose
-/// that options name is taken as it is, if enough nodes sent.
+/// The reason why a calibration can't be used; absent: none. A later T-pose must not lose a node
+/// that was calibrated before. A T-pose given by the options is used as it is if enough nodes sent
+/// samples.
 std::optional<std::string> LiveWorn::fault_of(const NodeCalibration& found) const {
   const auto sent = std::count_if(found.nodes.begin(), found.nodes.end(),
                                   [](const auto& node) { return node.has_value(); });
@@ -151,8 +156,9 @@ std::optional<std::string> LiveWorn::fault_of(const NodeCalibration& found) cons
   return std::nullopt;
 }
 
-/// A stretch that options name is taken as it is. Another one is left out if it has a fault or, if
-/// a mark names it, the person moves in it.
+/// Calibrates by one stretch; false if it was refused. A stretch given by the options is used as it
+/// is. Another one is refused if fault_of() finds a fault or, if a mark gave it, the person moves
+/// in it.
 bool LiveWorn::take_t_pose(const TPose& t_pose) {
   const double fastest = fastest_turn_deg(recent_, t_pose);
   if (marked_ && fastest > most_turn_deg_s) {
@@ -178,7 +184,7 @@ bool LiveWorn::take_t_pose(const TPose& t_pose) {
   return true;
 }
 
-/// It is not tried again.
+/// Excludes this T-pose from further attempts.
 void LiveWorn::forget_t_pose(const TPose& t_pose) {
   if (!marked_) searched_ = t_pose.first + t_pose.count;
   marked_.reset();

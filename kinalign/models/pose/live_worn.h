@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes on their bones while their samples come: onto the grid, and calibrated by a T-pose. Frames
-// before the end of the T-pose are handed on at once then.
+// Live nodes on their bones: resamples them and calibrates them by a T-pose. Frames before the end
+// of the T-pose are output together once the calibration is known.
 #pragma once
 
 #include "kinalign/models/pose/live_nodes.h"
@@ -14,24 +14,25 @@
 
 namespace kinalign {
 
-/// From and to, s.
+/// Start and end, s.
 struct TPoseSeconds {
   double from = 0.0, to = 0.0;
 };
 
 struct LiveWornOptions {
-  std::optional<TPoseSeconds> t_pose{};  // after the first frame; absent: the first still stretch
-  std::optional<Headings> headings{};    // as CalibrationOptions has them
+  /// Counted from the first frame; absent: the first still stretch is used.
+  std::optional<TPoseSeconds> t_pose{};
+  std::optional<Headings> headings{};  // see CalibrationOptions
 };
 
-/// A calibration, and the frames of the grid that it is taken from.
+/// A calibration, and the frames of the grid that it was computed from.
 struct LiveCalibration {
   NodeCalibration nodes;
   std::size_t first = 0, count = 0;
-  double fastest_deg_s = 0.0;  // turn of a node in them
+  double fastest_deg_s = 0.0;  // fastest rotation of a node in these frames
 };
 
-/// A frame of the grid with its nodes on their bones.
+/// One frame of the grid with calibrated nodes.
 struct LiveWornFrame {
   Time stamp{};
   NodeFrames nodes;  // one frame
@@ -39,32 +40,32 @@ struct LiveWornFrame {
 
 class LiveWorn {
  public:
-  /// A T-pose that a mark names is held for so long behind it.
+  /// After a mark, the T-pose is expected to be held for this long.
   static constexpr double held_s = 2.0;
-  /// Frames before the calibration are kept for so long. The answer begins with them.
+  /// Frames before the calibration are kept for at most this long. The output begins with them.
   static constexpr double most_waiting_s = 60.0;
 
-  /// Both must live longer.
+  /// `layout` and `body` must live longer.
   LiveWorn(const PoseLayout& layout, const Skeleton& body, const LiveWornOptions& options);
 
-  /// `node`: of the layout. Frames are made by advance().
+  /// Adds a sample of node `node` of the layout. Frames are made by advance().
   void add(std::size_t node, const NodeReadings& sample) { nodes_.add(node, sample); }
-  /// A T-pose is held from `at` on: the nodes are calibrated by it, also anew, unless the person
-  /// moves or an arm hangs in it. Not before begin() of nodes() is there.
+  /// A T-pose is held from `at` on. The nodes are calibrated, or calibrated again, unless the
+  /// person moves or an arm hangs down in it. Call only after nodes().begin() is known.
   void mark_t_pose(Time at) { marked_ = std::max(at, time_of(forgotten_)); }
 
-  /// Whether another device, too, has what a frame at that time needs.
+  /// True if other devices, too, have the data for a frame at that time.
   using Also = std::function<bool(Time time)>;
-  /// Makes the frames that are ready. `now`: arrival of the newest message. Calibrated ones are
-  /// appended to `out`.
+  /// Makes all frames that are ready and appends the calibrated ones to `out`. `now`: arrival of
+  /// the newest message.
   void advance(Time now, const Also& also, std::vector<LiveWornFrame>& out);
-  /// Nothing more comes: the same up to the root's last sample.
+  /// Call when no further samples come: makes the frames up to the root's last sample.
   void finish(std::vector<LiveWornFrame>& out);
 
   const LiveNodes& nodes() const { return nodes_; }
-  /// The present one; absent while a T-pose is waited for.
+  /// The current calibration; absent until a T-pose was found.
   const std::optional<LiveCalibration>& calibration() const { return calibration_; }
-  /// Why the last T-pose was none, once.
+  /// The reason why the last T-pose was refused; each reason is returned once.
   std::optional<std::string> take_refusal() { return std::exchange(refusal_, std::nullopt); }
 
  private:
@@ -81,14 +82,14 @@ class LiveWorn {
   const Skeleton* body_;
   LiveWornOptions options_;
   LiveNodes nodes_;
-  std::size_t made_ = 0;       // frames of the grid
+  std::size_t made_ = 0;       // number of frames of the grid made so far
   WornFrames recent_;          // the newest frames, for calibrations
-  std::size_t forgotten_ = 0;  // frames of the grid before recent_
-  std::size_t searched_ = 0;   // of recent_: no T-pose is looked for before that frame
-  std::size_t tried_ = 0;      // frames of the grid when a calibration was tried last
+  std::size_t forgotten_ = 0;  // number of frames of the grid dropped before recent_
+  std::size_t searched_ = 0;   // index in recent_: the search for a T-pose starts here
+  std::size_t tried_ = 0;      // value of made_ at the last attempt to calibrate; 0: none
   std::optional<Time> marked_;
   std::optional<LiveCalibration> calibration_;
-  std::size_t handed_on_ = 0;  // frames of recent_
+  std::size_t handed_on_ = 0;  // number of frames of recent_ already output
   std::optional<std::string> refusal_;
 };
 

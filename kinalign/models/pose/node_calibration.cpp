@@ -14,11 +14,13 @@ namespace kinalign {
 
 namespace {
 
-/// Beyond what limbs do. A network's answer to a sensor at its limit would have none.
+/// m/s2. Limbs stay below this; without a limit, a saturated sensor would make a network's output
+/// arbitrarily large.
 constexpr double most_m_s2 = 100.0;
 
 constexpr double still_deg_s = 20.0, least_still_s = 1.0, most_still_s = 3.0;
-constexpr double least_swing = 0.3;  // rad, of an arm in the mean, to see where it came down
+// Rad, mean angle of an arm from the T-pose that is needed to see its direction.
+constexpr double least_swing = 0.3;
 
 double in_degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
 
@@ -45,7 +47,7 @@ double turn_deg_s(const WornFrames& worn, std::size_t at) {
   return in_degrees(vector_at(worn.angular_velocity, at).norm());
 }
 
-/// The root is valid, and no valid node turns.
+/// True if the root's node is valid and no valid node turns faster than still_deg_s.
 bool is_still(const WornFrames& worn, std::size_t t) {
   const std::size_t first = t * worn.nodes;
   if (worn.valid[first + worn.nodes - 1] == 0) return false;
@@ -55,14 +57,14 @@ bool is_still(const WornFrames& worn, std::size_t t) {
   return true;
 }
 
-/// A node at rest in the T-pose.
+/// The mean of a node's samples in the T-pose.
 struct RestingNode {
   Quat world_from_node;
-  Vec3 zero;  // m/s2, in the node's space
+  Vec3 zero;  // m/s2, mean acceleration in the node's space
 };
 
-/// Means over the valid frames of the T-pose. The node turns by less than a degree there, so that
-/// the sum of quaternions of one sign is their mean.
+/// Means over the valid frames of the T-pose. The node turns by less than a degree there, so the
+/// normalised sum of quaternions of one sign is their mean.
 std::optional<RestingNode> resting(const WornFrames& worn, const TPose& t_pose, std::size_t node) {
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   Vec3 zero = Vec3::Zero();
@@ -81,7 +83,7 @@ std::optional<RestingNode> resting(const WornFrames& worn, const TPose& t_pose, 
 
 Quat about_vertical(double heading) { return rotation(Vec3(0.0, heading, 0.0)); }
 
-/// The mean of angles, and how far the worst lies from it.
+/// The mean of angles, and the largest distance of an angle from it.
 struct MeanAngle {
   double angle = 0.0, worst = 0.0;  // rad
 };
@@ -97,8 +99,8 @@ MeanAngle mean_angle(const std::vector<double>& angles) {
   return out;
 }
 
-/// The heading of an arm's world by its mean turn since the T-pose, the person's own turns taken
-/// off: nothing where it hardly left the T-pose.
+/// The heading of an arm's world from the arm's mean rotation since the T-pose. The person's own
+/// turns are removed first. Empty if the arm hardly left the T-pose.
 std::optional<double> heading_by_arm(const WornFrames& worn, std::size_t node, const Quat& arm_rest,
                                      const Quat& root_rest, bool is_left) {
   Vec3 sum = Vec3::Zero();
@@ -116,13 +118,15 @@ std::optional<double> heading_by_arm(const WornFrames& worn, std::size_t node, c
   return expected - is;
 }
 
-/// What the T-pose says of all nodes.
+/// The state of all nodes in the T-pose.
 struct Rest {
   std::vector<std::optional<RestingNode>> nodes;  // [N]
-  std::vector<Quat> worn;                         // [N] world_from_node if worn as told
-  std::vector<double> heading, tilt_deg;          // [N] by the mounting
+  std::vector<Quat> worn;                 // [N] world_from_node for nodes worn as docs/pose.md says
+  std::vector<double> heading, tilt_deg;  // [N] from the mounting
 };
 
+/// Averages each node over the T-pose and compares it with the orientation expected from
+/// docs/pose.md.
 Rest rest_of(const PoseLayout& layout, const WornFrames& worn, const CalibrationOptions& options) {
   Rest out;
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
@@ -138,7 +142,7 @@ Rest rest_of(const PoseLayout& layout, const WornFrames& worn, const Calibration
   return out;
 }
 
-/// Headings, by the mounting, of the nodes whose tilt is as told.
+/// Headings by the mounting, of the nodes whose tilt fits the mounting.
 std::vector<double> credible_headings(const Rest& rest) {
   std::vector<double> out;
   for (std::size_t n = 0; n < rest.nodes.size(); ++n) {
@@ -155,6 +159,7 @@ bool are_worn_as_told(const PoseLayout& layout, const Rest& rest) {
   return true;
 }
 
+/// The heading shared by all nodes, from arms that come down. Fails if no arm does.
 Result<double> heading_by_arms(const PoseLayout& layout, const WornFrames& worn, const Rest& rest) {
   std::vector<double> headings;
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {

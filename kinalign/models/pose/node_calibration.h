@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// From nodes as they are worn to nodes on bones, by a T-pose. A node on a bone obeys
+// Calibrates worn nodes by a T-pose: finds the rotation of the bone under each node. A node on a
+// bone obeys
 //
 //   bone(t) = Y q(t) M
 //
-// with q world_from_node as the node says it, M node_from_bone, how it is worn, and Y the heading
-// of the node's world against the person's, a turn about the vertical. In a T-pose bone is known:
-// it gives M for each Y. It says nothing of Y, and a wrong Y makes a turn forwards one sideways. So
-// Y comes from elsewhere:
-//   shared    All nodes have one heading: they have a magnetometer, or were reset together. Where
-//             the person faces in it is seen by nodes that are worn as docs/pose.md says, and else
-//             by arms that come down from the T-pose: a left arm turns about -z, a right one about
-//             +z.
-//   mounting  Each node has a heading of its own, as one without a magnetometer has, and is worn
-//             as docs/pose.md says. The direction that its axes have in a T-pose gives Y, as well
-//             as it is worn (a turn of the node about the vertical is taken for heading).
-// Drift of a heading behind the T-pose is not seen. Sources: models.md 3.2 (Yi et al., «TransPose»,
-// SIGGRAPH 2021) and 3.3 (Huang et al., «Deep inertial poser», SIGGRAPH Asia 2018); arms that come
-// down are ours.
+// with q = world_from_node as measured, M = node_from_bone (how it is worn), and Y = the heading of
+// the node's world against the person's, a rotation about the vertical. In a T-pose bone is known,
+// which gives M for each Y. The T-pose says nothing about Y, and a wrong Y turns a forward bend
+// into a sideways one. So Y comes from elsewhere:
+//   shared    All nodes have one heading: they have a magnetometer or were reset together. Nodes
+//             worn as docs/pose.md says show the person's heading. Otherwise arms that come down
+//             from the T-pose show it: a left arm turns about -z, a right arm about +z.
+//   mounting  Each node has its own heading, as without a magnetometer, and is worn as docs/pose.md
+//             says. The direction of its axes in the T-pose gives Y. A rotation of the worn node
+//             about the vertical is mistaken for heading.
+// Drift of a heading after the T-pose is not detected. Sources: models.md 3.2 (Yi et al.,
+// «TransPose», SIGGRAPH 2021) and 3.3 (Huang et al., «Deep inertial poser», SIGGRAPH Asia 2018).
+// The method of arms that come down is our own.
 #pragma once
 
 #include "kinalign/models/pose/node_places.h"
@@ -29,66 +29,73 @@
 namespace kinalign {
 
 /// Nodes as they are worn, in the arrays of NodeFrames: `orientation` is world_from_node,
-/// `acceleration` in the node's world, without gravity, `angular_velocity` in the node's space.
+/// `acceleration` is in the node's world without gravity, `angular_velocity` is in the node's
+/// space.
 using WornFrames = NodeFrames;
 
-/// A stretch of frames.
+/// A stretch of frames in which the person holds a T-pose.
 struct TPose {
   std::size_t first = 0, count = 0;
 };
 
-/// The first second or more, at most three, in which the root's node is valid and no valid node
-/// turns faster than 20 deg/s. Nothing where there is none.
+/// The first stretch of 1 to 3 s in which the root's node is valid and no valid node turns faster
+/// than 20 deg/s. Empty if there is none.
 std::optional<TPose> first_still(const WornFrames& worn, double rate_hz);
-/// A T-pose in which a node turns faster was not held still, deg/s.
+/// deg/s. If a node turns faster in a T-pose, the pose was not held still.
 inline constexpr double most_turn_deg_s = 30.0;
-/// The fastest turn of a valid node in it, deg/s.
+/// The fastest rotation of a valid node in the T-pose, deg/s.
 double fastest_turn_deg(const WornFrames& worn, const TPose& t_pose);
 
+/// How the nodes' headings are found; see the head of this file.
 enum class Headings : std::uint8_t { shared, mounting };
 
-/// Each node's constants; nodes without a valid frame in the T-pose have none and are lost.
+/// The constants of one node. Nodes without a valid frame in the T-pose have none and are lost.
 struct NodeOnBone {
   Quat heading = Quat::Identity();         // Y, about +y
   Quat node_from_bone = Quat::Identity();  // M
-  Vec3 zero = Vec3::Zero();                // m/s2, in the node's space: what is left at rest
-  double tilt_deg = 0.0;                   // between up and where up is if it is worn as told
+  Vec3 zero = Vec3::Zero();  // m/s2, in the node's space: the bias that remains at rest
+  /// Angle between measured up and expected up for a node worn as docs/pose.md says.
+  double tilt_deg = 0.0;
 };
 
+/// The source of the person's heading: the mounting of the nodes, or arms that come down.
 enum class Facing : std::uint8_t { mounting, arms };
 
 struct NodeCalibration {
   std::vector<std::optional<NodeOnBone>> nodes;  // [N] of the layout
   Headings headings = Headings::shared;
-  Facing facing = Facing::mounting;  // by what the person's heading was found
-  double spread_deg = 0.0;    // of the headings that the mountings give: great where none is shared
-  bool worn_as_told = false;  // all nodes but those on arms, as far as their tilt shows it
+  Facing facing = Facing::mounting;  // the source of the person's heading
+  /// Spread of the headings from the mountings; large if the nodes do not share a heading.
+  double spread_deg = 0.0;
+  /// True for all nodes except those on arms, as far as their tilt shows it.
+  bool worn_as_told = false;
 };
 
-/// Beyond this tilt a node is not worn as docs/pose.md says, or its limb is not in a T-pose.
+/// deg. With a larger tilt a node is not worn as docs/pose.md says, or its limb is not in a T-pose.
 inline constexpr double most_tilt_deg = 40.0;
 
-/// Headings that lie farther apart are not one for all nodes.
+/// deg. Headings farther apart than this are not one heading for all nodes.
 inline constexpr double most_shared_deg = 35.0;
 
 struct CalibrationOptions {
   TPose t_pose;
-  /// Absent: by the data. If all nodes but those on arms are worn as told, and their headings by
-  /// mounting lie more than 35 degrees apart, then mounting, else shared.
+  /// Absent: chosen from the data. It is `mounting` if all nodes except those on arms are worn as
+  /// docs/pose.md says and their headings by mounting are more than 35 degrees apart; else
+  /// `shared`.
   std::optional<Headings> headings{};
-  /// By node, world_from_node in a T-pose that faces +z, where it is known better than by
-  /// worn_in_t_pose(): a node whose orientation is already its bone's has the identity. Absent: as
-  /// docs/pose.md says. Empty: all of them.
+  /// For each node its world_from_node in a T-pose that faces +z, if it is known better than by
+  /// worn_in_t_pose(): a node whose orientation is already its bone's has the identity. Absent:
+  /// worn as docs/pose.md says. Empty: all nodes are worn so.
   std::vector<std::optional<Quat>> worn{};
 };
 
-/// Fails where a node's place is not known, the root has no valid frame in the T-pose, or nothing
-/// shows where the person faces.
+/// Calibrates all nodes. Fails if the place of a node is not known, if the root has no valid frame
+/// in the T-pose, or if nothing shows the person's heading.
 Result<NodeCalibration> calibrate(const PoseLayout& layout, const Skeleton& body,
                                   const WornFrames& worn, const CalibrationOptions& options);
 
-/// The nodes as a model sees them. A node without constants is not valid. Accelerations beyond 100
-/// m/s2 along an axis are cut there.
+/// The nodes with the orientations of their bones, as a model needs them. A node without constants
+/// becomes not valid. Accelerations are clamped to +-100 m/s2 per axis.
 NodeFrames on_bones(const NodeCalibration& calibration, WornFrames worn);
 
 }  // namespace kinalign

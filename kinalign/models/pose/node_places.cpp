@@ -10,10 +10,10 @@ namespace {
 
 using Direction = std::array<double, 3>;
 
-// CMU's ankle joint lies behind the knee in a person who stands: the shank's direction is 12 to 31
-// degrees off the vertical in the stands of 16 people, 20 in the mean. Over a recorded walk with
-// optical truth (UNSW) ankles were 11 to 16 cm off with these 20 degrees and 18 to 20 cm without.
-// A simulated suit's shanks stand upright: there 13 cm with them and 7 cm without.
+// In CMU's skeletons the ankle joint of a standing person lies behind the knee: the shank is 12 to
+// 31 degrees off the vertical in the standing poses of 16 people, 20 on average. In a recorded walk
+// with optical truth (UNSW), ankles were 11 to 16 cm off with these 20 degrees and 18 to 20 cm
+// without. The shanks of a simulated suit are vertical: 13 cm with the 20 degrees, 7 cm without.
 constexpr Direction cmu_shank{0.0, -0.94, -0.34};
 
 constexpr std::array<WornPlace, 6> places{{
@@ -25,7 +25,7 @@ constexpr std::array<WornPlace, 6> places{{
     {"head", "head", {}, {0, 1, 0}, {0, 0, -1}},
 }};
 
-/// Words for a place without its side, small letters without gaps.
+/// Words for a place, without its side, in lower case and without separators.
 struct PlaceWord {
   std::string_view word, place;
 };
@@ -53,7 +53,8 @@ Vec3 vec3_of(const Direction& direction) { return {direction[0], direction[1], d
 
 bool is_capital(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 
-/// "LeftLowerLeg", "LEFT_LOWER_LEG" and "left lower leg" are left, lower, leg.
+/// Splits a name into lower-case words: "LeftLowerLeg", "LEFT_LOWER_LEG" and "left lower leg" give
+/// left, lower, leg.
 std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> out;
   bool goes_on = false, was_small = false;

@@ -14,7 +14,7 @@ int place_of(std::span<const std::string> names, std::string_view name) {
   return at == names.end() ? -1 : static_cast<int>(at - names.begin());
 }
 
-/// The rotation of joint `j` against the root in one frame [B].
+/// The rotation of joint `j` against the root; `frame` [B].
 Turn turn_of(const PoseBody& body, std::span<const Turn> frame, std::size_t j) {
   const int bone = body.turned_by[j];
   return bone < 0 ? Turn::Identity() : frame[static_cast<std::size_t>(bone)];
@@ -24,7 +24,7 @@ Time stamp_of(Time start, double rate_hz, std::size_t frame) {
   return start + Duration{std::llround(static_cast<double>(frame) * 1e9 / rate_hz)};
 }
 
-/// How far the lowest joint of a frame stands below the root, m.
+/// The height of the root above the lowest joint of a frame, m.
 double depth_below_root(std::span<const float> positions, const Turn& root) {
   float lowest = 0.0F;
   for (std::size_t at = 0; at + 3 <= positions.size(); at += 3) {

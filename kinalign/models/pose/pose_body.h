@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body that a pose is answered on: its joints, and the bone whose rotation turns each of them.
-// A joint carries the name of the bone that begins there. The names are CMU's (ASF/AMC).
+// The body of an estimated pose: its joints, and for each joint the bone whose rotation turns it. A
+// joint carries the name of the bone that begins there. The names are CMU's (ASF/AMC).
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -14,17 +14,17 @@
 
 namespace kinalign {
 
-/// A rotation as a network answers it. Its memory is column after column, so that the six numbers
-/// of a network are the first six of nine.
+/// A rotation in a network's form. Its memory is column-major, so the six numbers of a network are
+/// the first six of nine.
 using Turn = Eigen::Matrix3f;
 
 struct PoseJoint {
   std::string_view name, parent;  // the root has no parent
-  std::string_view bone;          // whose rotation the joint has; empty: the root's
+  std::string_view bone;          // the bone whose rotation the joint has; empty: the root
 };
 
-/// Joints of the answer, parents first. The foot turns with the shank and the hand with the
-/// forearm: no node shows how they move by themselves.
+/// Joints of the estimated body, parents first. The foot turns with the shank and the hand with the
+/// forearm, because no node measures their own motion.
 inline constexpr std::array<PoseJoint, 27> pose_joints{{
     {"root", "", ""},
     {"lfemur", "root", "lfemur"},
@@ -55,51 +55,51 @@ inline constexpr std::array<PoseJoint, 27> pose_joints{{
     {"rfingers", "rhand", "rwrist"},
 }};
 
-/// Where a joint of that name stands in pose_joints; their number: nowhere.
+/// The index of the joint with that name in pose_joints; their number if there is none.
 constexpr std::size_t pose_joint_at(std::string_view name) {
   std::size_t out = 0;
   while (out < pose_joints.size() && pose_joints[out].name != name) ++out;
   return out;
 }
 
-/// Bones whose rotations a network answers.
+/// The bones whose rotations a network estimates.
 inline constexpr std::array<std::string_view, 15> pose_bones{
     "lfemur", "ltibia",    "rfemur",   "rtibia", "lowerback", "upperback", "thorax", "upperneck",
     "head",   "lclavicle", "lhumerus", "lwrist", "rclavicle", "rhumerus",  "rwrist"};
 
 struct PoseBody {
   Skeleton skeleton;               // joint 0 is the only root
-  std::vector<std::string> bones;  // [B]
+  std::vector<std::string> bones;  // [B] names
   std::vector<int> turned_by;      // [J] index of the bone; -1: the root's rotation
 };
 
-/// The body of pose_joints. `rest_offsets` [J] m.
+/// The body with the joints of pose_joints. `rest_offsets` [J] m.
 PoseBody pose_body(std::vector<Vec3> rest_offsets);
 
-/// Fails where the parts do not fit together or joint 0 is not the only root.
+/// Fails if the parts do not fit together or joint 0 is not the only root.
 Result<void> validate(const PoseBody& body);
 
-/// A rotation from any six numbers: the first column along a, the second one in the plane of a and
-/// b (Zhou et al., CVPR 2019). The loss on tensors computes the same (pose_task.cpp).
+/// A rotation from any six numbers: the first column is along a, the second in the plane of a and b
+/// (Zhou et al., CVPR 2019). The loss on tensors computes the same (pose_task.cpp).
 Turn turn_of_six(const float* six);
 
-/// A network answers with six numbers a bone; these are added to each: the identity.
+/// The identity in six numbers. It is added to the six numbers of each bone in a network's output.
 inline constexpr std::array<float, 6> six_of_identity{1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F};
 
-/// The rotation of six numbers as a network says them.
+/// The rotation for six numbers of a network's output.
 Turn turn_of_answer(const float* answer);
 
-/// The rotation nearest to the sum of rotations, as turn_of_six() takes it.
+/// Converts a sum of rotations back to a rotation, by turn_of_six().
 inline Turn turned_back_to_rotation(const Turn& sum) { return turn_of_six(sum.data()); }
 
-/// Positions [T,J,3] m about the root and in its space, from the bones' rotations [T,B] against the
-/// root. `rest_offsets` [J] are those of the body or of another person.
+/// Positions [T,J,3] m relative to the root, in the root's space, from the bones' rotations [T,B]
+/// against the root. `rest_offsets` [J]: of this body or of another person.
 std::vector<float> bone_positions(const PoseBody& body, std::span<const Vec3> rest_offsets,
                                   std::span<const Turn> rotations);
 
-/// Frames of body.skeleton with constant bones. `root` [T]: the root in the world. Nodes do not
-/// show where a person is, so x and z of the root are 0 and the lowest joint of each frame is at y
-/// = 0.
+/// Frames of body.skeleton with constant bones. `root` [T]: the root's rotation in the world. Nodes
+/// do not measure where a person is, so x and z of the root are 0 and the lowest joint of each
+/// frame is at y = 0.
 ClipFrames clip_frames(const PoseBody& body, std::span<const Turn> rotations,
                        std::span<const Eigen::Quaternionf> root, double rate_hz, Time start);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float acceleration_unit = 10.0F, angular_velocity_unit = 3.0F;  // m/s2, rad/s
 
-/// One node in one frame.
+/// One sample of one node.
 struct NodeSample {
   Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
   Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();
@@ -21,6 +21,7 @@ struct NodeSample {
   bool valid = false;
 };
 
+/// The sample of node n in frame t; not valid if a number in it can't be used.
 NodeSample sample_of(const NodeFrames& nodes, std::size_t t, std::size_t n) {
   const std::size_t at = t * nodes.nodes + n;
   if (nodes.valid[at] == 0) return {};
@@ -39,7 +40,7 @@ NodeSample sample_of(const NodeFrames& nodes, std::size_t t, std::size_t n) {
   return out;
 }
 
-/// Writes channels one behind the other.
+/// Writes channels one after another.
 class Channels {
  public:
   explicit Channels(std::span<float> out) : out_(out) {}
@@ -47,7 +48,7 @@ class Channels {
   void put(const Eigen::Vector3f& vector, float unit) {
     for (int k = 0; k < 3; ++k) put(vector(k) / unit);
   }
-  /// The first columns of a rotation; zeros where `valid` is not 1.
+  /// The first columns of a rotation, multiplied by `valid` (0 or 1).
   void put_columns(const Eigen::Matrix3f& rotation, int columns, float valid) {
     for (int k = 0; k < 3 * columns; ++k) put(valid * rotation.data()[k]);
   }
@@ -89,6 +90,7 @@ void PoseFeatureMaker::make(const NodeFrames& nodes, std::size_t t, std::span<fl
   make_in(orientation_at(nodes, t, layout_->leaves()).value_or(root_), nodes, t, out);
 }
 
+/// The order of the channels is part of the model's format.
 void PoseFeatureMaker::make_in(const Eigen::Quaternionf& own_root, const NodeFrames& nodes,
                                std::size_t t, std::span<float> out) {
   assert(nodes.nodes == layout_->nodes.size() && out.size() == layout_->channels());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Channels that a network sees of inertial nodes, the same in training and at use. All channels are
-// in the space of the root's node, so the direction in which a person looks does not matter.
+// Input channels of a network for inertial nodes, the same in training and at use. All channels are
+// in the space of the root's node, so the direction that a person faces does not matter.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,10 +17,11 @@
 
 namespace kinalign {
 
-/// T frames of N calibrated nodes on an even grid. A sample that is not valid may hold any number.
+/// T frames of N calibrated nodes on an even grid. A sample that is not valid may hold any numbers.
 struct NodeFrames {
   std::size_t nodes = 0;
-  std::vector<float> orientation;       // [T,N,4] w,x,y,z: the node's bone in the world, y up
+  /// [T,N,4] w,x,y,z: orientation of the node's bone in the world, y up.
+  std::vector<float> orientation;
   std::vector<float> acceleration;      // [T,N,3] m/s2, in the world, without gravity
   std::vector<float> angular_velocity;  // [T,N,3] rad/s, in the bone's space
   std::vector<std::uint8_t> valid;      // [T,N]
@@ -28,23 +29,24 @@ struct NodeFrames {
   std::size_t frames() const { return nodes == 0 ? 0 : valid.size() / nodes; }
 };
 
-/// The orientation of node `n` in frame `t`; none where the sample is not valid or not finite.
+/// The orientation of node `n` in frame `t`; empty if the sample is not valid or not finite.
 std::optional<Eigen::Quaternionf> orientation_at(const NodeFrames& nodes, std::size_t t,
                                                  std::size_t n);
 
 enum class PoseInputs : std::uint8_t {
-  /// Each leaf gives 6 numbers of its rotation against the root and its acceleration minus the
-  /// root's. The root gives the vertical and its acceleration. All nodes give their angular
-  /// velocity. A flag for each leaf says whether it is valid. Units: 10 m/s2, 3 rad/s.
+  /// Each leaf gives the first two columns (6 numbers) of its rotation against the root, and its
+  /// acceleration minus the root's. The root gives the vertical and its own acceleration. All nodes
+  /// give their angular velocity. One flag per leaf: is it valid? Units: 10 m/s2, 3 rad/s.
   ours,
-  /// Each leaf gives 9 numbers of its rotation and its acceleration (Huang et al., «Deep inertial
-  /// poser», SIGGRAPH Asia 2018).
+  /// Each leaf gives its rotation matrix (9 numbers) and its acceleration (Huang et al., «Deep
+  /// inertial poser», SIGGRAPH Asia 2018).
   dip,
 };
 
 struct PoseLayout {
-  std::vector<std::string> nodes;  // [N] 3 to 6; the last one is the root's, the others are leaves
-  std::vector<std::string> bones;  // [B] whose rotations are answered
+  /// [N] 3 to 6; the last one is the root's node, the others are leaves.
+  std::vector<std::string> nodes;
+  std::vector<std::string> bones;  // [B] the bones whose rotations are estimated
   PoseInputs inputs = PoseInputs::ours;
   double rate_hz = 30.0;
 
@@ -57,23 +59,23 @@ struct PoseLayout {
 
 inline constexpr std::size_t least_nodes = 3, most_nodes = 6;
 
-/// Fails where the number of nodes is not 3 to 6, a name occurs twice, or the rate is not 0.1 to
+/// Fails if the number of nodes is not 3 to 6, a name occurs twice, or the rate is not 0.1 to
 /// 10,000 Hz.
 Result<void> validate(const PoseLayout& layout);
 
 /// Makes the channels frame after frame. While the root's node is not valid, its last orientation
-/// holds; before the first valid one that is the identity. A leaf that is not valid has zeros. A
-/// sample with a number that is not finite counts as not valid.
+/// is used, at the start the identity. A leaf that is not valid gives zeros. A sample with a number
+/// that is not finite counts as not valid.
 class PoseFeatureMaker {
  public:
   explicit PoseFeatureMaker(const PoseLayout& layout) : layout_(&layout) {}
 
-  /// Fills `out` [channels] from frame `t` of `nodes`, which are the layout's.
+  /// Fills `out` [channels] from frame `t` of `nodes`, which must be the layout's nodes.
   void make(const NodeFrames& nodes, std::size_t t, std::span<float> out);
-  /// The same in a space that something else than the root's node gives: `root` in the world.
+  /// The same in the space of `root`, a given rotation in the world, in place of the root's node.
   void make_in(const Eigen::Quaternionf& root, const NodeFrames& nodes, std::size_t t,
                std::span<float> out);
-  /// The root in the world, in the last frame made.
+  /// The root's rotation in the world, for the last frame made.
   const Eigen::Quaternionf& root() const { return root_; }
 
  private:
@@ -83,12 +85,13 @@ class PoseFeatureMaker {
 
 struct PoseFeatures {
   std::vector<float> input;              // [T,C]
-  std::vector<Eigen::Quaternionf> root;  // [T] the root in the world
+  std::vector<Eigen::Quaternionf> root;  // [T] rotation of the root in the world
 };
 
+/// The features of all frames.
 PoseFeatures pose_features(const PoseLayout& layout, const NodeFrames& nodes);
 
-/// Brings channels [T,C] to mean 0 and deviation 1. `mean`, `scale` [C].
+/// Subtracts `mean` and divides by `scale` [C] in each row of `input` [T,C].
 void standardise(std::span<const float> mean, std::span<const float> scale, std::span<float> input);
 
 }  // namespace kinalign

@@ -15,7 +15,8 @@ bool is_among(std::string_view name, Names names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The angle between two rotations, degrees. The trace alone would lose small angles.
+/// The angle between two rotations, degrees. It uses the chord, because the trace alone loses small
+/// angles.
 double angle_between(const Turn& a, const Turn& b) {
   const double half_chord = static_cast<double>((a - b).norm()) / (2.0 * std::numbers::sqrt2);
   return 2.0 * std::asin(std::min(half_chord, 1.0)) * 180.0 / std::numbers::pi;
@@ -39,7 +40,7 @@ std::vector<std::size_t> scored_joints(const Skeleton& skeleton) {
   return out;
 }
 
-/// Mean length of the third difference of these joints [T,J,3], m/s3.
+/// Mean length of the third difference of the scored joints; positions [T,J,3], result in m/s3.
 double jitter_of(const std::vector<float>& positions, std::size_t joints,
                  const std::vector<std::size_t>& scored, double rate_hz) {
   Mean mean;

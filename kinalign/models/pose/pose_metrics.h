@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a pose is off. Rotations and positions are those against the root, so neither the place
-// nor the heading of a person counts.
+// Error measures of a pose. Rotations and positions are relative to the root, so the person's
+// position and heading do not count.
 #pragma once
 
 #include "kinalign/models/pose/pose_body.h"
@@ -12,32 +12,33 @@ namespace kinalign {
 
 /// Means over all frames.
 struct PoseErrors {
-  double sip_deg = 0.0;      // global rotation of thighs and upper arms
-  double angle_deg = 0.0;    // global rotation of all bones but neck and head
-  double head_deg = 0.0;     // of neck and head
-  double position_cm = 0.0;  // of the joints below hips, chest and shoulders, these included
-  double jitter = 0.0;       // m/s3, third difference of these joints; of the answer
-  double true_jitter = 0.0;  // of the truth
+  double sip_deg = 0.0;    // global rotation of thighs and upper arms
+  double angle_deg = 0.0;  // global rotation of all bones but neck and head
+  double head_deg = 0.0;   // global rotation of neck and head
+  /// Position of the joints below hips, chest and shoulders, these included.
+  double position_cm = 0.0;
+  double jitter = 0.0;       // m/s3, mean third difference of these joints in the answer
+  double true_jitter = 0.0;  // m/s3, the same in the truth
   std::size_t frames = 0;
 
   double jitter_ratio() const { return true_jitter > 0.0 ? jitter / true_jitter : 0.0; }
-  /// Joins means, weighted by frames.
+  /// Combines two means, weighted by their numbers of frames.
   void add(const PoseErrors& more);
 };
 
-/// A person's true pose, to be compared with.
+/// The ground truth of a pose.
 struct TruePose {
   std::span<const Turn> rotations;     // [T,B]
-  std::span<const Vec3> rest_offsets;  // [J], for the answer too
+  std::span<const Vec3> rest_offsets;  // [J] m, used for the answer too
 };
 
-/// `answer` [T,B]. Groups of bones and joints go by the names of pose_body.h.
+/// `answer` [T,B]. Groups of bones and joints are chosen by the names of pose_body.h.
 PoseErrors pose_errors(const PoseBody& body, std::span<const Turn> answer, const TruePose& truth,
                        double rate_hz);
 
-/// Whether position errors count this joint. Root, hips, lower back, lower neck and clavicles stay
-/// nearly at their places against the root, whatever is answered. Toes and fingers are only
-/// guessed.
+/// True if position errors count this joint. Root, hips, lower back, lower neck and clavicles are
+/// left out because they hardly move against the root. Toes and fingers are left out because they
+/// are only guessed.
 bool is_scored_joint(std::string_view name);
 
 }  // namespace kinalign

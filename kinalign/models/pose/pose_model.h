@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model that answers with a person's pose to inertial nodes: its network, and everything needed
-// to use it. Layout of its file: docs/formats/model.md.
+// A model that estimates a person's pose from inertial nodes: its network and all settings needed
+// to use it. The file's layout: docs/formats/model.md.
 #pragma once
 
 #include "kinalign/infer/network.h"
@@ -19,12 +19,12 @@ struct PoseModel : BodyModel {  // task "pose"
 /// The bytes of a model's file. The same model gives the same bytes.
 std::string write_pose_model(const PoseModel& model);
 
-/// Fails where the file is no model of this task or its parts do not fit together.
+/// Fails if the file is not a model of this task or its parts do not fit together.
 Result<PoseModel> read_pose_model(std::string_view bytes, const std::string& name);
 
 struct SolvedPose {
   std::vector<Turn> rotations;           // [T,B] against the root
-  std::vector<Eigen::Quaternionf> root;  // [T] in the world
+  std::vector<Eigen::Quaternionf> root;  // [T] rotation in the world
 };
 
 /// A model ready for whole sequences. It can be used by one thread at a time.
@@ -34,14 +34,14 @@ class PoseSolver {
 
   const PoseModel& model() const { return model_; }
 
-  /// `nodes`: the layout's, at its rate.
+  /// Estimates the pose of a sequence. `nodes`: the layout's nodes at the layout's rate.
   SolvedPose solve(const NodeFrames& nodes);
   /// The same without smoothing.
   SolvedPose answer(const NodeFrames& nodes);
   /// A skeleton with constant bones (clip_frames()). The first frame has the stamp `start`.
   Clip clip(const NodeFrames& nodes, Time start);
 
-  /// Answers on a person's own body from now on: the model's with other lengths (own_body.h).
+  /// Uses a person's own body from now on: the model's skeleton with other lengths (own_body.h).
   void use_body(Skeleton body) { model_.body.skeleton = std::move(body); }
 
  private:
@@ -53,8 +53,8 @@ class PoseSolver {
   Workspace workspace_;
 };
 
-/// Rotations [T,B], each the mean of five frames with weights 1, 4, 6, 4, 1, brought back to a
-/// rotation. The first and the last frame stand for the frames beyond them.
+/// Smooths rotations [T,B] in place: the mean of five frames with weights 1, 4, 6, 4, 1, converted
+/// back to a rotation. Beyond both ends the first and the last frame are repeated.
 void smooth_turns(std::size_t bones, std::vector<Turn>& rotations);
 
 }  // namespace kinalign

@@ -14,9 +14,10 @@ namespace kinalign {
 
 namespace {
 
-/// Names of a joint in skeletons of suits, the first that is there.
+/// Alternative names of a joint in suits' skeletons; the first one that exists is used.
 using OtherNames = std::array<std::string_view, 2>;
 
+/// The source of one joint of pose_joints in a suit's skeleton; see JointSource.
 struct SuitJoint {
   std::string_view joint;
   OtherNames turner, from;
@@ -25,10 +26,10 @@ struct SuitJoint {
   std::array<double, 3> along = {};  // m
 };
 
-/// CMU's "lwrist" turns the forearm about itself, two thirds along it; "lhand" begins at the wrist.
-/// Fingers lie on the line of the forearm: suits without gloves have none. No suit has
-/// toes; they lie 13 cm before the ankle and 6 cm below it. Where a skeleton has one joint of the
-/// neck, the upper one lies between it and the head.
+/// CMU's "lwrist" turns the forearm about its own axis, two thirds along it; "lhand" begins at the
+/// wrist. Fingers are placed on the line of the forearm, because suits without gloves have none. No
+/// suit has toes; they are placed 13 cm before the ankle and 6 cm below it. If a skeleton has one
+/// neck joint, the upper neck joint is placed halfway to the head.
 constexpr std::array<SuitJoint, pose_joints.size()> suit_joints{{
     {"root", {"Hips"}, {"Hips"}},
     {"lfemur", {"LeftUpLeg"}, {"LeftUpLeg"}},
@@ -59,7 +60,7 @@ constexpr std::array<SuitJoint, pose_joints.size()> suit_joints{{
     {"rfingers", {"RightForeArm"}, {"RightForeArm"}, {"RightHand"}, 1.15},
 }};
 
-/// The bones of limbs, the joint at which each ends, and its direction in CMU's rest pose.
+/// For each bone of a limb: the joint at which it ends, and its direction in CMU's rest pose.
 struct LimbZero {
   std::string_view bone, end;
   std::array<double, 3> direction;
@@ -73,6 +74,7 @@ constexpr std::array<LimbZero, 8> limb_zeros{{{"lfemur", "ltibia", {0.342020, -0
                                               {"rhumerus", "rradius", {-1.0, 0.0, 0.0}},
                                               {"rwrist", "rwrist", {-1.0, 0.0, 0.0}}}};
 
+/// The index of the first of the `wanted` names that the file has.
 Result<std::size_t> any_of_names(const std::vector<std::string>& names, const OtherNames& wanted) {
   for (const std::string_view name : wanted) {
     if (name.empty()) continue;
@@ -82,6 +84,7 @@ Result<std::size_t> any_of_names(const std::vector<std::string>& names, const Ot
                        "none named " + std::string(wanted[0])});
 }
 
+/// Finds, for each joint of the body, the joints of a suit's skeleton from which it is made.
 Result<void> add_suit_joints(PoseSkeleton& out) {
   out.is_cmu = false;
   for (const SuitJoint& joint : suit_joints) {

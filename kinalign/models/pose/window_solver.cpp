@@ -9,11 +9,12 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t smoothed_beside = 2;  // frames on each side, smooth_turns()
-/// Of a network that remembers everything: two seconds at 30 Hz, six times what Huang et al.
-/// («Deep inertial poser», SIGGRAPH Asia 2018) give theirs.
+constexpr std::size_t smoothed_beside = 2;  // frames on each side, used by smooth_turns()
+/// Earlier frames kept if the network uses the whole sequence: two seconds at 30 Hz, six times the
+/// number that Huang et al. («Deep inertial poser», SIGGRAPH Asia 2018) use.
 constexpr std::size_t remembered = 60;
 
+// frames on each side that the smoothing needs
 std::size_t beside(const PoseModel& model) { return model.smoothing ? smoothed_beside : 0; }
 
 }  // namespace
@@ -48,6 +49,7 @@ std::optional<FramePose> WindowSolver::finish() {
   return pose_at(next_);
 }
 
+/// Answers one row and removes rows from the window that no later answer needs.
 std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
   const std::size_t bones = solver_->model().layout.bones.size();
   const std::size_t frames = roots_.size();

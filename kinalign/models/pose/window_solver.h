@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model of poses that answers frame by frame, some frames late, whatever its network: the network
-// runs over a window of the newest frames. With all the later frames that network and smoothing
-// see, the answers are those of PoseSolver::solve() over the whole sequence, bit by bit.
+// Runs a model of poses on live frames with a fixed delay, for any network: the network runs over a
+// window of the newest frames. If the delay covers all later frames that network and smoothing use,
+// the answers equal those of PoseSolver::solve() over the whole sequence, bit by bit.
 #pragma once
 
 #include "kinalign/infer/window_network.h"
@@ -22,31 +22,32 @@ struct FramePose {
 
 class WindowSolver {
  public:
-  /// `solver` must live longer and must not be moved. `look_ahead`: frames that an answer waits
-  /// for; more than network and smoothing see are of no use, and not waited for.
+  /// `solver` must live longer and must not be moved. `look_ahead`: the delay of an answer in
+  /// frames. It is reduced to the number of later frames that network and smoothing use.
   WindowSolver(const PoseSolver& solver, std::size_t look_ahead);
 
   std::size_t look_ahead() const { return ahead_; }
-  /// The most that is of use; nothing where the network sees the whole sequence.
+  /// The largest useful look_ahead; empty if the network uses the whole sequence.
   static std::optional<std::size_t> most_ahead(const PoseModel& model);
 
-  /// Takes frame `t` of `nodes`, the frame after the one before. The pose of the frame look_ahead()
-  /// earlier; absent before there is one.
+  /// Takes frame `t` of `nodes`, which must follow the frame of the last call. Returns the pose of
+  /// the frame look_ahead() frames earlier; empty if there is no such frame yet.
   std::optional<FramePose> step(const NodeFrames& nodes, std::size_t t);
-  /// No further frames come: the next pose of those that are left.
+  /// Call when no further frames come: returns the next remaining pose; empty if all are answered.
   std::optional<FramePose> finish();
 
  private:
   std::optional<FramePose> pose_at(std::size_t row);
 
   const PoseSolver* solver_;
-  std::size_t ahead_, behind_;  // frames of the window on both sides of the one that is answered
+  /// Number of later and of earlier frames in the window, seen from the answered frame.
+  std::size_t ahead_, behind_;
   PoseFeatureMaker maker_;
-  std::vector<float> rows_;               // [window,C] channels, standardised
+  std::vector<float> rows_;               // [window,C] standardised channels
   std::deque<Eigen::Quaternionf> roots_;  // [window]
-  std::size_t next_ = 0;                  // row of the window that is answered next
+  std::size_t next_ = 0;                  // the row of the window that is answered next
   WindowNetwork network_;
-  std::size_t run_ = 0;  // rows of the window that the network has seen
+  std::size_t run_ = 0;  // number of rows of the window that the network has processed
 };
 
 }  // namespace kinalign

@@ -18,13 +18,14 @@ struct Curves {
   std::size_t joints = 0;
   std::vector<double> times;      // [T] s from the first frame
   std::vector<double> positions;  // [T,J,3]
-  std::vector<double> bends;      // [T,J,3] of the positions
+  std::vector<double> bends;      // [T,J,3] second derivatives of the positions
   std::vector<double> rotations;  // [T,J,4]
-  std::vector<double> slopes;     // [T,J,6] of the interval that begins there: at its two ends
+  // [T,J,6] rates at both ends of the interval that begins with the frame.
+  std::vector<double> slopes;
 };
 
-/// Weighted means of the rows near each row. `size` numbers a row; rotations go by the nearer of
-/// their two signs and are brought back to length one.
+/// Gaussian means of the rows near each row; `size` numbers per row. Rotations must have aligned
+/// signs; the caller normalises the results.
 std::vector<double> smoothed(const std::vector<double>& times, const std::vector<double>& rows,
                              std::size_t size, double deviation_s) {
   std::vector<double> out(rows.size(), 0.0);
@@ -43,7 +44,7 @@ std::vector<double> smoothed(const std::vector<double>& times, const std::vector
   return out;
 }
 
-/// Signs such that each rotation is near the one before it.
+/// Chooses the sign of each rotation so that it is near the one before it.
 void align_signs(std::vector<double>& rotations, std::size_t joints) {
   for (std::size_t i = joints; i < rotations.size() / 4; ++i) {
     const Quat q = quat(rotations, i);
@@ -51,6 +52,7 @@ void align_signs(std::vector<double>& rotations, std::size_t joints) {
   }
 }
 
+/// Finds the slopes of the rotation spline, joint by joint.
 void solve_rotations(Curves& curves) {
   const std::size_t frames = curves.times.size(), joints = curves.joints;
   curves.slopes.assign(6 * frames * joints, 0.0);
@@ -76,7 +78,8 @@ void solve_rotations(Curves& curves) {
   }
 }
 
-/// The rotation spline in the interval that begins with frame k, as rotation_curve.cpp has it.
+/// The rotation spline in the interval that begins with frame k; the same formula as in
+/// rotation_curve.cpp.
 Quat rotation_at(const Curves& curves, std::size_t k, std::size_t joint, double t) {
   const std::size_t left = k * curves.joints + joint, right = left + curves.joints;
   const double h = curves.times[k + 1] - curves.times[k], u = (t - curves.times[k]) / h;
@@ -88,6 +91,7 @@ Quat rotation_at(const Curves& curves, std::size_t k, std::size_t joint, double 
   return from * rotation(Vec3(u * (begins + u * (two + u * three))));
 }
 
+/// Evaluates all curves at `time`. A clip of one frame is constant.
 void pose_at(const Curves& curves, double time, Pose& pose) {
   const auto& times = curves.times;
   const std::size_t joints = curves.joints;
@@ -111,6 +115,7 @@ void pose_at(const Curves& curves, double time, Pose& pose) {
   for (std::size_t j = 0; j < joints; ++j) pose.local_rotations[j] = rotation_at(curves, k, j, t);
 }
 
+/// Fails if the clip can't be interpolated.
 Result<void> check(const Clip& clip) {
   KA_TRY(validate(clip.skeleton));
   const std::size_t joints = clip.skeleton.joints(), frames = clip.frames.size();

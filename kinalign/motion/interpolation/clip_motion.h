@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A clip of someone else's as a motion that can be asked at any time: positions by natural cubic
-// splines, rotations by the rotation spline, both twice continuously differentiable, so that
+// Turns a recorded clip into a motion that can be evaluated at any time: positions by natural cubic
+// splines, rotations by the rotation spline. Both are twice continuously differentiable, so
 // accelerations are finite and continuous.
 #pragma once
 
@@ -10,15 +10,15 @@
 namespace kinalign {
 
 struct ClipMotionOptions {
-  /// Frames are first smoothed by a Gaussian of this deviation, s, 0 for none: what a suit's noise
-  /// and a file's last decimal add to second derivatives grows with the square of the rate. 10 ms
-  /// halve what moves at 19 Hz and leave 98 % at 3 Hz.
+  /// Standard deviation of the Gaussian that smooths the frames first, s; 0: none. A suit's noise
+  /// and the rounding of a file grow with the square of the rate in second derivatives. 10 ms halve
+  /// motion at 19 Hz and leave 98 % of it at 3 Hz.
   double smooth_s = 0.01;
 };
 
-/// Time 0 is the first frame. Before it and behind the last, the nearest frame stands still. Memory
-/// grows with the clip: 128 bytes a frame and joint. Fails on an invalid skeleton, without frames,
-/// where arrays differ in length, stamps do not rise, or a number is not finite.
+/// Time 0 is the first frame. Before the first and after the last frame the pose does not change.
+/// Memory: 128 bytes per frame and joint. Fails if the skeleton is not valid, if there are no
+/// frames, if arrays have wrong lengths, if stamps do not rise, or if a number is not finite.
 Result<Motion> motion_of(const Clip& clip, const ClipMotionOptions& options = {});
 
 }  // namespace kinalign

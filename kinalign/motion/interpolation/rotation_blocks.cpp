@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slopes of the spline as SciPy finds them: the rates by elimination in blocks of three, b from
-// the sweep before, at most ten sweeps. Where knots are too far apart for these to settle, the
-// curve is what they leave; so this is the way for such knots.
+// Finds the slopes of the spline as SciPy does: the rates by elimination in blocks of three, b from
+// the previous sweep, at most ten sweeps. If knots are too far apart, the sweeps do not converge
+// and SciPy's curve is the result of the tenth one. Only this method gives the same curve for such
+// knots.
 #include "kinalign/motion/arrays.h"
 #include "kinalign/motion/interpolation/rotation_slopes.h"
 
@@ -35,20 +36,21 @@ struct Interval {
   }
 };
 
-/// Of an inner knot: rate = inverse (constant - b) - left * rate before - after * rate behind, the
-/// rate before eliminated.
+/// One row of the elimination, for an inner knot: rate = inverse (constant - b) - left * (rate
+/// before) - after * (rate after), with the rate before eliminated.
 struct Row {
   Mat3 inverse, left, after;
   Vec3 constant, solution;
-  double longer = 0.0;  // s, of the intervals beside
+  double longer = 0.0;  // s, the longer one of the two adjacent intervals
 };
 
 struct Blocks {
   std::vector<Interval> intervals;  // [n]
-  std::vector<Row> rows;            // [n+1], the first and the last knot's idle
+  std::vector<Row> rows;            // [n+1]; the first and the last row are not used
   std::vector<Vec3> rates;          // [n+1]
 };
 
+/// The part of the elimination that does not depend on the rates.
 void eliminate(Blocks& s) {
   s.rows.front().after.setZero();
   for (std::size_t k = 1; k < s.intervals.size(); ++k) {
@@ -66,6 +68,7 @@ void eliminate(Blocks& s) {
 
 constexpr double most_turn = 1000.0;
 
+/// One sweep: solves for all rates with b from the previous ones. Returns the largest change, rad.
 double sweep(Blocks& s) {
   const std::size_t n = s.intervals.size();
   s.rows.front().solution = s.rates.front();
@@ -87,10 +90,10 @@ double sweep(Blocks& s) {
   return change;
 }
 
-constexpr int most_sweeps = 10;       // as many as SciPy's
-constexpr double negligible = 1e-13;  // rad of an interval's turn; a seventh of that on the curve
+constexpr int most_sweeps = 10;       // the limit of SciPy
+constexpr double negligible = 1e-13;  // rad in one interval; the curve changes by a seventh of that
 
-/// Sweeps until what later ones would change, by the rate at which changes shrink, is negligible.
+/// Sweeps until the expected further change, from the rate at which changes shrink, is negligible.
 void iterate(Blocks& s) {
   double last = 0.0;
   for (int i = 0; i < most_sweeps; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sixty-four samples at a time, four numbers of a sample side by side; the angles' polynomials,
-// eight samples side by side.
+// Processes 64 samples at a time. Vector code computes the four numbers of one sample together, and
+// the polynomials of angles for eight samples together.
 #include "kinalign/motion/interpolation/rotation_curve.h"
 
 #include "kinalign/motion/interpolation/vector_lanes.h"
@@ -17,11 +17,11 @@ namespace {
 
 using Four = std::array<double, 4>;
 
-/// The curve in each interval. Where the fraction u of it has passed, the rotation vector from the
-/// left knot is c = u (c1 + u (c2 + u c3)) and the rotation
+/// The curve in each interval. At the fraction u of the interval, the rotation vector from the left
+/// knot is c = u (c1 + u (c2 + u c3)) and the rotation is
 ///   knot (cos(|c|/2) + sin(|c|/2)/|c| c) = cos(|c|/2) knot + sin(|c|/2)/|c| (knot c),
-/// quaternions all. What stands here is knot c1, knot c2 and knot c3: so a sample needs no product
-/// of quaternions, and knot c is as long as c.
+/// where all products are quaternion products. This structure stores knot c1, knot c2 and knot c3,
+/// so a sample needs no quaternion product, and |knot c| = |c|.
 struct Cubics {
   explicit Cubics(std::size_t n)
       : one(std::make_unique_for_overwrite<Four[]>(n)),
@@ -67,7 +67,7 @@ struct alignas(64) Samples {
   std::array<std::size_t, block> interval;
   std::array<double, block> fraction;
   std::array<Four, block> vector;    // knot c / u
-  std::array<double, block> square;  // of c
+  std::array<double, block> square;  // |c|^2
   std::array<double, block> knot_weight, vector_weight;
 };
 
@@ -104,7 +104,8 @@ void blend(const Samples& s, std::size_t count, const double* knots, double* out
   }
 }
 
-/// Rare: more than a whole turn between two knots, where the weights do not hold.
+/// Handles samples that are more than a whole turn from the left knot, where weigh() is not valid.
+/// Rare.
 void turn_far(const Samples& s, std::size_t count, std::span<const double> knots, double* out) {
   for (std::size_t i = 0; i < count; ++i) {
     if (s.square[i] <= most_rotation_parts) continue;

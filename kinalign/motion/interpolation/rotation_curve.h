@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rotation spline between its knots, its slopes known.
+// Evaluates the rotation spline between its knots when its slopes are known.
 #pragma once
 
 #include "kinalign/motion/interpolation/rotation_intervals.h"
@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// Of the knots [n+1], their intervals and slopes, what the curve needs.
+/// The curve: its knots [n+1], their intervals and slopes.
 struct RotationCurve {
   const RotationKnots& knots;
   const RotationIntervals& intervals;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The intervals between neighbouring rotations, as the rotation spline sees them; its own header.
+// The intervals between neighbouring rotations. This header is internal to the rotation spline.
 #pragma once
 
 #include "kinalign/motion/interpolation/rotation_spline.h"
@@ -10,29 +10,32 @@
 
 namespace kinalign {
 
-using Columns = std::array<std::vector<double>, 3>;  // x, y, z apart: loops become vector code
+/// X, y, z in separate arrays, so that loops become vector code.
+using Columns = std::array<std::vector<double>, 3>;
 
-/// Of each of n intervals its length and the rotation vector from its left knot to its right one.
+/// For each of n intervals its length, and the rotation vector from its left knot to its right
+/// knot.
 struct RotationIntervals {
   std::vector<double> length;  // [n] s
-  Columns vector;              // [n] at most pi long
+  Columns vector;              // [n] at most pi long, rad
 
   std::size_t size() const { return length.size(); }
 };
 
-/// Fills `to` with the intervals between `knots`, two at least, whatever stood in it.
+/// Fills `to` with the intervals between `knots`, of which there must be at least two. Earlier
+/// contents are replaced.
 void measure_intervals(const RotationKnots& knots, RotationIntervals& to);
 
-/// The derivatives of each interval's rotation vector where it begins and where it ends, rad/s.
+/// The derivatives of each interval's rotation vector at its two ends, rad/s.
 struct RotationSlopes {
   Columns begin, end;  // [n]
 };
 
-/// What depends on the length of a rotation vector r alone. Let H be the rotation by r / 2 and D
-/// keep what is along r and shrink what is across it:
+/// Quantities that depend only on the length of a rotation vector r. Let H be the rotation by r /
+/// 2, and let D keep the part of a vector along r and shrink the part across it:
 ///   H = half_w + half_r r (as a quaternion),  D v = across v + along (r . v) r.
-/// W(r), which turns the derivative of a rotation vector into an angular rate, is H^-1 D; and of
-/// the angular acceleration the part that is quadratic in the angular rate w is
+/// The matrix W(r) = H^-1 D converts the derivative of a rotation vector to an angular rate. The
+/// part of the angular acceleration that is quadratic in the angular rate w is
 ///   b(r, w) = (square |w|^2 + product (r . w)^2) r - mixed (r . w) w.
 struct TurnParts {
   double half_w, half_r;
@@ -40,7 +43,7 @@ struct TurnParts {
   double square, product, mixed;
 };
 
-/// From the squared length x, up to pi^2; no difference of nearly equal numbers.
+/// From the squared length x, up to pi^2. Avoids differences of nearly equal numbers.
 KA_INLINE TurnParts turn_parts(double x) {
   constexpr auto cosine_rest = alternating_series<8>(2), sine_rest = alternating_series<8>(3);
   constexpr auto product = [] {
@@ -48,9 +51,10 @@ KA_INLINE TurnParts turn_parts(double x) {
     for (std::size_t k = 0; k < c.size(); ++k) c[k] = 4.0 * c[k] - alternating_series<11>(5)[k];
     return c;
   }();
-  const double y = x / 16.0;  // a quarter of the angle, squared
+  const double y = x / 16.0;  // square of a quarter of the angle
   const double c = polynomial(cosine_rest, y), s = polynomial(sine_rest, y);
-  const double cosine = 1.0 - y * c, sine = 1.0 - y * s;  // of it; the sine over its argument
+  /// Cos of a quarter of the angle; sin of it divided by it.
+  const double cosine = 1.0 - y * c, sine = 1.0 - y * s;
   const double across = cosine * sine, along = (c + s - y * c * s) / 16.0;
   const double sagitta = sine * sine / 8.0;  // (1 - cosine of half the angle) / x
   const double widen = 1.0 / across;

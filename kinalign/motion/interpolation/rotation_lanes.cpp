@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slopes of many near knots. Two things make them cheap.
+// Finds the slopes for many knots that are close to each other. Two ideas make this fast.
 //
-// W(r) = H^-1 D is nearly a turn by half of r. So rates are written in spaces that follow the knots
-// at half their turn: z[k] = H(r[0]) ... H(r[k-1]) w[k], and r likewise. In the system of
-// rotation_slopes.h this leaves D for W and z for w. With D - 1, D^-1 - 1 and b, all of the order
-// of |r|^2 / 24, on the right side, where they are iterated, the left side is the same tridiagonal
-// system of plain numbers for each of x, y and z. Knots 0.3 rad apart: each sweep leaves 1/300.
+// First, W(r) = H^-1 D is nearly a rotation by half of r. Rates are therefore expressed in spaces
+// that follow the knots at half their rotation: z[k] = H(r[0]) ... H(r[k-1]) w[k], and likewise r.
+// In the system of rotation_slopes.h this replaces W by D and w by z. The terms with D - 1, D^-1 -
+// 1 and b are all of the order of |r|^2 / 24; they go to the right side and are iterated. The left
+// side is then the same tridiagonal system of scalars for x, y and z. With knots 0.3 rad apart,
+// each sweep reduces the error to 1/300.
 //
-// The rows of such a system depend on each other one after the other. So the knots are cut into
-// eight pieces, which are swept side by side as vector code. A piece begins from what the one
-// before it had found in the last sweep; what it should have begun from is known at the end of the
-// sweep, and the change fades within a few rows.
+// Second, the rows of such a system depend on each other in sequence. The knots are therefore cut
+// into eight pieces, which vector code sweeps in parallel. A piece starts from the result of its
+// neighbour in the previous sweep. The correct start is known at the end of the sweep, and the
+// effect of the difference fades within a few rows.
 #include "kinalign/motion/interpolation/rotation_slopes.h"
 #include "kinalign/motion/interpolation/vector_lanes.h"
 #include "kinalign/motion/targets.h"
@@ -24,20 +25,22 @@ namespace kinalign {
 
 namespace {
 
-/// A knot of each piece and the interval before it.
+/// One knot of each of the eight pieces, and the interval before it.
 struct alignas(64) Row {
   VectorLanes r;
-  Lane length, per_second;            // s; 1/s
-  Lane square, product, mixed;        // of b
-  Lane left, left_r, right, right_r;  // 2/h (1 - D) v = left v - left_r (r . v) r; 2/h (D^-1 - 1)
-  Lane along, widen;                  // D^-1 v = widen (v - along (r . v) r)
-  QuaternionLanes turn;               // H ... H: from the knot's space to its piece's
-  Lane scale, before, after;          // z = scale * right side - before z[k-1] - after z[k+1]
-  VectorLanes constant;               // of the right side
-  VectorLanes solution, rate;         // z, without and with `after`
+  Lane length, per_second;      // s; 1/s
+  Lane square, product, mixed;  // factors of b
+  // Left: 2/h (1 - D) v = left v - left_r (r . v) r; right: 2/h (D^-1 - 1).
+  Lane left, left_r, right, right_r;
+  Lane along, widen;           // D^-1 v = widen (v - along (r . v) r)
+  QuaternionLanes turn;        // H ... H: from the space of the knot to the space of its piece
+  Lane scale, before, after;   // z = scale * right side - before z[k-1] - after z[k+1]
+  VectorLanes constant;        // constant part of the right side
+  VectorLanes solution, rate;  // z before and after the backward substitution
 };
 
-/// Rows [1, size - 1) of each piece are unknown, the outer two are its neighbours' or given.
+/// Rows [1, size - 1) of each piece are unknowns. The first and the last row belong to its
+/// neighbours or are given.
 struct Pieces {
   std::size_t stride = 0;  // knots from one piece's first row to the next one's
   std::size_t size = 0;
@@ -47,7 +50,8 @@ struct Pieces {
   Row& last() const { return rows[size - 1]; }
 };
 
-// Rows at either end of a piece in which a change beyond it fades: to 2^-32 at least.
+// Number of rows at an end of a piece in which the effect of a change beyond it fades to at most
+// 2^-32.
 constexpr std::size_t seam = 32;
 
 void gather(const RotationIntervals& in, const Pieces& to) {
@@ -62,6 +66,7 @@ void gather(const RotationIntervals& in, const Pieces& to) {
   }
 }
 
+/// Computes, for lane i, all factors of an interval's row that do not change from step to step.
 KA_INLINE void measure(const Row& before, Row& row, std::size_t i) {
   const Quaternion turn = load(before.turn, i);
   const Vector r = load(row.r, i);
@@ -93,7 +98,7 @@ KA_INLINE void eliminate(const Row& before, Row& row, const Row& after, std::siz
   store(row.scale[i] * constant - row.before[i] * load(before.solution, i), row.solution, i);
 }
 
-/// Also solves forwards as if D were 1 and b nothing: where the iteration begins.
+/// Also solves forwards with D = 1 and b = 0, which is the start of the iteration.
 KA_EVERY_PROCESSOR
 void set_up(std::span<Row> rows) {
   for (std::size_t j = 1; j < rows.size(); ++j) {
@@ -105,7 +110,8 @@ void set_up(std::span<Row> rows) {
   }
 }
 
-/// `after` in the first row of each piece, from a few rows at the end of the piece before.
+/// Computes `after` in the first row of each piece from a few rows at the end of the previous
+/// piece.
 KA_EVERY_PROCESSOR
 void begin_elimination(const Pieces& s) {
   Lane after{};
@@ -119,6 +125,7 @@ void begin_elimination(const Pieces& s) {
   std::copy_n(after.begin(), lanes - 1, s.first().after.begin() + 1);
 }
 
+/// Cuts the intervals into pieces and solves the linear part.
 Pieces cut(const RotationIntervals& in) {
   Pieces s;
   const std::size_t unknown = in.size() - 1;
@@ -140,6 +147,7 @@ Pieces cut(const RotationIntervals& in) {
   return s;
 }
 
+/// The forward half of the elimination: each row's solution from those before it.
 KA_EVERY_PROCESSOR
 void forwards(std::span<Row> rows) {
   for (std::size_t j = 1; j + 1 < rows.size(); ++j) {
@@ -160,7 +168,8 @@ void forwards(std::span<Row> rows) {
   }
 }
 
-/// The largest change of a rate, as rad in the longer interval at its knot.
+/// Substitutes backwards. Returns the largest change of a rate, rad in the longer interval at its
+/// knot.
 KA_EVERY_PROCESSOR
 double backwards(std::span<Row> rows) {
   Lane change{};
@@ -179,8 +188,8 @@ double backwards(std::span<Row> rows) {
   return *std::max_element(change.begin(), change.end());
 }
 
-/// Gives a piece's outer row what its neighbour found in `from`, the same knot, one lane before
-/// (step 1) or behind (-1) it; returns the change.
+/// Copies into an outer row of each piece the value that its neighbour found for the same knot in
+/// row `from`; step 1: the neighbour is one lane before, -1: one lane after. Returns the changes.
 VectorLanes take_over(const Row& from, Row& to, VectorLanes Row::*what, std::ptrdiff_t step) {
   VectorLanes change{};
   const std::size_t source = step > 0 ? 0 : 1, target = 1 - source;
@@ -193,7 +202,7 @@ VectorLanes take_over(const Row& from, Row& to, VectorLanes Row::*what, std::ptr
   return change;
 }
 
-/// Passes on a change in a piece's outer row.
+/// Propagates a change in an outer row of a piece to the following rows.
 KA_EVERY_PROCESSOR
 void mend(Row* row, std::ptrdiff_t step, VectorLanes change, Lane Row::*weight,
           VectorLanes Row::*what) {
@@ -208,7 +217,7 @@ void mend(Row* row, std::ptrdiff_t step, VectorLanes change, Lane Row::*weight,
   }
 }
 
-/// From the solution forwards to new rates; returns their largest change.
+/// Computes new rates from the forward solution; returns their largest change.
 double take_back(const Pieces& s) {
   Row &first = s.first(), &last = s.last();
   const Row &before_first = s.rows[s.stride], &behind_last = s.rows[s.size - 1 - s.stride];
@@ -219,6 +228,7 @@ double take_back(const Pieces& s) {
   return change;
 }
 
+/// Writes the slopes at both ends of each interval in the axes of the interval's begin.
 KA_EVERY_PROCESSOR
 void hand_out(const Pieces& s, RotationSlopes& to) {
   for (std::size_t j = 1; j < s.size; ++j) {
@@ -240,11 +250,12 @@ void hand_out(const Pieces& s, RotationSlopes& to) {
   }
 }
 
-constexpr double negligible = 1e-13;  // rad of an interval's turn; a seventh of that on the curve
-constexpr int most_sweeps = 8;        // with more, few blocks are spared and the estimate is worse
+constexpr double negligible = 1e-13;  // rad in one interval; the curve changes by a seventh of that
+// More sweeps rarely save the slower method, and make the estimate worse.
+constexpr int most_sweeps = 8;
 
-/// Sweeps until what later ones would change, by the rate at which changes shrink, is negligible;
-/// false where they do not shrink fast.
+/// Sweeps until the expected further change, from the rate at which changes shrink, is negligible.
+/// Returns false if the changes do not shrink fast.
 bool settle(const Pieces& s) {
   double last = take_back(s);
   for (int i = 0; i < most_sweeps && last > negligible; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Window by window: what is known of its intervals stays in the second cache, and memory does not
-// grow with the knots.
+// Processes the knots in windows, so that a window's data stay in the second-level cache and memory
+// does not grow with the number of knots.
 #include "kinalign/motion/interpolation/rotation_spline.h"
 
 #include "kinalign/motion/interpolation/rotation_curve.h"
@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t window = 2048;  // intervals, 240 bytes each while they are solved
+constexpr std::size_t window = 2048;  // intervals, 240 bytes each during the solution
 
 /// Knots [begin, end).
 RotationKnots part(const RotationKnots& knots, std::size_t begin, std::size_t end) {

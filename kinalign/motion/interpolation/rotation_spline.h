@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rotation curve with continuous angular rate and acceleration through rotations at irregular
-// stamps: in each interval the rotation vector from the left knot is a cubic in time, and the
-// angular rates at the knots solve a block tridiagonal system with a small nonlinear term, which
-// is iterated, at most ten times: up to about a radian between knots that is more than enough,
-// above two the curve is only nearly twice differentiable. The same curve as SciPy's RotationSpline
-// (scipy/spatial/transform/_rotation_spline.py, after "Smooth Attitude Interpolation",
-// github.com/scipy/scipy/files/2932755/attitude_interpolation.pdf); at both ends the rate is that
-// of the first and the last interval.
+// stamps. In each interval the rotation vector from the left knot is a cubic in time. The angular
+// rates at the knots solve a block tridiagonal system with a small nonlinear term, which is
+// iterated at most ten times. That suffices up to about one radian between knots; above two radians
+// the curve is only approximately twice differentiable.
+//
+// The curve equals that of SciPy's RotationSpline (scipy/spatial/transform/_rotation_spline.py,
+// after "Smooth Attitude Interpolation",
+// github.com/scipy/scipy/files/2932755/attitude_interpolation.pdf). At both ends the rate is that
+// of the first and of the last interval.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +16,9 @@
 
 namespace kinalign {
 
-/// Knots within this many of a place decide the curve there to 1e-12 rad, up to 2.5 rad between
-/// knots: further ones to less than 1e-14, the rest is where the iteration ends.
+/// The curve at a place depends on knots up to this many away, to 1e-12 rad if neighbouring knots
+/// differ by at most 2.5 rad. Knots farther away change it by less than 1e-14; the rest is the
+/// error of the iteration.
 constexpr std::size_t rotation_spline_reach = 60;
 
 /// `knots` [T,4] unit w,x,y,z at strictly rising `times` [T] s, T >= 1.

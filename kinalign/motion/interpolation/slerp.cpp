@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The angle once an interval, two short polynomials a sample, no square root and no branch: 0.3 of
-// the time of Eigen's slerp (bench/slerp_bench.cpp).
+// Computes the angle once per interval and two short polynomials per sample, without square roots
+// and branches: 0.3 of the time of Eigen's slerp (bench/slerp_bench.cpp).
 #include "kinalign/motion/interpolation/slerp.h"
 
 #include "kinalign/motion/targets.h"
@@ -15,10 +15,11 @@ namespace kinalign {
 
 namespace {
 
-/// Of the arc between two neighbouring knots, as unit vectors of four dimensions.
+/// The arcs between neighbouring knots, as unit vectors in four dimensions.
 struct Arcs {
-  std::vector<double> square;  // [T-1] its angle's square
-  std::vector<double> factor;  // [T-1] angle / sin(angle), negative where the right knot turns over
+  std::vector<double> square;  // [T-1] squared angle of the arc, rad^2
+  // [T-1] angle / sin(angle), negative if the right knot must change its sign.
+  std::vector<double> factor;
 };
 
 KA_EVERY_PROCESSOR
@@ -32,7 +33,7 @@ void measure(const double* q, std::size_t arcs, double* square, double* factor) 
       apart += (right - q[k]) * (right - q[k]);
       together += (right + q[k]) * (right + q[k]);
     }
-    const double t2 = apart / together;  // of the tangent of half the arc
+    const double t2 = apart / together;  // squared tangent of half the arc
     const double ratio = arctangent_ratio(t2);
     square[i] = 4.0 * t2 * ratio * ratio;
     factor[i] = sign / sine_ratio(square[i]);
@@ -44,11 +45,11 @@ using Lane = std::array<double, block>;
 
 struct Samples {
   std::array<std::size_t, block> interval;
-  Lane fraction, square, factor;  // of the interval passed; of its arc
+  Lane fraction, square, factor;  // fraction of the interval; square and factor of its arc
   Lane left, right;               // weights of both knots
 };
 
-// Shoemake's sin((1 - f) a) / sin(a) and sin(f a) / sin(a).
+// Shoemake's weights sin((1 - f) a) / sin(a) and sin(f a) / sin(a).
 KA_EVERY_PROCESSOR
 void weigh(Samples& s) {
   for (std::size_t i = 0; i < block; ++i) {

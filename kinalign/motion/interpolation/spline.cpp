@@ -10,13 +10,14 @@ namespace kinalign {
 
 namespace {
 
-/// The row after the next, which the processor does not foresee behind short rows: 4 % of the time.
+/// Prefetches the row after the next one, which the processor does not predict for short rows.
+/// Saves 4 % of the time.
 KA_INLINE void prefetch(const double* row, std::size_t channels) {
   for (std::size_t c = 0; c < channels; c += 8) __builtin_prefetch(row + c);
 }
 
-// Elimination of the tridiagonal system row by row, all channels of a row at once:
-// bend[i] = (6 (slope after - slope before) - h_before * bend[i-1]) / pivot[i].
+// Eliminates the tridiagonal system row by row, for all channels of a row together: bend[i] = (6
+// (slope after - slope before) - h_before * bend[i-1]) / pivot[i].
 KA_EVERY_PROCESSOR
 void eliminate(const Knots& knots, double* ratio, double* bends) {
   const auto& t = knots.times;
@@ -49,7 +50,7 @@ void substitute(const double* ratio, std::size_t rows, std::size_t channels, dou
   }
 }
 
-/// A place between two knots, as fractions of the way and the weights of both bends.
+/// A place between two knots: the weights of both values and of both second derivatives.
 struct Place {
   double left, right, left_bend, right_bend;
 };
@@ -61,6 +62,7 @@ Place place_in(double from, double to, double at) {
           (right * right * right - right) * sixth};
 }
 
+/// Values of all channels at rising places from the knots' values and second derivatives.
 KA_EVERY_PROCESSOR
 void blend(const Knots& knots, const double* bends, std::span<const double> at, double* out) {
   const auto& t = knots.times;

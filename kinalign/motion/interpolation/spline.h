@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Natural cubic splines on irregular stamps, all channels of a row at once (paper section 3.2).
+// Natural cubic splines at irregular stamps, for all channels of a row together (paper section
+// 3.2).
 #pragma once
 
 #include <cstddef>
@@ -7,8 +8,8 @@
 
 namespace kinalign {
 
-/// Knots within this many of a place decide the spline there to less than 2e-18 of a channel's
-/// largest value: the influence of a knot at least halves from one to the next, because the
+/// The spline at a place depends on knots up to this many away, to less than 2e-18 of a channel's
+/// largest value. The influence of a knot at least halves from one knot to the next, because the
 /// system's diagonal 2(h + h') is twice the sum of its neighbours.
 constexpr std::size_t spline_reach = 60;
 

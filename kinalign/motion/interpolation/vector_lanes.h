@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors and quaternions of eight pieces of work side by side: a loop over the lanes that loads,
-// computes and stores becomes vector code. A lane is a line of the cache: what holds lanes begins
-// at one (alignas), which is worth a factor of two.
+// Vectors and quaternions of eight independent computations. A loop over the lanes that loads,
+// computes and stores becomes vector code. A lane has the size of a cache line; structures of lanes
+// are aligned to it (alignas), which makes them twice as fast.
 #pragma once
 
 #include "kinalign/motion/targets.h"
@@ -49,7 +49,7 @@ KA_INLINE Quaternion conjugate(const Quaternion& q) { return {q.w, -1.0 * q.v}; 
 KA_INLINE Quaternion operator*(const Quaternion& a, const Quaternion& b) {
   return {a.w * b.w - dot(a.v, b.v), a.w * b.v + b.w * a.v + cross(a.v, b.v)};
 }
-/// v turned by a unit quaternion.
+/// The vector v rotated by a unit quaternion.
 KA_INLINE Vector turned(const Quaternion& q, const Vector& v) {
   const Vector t = 2.0 * cross(q.v, v);
   return v + q.w * t + cross(q.v, t);

@@ -10,7 +10,8 @@ namespace kinalign {
 namespace {
 
 constexpr double tolerance = 1e-4;
-constexpr double first_share = 0.05, first_step = 0.00025;  // of a number that is not 0, and of 0
+// First change of a number that is not 0, as its share; first change of 0.
+constexpr double first_share = 0.05, first_step = 0.00025;
 constexpr std::size_t calls_a_number = 200;
 
 struct Corner {
@@ -44,6 +45,8 @@ class Simplex {
     return size <= tolerance && rise <= tolerance;
   }
 
+  /// One step of Nelder and Mead: replaces the worst corner by its reflection, expansion or
+  /// contraction, or shrinks all corners towards the best.
   void step() {
     const std::vector<double> middle = middle_of_others();
     Corner& worst = corners_.back();
@@ -84,7 +87,8 @@ class Simplex {
     return middle;
   }
 
-  /// The place beyond `middle`, seen from the worst corner, by `share` of their distance.
+  /// The place on the line from the worst corner through `middle`, beyond it by `share` of their
+  /// distance.
   Corner corner(const std::vector<double>& middle, double share) {
     std::vector<double> place(middle.size());
     for (std::size_t k = 0; k < place.size(); ++k) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t marker_count = plug_in_gait_markers.size();
 
-enum Marker : std::size_t {  // by plug_in_gait_markers
+enum Marker : std::size_t {  // in the order of plug_in_gait_markers
   lfhd,
   rfhd,
   lbhd,
@@ -57,7 +57,7 @@ enum Marker : std::size_t {  // by plug_in_gait_markers
 };
 static_assert(plug_in_gait_markers[rtoe] == "RTOE" && plug_in_gait_markers[lasi] == "LASI");
 
-enum Joint : std::size_t {  // by shared_joints
+enum Joint : std::size_t {  // in the order of shared_joints
   spine_base = 0,
   spine_mid = 1,
   spine_shoulder = 2,
@@ -68,9 +68,10 @@ enum Joint : std::size_t {  // by shared_joints
   right_leg = 14
 };
 
-/// The markers of one side, the first of its joints, and the sign of "to the left".
+/// The markers of one side of the body, the indices of its first joints, and the sign of the left
+/// direction.
 struct Side {
-  std::size_t arm, leg;  // shoulder, elbow, wrist; hip, knee, ankle, foot
+  std::size_t arm, leg;  // first of shoulder, elbow, wrist; first of hip, knee, ankle, foot
   Marker shoulder, elbow, wrist_a, wrist_b, thigh, knee, shank, ankle, toe;
   double left;
 };
@@ -80,13 +81,15 @@ constexpr Side right_side{right_arm, right_leg, rsho, relb, rwra, rwrb,
                           rthi,      rkne,      rtib, rank, rtoe, -1.0};
 
 constexpr double shoulder_below_marker_m = 0.05;
-constexpr double knee_depth_m = 0.057, ankle_depth_m = 0.042;  // from the lateral marker
-constexpr double least_width_m = 0.20, most_width_m = 0.30;    // of a pelvis
+// From the lateral marker to the joint's centre.
+constexpr double knee_depth_m = 0.057, ankle_depth_m = 0.042;
+constexpr double least_width_m = 0.20, most_width_m = 0.30;  // width of a pelvis
 
 Vec3 unit(const Vec3& v) { return v / std::max(v.norm(), 1e-11); }
 
-/// The joint's centre lies `depth` from the lateral marker, at a right angle to the segment, in the
-/// plane of the joint above, the marker and the wand, on the side away from the wand.
+/// Plug-in-Gait's chord function: the joint's centre is `depth` from the lateral marker,
+/// perpendicular to the segment, in the plane of the joint above, the marker and the wand marker,
+/// on the side away from the wand.
 Vec3 chord(const Vec3& above, const Vec3& marker, const Vec3& wand, double depth) {
   const Vec3 segment = above - marker, to_wand = wand - marker;
   const double length = std::max(segment.norm(), 1e-11);
@@ -111,7 +114,7 @@ double median(std::vector<double> values) {
   return 0.5 * (*upper + *std::max_element(values.begin(), upper));
 }
 
-/// One frame's markers.
+/// The markers of one frame.
 class MarkerFrame {
  public:
   MarkerFrame(const MarkerFrames& all, std::size_t frame) : all_(all), at_(frame * marker_count) {}
@@ -147,7 +150,7 @@ PelvisSize pelvis_size(const MarkerFrames& markers) {
   return {median(depths), std::clamp(median(widths), least_width_m, most_width_m)};
 }
 
-/// Puts the joints of one frame into the arrays.
+/// Writes the joints of one frame into the arrays.
 class FrameJoints {
  public:
   FrameJoints(JointCentres& out, std::size_t frame) : out_(out), at_(frame * shared_joint_count) {}
@@ -204,7 +207,7 @@ void put_leg(const MarkerFrame& m, const Side& s, const SideShift& shift, FrameJ
   out.put(s.leg + 3, m[s.toe], m.sees({s.toe}));
 }
 
-/// Population standard deviation.
+/// Standard deviation of the population.
 double deviation(const std::vector<double>& values) {
   double sum = 0.0, square = 0.0;
   for (const double v : values) sum += v;
@@ -213,9 +216,9 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(square / static_cast<double>(values.size()));
 }
 
-constexpr double cm = 0.01;  // the minimiser's unit: its tolerances are meant so
+constexpr double cm = 0.01;  // m; the tolerances of the minimiser are meant for centimetres
 
-/// Frames in which `count` joints from `first` on are all valid.
+/// The frames in which `count` joints, from joint `first` on, are all valid.
 std::vector<std::size_t> whole_frames(const JointCentres& joints, std::size_t first,
                                       std::size_t count) {
   std::vector<std::size_t> out;
@@ -230,7 +233,7 @@ std::vector<std::size_t> whole_frames(const JointCentres& joints, std::size_t fi
   return out;
 }
 
-/// The elbow's shift with which the forearm varies least.
+/// The shift of the elbow, m, that minimises the variation of the forearm's length.
 double elbow_shift(const JointCentres& joints, const Side& side) {
   const auto frames = whole_frames(joints, side.arm, 3);
   if (frames.empty()) return 0.0;
@@ -247,7 +250,8 @@ double elbow_shift(const JointCentres& joints, const Side& side) {
   return cm * minimise(cost, {0.0})[0];
 }
 
-/// The knee's shift along and across the thigh with which the shank varies least.
+/// Finds the knee's shift along and across the thigh that minimises the variation of the shank's
+/// length.
 void put_knee_shift(const MarkerFrames& markers, const JointCentres& joints, const Side& side,
                     SideShift& out) {
   const auto frames = whole_frames(joints, side.leg, 3);
@@ -276,7 +280,8 @@ SideShift side_shift(const MarkerFrames& markers, const JointCentres& joints, co
   return out;
 }
 
-/// The invalid frames of one joint, by np.interp's rule: the nearest valid frame beyond the ends.
+/// Fills the invalid frames of one joint by the rule of np.interp: beyond both ends the nearest
+/// valid frame is used.
 void fill_joint(JointCentres& joints, std::size_t j) {
   const auto cell = [j](std::size_t t) { return t * shared_joint_count + j; };
   std::vector<std::size_t> good;

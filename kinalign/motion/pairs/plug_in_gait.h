@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 18 shared joints from the 39 markers of Vicon's Plug-in-Gait, as UI-PRMD's protocol has them:
-// hips by Harrington et al., J. Biomech. 40 (2007); knee and ankle by Plug-in-Gait's chord; elbow
-// and knee moved so that forearm and shank keep their length.
+// Computes the 18 shared joints from the 39 markers of Vicon's Plug-in-Gait, as in UI-PRMD's
+// protocol: hips by Harrington et al., J. Biomech. 40 (2007); knee and ankle by Plug-in-Gait's
+// chord function; elbow and knee shifted so that forearm and shank keep their lengths.
 #pragma once
 
 #include "kinalign/motion/shared_joints.h"
@@ -22,40 +22,42 @@ inline constexpr std::array<std::string_view, 39> plug_in_gait_markers{
 
 /// F frames of all markers of one person, in the order of plug_in_gait_markers.
 struct MarkerFrames {
-  std::span<const double> positions;   // [F,39,3] m; a marker that was not seen holds zeros
+  std::span<const double> positions;   // [F,39,3] m; a marker that is not seen holds zeros
   std::span<const std::uint8_t> seen;  // [F,39]
 
   std::size_t frames() const { return seen.size() / plug_in_gait_markers.size(); }
 };
 
-/// The distance of joints from the places that the markers alone give. Markers sit 1 to 5 cm above
-/// a joint.
+/// The offset of joints from the places computed from the markers alone. Markers are 1 to 5 cm
+/// above a joint.
 struct SideShift {
-  double elbow_m = 0.0;         // along forearm to shoulder
-  double knee_along_m = 0.0;    // along the thigh to the hip
-  double knee_forward_m = 0.0;  // at a right angle to thigh and knee marker, to the front
+  double elbow_m = 0.0;       // along the line from the elbow to the shoulder
+  double knee_along_m = 0.0;  // along the thigh to the hip
+  /// Forward, perpendicular to the thigh and to the knee marker's direction.
+  double knee_forward_m = 0.0;
 };
 struct FunctionalShifts {
   SideShift left, right;
 };
 
-/// The shifts of one person with which forearms and shanks vary least in length. 0 where a limb was
-/// never seen as a whole. Every fifth frame is enough.
+/// The shifts of one person that minimise the variation of the lengths of forearms and shanks. 0 if
+/// a limb was never completely seen. Every fifth frame is sufficient.
 FunctionalShifts functional_shifts(const MarkerFrames& markers);
 
 /// F frames of the 18 shared joints.
 struct JointCentres {
   std::vector<double> positions;    // [F,18,3] m
-  std::vector<std::uint8_t> valid;  // [F,18] all markers that the joint needs were seen
+  std::vector<std::uint8_t> valid;  // [F,18] 1 if all markers that the joint needs were seen
 
   std::size_t frames() const { return valid.size() / shared_joint_count; }
 };
 
-/// The frames should be all that there are of a person: the size of the pelvis is their median.
+/// Computes the joints. `markers` should contain all frames of the person, because the size of the
+/// pelvis is a median over them.
 JointCentres joint_centres(const MarkerFrames& markers, const FunctionalShifts& shifts);
 
-/// Puts joints that are not valid on the line between the valid frames around, so that a spline can
-/// run through them. They stay marked.
+/// Interpolates invalid joints linearly between valid frames, so that a spline can be fitted. They
+/// remain marked as invalid.
 void fill_invalid(JointCentres& joints);
 
 }  // namespace kinalign

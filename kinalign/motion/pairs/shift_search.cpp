@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double least_frames = 5.0;  // of valid points, for a fit that means anything
+constexpr double least_frames = 5.0;  // frames of valid points needed for a meaningful fit
 
 std::vector<double> counted(std::size_t frames) {
   std::vector<double> out(frames);
@@ -30,7 +30,7 @@ void add_valid(const PointPiece& rough, const CurvePoints& points, PairMoments& 
   }
 }
 
-/// The rms of the rigid fit at a shift; absent where too little overlaps.
+/// The rms of the rigid fit at a shift; absent if the overlap is too short.
 std::optional<double> rms_at(const PointPiece& rough, const PieceCurve& precise, double shift_s) {
   const CurvePoints points = precise.at(shift_s, rough.rate_hz, rough.frames());
   PairMoments moments;
@@ -49,8 +49,8 @@ std::optional<double> rms_at(const PointPiece& rough, const PieceCurve& precise,
   return std::sqrt(square / static_cast<double>(moments.count));
 }
 
-/// Values as NumPy's arange gives them, to the last bit: a frame that lies at the very end of the
-/// precise piece is within it or not by rounding, and that may decide between two shifts.
+/// The values of NumPy's arange, exact to the last bit. A frame at the very end of the precise
+/// piece is inside or outside by rounding, and that can decide between two shifts.
 std::vector<double> arange(double start, double step, std::size_t count) {
   const double exact_step = (start + step) - start;
   std::vector<double> out(count);
@@ -58,7 +58,7 @@ std::vector<double> arange(double start, double step, std::size_t count) {
   return out;
 }
 
-/// The shift with the least rms; the first of equal ones.
+/// The shift with the least rms; the first one if several are equal.
 std::optional<FoundShift> best_of(const PointPiece& rough, const PieceCurve& precise,
                                   std::span<const double> shifts) {
   std::optional<FoundShift> best;
@@ -81,8 +81,8 @@ CurvePoints PieceCurve::at(double shift_s, double rate_hz, std::size_t frames) c
   const std::size_t joints = piece_.joints;
   CurvePoints out{std::vector<double>(3 * frames * joints),
                   std::vector<std::uint8_t>(frames * joints)};
-  std::vector<double> places;  // of the frames within the piece, in its samples
-  std::size_t first = 0;       // the frame of places.front()
+  std::vector<double> places;  // times of the frames within the piece, in samples of the piece
+  std::size_t first = 0;       // the frame that belongs to places.front()
   for (std::size_t i = 0; i < frames; ++i) {
     const double s = (shift_s + static_cast<double>(i) / rate_hz) * piece_.rate_hz;
     if (s > numbers_.back()) break;

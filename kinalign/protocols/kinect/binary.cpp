@@ -18,7 +18,7 @@ constexpr std::uint8_t hello_type = 1, frame_type = 2, ping_type = 3, pong_type 
 constexpr std::uint8_t utc_flag = 1, floor_flag = 2, orientations_flag = 4, hands_flag = 8,
                        more_parts_flag = 16, echo_flag = 1;
 
-/// What stands before a type's own fields, but for what is the same in all.
+/// The fields of a message's head that differ from message to message.
 struct Head {
   std::uint8_t type = 0;
   KinectOrigin origin;
@@ -29,7 +29,7 @@ struct Head {
 
 Head take_head(LittleEndianReader& reader) {
   Head head;
-  reader.take_bytes(kinect_magic.size() + 1);  // and the version
+  reader.take_bytes(kinect_magic.size() + 1);  // the magic and the version
   head.type = reader.take<std::uint8_t>();
   reader.take<std::uint16_t>();
   head.origin.sensor = reader.take<std::uint32_t>();
@@ -52,6 +52,8 @@ std::string take_short_text(LittleEndianReader& reader) {
   return {bytes.begin(), bytes.end()};
 }
 
+/// The take_ functions decode the fields of one type of message. They refuse flags and fields that
+/// the type does not use.
 Refusal take_hello(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags != 0 || head.bodies != 0 || head.part != 0) return Refusal::stray_bits;
   KinectHello hello{head.origin, {}, {}};
@@ -74,6 +76,7 @@ KinectBody take_body(LittleEndianReader& reader, bool has_orientations) {
   return body;
 }
 
+/// Decodes a frame. Fields that the flags declare absent must be zero.
 Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags > 31) return Refusal::stray_bits;
   if (head.bodies > most_kinect_bodies) return Refusal::wrong_fields;
@@ -107,6 +110,7 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
   return Refusal::none;
 }
 
+/// Decodes a ping. Without the echo flag the echo's fields must be zero.
 Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags > echo_flag || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
     return Refusal::stray_bits;
@@ -135,6 +139,7 @@ Refusal take_pong(const Head& head, LittleEndianReader& reader, KinectMessage& m
   return Refusal::none;
 }
 
+/// Decodes the fields of the head's type; only hellos and frames have a joint set.
 Refusal take_fields(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   const bool has_joints = head.type == hello_type || head.type == frame_type;
   if (has_joints && head.joint_set != kinect_v2) return Refusal::unknown_joint_set;
@@ -152,6 +157,7 @@ Refusal take_fields(const Head& head, LittleEndianReader& reader, KinectMessage&
   }
 }
 
+/// Checks length, magic, version and CRC of a message.
 Refusal open(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kinect_head_size + kinect_crc_size) return Refusal::too_short;
   if (!std::equal(kinect_magic.begin(), kinect_magic.end(), bytes.begin())) {
@@ -171,7 +177,7 @@ void put_head(std::vector<std::uint8_t>& out, const Head& head) {
   for (const std::uint8_t byte : kinect_magic) append_little(byte, out);
   append_little(version, out);
   append_little(head.type, out);
-  append_little(std::uint16_t{0}, out);  // until it is known
+  append_little(std::uint16_t{0}, out);  // the length, which is known later
   append_little(head.origin.sensor, out);
   append_little(head.origin.session, out);
   append_little(head.origin.sequence, out);
@@ -209,6 +215,7 @@ std::uint8_t flags_of(const KinectFrame& frame) {
                                    (frame.more_parts ? more_parts_flag : 0));
 }
 
+/// Encodes the message of each type, without the CRC.
 struct Put {
   std::vector<std::uint8_t>& out;
 
@@ -252,7 +259,8 @@ std::size_t stated_kinect_length(std::span<const std::uint8_t> head) {
 KinectRefusal check_kinect_head(std::span<const std::uint8_t> head) {
   if (head[4] != version) return Refusal::unknown_version;
   const std::size_t length = stated_kinect_length(head);
-  const std::size_t fields = length - kinect_head_size;  // of no type where that is below 0
+  // Wraps if the length is too small; no type then fits.
+  const std::size_t fields = length - kinect_head_size;
   if (length > most_kinect_bytes) return Refusal::too_long;
   const std::uint8_t type = head[5], bodies = head[22];
   const bool oriented = (head[20] & orientations_flag) != 0;
@@ -291,7 +299,7 @@ std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message) {
 }
 
 std::vector<KinectFrame> kinect_parts(const KinectFrame& frame) {
-  std::size_t most = 1;  // bodies a part
+  std::size_t most = 1;  // bodies of a part
   while (kinect_frame_size(most + 1, frame.has_orientations) <= most_kinect_datagram) ++most;
   std::vector<KinectFrame> parts;
   std::size_t at = 0;

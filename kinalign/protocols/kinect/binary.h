@@ -10,30 +10,31 @@ namespace kinalign {
 
 inline constexpr std::size_t kinect_head_size = 24, kinect_crc_size = 4;
 inline constexpr std::size_t most_kinect_bytes = 4498;  // 6 bodies with orientations
-/// What an Ethernet frame carries over IPv6, and over IPv4 too.
+/// Most bytes of a datagram that fit into an Ethernet frame, over IPv6 and IPv4.
 inline constexpr std::size_t most_kinect_datagram = 1452;
 inline constexpr std::array<std::uint8_t, 4> kinect_magic{'K', 'A', 'N', 'K'};
 
-/// The length that a message states which begins with these 8 bytes and the magic.
+/// The length that a message states. `head`: at least its first 8 bytes, which begin with the
+/// magic.
 std::size_t stated_kinect_length(std::span<const std::uint8_t> head);
 
-/// Whether a message may begin with these 24 bytes, of which the first are the magic: of this
-/// version and of a length that fits type, flags and counts.
+/// Checks the first 24 bytes of a message, which begin with the magic: the version, and a length
+/// that fits type, flags and counts.
 KinectRefusal check_kinect_head(std::span<const std::uint8_t> head);
 
-/// One message, whole, and nothing behind it. After a refusal `message` is as new.
+/// Decodes exactly one message. After a refusal `message` is empty.
 KinectRefusal decode_kinect_binary(std::span<const std::uint8_t> bytes, KinectMessage& message);
 
-/// Of a message that `check` accepts.
+/// Encodes a message that `check` accepts.
 std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message);
 
-/// Bytes of a frame of so many bodies, in one message.
+/// Bytes of a message with a frame of `bodies` bodies.
 constexpr std::size_t kinect_frame_size(std::size_t bodies, bool orientations) {
   return kinect_head_size + 48 + kinect_crc_size +
          bodies * (12 + std::size_t{25} * (1 + 12 + (orientations ? 16 : 0)));
 }
 
-/// A frame divided so that no message is longer than most_kinect_datagram.
+/// Splits a frame so that no message is longer than most_kinect_datagram.
 std::vector<KinectFrame> kinect_parts(const KinectFrame& frame);
 
 }  // namespace kinalign

@@ -13,6 +13,7 @@ constexpr std::size_t joints = kinect_joints.size();
 
 Duration duration_of(std::int64_t ticks) { return Duration{ticks * 100}; }
 
+/// Appends a body's joints; returns the number of joints that are not finite.
 std::size_t append_body(const KinectBody& body, PointFrames& out) {
   std::size_t wild = 0;
   for (std::size_t j = 0; j < joints; ++j) {
@@ -74,6 +75,7 @@ bool KinectFrameJoiner::is_newer(const KinectFrame& message) const {
   return newest_ && has_newer_ticks(moment_of(message), *newest_);
 }
 
+/// Begins a new frame, unless its number shows that it is old or a stray.
 void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
   const bool only = message.part == 0 && !message.more_parts;
   const Order order = sequence_.push(message.origin.sequence, is_newer(message));
@@ -93,6 +95,7 @@ void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame
   open_ = std::move(message);
 }
 
+/// Adds a part to the open frame, unless it is a duplicate or contradicts the other parts.
 void KinectFrameJoiner::join(KinectFrame message) {
   KinectFrame& frame = *open_;
   if ((have_ >> message.part & 1U) != 0) {

@@ -19,7 +19,7 @@ using Refusal = KinectRefusal;
 
 constexpr std::string_view schema = "kinalign.kinect/1";
 
-// ---- reading. Each `take` says whether the value was of its kind.
+// ---- reading. Each `take` returns false if the value is of another kind.
 
 bool take(const Json& json, std::int64_t& to) {
   if (!json.is_number_integer()) return false;
@@ -68,7 +68,7 @@ bool take(const Json& json, std::array<T, n>& to) {
   return true;
 }
 
-/// [25][width]
+/// Reads an array [25][width].
 template <std::size_t n>
 bool take_rows(const Json& json, std::array<float, n>& to) {
   constexpr std::size_t rows = kinect_joints.size(), width = n / rows;
@@ -105,6 +105,7 @@ bool take_id(const Json& object, std::uint64_t& to) {
   return error == std::errc{} && at == end;
 }
 
+/// Reads a body into the frame. All bodies must agree on having hands and orientations.
 bool take_body(const Json& object, KinectFrame& frame) {
   KinectBody& body = frame.bodies.emplace_back();
   const bool whole = object.is_object() && take_id(object, body.id) &&
@@ -143,6 +144,7 @@ Refusal take_hello(const Json& json, const KinectOrigin& origin, KinectMessage& 
   return take_joint_set(json);
 }
 
+/// Decodes a frame; part, more_parts, utc_us and floor are optional.
 Refusal take_frame(const Json& json, const KinectOrigin& origin, KinectMessage& message) {
   if (const auto refusal = take_joint_set(json); refusal != Refusal::none) return refusal;
   KinectFrame frame;
@@ -164,6 +166,7 @@ Refusal take_frame(const Json& json, const KinectOrigin& origin, KinectMessage& 
   return Refusal::none;
 }
 
+/// Decodes a ping; its echo is optional.
 Refusal take_ping(const Json& json, const KinectOrigin& origin, KinectMessage& message) {
   KinectPing ping{origin, 0, std::nullopt};
   if (!take(json, "sent_ticks", ping.sent_ticks)) return Refusal::wrong_fields;
@@ -186,6 +189,7 @@ Refusal take_pong(const Json& json, const KinectOrigin& origin, KinectMessage& m
   return verdict(whole);
 }
 
+/// Reads the common fields and then those of the type. `room`: bytes of the line with its end.
 Refusal take_message(const Json& json, std::size_t room, KinectMessage& message) {
   if (!json.is_object()) return Refusal::bad_json;
   std::string said;
@@ -215,7 +219,8 @@ std::string json_text(std::string_view text) {
   return out + '"';
 }
 
-/// In the fewest digits that give the same binary32; a reader takes "-0" for an integer.
+/// The shortest digits that give the same binary32. "-0" gets a decimal point, because readers take
+/// "-0" for an integer.
 std::string number(float value) {
   if (!std::isfinite(value)) return "null";
   if (value == 0.0F && std::signbit(value)) return "-0.0";
@@ -258,12 +263,14 @@ std::string begun(const char* type, const KinectOrigin& origin) {
          ",\"sequence\":" + number(origin.sequence);
 }
 
+/// Encodes the message of each type as one line, without its end.
 struct Write {
   std::string operator()(const KinectHello& hello) const {
     return begun("hello", hello.origin) +
            ",\"joint_set\":\"kinect_v2\",\"serial\":" + json_text(hello.serial) +
            ",\"sdk\":" + json_text(hello.sdk) + '}';
   }
+  /// Writes optional fields only if the frame has them.
   std::string operator()(const KinectFrame& frame) const {
     std::string out = begun("frame", frame.origin) +
                       ",\"joint_set\":\"kinect_v2\",\"part\":" + number(frame.part) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The encoding of a Kinect's messages as JSON, an object a line: docs/formats/kinect_stream.md.
+// The encoding of a Kinect's messages as JSON, one object a line: docs/formats/kinect_stream.md.
 #pragma once
 
 #include "kinalign/protocols/kinect/message.h"
@@ -10,10 +10,10 @@ namespace kinalign {
 
 inline constexpr std::size_t most_kinect_line = 65'536, least_kinect_ping_line = 160;
 
-/// One line, with its end or without. After a refusal `message` is as new.
+/// Decodes one line, with or without its line end. After a refusal `message` is empty.
 KinectRefusal decode_kinect_line(std::string_view line, KinectMessage& message);
 
-/// With its line end, of a message that `check` accepts.
+/// Encodes a message that `check` accepts, with its line end.
 std::string encode_kinect_line(const KinectMessage& message);
 
 }  // namespace kinalign

@@ -29,11 +29,13 @@ Refusal check_body(const KinectFrame& frame, const KinectBody& body) {
   return known ? Refusal::none : Refusal::stray_bits;
 }
 
+/// Checks the fields of each type.
 struct Check {
   Refusal operator()(const KinectHello& hello) const {
     return is_printable(hello.serial) && is_printable(hello.sdk) ? Refusal::none
                                                                  : Refusal::wrong_fields;
   }
+  /// Checks numbers against their limits; without bodies there are no hands and orientations.
   Refusal operator()(const KinectFrame& frame) const {
     const std::size_t parts = frame.part + (frame.more_parts ? 2U : 1U);
     if (frame.bodies.size() > most_kinect_bodies || parts > most_kinect_parts ||

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Kinect's sender and the host say to each other: docs/formats/kinect_stream.md. The two
-// encodings of it are binary.h and lines.h.
+// The messages between a Kinect's sender and the host: docs/formats/kinect_stream.md. Their two
+// encodings are binary.h and lines.h.
 #pragma once
 
 #include "kinalign/motion/kinect_joints.h"
@@ -16,13 +16,13 @@
 namespace kinalign {
 
 inline constexpr std::size_t most_kinect_bodies = 6, most_kinect_parts = 6;
-/// Of ticks and of UTC, either sign: what a double keeps.
+/// Limit of ticks and of UTC, of either sign: integers up to it are exact in a double.
 inline constexpr std::int64_t most_kinect_ticks = (std::int64_t{1} << 53) - 1;
 
 struct KinectOrigin {
-  std::uint32_t sensor = 0;    // the lab's number for it
-  std::uint32_t session = 0;   // random in every run of the sender
-  std::uint32_t sequence = 0;  // of hellos, of frames, of pings
+  std::uint32_t sensor = 0;    // number of the sensor in the lab
+  std::uint32_t session = 0;   // random number of a run of the sender
+  std::uint32_t sequence = 0;  // hellos, frames and pings are numbered separately
 
   bool operator==(const KinectOrigin&) const = default;
 };
@@ -36,8 +36,8 @@ struct KinectBody {
   std::uint64_t id = 0;
   std::uint8_t clipped_edges = 0;              // 1 right, 2 left, 4 top, 8 bottom
   std::uint8_t hand_left = 0, hand_right = 0;  // HandState, if the frame has hands
-  std::uint8_t hand_confidence = 0;            // 1 the left one's is high, 2 the right one's
-  std::array<std::uint8_t, 25> states{};       // TrackingState
+  std::uint8_t hand_confidence = 0;  // 1: the left hand's confidence is high; 2: the right hand's
+  std::array<std::uint8_t, 25> states{};                  // TrackingState
   std::array<float, std::size_t{25} * 3> positions{};     // [25,3] m, camera space
   std::array<float, std::size_t{25} * 4> orientations{};  // [25,4] w,x,y,z, if the frame has them
 };
@@ -46,16 +46,17 @@ struct KinectBody {
 struct KinectFrame {
   KinectOrigin origin;
   std::uint8_t part = 0;
-  bool more_parts = false;                    // of this frame follow
-  std::int64_t device_ticks = 0;              // the sensor's clock
-  std::int64_t taken_ticks = 0;               // the sender's clock when it had the frame
-  std::int64_t sent_ticks = 0;                // the same last before sending
-  std::optional<std::int64_t> utc_us;         // what the sender's wall clock showed at `taken`
+  bool more_parts = false;                    // more parts of this frame follow
+  std::int64_t device_ticks = 0;              // on the sensor's clock
+  std::int64_t taken_ticks = 0;               // on the sender's clock, when it received the frame
+  std::int64_t sent_ticks = 0;                // on the sender's clock, just before sending
+  std::optional<std::int64_t> utc_us;         // the sender's wall clock at taken_ticks, us
   std::optional<std::array<float, 4>> floor;  // clip plane x,y,z,w
-  bool has_orientations = false, has_hands = false;  // only where there are bodies
-  std::vector<KinectBody> bodies;                    // 6 at most
+  bool has_orientations = false, has_hands = false;  // only if there are bodies
+  std::vector<KinectBody> bodies;                    // at most 6
 };
 
+/// Answer to a pong, within the next ping.
 struct KinectEcho {
   std::uint32_t pong_sequence = 0, nonce = 0;
   std::int64_t received_ticks = 0;
@@ -70,22 +71,22 @@ struct KinectPing {
 };
 
 struct KinectPong {
-  KinectOrigin origin;  // of the ping
+  KinectOrigin origin;  // the ping's
   std::uint32_t pong_sequence = 0, nonce = 0;
 };
 
 using KinectMessage = std::variant<KinectHello, KinectFrame, KinectPing, KinectPong>;
 
-/// Why something is no message; each is counted by its name.
+/// Reasons to refuse a message; each is counted under its name.
 enum class [[nodiscard]] KinectRefusal : std::uint8_t{
     none,    too_short,    no_message,        too_long,   unknown_version, wrong_length,
     bad_crc, unknown_type, unknown_joint_set, stray_bits, bad_json,        wrong_fields};
 inline constexpr std::size_t kinect_refusals = 12;
 
-/// As in --json: "bad_crc".
+/// The refusal's name in --json: "bad_crc".
 const char* name_of(KinectRefusal refusal);
 
-/// Whether both encodings can say it: both check what they read by this.
+/// Checks that both encodings can express the message. Both decoders call it.
 KinectRefusal check(const KinectMessage& message);
 
 }  // namespace kinalign

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// By its ticks; where they stand still, by its number.
+/// True if the session advances: by its ticks or, if these are equal, by its number.
 bool goes_on(const KinectMoment& one, const KinectMoment& from) {
   const bool same_ticks =
       one.device_ticks == from.device_ticks && one.sent_ticks == from.sent_ticks;
@@ -42,6 +42,7 @@ Finding two_senders(const std::string& place, const KinectTwins& twins,
           meaning, "give each sensor an id of its own: --sensor of its sender"};
 }
 
+/// Classifies a frame by its session, and keeps the session's position.
 KinectSessions::Turn KinectSessions::hear(const KinectMoment& moment, std::string_view sender) {
   const auto* known = find(moment.origin.session);
   if (known == nullptr) {

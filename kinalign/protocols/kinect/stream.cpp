@@ -17,7 +17,7 @@ bool is_blank(std::uint8_t byte) {
   return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
 }
 
-/// Whether the magic, or as much of it as there is, stands at the front.
+/// True if the bytes begin with the magic, or with as much of it as they are long.
 bool may_be_magic(std::span<const std::uint8_t> bytes) {
   const auto front = bytes.first(std::min(bytes.size(), kinect_magic.size()));
   return std::equal(front.begin(), front.end(), kinect_magic.begin());
@@ -43,8 +43,8 @@ void KinectStreamDecoder::take(KinectRefusal refusal, KinectMessage& message,
   }
 }
 
-/// Bytes of no message up to where one may begin. Within rubbish, which may be the rest of a binary
-/// message, a '{' counts at the start of a line alone.
+/// Number of bytes up to the possible beginning of a message. Skipped bytes may be the rest of a
+/// binary message; among them a '{' counts only at the start of a line.
 std::size_t KinectStreamDecoder::skip_to_start(std::span<const std::uint8_t> bytes) {
   std::size_t at = 0;
   while (at < bytes.size() && !may_be_magic(bytes.subspan(at))) {
@@ -60,8 +60,9 @@ std::size_t KinectStreamDecoder::skip_to_start(std::span<const std::uint8_t> byt
   return at;
 }
 
-/// How many bytes are dealt with; 0: more are needed. Behind a wrong CRC a whole message is passed
-/// over, so that each byte is summed once, whatever comes; its length fits its head.
+/// Handles one binary message. Returns the number of bytes used; 0: more are needed. After a wrong
+/// CRC the whole message is skipped, so that each byte is summed once only; its length fits its
+/// head.
 std::size_t KinectStreamDecoder::step_binary(std::span<const std::uint8_t> bytes,
                                              std::vector<KinectMessage>& out) {
   if (const std::size_t skipped = skip_to_start(bytes); skipped > 0) return skipped;
@@ -82,6 +83,7 @@ std::size_t KinectStreamDecoder::step_binary(std::span<const std::uint8_t> bytes
   return length;
 }
 
+/// Handles one line. Returns the number of bytes used; 0: more are needed.
 std::size_t KinectStreamDecoder::step_line(std::span<const std::uint8_t> bytes,
                                            std::vector<KinectMessage>& out) {
   const auto end =
@@ -111,6 +113,7 @@ std::size_t KinectStreamDecoder::step_line(std::span<const std::uint8_t> bytes,
   return length + 1;
 }
 
+/// Handles the next message. The first one decides between lines and binary.
 std::size_t KinectStreamDecoder::step(std::span<const std::uint8_t> bytes,
                                       std::vector<KinectMessage>& out) {
   if (mode_ == Mode::lines) return step_line(bytes, out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kinect's messages out of datagrams and connections: docs/formats/kinect_stream.md.
+// Finds a Kinect's messages in datagrams and connections: docs/formats/kinect_stream.md.
 #pragma once
 
 #include "kinalign/protocols/kinect/message.h"
@@ -10,29 +10,28 @@ namespace kinalign {
 
 struct KinectStreamCounts {
   std::uint64_t messages = 0;
-  std::array<std::uint64_t, kinect_refusals> refused{};  // by KinectRefusal
-  std::uint64_t skipped_bytes = 0;                       // that belonged to no message
+  std::array<std::uint64_t, kinect_refusals> refused{};  // indexed by KinectRefusal
+  std::uint64_t skipped_bytes = 0;                       // bytes that belonged to no message
 
   bool operator==(const KinectStreamCounts&) const = default;
 };
 
-/// One datagram, whole, in either encoding. After a refusal `message` is as new.
+/// Decodes one whole datagram in either encoding. After a refusal `message` is empty.
 KinectRefusal decode_kinect_datagram(std::span<const std::uint8_t> datagram,
                                      KinectMessage& message);
 
-/// One connection, fed in pieces cut anywhere: what comes out does not depend on the cuts. Holds at
-/// most one message that is not whole yet, and looks at each byte a few times at most, whatever
-/// comes.
+/// Decodes a connection, fed in pieces; the result does not depend on the cuts. Keeps at most one
+/// incomplete message. Looks at each byte only a few times, whatever arrives.
 class KinectStreamDecoder {
  public:
   /// Appends the messages that the piece completes.
   void feed(std::span<const std::uint8_t> piece, std::vector<KinectMessage>& out);
-  /// The connection has ended: what is left of a message counts as too_short; a last line without
-  /// its end is a line.
+  /// Call at the end of the connection. The rest of an incomplete message counts as too_short. A
+  /// last line without its end is decoded.
   void finish(std::vector<KinectMessage>& out);
 
   const KinectStreamCounts& counts() const { return counts_; }
-  /// Lines, as pongs should be then.
+  /// True if the sender uses lines; pongs should then be lines too.
   bool speaks_lines() const { return mode_ == Mode::lines; }
 
  private:
@@ -46,10 +45,10 @@ class KinectStreamDecoder {
 
   Mode mode_ = Mode::unknown;
   std::vector<std::uint8_t> held_;
-  std::size_t searched_ = 0;   // of what is held: no line end is there
-  bool lost_ = false;          // within a stretch that is counted already
-  std::uint8_t skipped_ = 0;   // the last byte that was
-  bool in_long_line_ = false;  // until its end
+  std::size_t searched_ = 0;   // bytes of held_ that hold no line end
+  bool lost_ = false;          // within bytes of no message, which are counted already
+  std::uint8_t skipped_ = 0;   // the last byte that was skipped
+  bool in_long_line_ = false;  // within a line that is too long, up to its end
   KinectStreamCounts counts_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// That something happened, as other programs tell it: docs/formats/marks.md.
+// An event that another program reports: docs/formats/marks.md.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -18,31 +18,31 @@ struct Mark {
   enum class Kind : std::uint8_t { start, stop, t_pose, text };
   Kind kind = Kind::text;
   std::string text;
-  std::optional<Duration> latency;  // from the mark to its effect; of start and stop
-  std::string id;                   // what it is known again by; empty: it never is
+  std::optional<Duration> latency;  // time from the mark to its effect; only for start and stop
+  std::string id;  // a repeated mark has the same id; empty: it can't be recognised
 
   bool operator==(const Mark&) const = default;
 };
 inline constexpr std::size_t mark_kinds = 4;
 inline constexpr double most_latency_ms = 60'000.0;
-inline constexpr std::size_t most_marks = 10'000;  // of a recording that are looked at
+inline constexpr std::size_t most_marks = 10'000;  // in a recording; more are not read
 
-/// "t_pose", as in calls and --json.
+/// The kind's name in calls and --json: "t_pose".
 const char* name_of(Mark::Kind kind);
-/// Absent: no kind has that name.
+/// The kind of that name; absent if there is none.
 std::optional<Mark::Kind> mark_kind_named(std::string_view name);
 
-/// Whether a text holds no control characters but tabs and line ends, and is UTF-8.
+/// True if the text is UTF-8 and has no control characters except tabs and line ends.
 bool is_mark_text(std::string_view text);
 
-/// Which marks came already: the last 1024, and only for so long.
+/// Recognises repeated marks: remembers the last 1024 ids, for a limited time.
 class MarkRepeats {
  public:
   static constexpr std::size_t remembered = 1024;
 
   explicit MarkRepeats(Duration for_so_long) : for_so_long_(for_so_long) {}
 
-  /// Whether one of this id came; it did now. Never of one without.
+  /// True if a mark with this id arrived before; remembers the id. Always false without an id.
   bool is_repeat(const Mark& mark, HostTime now);
 
  private:

@@ -63,7 +63,7 @@ Refusal take(const Json& call, Mark& mark) {
   return take_text(call, mark);
 }
 
-/// A short text in the room that a call has taken.
+/// The answer's text; empty if it is longer than the call, so that answers can't amplify traffic.
 std::string fitting(const Json& answer, std::size_t call_size) {
   const std::string text = answer.dump();
   return text.size() <= call_size ? text : std::string();
@@ -114,7 +114,7 @@ std::string answer_to_mark_call(const Mark& mark, MarkAnswer answer, std::size_t
 
 std::string answer_to_refused_call(const Mark& mark, MarkCallRefusal refusal,
                                    std::size_t call_size) {
-  if (refusal < Refusal::wrong_kind) return {};  // none, or no schema of ours was seen yet
+  if (refusal < Refusal::wrong_kind) return {};  // the call is good, or it has no schema of ours
   Json answer = Json::object();
   if (!mark.id.empty()) answer["mark"] = mark.id;
   answer["is"] = name_of(refusal);

@@ -19,7 +19,7 @@ bool is_name(char c) {
          c == '-' || c == '.' || c == ':';
 }
 
-/// A text that is taken from its front.
+/// Takes parts from the front of a text.
 class Xml {
  public:
   explicit Xml(std::string_view text) : rest_(text) {}
@@ -37,7 +37,7 @@ class Xml {
     const auto end = std::find_if_not(rest_.begin(), rest_.end(), is_name);
     return take_front(static_cast<std::size_t>(end - rest_.begin()));
   }
-  /// Up to `end`, which is taken too. Absent: it does not come.
+  /// Takes the text up to `end`, and `end` itself. Absent if `end` does not occur.
   std::optional<std::string_view> take_until(std::string_view end) {
     const auto at = rest_.find(end);
     if (at == std::string_view::npos) return std::nullopt;
@@ -56,6 +56,7 @@ class Xml {
   std::string_view rest_;
 };
 
+/// Appends the character number `code` in UTF-8.
 void append_utf8(std::uint32_t code, std::string& out) {
   const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
   if (code < 0x80) return put(code);
@@ -72,7 +73,7 @@ void append_utf8(std::uint32_t code, std::string& out) {
   put(0x80 | (code & 0x3f));
 }
 
-/// "lt", "#10", "#x0a". False: none that is known.
+/// Appends the character of an entity "lt", "#10" or "#x0a". False if the entity is unknown.
 bool append_entity(std::string_view name, std::string& out) {
   static constexpr std::array<std::pair<std::string_view, char>, 5> known{
       {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};
@@ -91,6 +92,7 @@ bool append_entity(std::string_view name, std::string& out) {
   return true;
 }
 
+/// The text with its entities resolved; absent if it has a '<' or an unknown entity.
 std::optional<std::string> unescaped(std::string_view text) {
   if (text.find('<') != std::string_view::npos) return std::nullopt;
   std::string out;
@@ -104,7 +106,7 @@ std::optional<std::string> unescaped(std::string_view text) {
   return out;
 }
 
-/// " VALUE="33"": the value, decoded; absent where no such attribute stands.
+/// Takes an attribute such as VALUE="33" and returns its decoded value; absent if there is none.
 std::optional<std::string> take_attribute(Xml& xml, std::string_view& name) {
   xml.skip_blanks();
   name = xml.take_name();
@@ -117,19 +119,20 @@ std::optional<std::string> take_attribute(Xml& xml, std::string_view& name) {
   return value ? unescaped(*value) : std::nullopt;
 }
 
-/// What of the document is in one element or the outermost one's attribute.
+/// The value of one element, or of an attribute of the outermost element.
 struct Said {
   std::string_view name;
   std::string value;
 };
 
-/// The whole document: the outermost element's name, its RESULT first, then what is in it.
+/// The whole document: the name of the outermost element, then the values in it, its attribute
+/// RESULT first.
 struct Document {
   std::string_view name;
   std::vector<Said> said;
 };
 
-/// "<Name VALUE="dance"/>", behind its '<'.
+/// Takes an element such as <Name VALUE="dance"/>, after its '<'.
 bool take_element(Xml& xml, Document& document) {
   Said said{xml.take_name(), {}};
   if (said.name.empty()) return false;
@@ -151,6 +154,7 @@ bool take_element(Xml& xml, Document& document) {
   return true;
 }
 
+/// Takes the whole document: an outermost element with elements that have no content.
 bool take_document(Xml& xml, Document& document) {
   xml.skip_blanks();
   if (xml.take("<?xml") && !xml.take_until("?>")) return false;
@@ -182,6 +186,7 @@ std::optional<std::int64_t> whole_number(std::string_view text, std::int64_t mos
   return whole && value <= most ? std::optional(value) : std::nullopt;
 }
 
+/// Takes the delay or the packet id.
 Refusal take_numbers(const Said& said, ViconTrigger& trigger) {
   constexpr std::int64_t most_delay_ms = 60'000;
   const bool is_delay = said.name == "Delay";
@@ -203,6 +208,7 @@ std::string* text_named(std::string_view name, ViconTrigger& trigger) {
   return name == "RESULT" ? &trigger.result : nullptr;
 }
 
+/// Fills the trigger from the elements that it knows; each may occur once. Others are ignored.
 Refusal take(const Document& document, ViconTrigger& trigger) {
   trigger.start = document.name == "CaptureStart";
   if (!trigger.start && document.name != "CaptureStop") return Refusal::not_capture;
@@ -244,7 +250,7 @@ std::string escaped(std::string_view text) {
         break;
       case '\t':
       case '\n':
-      case '\r':  // as they are a reader of XML takes them for blanks
+      case '\r':  // unescaped, a reader of XML turns them into blanks
         out += "&#" + std::to_string(static_cast<int>(c)) + ';';
         break;
       default:

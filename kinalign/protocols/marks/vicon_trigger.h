@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The broadcasts with which Vicon's programs start and stop each other: docs/formats/marks.md.
+// Decodes the broadcasts with which Vicon's programs start and stop each other:
+// docs/formats/marks.md.
 #pragma once
 
 #include "kinalign/protocols/marks/mark.h"
@@ -9,7 +10,7 @@ namespace kinalign {
 inline constexpr std::size_t most_vicon_trigger = 1500;
 
 struct ViconTrigger {
-  bool start = false;  // else it stops
+  bool start = false;  // false: a stop
   std::string name, notes, description, database_path, result;
   std::optional<Duration> delay;  // from the broadcast to the capture's start or stop
   std::optional<std::int64_t> packet_id;
@@ -21,16 +22,16 @@ enum class [[nodiscard]] ViconRefusal : std::uint8_t{none,         too_long,   b
                                                      wrong_number, wrong_text, twice};
 inline constexpr std::size_t vicon_refusals = 7;
 
-/// As in --json: "bad_xml".
+/// The refusal's name in --json: "bad_xml".
 const char* name_of(ViconRefusal refusal);
 
-/// What was expected instead, for who is told: "a CaptureStart or CaptureStop".
+/// The expected content, for a message: "a CaptureStart or CaptureStop".
 const char* expected_of(ViconRefusal refusal);
 
-/// After a refusal `trigger` is as new.
+/// Decodes a broadcast. After a refusal `trigger` is empty.
 ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigger);
 
-/// As Vicon sends it, but for the zero at its end.
+/// Encodes a broadcast as Vicon does, but without the zero at its end.
 std::string encode_vicon_trigger(const ViconTrigger& trigger);
 
 Mark mark_of(const ViconTrigger& trigger);

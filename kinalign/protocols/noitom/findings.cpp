@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user should know of a Noitom stream, and what to do.
+// Findings about a Noitom stream, with advice to the user.
 #include "kinalign/protocols/noitom/stream.h"
 
 #include <fmt/format.h>
@@ -47,7 +47,8 @@ Findings NoitomDecoder::findings(const std::string& name) const {
   for (const Advice& a : advice) {
     const std::uint64_t times = counts_[a.refusal];
     if (times == 0) continue;
-    // A frame that lacked a piece is lost like others on the air, and no fault of the set-up.
+    // On a wireless network a frame that lacks a piece is an ordinary loss, not a fault of the
+    // set-up.
     const bool is_loss = a.refusal == NoitomRefusal::torn;
     findings.push_back({is_loss ? Severity::note : Severity::warning,
                         Error{name, 0, std::string(a.expected),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One frame of the BVH broadcast of Noitom's Axis Neuron and Axis Studio, in the three forms they
-// send it in. Layout: docs/formats/noitom_stream.md.
+// One frame of the BVH broadcast of Noitom's Axis Neuron and Axis Studio, in the three forms that
+// they send. Layout: docs/formats/noitom_stream.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -18,25 +18,27 @@ enum class NoitomForm : std::uint8_t { old_header, new_header, text };
 
 struct NoitomFrame {
   NoitomForm form = NoitomForm::new_header;
-  std::uint32_t avatar = 0;                  // from 0
-  std::string name;                          // of the avatar, in the sender's coding
-  std::optional<std::uint32_t> frame_index;  // of the source; the new header alone has one
-  bool displacement = false;                 // each joint has a position, not only the root
-  bool reference = false;                    // six values of a reference stand in front
-  std::vector<float> values;  // centimetres and degrees as sent, with the reference's; not judged
+  std::uint32_t avatar = 0;  // counted from 0
+  std::string name;          // name of the avatar, in the sender's encoding
+  /// The source's frame number; only the new header has one.
+  std::optional<std::uint32_t> frame_index;
+  bool displacement = false;  // every joint has a position, not only the root
+  bool reference = false;     // the first six values are a reference
+  /// Centimetres and degrees as sent, including the reference; not checked.
+  std::vector<float> values;
 
-  /// The values of a BVH row: those behind the reference.
+  /// The values of a BVH row, without the reference.
   std::span<const float> row() const;
 
   bool operator==(const NoitomFrame&) const = default;
 };
 
-/// Values in a frame: 180 or 354, and six more with a reference.
+/// Number of values in a frame: 180 or 354, and six more with a reference.
 std::size_t noitom_values(bool displacement, bool reference);
 
-/// Appends the frame's bytes. Fails where they would not be read as this frame: values that do not
-/// fit the flags, a name too long (32 bytes) or, in text, one with blanks, an index that the form
-/// has no place for.
+/// Appends the frame's bytes. Fails if they would not be read back as this frame: if the values do
+/// not fit the flags, the name is longer than 32 bytes, a name in text has blanks, or the form has
+/// no field for the index.
 Result<void> append_noitom(const NoitomFrame& frame, std::vector<std::uint8_t>& out);
 
 }  // namespace kinalign

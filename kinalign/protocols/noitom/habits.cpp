@@ -8,10 +8,12 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t remembered_steps = 16;
-// Of these. Two losses that join two steps to one are rarer, unless a fifth of all is lost.
+// A step occurs often if so many remembered steps equal it. Two losses rarely join two steps to the
+// same sum so often, unless a fifth of all datagrams is lost.
 constexpr std::ptrdiff_t often = 4;
 constexpr std::size_t remembered_frames = 8, enough_frames = 4;
-// Pieces of one frame are sent back to back, and the fastest suits send a frame each 8 ms.
+// A sender sends the pieces of one frame without pause, and the fastest suits send a frame every 8
+// ms.
 constexpr Duration short_spread = std::chrono::milliseconds(4);
 
 template <class Value>
@@ -30,8 +32,8 @@ bool NoitomSteps::is_usual(const NoitomStep& step) const {
   return std::count(lately_.begin(), lately_.end(), step) >= often;
 }
 
-// Numbers with none between have no frame between, where there is one avatar. Of several the steps
-// of the others are not here: the step is theirs where it is nearly always so.
+// With one avatar, consecutive numbers have no frame between them. With several avatars, the steps
+// of the others are not in this list; a step is then accepted if nearly all known steps equal it.
 bool NoitomSteps::is_whole(const NoitomStep& step) const {
   if (step.avatar == 0 && !changes_avatar()) {
     return step == NoitomStep() || (is_usual(step) && !is_sum(step));
@@ -41,7 +43,7 @@ bool NoitomSteps::is_whole(const NoitomStep& step) const {
   return is_usual(step) && 4 * std::count(lately_.begin(), lately_.end(), step) >= 3 * known;
 }
 
-// Of two and more that came one behind another.
+// True if two or more consecutive steps add up to this one.
 bool NoitomSteps::is_sum(const NoitomStep& step) const {
   for (std::size_t first = 0; first + 1 < lately_.size(); ++first) {
     std::uint32_t sum = 0;
@@ -53,8 +55,8 @@ bool NoitomSteps::is_sum(const NoitomStep& step) const {
   return false;
 }
 
-// As of a sender that leaves out each sixth number. A frame that is missing breaks the row, unless
-// frames go missing as regularly.
+// For example a sender that leaves out every sixth number. A missing frame breaks the pattern,
+// unless frames are lost in the same rhythm.
 bool NoitomSteps::repeat_with(const NoitomStep& step) const {
   if (lately_.size() < remembered_steps) return false;
   if (std::find(lately_.begin(), lately_.end(), std::nullopt) != lately_.end()) return false;
@@ -74,7 +76,8 @@ bool NoitomSteps::changes_avatar() const {
                      [](const auto& one) { return one && one->avatar != 0; });
 }
 
-// An end that came behind a whole period may be another frame's: nothing is learnt of it.
+// A last piece that arrived after a whole period may belong to another frame, so its delay is not
+// learnt.
 void NoitomPace::push(Duration spread, Duration to_next) {
   const bool is_own =
       periods_.empty() || spread < *std::min_element(periods_.begin(), periods_.end());
@@ -82,7 +85,7 @@ void NoitomPace::push(Duration spread, Duration to_next) {
   remember(periods_, to_next, remembered_frames);
 }
 
-// Half-way from the latest end of a frame to the earliest beginning of the next one.
+// The limit lies half-way from the latest end of a frame to the earliest start of the next one.
 bool NoitomPace::is_in_time(Duration spread) const {
   if (spread <= short_spread) return true;
   if (spreads_.size() < enough_frames) return false;
@@ -91,8 +94,8 @@ bool NoitomPace::is_in_time(Duration spread) const {
   return spread < (latest + earliest) / 2;
 }
 
-// Where a network hands on several frames at once, an end is as near to an earlier header as to its
-// own.
+// If the network delivers several frames at once, a last piece is as near to an earlier header as
+// to its own.
 bool NoitomPace::tells_apart(Duration spread) const {
   const bool bunched =
       !periods_.empty() && 2 * spread >= *std::min_element(periods_.begin(), periods_.end());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sender of Noitom's frames always does, as far as it was seen: a frame in several datagrams
-// is believed where it is as usual. The rules: docs/formats/noitom_stream.md, "Frames in several
-// datagrams".
+// Learns the usual behaviour of a sender of Noitom's frames. A frame in several datagrams is
+// accepted only if it follows that behaviour. The rules: docs/formats/noitom_stream.md, "Frames in
+// several datagrams".
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -14,11 +14,12 @@
 
 namespace kinalign {
 
-/// What is always the same, until it is another way twice running. The first one is as usual.
+/// The usual value of a property. A different value becomes the usual one when it occurs twice in a
+/// row. The first value is the usual one at once.
 template <class Value>
 class Habit {
  public:
-  /// Whether it is as usual.
+  /// Takes the next value; true if it is the usual one.
   bool agrees(const Value& seen) {
     if (!usual_ || lately_ == seen) usual_ = seen;
     lately_ = seen;
@@ -29,23 +30,25 @@ class Habit {
   std::optional<Value> usual_, lately_;
 };
 
-/// From a numbered header to the next one's.
+/// The difference between a numbered header and the next one.
 struct NoitomStep {
-  std::uint32_t avatar = 0, index = 1;  // how much more
+  /// Avatar and frame index of the next header minus this one's.
+  std::uint32_t avatar = 0, index = 1;
   bool operator==(const NoitomStep&) const = default;
 };
 
-/// The last steps from one avatar's headers. Where a frame is missing, its step and the one before
-/// are seen as one.
+/// The latest steps from the headers of one avatar to the next headers. If a frame is missing, its
+/// step and the one before appear as a single step.
 class NoitomSteps {
  public:
-  /// Absent: a step that something is or may be missing in.
+  /// Adds a step; absent: a step within which a frame is or may be missing.
   void push(std::optional<NoitomStep> step);
-  /// It comes often.
+  /// True if the step occurs often.
   bool is_usual(const NoitomStep& step) const;
-  /// Nothing is missing in it: it comes often and is no sum of others.
+  /// True if no frame is missing within the step: it occurs often and is not the sum of other
+  /// steps.
   bool is_whole(const NoitomStep& step) const;
-  /// The steps repeat themselves, and it is the next of them.
+  /// True if the steps form a repeating pattern and this step continues it.
   bool repeat_with(const NoitomStep& step) const;
 
  private:
@@ -55,14 +58,15 @@ class NoitomSteps {
   std::deque<std::optional<NoitomStep>> lately_;
 };
 
-/// How a sender's frames and their pieces came one behind another.
+/// Delays within and between the frames of one sender.
 class NoitomPace {
  public:
-  /// Of a frame: from its first piece to its last, and to the next header.
+  /// Adds a frame: the delay from its first piece to its last, and to the next header.
   void push(Duration spread, Duration to_next);
-  /// What came so much later than a header belongs to it rather than to the next one.
+  /// True if a piece that arrives `spread` after a header belongs to that header and not to the
+  /// next one.
   bool is_in_time(Duration spread) const;
-  /// It is surely not the next frame's end: frames do not come in bunches.
+  /// True if the piece can't be the end of the next frame, because frames don't arrive in bursts.
   bool tells_apart(Duration spread) const;
 
  private:

@@ -30,7 +30,8 @@ Shape new_shape(std::span<const std::uint8_t> b) {
   return {little_at<std::uint16_t>(b, 6), b[8], b[9]};
 }
 
-/// The layout by the version 1.0 or 1.1, 1.2, ...; by what fits where that is neither.
+/// The layout, by version 1.0 for the old one or 1.1, 1.2, ... for the new one. With any other
+/// version, the layout that fits.
 std::optional<NoitomForm> form_of(std::span<const std::uint8_t> b) {
   const unsigned minor = b[minor_at], major = b[major_at];
   const bool may_be_new = major != 1 || minor >= 1, may_be_old = major != 1 || minor == 0;

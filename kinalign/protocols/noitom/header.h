@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 64 bytes in front of a binary frame: two layouts under one pair of tokens.
+// Parses the 64 bytes in front of a binary frame. Two layouts share one pair of tokens.
 #pragma once
 
 #include "kinalign/protocols/noitom/frame.h"
@@ -10,22 +10,21 @@ constexpr std::size_t noitom_header_size = 64;
 
 struct NoitomHeader {
   NoitomFrame frame;        // without its values
-  std::size_t values = 0;   // that follow, f32
-  bool compressed = false;  // the old header's flag: what follows is no row of floats
+  std::size_t values = 0;   // number of values (f32) after the header
+  bool compressed = false;  // flag of the old header: the values are compressed
 };
 
-/// FF DD in front and, where the bytes reach so far, FF EE behind.
+/// True if the bytes begin with FF DD and, if there are 64 of them, end with FF EE.
 bool has_noitom_tokens(std::span<const std::uint8_t> bytes);
 
-/// Reads 64 bytes that have the tokens. Nothing where count and flags fit neither layout.
+/// Parses 64 bytes that have the tokens. Empty if count and flags fit neither layout.
 std::optional<NoitomHeader> parse_noitom_header(std::span<const std::uint8_t> bytes);
 
-/// A header, or the beginning of one as far as version, count and flags, stands in front of
-/// `bytes`.
+/// True if `bytes` begin with a header, or with the part of one up to version, count and flags.
 bool begins_noitom_header(std::span<const std::uint8_t> bytes);
 
-/// Of 64 bytes whose count and flags fit neither layout: the count that stands there. All layouts
-/// have it in one place; the old one's is longer.
+/// The number of values that a header states whose count and flags fit neither layout. All layouts
+/// have the count at the same position; the old one's field is longer.
 std::size_t stated_noitom_values(std::span<const std::uint8_t> bytes);
 
 }  // namespace kinalign

@@ -11,9 +11,10 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_counted_avatars = 64;
-constexpr std::uint32_t longest_skip = 8;  // of numbers that a sender leaves out now and then
-// An end that did not come may be late, and come in the place of the next one's, which is then late
-// itself.
+// Largest step of a sender that occasionally leaves out numbers.
+constexpr std::uint32_t longest_skip = 8;
+// A missing last piece may arrive late, in the place of the next frame's last piece, which is then
+// late itself. So two frames are doubtful.
 constexpr int behind_a_lost_end = 2;
 
 bool same(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
@@ -49,22 +50,23 @@ bool NoitomReceiver::has_last() const {
   return !tail_.empty() && newest_ && newest_->spread && pace_.is_in_time(*newest_->spread);
 }
 
-// What comes twice at once was doubled on its way. In the midst of a frame it may be the next
-// piece, which is as still as the one before.
+// A datagram that equals the one before it is a duplicate. Within a frame it may instead be the
+// next piece, if the body does not move.
 bool NoitomReceiver::is_repeated(Bytes datagram) const {
   const bool in_the_midst = pieced_ && tail_.empty() && !begins_noitom_header(datagram);
   return !in_the_midst && same(datagram, piece_);
 }
 
-// What continues no frame.
+// Handles a datagram that continues no frame.
 void NoitomReceiver::take_fresh(Bytes datagram, Arrival arrival, Arrivals& out) {
   settle(datagram, arrival, out);
   const std::uint64_t before = trouble();
   const std::size_t given = out.size();
   decoder_.feed(datagram, out);
-  if (decoder_.waits_within_header()) decoder_.give_up(out);  // no sender cuts there
+  // No sender splits a frame within its header.
+  if (decoder_.waits_within_header()) decoder_.give_up(out);
   const bool is_odd = trouble() > before;
-  if (out.size() > given) release(out, given);  // the next one is whole in itself
+  if (out.size() > given) release(out, given);  // the next frame is whole in one datagram
   if (!decoder_.beginning()) take_back();
   if (is_odd) {
     doubted_ = std::max(doubted_, 1);
@@ -78,7 +80,7 @@ void NoitomReceiver::take_fresh(Bytes datagram, Arrival arrival, Arrivals& out) 
   }
 }
 
-// What should continue the frame that waits in the decoder.
+// Handles a datagram that should continue the frame in the decoder.
 void NoitomReceiver::take_further(Bytes datagram, Arrival arrival, Arrivals& out) {
   const NoitomBeginning& head = pieced_->head;
   Sizes& pieces = pieced_->pieces;
@@ -103,7 +105,8 @@ void NoitomReceiver::take_further(Bytes datagram, Arrival arrival, Arrivals& out
   if (!rest.empty()) take_fresh(rest, arrival, out);
 }
 
-// Whether it may be its end. Of a numbered one the time is judged with the next number.
+// True if the datagram may be the frame's last piece. The delay of a numbered frame is checked
+// later, together with the next number.
 bool NoitomReceiver::complete(Bytes datagram, std::size_t lacks, Arrival arrival) {
   tail_.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(lacks));
   tail_arrival_ = arrival;
@@ -119,8 +122,8 @@ bool NoitomReceiver::complete(Bytes datagram, std::size_t lacks, Arrival arrival
   return in_time && cuts_[pieced_->head.size].agrees(pieced_->pieces);
 }
 
-// Behind a frame in pieces. Where no frame is missing between its header and this one, it can't
-// have been completed with another one's piece.
+// Called at the datagram after a frame in pieces. If no frame is missing between its header and the
+// next one, it can't have been completed with another frame's piece.
 void NoitomReceiver::settle(Bytes next, Arrival arrival, Arrivals& out) {
   if (!newest_) return;
   const auto header = header_of(next);
@@ -135,8 +138,8 @@ void NoitomReceiver::settle(Bytes next, Arrival arrival, Arrivals& out) {
   newest_.reset();
 }
 
-// By the numbers and by the time. Where nothing was missing of late, the numbers alone will do, or
-// the time.
+// Decides by the numbers and by the delay. If nothing was missing recently, one of the two is
+// enough.
 NoitomReceiver::Follows NoitomReceiver::judge(const NoitomFrame& next) const {
   const auto step = step_to(next);
   if (!step) return newest_->head.index ? Follows::no : Follows::yes;
@@ -156,13 +159,15 @@ NoitomReceiver::Follows NoitomReceiver::judge(const NoitomFrame& next) const {
   return may_be && pace_.tells_apart(*spread) ? Follows::yes : Follows::no;
 }
 
+/// Difference between the latest header and the next one; empty if one of them has no number.
 std::optional<NoitomStep> NoitomReceiver::step_to(const NoitomFrame& next) const {
   const NoitomBeginning& head = newest_->head;
   if (!head.index || !next.frame_index) return std::nullopt;
   return NoitomStep{next.avatar - head.avatar, *next.frame_index - *head.index};
 }
 
-// Also of what is dropped. `next`: the header behind the newest one; null: another piece is there.
+// Learns from each frame in pieces, dropped ones too. `next`: the header after the newest one;
+// null: another piece follows.
 void NoitomReceiver::learn(const NoitomFrame* next, Arrival arrival) {
   const bool is_plain = next != nullptr && newest_->ended;
   if (is_plain && newest_->spread && arrival)
@@ -174,6 +179,7 @@ void NoitomReceiver::learn(const NoitomFrame* next, Arrival arrival) {
   steps_[avatar].push(is_plain ? step_to(*next) : std::nullopt);
 }
 
+/// Completes the frame in the decoder with its last piece and outputs it.
 void NoitomReceiver::give(Arrivals& out) {
   const std::uint64_t before = trouble();
   const std::size_t given = out.size();
@@ -186,13 +192,14 @@ void NoitomReceiver::give(Arrivals& out) {
   pieced_.reset();
 }
 
-// The next one's end has come, behind its header.
+// Outputs the frame kept in open_: the last piece of the next frame has arrived after its header.
 void NoitomReceiver::release(Arrivals& out, std::size_t at) {
   out.insert(out.begin() + static_cast<std::ptrdiff_t>(at), open_.begin(), open_.end());
   open_.clear();
 }
 
-// The next one's end has not come: it may be what was taken for the end of this one.
+// Drops the frame kept in open_: the next frame's last piece has not arrived, so it may be the
+// piece that completed this frame.
 void NoitomReceiver::take_back() {
   for (const NoitomArrival& one : open_) {
     decoder_.take_back(one.frame);
@@ -201,7 +208,7 @@ void NoitomReceiver::take_back() {
   open_.clear();
 }
 
-// It is torn, and what may be its end is nobody's.
+// Drops the frame: it counts as torn, and its possible last piece belongs to no frame.
 void NoitomReceiver::drop(Arrivals& out) {
   decoder_.give_up(out);
   decoder_.pass_over(tail_.size());
@@ -209,6 +216,7 @@ void NoitomReceiver::drop(Arrivals& out) {
   pieced_.reset();
 }
 
+/// A number that grows with every refusal and every skipped byte.
 std::uint64_t NoitomReceiver::trouble() const {
   const auto& refused = decoder_.counts().refused;
   return std::accumulate(refused.begin(), refused.end(), decoder_.counts().bytes_skipped);

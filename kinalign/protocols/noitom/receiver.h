@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sender of the BVH broadcast, over either transport. A connection loses nothing; of datagrams
-// some are lost, overtaken or cut short, and a frame in several of them is believed only where
-// nothing speaks against it. The rules: docs/formats/noitom_stream.md, "Frames in several
-// datagrams".
+// Receives the BVH broadcast of one sender over TCP or UDP. A connection loses nothing. Datagrams
+// may be lost, delayed or truncated, so a frame in several datagrams is accepted only if nothing
+// contradicts it. The rules: docs/formats/noitom_stream.md, "Frames in several datagrams".
 #pragma once
 
 #include "kinalign/protocols/noitom/habits.h"
@@ -17,23 +16,24 @@ class NoitomReceiver {
  public:
   explicit NoitomReceiver(NoitomParts parts = NoitomParts::all) : decoder_(parts) {}
 
-  /// Bytes of a connection, cut anywhere: NoitomDecoder::feed.
+  /// Takes bytes of a connection, cut anywhere, as NoitomDecoder::feed does.
   void feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out) {
     decoder_.feed(bytes, out);
   }
-  /// A datagram, in the order of arrival. A frame of several is given when the next header
-  /// has come, with its own arrival where that is known; what is doubtful is `torn`.
+  /// Takes a datagram, in the order of arrival. A frame of several datagrams is output once the
+  /// next header has arrived, with its own arrival time if that is known. A doubtful frame is
+  /// counted as `torn`.
   void feed_datagram(std::span<const std::uint8_t> datagram, std::optional<HostTime> arrival,
                      std::vector<NoitomArrival>& out);
-  /// Nothing follows: a frame that waits for the next header is given, if its arrival speaks for
+  /// Call at the end. A frame that waits for the next header is output if its arrival time supports
   /// it.
   void finish(std::vector<NoitomArrival>& out);
-  /// Whether `finish` would give one.
+  /// True if `finish` would output a frame.
   bool has_last() const;
 
   const NoitomCounts& counts() const { return decoder_.counts(); }
   const std::map<std::uint32_t, NoitomAvatar>& avatars() const { return decoder_.avatars(); }
-  /// Bytes that wait: never more than 20 kB, and of datagrams three of a frame's size.
+  /// Bytes kept: never more than 20 kB, and with datagrams three times the size of a frame.
   std::size_t waiting() const {
     return decoder_.waiting() + tail_.size() + piece_.size() + open_.size() * longest_piece;
   }
@@ -44,33 +44,36 @@ class NoitomReceiver {
   using Sizes = std::vector<std::size_t>;
   using Arrival = std::optional<HostTime>;
   using Arrivals = std::vector<NoitomArrival>;
-  /// A frame that began in a datagram and did not end there.
+  /// A frame that began in one datagram and did not end there, with the sizes of its pieces.
   struct Pieced {
     NoitomBeginning head;
     Sizes pieces{};
   };
 
-  /// A header in pieces, until the next one has come.
+  /// The latest header of a frame in pieces, until the next header has arrived.
   struct Newest {
     NoitomBeginning head;
     std::optional<HostTime> began{};
-    bool ended = false;                // behind it came its end, or what may be its end
-    std::optional<Duration> spread{};  // from its first piece to its last
+    bool ended = false;  // its last piece, or a datagram that may be it, came after it
+    std::optional<Duration> spread{};  // delay from its first piece to its last
   };
 
-  /// Whether two headers are of frames one behind the other: the end between them is then the
-  /// first one's. Open: it is, unless the second one's came before its header and gets lost here.
+  /// Tells whether the next header belongs to the frame after this one; the last piece between them
+  /// is then this frame's. Open: it does, unless the next frame's last piece arrived before its
+  /// header and is then lost.
   enum class Follows { no, open, yes };
 
   static constexpr std::size_t longest_piece = 2048;  // no frame is longer
-  // About a second.
+  // Headers without a missing piece after which the link counts as undisturbed: about a second.
   static constexpr int quiet_again = 100;
 
   bool is_repeated(Bytes datagram) const;
+  /// Handles a datagram that does not continue a frame.
   void take_fresh(Bytes datagram, Arrival arrival, Arrivals& out);
   void take_further(Bytes datagram, Arrival arrival, Arrivals& out);
   bool complete(Bytes datagram, std::size_t lacks, Arrival arrival);
   void settle(Bytes next, Arrival arrival, Arrivals& out);
+  /// Compares numbers and delays of the latest header and the next one.
   Follows judge(const NoitomFrame& next) const;
   std::optional<NoitomStep> step_to(const NoitomFrame& next) const;
   void learn(const NoitomFrame* next, Arrival arrival);
@@ -83,17 +86,18 @@ class NoitomReceiver {
   NoitomDecoder decoder_;
   std::optional<Pieced> pieced_;
   std::optional<Newest> newest_;
-  std::vector<std::uint8_t> tail_;  // that completes it: it waits for the next header
+  std::vector<std::uint8_t> tail_;  // last piece of the frame, which waits for the next header
   Arrival tail_arrival_;
-  Arrivals open_;                    // a frame that waits for the next one's end
-  std::vector<std::uint8_t> piece_;  // the last datagram, if it was one
-  int doubted_ = 0;  // frames in pieces that are dropped, since something odd stood before them
+  Arrivals open_;                    // a frame that waits for the last piece of the next one
+  std::vector<std::uint8_t> piece_;  // the last datagram, if it was a piece of a frame
+  int doubted_ = 0;  // number of frames in pieces that must be dropped, because the data before
+                     // them was faulty
   int quiet_ = quiet_again;                     // headers since a piece was missing
-  std::map<std::size_t, Habit<Sizes>> cuts_;    // by a frame's size, of which there are four
-  std::map<std::uint32_t, NoitomSteps> steps_;  // by avatar
+  std::map<std::size_t, Habit<Sizes>> cuts_;    // usual cuts, for each of the four sizes of a frame
+  std::map<std::uint32_t, NoitomSteps> steps_;  // for each avatar
   NoitomPace pace_;
-  std::uint64_t in_pieces_ = 0;  // frames that were given
-  std::size_t most_pieces_ = 0;  // of one
+  std::uint64_t in_pieces_ = 0;  // frames in pieces that were output
+  std::size_t most_pieces_ = 0;  // largest number of pieces of a frame
 };
 
 }  // namespace kinalign

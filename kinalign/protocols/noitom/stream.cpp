@@ -13,11 +13,12 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t slice = 4096;
-// 360 values of 40 characters and a name; what writes longer ones is no text of this kind.
+// A longer text than 360 values of 40 characters and a name is no frame.
 constexpr std::size_t longest_text = 16'384;
 constexpr std::size_t most_avatars = 64;
-constexpr std::size_t zipped_head = 10;  // CCCC, a length, gzip's 1F 8B
-// Of a frame with another count than ours: 200 joints with displacement and a reference.
+constexpr std::size_t zipped_head = 10;  // CCCC, a length, and gzip's 1F 8B
+// Most values of a frame with another count than ours: 200 joints with displacement and a
+// reference.
 constexpr std::size_t most_values = 1206;
 
 bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
@@ -28,7 +29,7 @@ bool may_stand_in_text(std::uint8_t b) {
 
 using Begins = bool (*)(std::span<const std::uint8_t> bytes);
 
-/// Where from `from` to `end` a header begins; `end` where none does.
+/// Position of the first header in [from, end); `end` if there is none.
 std::size_t header_within(std::span<const std::uint8_t> bytes, std::size_t from, std::size_t end,
                           Begins begins) {
   for (std::size_t at = from; at < end; ++at) {
@@ -107,6 +108,7 @@ void NoitomDecoder::skip(std::size_t bytes) {
   counts_.bytes_skipped += bytes;
 }
 
+/// Handles the data at the front, by its first byte.
 NoitomDecoder::Step NoitomDecoder::step(std::vector<NoitomArrival>& out) {
   const std::uint8_t first = ahead()[0];
   if (first == 0xff) return marked(out);
@@ -120,7 +122,7 @@ NoitomDecoder::Step NoitomDecoder::step(std::vector<NoitomArrival>& out) {
   return Step::go_on;
 }
 
-// FF and what may follow it: the tokens of Noitom's three kinds of header.
+// Handles FF and the byte after it: the tokens of Noitom's three kinds of header.
 NoitomDecoder::Step NoitomDecoder::marked(std::vector<NoitomArrival>& out) {
   const auto bytes = ahead();
   if (bytes.size() < 2) return Step::wait;
@@ -131,6 +133,7 @@ NoitomDecoder::Step NoitomDecoder::marked(std::vector<NoitomArrival>& out) {
   return Step::go_on;
 }
 
+/// Handles a binary header and, once complete, the frame after it.
 NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   const auto bytes = ahead();
   if (bytes.size() < noitom_header_size) return Step::wait;
@@ -160,8 +163,8 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   return Step::go_on;
 }
 
-// Its number has come, with its header: it is not lost. Of avatars that gave a frame alone, so that
-// what is no header counts as none.
+// Counts the frame at the front as torn. Its number has arrived with its header, so it does not
+// count as lost. Only known avatars are counted, because the bytes may be no header.
 void NoitomDecoder::tear() {
   refuse(NoitomRefusal::torn);
   const auto head = beginning();
@@ -170,9 +173,9 @@ void NoitomDecoder::tear() {
   if (avatar != avatars_.end()) avatar->second.by_index.push(*head->index);
 }
 
-// A header whose count and flags fit no layout: of a frame of another count where the next header
-// stands behind as many values. Meanwhile no frame is held back that begins before: whole headers
-// alone are looked at, so that the cuts change nothing.
+// Handles a header whose count and flags fit no layout. It is a frame with another count if the
+// next header follows after that many values. A frame that begins in between is not delayed
+// meanwhile. Only complete headers are considered, so that the cuts don't matter.
 NoitomDecoder::Step NoitomDecoder::misfit() {
   const auto bytes = ahead();
   const std::size_t values = stated_noitom_values(bytes);
@@ -196,8 +199,8 @@ NoitomDecoder::Step NoitomDecoder::misfit() {
   return is_frame ? drop(NoitomRefusal::wrong_count, size) : drop(NoitomRefusal::garbage, 2);
 }
 
-// 64 bytes that end in FF and `last_byte`. What follows them is skipped as it comes: their own
-// length is no reason to swallow a frame.
+// Handles a header of 64 bytes that ends in FF and `last_byte`. The bytes after it are skipped one
+// by one: its own length could make us skip a frame.
 NoitomDecoder::Step NoitomDecoder::other_header(std::uint8_t last_byte, NoitomRefusal meaning) {
   const auto bytes = ahead();
   if (bytes.size() < noitom_header_size) return Step::wait;
@@ -210,6 +213,7 @@ NoitomDecoder::Step NoitomDecoder::other_header(std::uint8_t last_byte, NoitomRe
   return Step::go_on;
 }
 
+/// Handles the head of a compressed stream, which is refused.
 NoitomDecoder::Step NoitomDecoder::zipped() {
   const auto bytes = ahead();
   const auto mark = bytes.first(std::min<std::size_t>(4, bytes.size()));
@@ -227,7 +231,8 @@ NoitomDecoder::Step NoitomDecoder::zipped() {
   return Step::go_on;
 }
 
-// From a digit to "||". A byte that no text holds ends the attempt in front of it.
+// Handles text from a digit to "||". A byte that can't occur in text ends the attempt before that
+// byte.
 NoitomDecoder::Step NoitomDecoder::text(std::vector<NoitomArrival>& out) {
   const auto bytes = ahead();
   for (std::size_t at = searched_; at < bytes.size(); ++at) {
@@ -263,12 +268,13 @@ void NoitomDecoder::text_frame(std::size_t size, std::vector<NoitomArrival>& out
 
 void NoitomDecoder::refuse_text(std::string_view text) {
   const NoitomNoFrame what = judge_noitom_text(text);
-  // Who comes within a frame sees its end: nothing is wrong with it.
+  // A receiver that starts within a frame gets only its end, which is no fault.
   const bool first = counts_.frames == 0 && counts_.refused == NoitomCounts{}.refused;
   if (first && what == NoitomNoFrame::numbers) return;
   refuse(what == NoitomNoFrame::other_count ? NoitomRefusal::wrong_count : NoitomRefusal::garbage);
 }
 
+/// Outputs a frame, and counts it for its avatar.
 void NoitomDecoder::give(NoitomFrame frame, std::vector<NoitomArrival>& out) {
   if (avatars_.size() == most_avatars && !avatars_.contains(frame.avatar)) {
     refuse(NoitomRefusal::too_many_avatars);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The BVH broadcast of Noitom's Axis Neuron and Axis Studio, as one sender's bytes arrive over TCP
-// or in datagrams. Layout and rules: docs/formats/noitom_stream.md.
+// Decodes the BVH broadcast of Noitom's Axis Neuron and Axis Studio, from one sender's bytes over
+// TCP or in datagrams. Layout and rules: docs/formats/noitom_stream.md.
 #pragma once
 
 #include "kinalign/protocols/noitom/header.h"
@@ -13,17 +13,17 @@
 
 namespace kinalign {
 
-/// Why a thing that was recognised gave no frame.
+/// Reasons for recognised data to give no frame.
 enum class NoitomRefusal : std::uint8_t {
-  wrong_count,       // a frame by its beginning and its length, of another number of values
-  garbage,           // a frame's marks about what is none
+  wrong_count,       // a frame by its header and length, but with another number of values
+  garbage,           // the tokens of a header, but no frame
   torn,              // another frame begins before this one is complete
   compressed,        // Axis Studio's compressed port, or the old header's compressed mode
   calculation,       // the calculation stream
-  command,           // a pack of the command channel
-  too_long,          // text that does not end
-  too_many_avatars,  // the 65th and later
-  count_of_refusals  // none: how many there are
+  command,           // a packet of the command channel
+  too_long,          // text without an end
+  too_many_avatars,  // the 65th avatar and later ones
+  count_of_refusals  // not a refusal: the number of refusals
 };
 
 std::string_view to_string(NoitomRefusal refusal);
@@ -31,7 +31,7 @@ std::string_view to_string(NoitomRefusal refusal);
 struct NoitomCounts {
   std::uint64_t frames = 0;
   std::uint64_t bytes_skipped =
-      0;  // in no frame and no refused header; blanks behind text are free
+      0;  // bytes outside of frames and refused headers; blanks after text don't count
   std::array<std::uint64_t, static_cast<std::size_t>(NoitomRefusal::count_of_refusals)> refused{};
 
   std::uint64_t operator[](NoitomRefusal r) const { return refused[static_cast<std::size_t>(r)]; }
@@ -40,57 +40,57 @@ struct NoitomCounts {
 
 struct NoitomArrival {
   NoitomFrame frame;
-  Order order = Order::newest;  // by the source's frame index; without one always newest
-  // Of the piece that completed it; absent: it came with the bytes that were fed last.
+  Order order = Order::newest;  // by the source's frame index; always newest without one
+  // Arrival of the piece that completed the frame; absent: it was in the bytes that were fed last.
   std::optional<HostTime> arrival{};
 };
 
 struct NoitomAvatar {
   std::uint32_t index = 0;
-  std::string name;  // of its last frame
+  std::string name;  // in its latest frame
   std::uint64_t frames = 0;
-  SequenceCount by_index;  // also of the torn; empty where the source gives no frame index
+  SequenceCount by_index;  // counts torn frames too; empty if the source sends no frame index
 };
 
-/// The beginning of a binary frame, its header at least.
+/// The beginning of a binary frame, at least its header.
 struct NoitomBeginning {
-  std::size_t held = 0, size = 0;  // bytes
+  std::size_t held = 0, size = 0;  // bytes: received so far, and in the whole frame
   std::uint32_t avatar = 0;
-  std::optional<std::uint32_t> index{};  // of the source
+  std::optional<std::uint32_t> index{};  // the source's frame index
 };
 
-/// What of a frame is handed on.
+/// The parts of a frame that the decoder outputs.
 enum class NoitomParts {
   all,
-  heads  // what counts need: values of binary frames are passed over
+  heads  // enough for counting: the values of binary frames are skipped
 };
 
-/// One sender. Which form it uses is seen by content, at every frame anew.
+/// Decodes the bytes of one sender. It recognises the form of every frame by its content.
 class NoitomDecoder {
  public:
   explicit NoitomDecoder(NoitomParts parts = NoitomParts::all) : parts_(parts) {}
 
-  /// Takes bytes cut anywhere and appends the frames that they complete, duplicates and late ones
-  /// too. The frames don't depend on where the bytes were cut.
+  /// Takes bytes cut anywhere and appends the frames that they complete, including duplicates and
+  /// late ones. The frames don't depend on the cuts.
   void feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out);
 
-  /// What waits gets no rest: a frame's beginning is torn, the rest skipped, but for frames that
-  /// begin in it.
+  /// Gives up the incomplete data: a frame's beginning counts as torn and other bytes are skipped,
+  /// except for frames that begin among them.
   void give_up(std::vector<NoitomArrival>& out);
-  /// A frame that was given is doubtful: it is torn.
+  /// Counts a frame as torn that was output but is doubtful.
   void take_back(const NoitomFrame& frame);
-  /// Counts bytes that are in no frame without looking at them.
+  /// Counts bytes that belong to no frame, without looking at them.
   void pass_over(std::size_t bytes) { counts_.bytes_skipped += bytes; }
-  /// The frame that waits for its rest.
+  /// The incomplete frame whose rest is expected next.
   std::optional<NoitomBeginning> beginning() const;
   bool waits_within_header() const;
 
   const NoitomCounts& counts() const { return counts_; }
   const std::map<std::uint32_t, NoitomAvatar>& avatars() const { return avatars_; }
-  /// Bytes that wait for their rest: never more than 20 kB.
+  /// Number of bytes that wait for more: never above 20 kB.
   std::size_t waiting() const { return held_.size() - at_; }
 
-  /// What the user should know of this stream; `name` stands in the messages.
+  /// Findings about this stream for the user; `name` appears in the messages.
   Findings findings(const std::string& name) const;
 
  private:
@@ -115,8 +115,9 @@ class NoitomDecoder {
 
   NoitomParts parts_;
   std::vector<std::uint8_t> held_;
-  std::size_t at_ = 0;        // of `held_`: what is before is done
-  std::size_t searched_ = 0;  // bytes of a text that hold no end, of a misfit that begin no header
+  std::size_t at_ = 0;        // position in `held_`; the bytes before it are done
+  std::size_t searched_ = 0;  // bytes known to hold no end of a text, or no header after a misfit
+  /// Blanks that follow a text frame are not counted as skipped.
   bool behind_text_ = false;
   NoitomCounts counts_;
   std::map<std::uint32_t, NoitomAvatar> avatars_;

@@ -31,13 +31,14 @@ bool read(std::string_view word, Number& value) {
   return fault == std::errc{} && behind == end && value - value == Number{0};
 }
 
+/// The frame made of exactly these words; empty if one of them has the wrong form.
 std::optional<NoitomFrame> frame_of(std::span<const std::string_view> words) {
   NoitomFrame frame;
   frame.form = NoitomForm::text;
   float number = 0.0F;
   if (!read(words[0], frame.avatar)) return std::nullopt;
   if (words[1].find('|') != std::string_view::npos) return std::nullopt;
-  frame.name = words[1].substr(0, 32);  // as many as a binary header holds
+  frame.name = words[1].substr(0, 32);  // cut to the length of a binary header's field
   for (const std::string_view word : words.subspan(2)) {
     if (!read(word, number)) return std::nullopt;
     frame.values.push_back(number);
@@ -55,7 +56,7 @@ std::optional<NoitomFrame> parse_noitom_text(std::string_view text) {
       if (words.size() < size) continue;
       const auto last = std::span(words).last(size);
       float number = 0.0F;
-      // Within other words a number in the name's place is one of their values.
+      // If other words come first, a number in the name's place is one of their values.
       if (words.size() > size && read(last[1], number)) continue;
       auto frame = frame_of(last);
       if (!frame) continue;
@@ -74,7 +75,7 @@ NoitomNoFrame judge_noitom_text(std::string_view text) {
                                  [&](std::string_view word) { return !read(word, number); });
   if (name == words.rend()) return NoitomNoFrame::numbers;
   const auto values = static_cast<std::size_t>(name - words.rbegin());
-  // Places and rotations have three values each.
+  // Positions and rotations have three values each.
   if (values == 0 || values % 3 != 0 || values + 2 > words.size()) return NoitomNoFrame::other;
   const bool begins = frame_of(std::span(words).last(values + 2)).has_value();
   return begins ? NoitomNoFrame::other_count : NoitomNoFrame::other;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame of the string mode: `<index> <name> v v ... ||`.
+// Parses a frame of the string mode: `<index> <name> v v ... ||`.
 #pragma once
 
 #include "kinalign/protocols/noitom/frame.h"
@@ -8,15 +8,15 @@
 
 namespace kinalign {
 
-/// The frame that ends where `text` does, before its "||"; what stands in front of it is passed
-/// over: a frame that has lost its end. Nothing where none of the four counts of values stands
-/// there.
+/// Parses the frame at the end of `text`, which reaches to its "||". Words in front of it are
+/// skipped: they belong to a frame that has lost its end. Empty if the text does not end in a frame
+/// with one of the four counts of values.
 std::optional<NoitomFrame> parse_noitom_text(std::string_view text);
 
-/// What a text is that is no frame.
+/// Kinds of text that are no frame.
 enum class NoitomNoFrame : std::uint8_t {
-  other_count,  // ends as a frame does, `<index> <name> v v ...`, of another number of values
-  numbers,      // nothing but numbers: the end of a frame, its beginning is not there
+  other_count,  // a frame `<index> <name> v v ...` with another number of values
+  numbers,      // only numbers: the end of a frame whose beginning is missing
   other         // any other words
 };
 NoitomNoFrame judge_noitom_text(std::string_view text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames as Axis Neuron and Axis Studio send them.
+// Writes frames in the forms of Axis Neuron and Axis Studio.
 #include "kinalign/protocols/noitom/header.h"
 #include "kinalign/wire/little_endian.h"
 

@@ -16,7 +16,7 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::size_t head_size = 12;
 constexpr std::uint32_t bundle = 100, compact_bundle = 101;
 
-/// A reader that can skip and take text.
+/// A byte reader that can also skip bytes and take text.
 class Body {
  public:
   explicit Body(Bytes bytes) : bytes_(bytes), reader_(bytes) {}
@@ -25,7 +25,7 @@ class Body {
   std::uint16_t word() { return reader_.take<std::uint16_t>(); }
   std::uint32_t number() { return reader_.take<std::uint32_t>(); }
   float real() { return reader_.take_float(); }
-  /// Of 16 bits with a sign.
+  /// Takes a fixed-point number of 16 bits with a sign.
   float fixed(float scale) { return static_cast<float>(static_cast<std::int16_t>(word())) / scale; }
   std::array<float, 3> vector() {
     std::array<float, 3> v{};
@@ -37,12 +37,12 @@ class Body {
     for (float& x : q) x = real();
     return q;
   }
-  /// `length` bytes, up to the first zero.
+  /// Takes `length` bytes and returns those before the first zero.
   std::string text(std::size_t length) {
     const std::size_t at = bytes_.size() - left();
     const bool whole = length <= left();
     for (std::size_t n = std::min(length, left()); n > 0; --n) byte();
-    if (!whole) byte();  // incomplete
+    if (!whole) byte();  // makes the body incomplete
     const Bytes text = bytes_.subspan(at, whole ? length : 0);
     return {text.begin(), std::find(text.begin(), text.end(), 0)};
   }
@@ -54,6 +54,7 @@ class Body {
   ByteReader reader_;
 };
 
+/// Reads the fields as far as the firmware sends them.
 SlimeHandshake take_handshake(Body body) {
   SlimeHandshake hands;
   for (auto* field : {&hands.board, &hands.imu, &hands.mcu}) {
@@ -81,6 +82,7 @@ SlimeHandshake take_handshake(Body body) {
   return hands;
 }
 
+/// Reads the fields as far as the firmware sends them.
 SlimeSensorInfo take_sensor_info(Body& body) {
   SlimeSensorInfo info;
   info.sensor = body.byte();
@@ -134,6 +136,7 @@ SlimeMotion take_both(Body& body) {
   return motion;
 }
 
+/// Reads a packet that the program does not use, with the size that its type has.
 SlimeReading take_reading(Body& body, std::uint8_t type) {
   SlimeReading reading;
   reading.type = type;
@@ -166,6 +169,7 @@ SlimeFeatures take_features(Body& body) {
   return features;
 }
 
+/// Reads a packet of this type; empty if the type is unknown.
 std::optional<SlimePacket> take_body(std::uint32_t type, Body& body) {
   switch (type) {
     case 0:
@@ -218,7 +222,8 @@ void take_packet(std::uint32_t type, Bytes bytes, SlimeDatagram& out) {
   }
 }
 
-/// `width`: bytes of a length. Their type is as wide in a compact bundle, else 4.
+/// Reads the packets of a bundle. `width`: bytes of each length. A type is as wide in a compact
+/// bundle, and has 4 bytes in others.
 void take_bundle(Bytes bytes, std::size_t width, SlimeDatagram& out) {
   const std::size_t type_size = width == 1 ? 1 : 4;
   while (bytes.size() >= width) {
@@ -248,7 +253,7 @@ void put(SlimeAnswer& answer, std::initializer_list<std::uint8_t> bytes) {
   for (const std::uint8_t byte : bytes) answer.bytes[answer.size++] = byte;
 }
 
-/// u32 type, u64 number 0.
+/// Begins an answer: type as u32, number 0 as u64.
 SlimeAnswer begun(std::uint8_t type) {
   SlimeAnswer answer;
   put(answer, {0, 0, 0, type});
@@ -286,6 +291,7 @@ std::optional<std::array<double, 3>> slime_acceleration(const std::array<float, 
                                                         std::int32_t protocol) {
   const double x = acceleration[0], y = acceleration[1], z = acceleration[2];
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return std::nullopt;
+  /// Firmware before this protocol version sends accelerations in other axes.
   constexpr std::int32_t turned_before = 22;
   if (protocol < turned_before) return std::array<double, 3>{y, -x, z};
   return std::array<double, 3>{x, y, z};

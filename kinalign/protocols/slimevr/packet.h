@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Datagrams of SlimeVR's trackers, and what is sent to them: docs/formats/slimevr.md. As they stand
-// there; slime_orientation and slime_acceleration bring samples into our units.
+// Decodes datagrams of SlimeVR's trackers and encodes the answers to them: docs/formats/slimevr.md.
+// Values are in the tracker's units and axes; slime_orientation and slime_acceleration convert them
+// to ours.
 #pragma once
 
 #include <array>
@@ -16,22 +17,23 @@ namespace kinalign {
 
 using SlimeMac = std::array<std::uint8_t, 6>;
 
-/// What older firmware does not say is absent.
+/// A tracker's introduction. Fields that older firmware does not send are absent.
 struct SlimeHandshake {
   std::optional<std::int32_t> board, imu, mcu, protocol;
   std::optional<std::string> firmware;
-  std::optional<SlimeMac> mac;  // never of zeros
+  std::optional<SlimeMac> mac;  // absent also if the tracker sends only zeros
   std::optional<std::uint8_t> tracker;
   std::vector<std::string> texts;  // vendor, its URL, product, update address, update name
 
   bool operator==(const SlimeHandshake&) const = default;
 };
 
+/// Sign of life without content.
 struct SlimeHeartbeat {
   bool operator==(const SlimeHeartbeat&) const = default;
 };
 
-/// Types 1, 16, 17, 4 and 23: rotation, acceleration, or both.
+/// Motion of one sensor, types 1, 16, 17, 4 and 23: rotation, acceleration, or both.
 struct SlimeMotion {
   std::uint8_t sensor = 0;
   bool is_correction = false;
@@ -54,7 +56,7 @@ struct SlimeSensorInfo {
 
 struct SlimeBattery {
   std::optional<float> volts;
-  float level = 0.0F;  // of 1
+  float level = 0.0F;  // charge, 0 to 1
 };
 
 struct SlimeSerial {
@@ -67,10 +69,10 @@ struct SlimeFeatures {
   bool operator==(const SlimeFeatures&) const = default;
 };
 
-/// Types 13, 14, 18 to 21, 24, 26 and 27, of which nothing here depends.
+/// Types 13, 14, 18 to 21, 24, 26 and 27, which this program does not use.
 struct SlimeReading {
   std::uint8_t type = 0, sensor = 0;
-  std::array<float, 3> values{};  // one, but of a position three
+  std::array<float, 3> values{};  // one value; a position has three
 };
 
 using SlimePacket =
@@ -80,23 +82,25 @@ using SlimePacket =
 struct SlimeDatagram {
   std::uint32_t type = 0;
   std::uint64_t number = 0;
-  std::vector<SlimePacket> packets;  // of a bundle each, but for …
-  std::uint32_t unknown_type = 0;    // … those that we don't know
-  std::uint32_t too_short = 0;       // … those that end within what their type has
-  std::uint32_t nested = 0;          // … and bundles in it
+  std::vector<SlimePacket> packets;  // one, or those of a bundle
+  std::uint32_t unknown_type = 0;    // packets of an unknown type
+  std::uint32_t too_short = 0;       // packets that end too early for their type
+  std::uint32_t nested = 0;          // bundles within a bundle
 };
 
-/// False: not even a head, 12 bytes.
+/// Decodes a datagram. False if it is shorter than its head of 12 bytes.
 [[nodiscard]] bool decode_slime(std::span<const std::uint8_t> datagram, SlimeDatagram& out);
 
-/// Rotation w,x,y,z, unit, from the sensor's space to a world with y up. Absent where it is none.
+/// Unit rotation w,x,y,z from sensor space to a world with y up. Absent if `rotation` is no
+/// rotation.
 std::optional<std::array<double, 4>> slime_orientation(const std::array<float, 4>& rotation);
 
-/// m/s2 in the sensor's space, without gravity. `protocol`: of the handshake, 0 where it has none.
+/// Acceleration, m/s2, in sensor space, without gravity. `protocol`: that of the handshake; 0 if it
+/// has none.
 std::optional<std::array<double, 3>> slime_acceleration(const std::array<float, 3>& acceleration,
                                                         std::int32_t protocol);
 
-/// What is sent to trackers: a few bytes.
+/// A datagram to a tracker.
 struct SlimeAnswer {
   std::array<std::uint8_t, 64> bytes{};
   std::size_t size = 0;
@@ -106,12 +110,12 @@ struct SlimeAnswer {
 
 inline constexpr std::size_t least_slime_handshake_answer = 13;
 
-/// As long as the handshake, within 13 and 64 bytes.
+/// The answer to a handshake; it is as long as the handshake, but at least 13 and at most 64 bytes.
 SlimeAnswer slime_handshake_answer(std::size_t handshake_size);
 SlimeAnswer slime_heartbeat();
 SlimeAnswer slime_ping(std::uint32_t id);
 SlimeAnswer slime_sensor_info_acknowledged(std::uint8_t sensor, std::uint8_t status);
-/// Bundles and compact ones are understood.
+/// Tells the tracker that bundles and compact bundles are understood.
 SlimeAnswer slime_features();
 
 }  // namespace kinalign

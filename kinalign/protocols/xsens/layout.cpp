@@ -31,6 +31,7 @@ XsensPose pose_of(ByteReader bytes, std::size_t items) {
   return pose;
 }
 
+/// Reads tracker items. `raw`: the long form, which also has raw measurements.
 XsensTrackers trackers_of(ByteReader bytes, std::size_t items, bool raw) {
   XsensTrackers all;
   for (std::size_t k = 0; k < items; ++k) {
@@ -49,7 +50,7 @@ XsensTrackers trackers_of(ByteReader bytes, std::size_t items, bool raw) {
   return all;
 }
 
-/// "HH:MM:SS.mmm"
+/// Parses "HH:MM:SS.mmm".
 std::optional<XsensTimeCode> time_code_of(std::span<const std::uint8_t> text) {
   constexpr std::string_view form = "dd:dd:dd.ddd";
   for (std::size_t k = 0; k < form.size(); ++k) {
@@ -64,7 +65,7 @@ std::optional<XsensTimeCode> time_code_of(std::span<const std::uint8_t> text) {
                        std::chrono::seconds(whole) + std::chrono::milliseconds(ms)};
 }
 
-/// With its length in front or without.
+/// Parses a time code with or without its length in front.
 std::optional<XsensTimeCode> any_time_code(std::span<const std::uint8_t> payload) {
   if (payload.size() == time_code) return time_code_of(payload);
   if (payload.size() != time_code + 4) return std::nullopt;

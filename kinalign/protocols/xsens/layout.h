@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 24 bytes in front of each datagram of Xsens MVN and the items behind them.
+// Parses the 24 bytes in front of each datagram of Xsens MVN, and the items after them.
 #pragma once
 
 #include "kinalign/protocols/xsens/sample.h"
@@ -9,31 +9,31 @@
 namespace kinalign {
 
 constexpr std::size_t xsens_header_size = 24;
-constexpr std::size_t most_xsens_items = 256;  // of a sample; a body with props and hands has 67
+/// Most items of a sample; a body with props and hands has 67.
+constexpr std::size_t most_xsens_items = 256;
 
 struct XsensHeader {
   unsigned type = 0;          // 0 to 99
-  std::uint32_t counter = 0;  // of samples
-  std::uint8_t index = 0;     // of the sample's datagrams, 0 to 127
-  bool last = false;          // of the sample's datagrams
+  std::uint32_t counter = 0;  // number of the sample
+  std::uint8_t index = 0;     // number of the datagram within the sample, 0 to 127
+  bool last = false;          // true: the sample's last datagram
   std::uint8_t items = 0;
   std::uint32_t time_code_ms = 0;
   std::uint8_t character = 0, body_segments = 0, props = 0, finger_segments = 0;
-  std::size_t payload = 0;  // bytes behind the header, also where the sender left that out
+  std::size_t payload = 0;  // bytes after the header; computed if the sender states 0
 };
 
-/// "MXTP" and two digits stand in front.
+/// True if the bytes begin with "MXTP" and two digits.
 bool begins_xsens_header(std::span<const std::uint8_t> bytes);
 
-/// Reads 24 bytes that begin so.
+/// Parses 24 bytes that begin so.
 XsensHeader parse_xsens_header(std::span<const std::uint8_t> bytes);
 
-/// Bytes of an item of this type; 0: none that is known. Type 23 has two sizes, this is the
-/// smaller.
+/// Bytes of an item of this type; 0: unknown type. Type 23 has two sizes; this is the smaller one.
 std::size_t xsens_item_size(unsigned type);
 
-/// The items of a datagram of type 02, 23 or 25. Nothing where their size is not what the type and
-/// the header's number ask for, or a time code is no time.
+/// The items of a datagram of type 02, 23 or 25. Empty if their size does not fit the type and the
+/// header's number of items, or if a time code is no time of day.
 std::optional<XsensItems> parse_xsens_items(const XsensHeader& header,
                                             std::span<const std::uint8_t> payload);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Xsens MVN streams over the network, in its own axes and units: z up, quaternions w,x,y,z.
+// The content of Xsens MVN's network stream, in its own axes and units: z up, quaternions w,x,y,z.
 // Layout: docs/formats/xsens_mvn_stream.md.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace kinalign {
 
 /// A segment, a prop or a finger of a character.
 struct XsensSegment {
-  std::int32_t id = 0;              // 1 Pelvis to 23 LeftToe; further ones are props and fingers
+  std::int32_t id = 0;              // 1 Pelvis to 23 LeftToe; higher numbers are props and fingers
   std::array<float, 3> position{};  // metres or centimetres: XsensPoser decides
   std::array<float, 4> rotation{};  // world_from_segment
 
@@ -29,20 +29,20 @@ struct XsensPose {  // type 02
   bool operator==(const XsensPose&) const = default;
 };
 
-/// What the sensor itself measured, in its own space.
+/// Raw measurements of a sensor, in its own space.
 struct XsensRaw {
-  std::array<float, 3> acceleration{};      // m/s2, gravity is in
+  std::array<float, 3> acceleration{};      // m/s2, gravity included
   std::array<float, 3> angular_velocity{};  // rad/s
 
   bool operator==(const XsensRaw&) const = default;
 };
 
 struct XsensTracker {
-  std::int32_t id = 0;                       // of the segment it is fixed to
+  std::int32_t id = 0;                       // number of the segment to which it is fixed
   std::array<float, 4> rotation{};           // world_from_sensor
   std::array<float, 3> free_acceleration{};  // m/s2 in the world, without gravity
-  std::optional<XsensRaw> raw;               // in items of 68 bytes
-  std::array<float, 3> magnetic_field{};     // of any unit
+  std::optional<XsensRaw> raw;               // only in items of 68 bytes
+  std::array<float, 3> magnetic_field{};     // in any unit
 
   bool operator==(const XsensTracker&) const = default;
 };
@@ -54,7 +54,7 @@ struct XsensTrackers {  // type 23
 };
 
 struct XsensTimeCode {     // type 25
-  Duration time_of_day{};  // since midnight, of whole milliseconds
+  Duration time_of_day{};  // since midnight, in whole milliseconds
 
   bool operator==(const XsensTimeCode&) const = default;
 };
@@ -62,8 +62,8 @@ struct XsensTimeCode {     // type 25
 using XsensItems = std::variant<XsensPose, XsensTrackers, XsensTimeCode>;
 
 struct XsensSample {
-  std::uint32_t counter = 0;       // of samples
-  std::uint32_t time_code_ms = 0;  // since the recording began
+  std::uint32_t counter = 0;       // number of the sample
+  std::uint32_t time_code_ms = 0;  // since the start of the recording
   std::uint8_t character = 0;
   std::uint8_t body_segments = 0;  // 23; 0 before MVN 2019
   std::uint8_t props = 0;
@@ -73,15 +73,16 @@ struct XsensSample {
   bool operator==(const XsensSample&) const = default;
 };
 
+/// Options for the form of the datagrams.
 struct XsensSending {
   std::size_t items_per_datagram = 255;
-  bool payload_size = true;     // false: 0, as programs before 2019 send it
-  bool long_time_code = false;  // with its length in front, as later programs send it
+  bool payload_size = true;     // false: send 0, as programs before 2019 do
+  bool long_time_code = false;  // true: with its length in front, as newer programs send it
 };
 
-/// The datagrams of a sample; one behind another they are what TCP carries. Fails where it could
-/// not be read again: no items or more than 256, trackers with and without raw values, a time of
-/// day that is none, raw trackers without their payload size.
+/// The datagrams of a sample; over TCP they follow one another. Fails if the sample could not be
+/// read back: no items or more than 256, trackers with and without raw values, an invalid time of
+/// day, or raw trackers without their payload size.
 Result<std::vector<std::vector<std::uint8_t>>> xsens_datagrams(const XsensSample& sample,
                                                                const XsensSending& sending);
 

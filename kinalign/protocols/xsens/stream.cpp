@@ -22,7 +22,7 @@ bool is_raw(const XsensSample& sample) {
   return trackers != nullptr && trackers->trackers[0].raw.has_value();
 }
 
-/// Adds the items of `more` behind those of `all`.
+/// Appends the items of `more` to those of `all`.
 void append(XsensSample& all, XsensSample& more) {
   const auto move_behind = [](auto& to, auto& from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
@@ -67,7 +67,7 @@ void XsensDecoder::take(std::size_t bytes) {
   searched_ = 0;
 }
 
-// False: more bytes are needed.
+// Handles the data at the front. False if more bytes are needed.
 bool XsensDecoder::step(std::vector<XsensArrival>& out) {
   const auto bytes = ahead();
   if (bytes.size() < marker) return false;
@@ -84,7 +84,7 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
   if (bytes.size() < size) return false;
   if (is_read(header.type)) {
     auto items = parse_xsens_items(header, bytes.subspan(xsens_header_size, header.payload));
-    if (!items) {  // its size is not believed either
+    if (!items) {  // the header's size is not trusted either
       refuse(XsensRefusal::wrong_size);
       counts_.bytes_skipped += marker;
       take(marker);
@@ -98,8 +98,8 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
   return true;
 }
 
-// Within the next `size` bytes, as far as they are there, another datagram begins: this one is
-// passed over.
+// Skips the datagram at the front if another one begins within its next `size` bytes, as far as
+// they have arrived.
 bool XsensDecoder::torn(std::size_t size) {
   const auto bytes = ahead();
   const std::size_t end = std::min(size, bytes.size());
@@ -131,6 +131,7 @@ XsensDecoder::Channel* XsensDecoder::channel_of(const XsensHeader& header) {
   return &channels_[key];
 }
 
+/// Adds a datagram to its sample and outputs the sample once it is complete.
 void XsensDecoder::join(Channel& channel, const XsensHeader& header, XsensSample piece,
                         std::vector<XsensArrival>& out) {
   if (channel.joined == header.counter) return refuse(XsensRefusal::repeated);
@@ -143,7 +144,8 @@ void XsensDecoder::join(Channel& channel, const XsensHeader& header, XsensSample
   part.items += header.items;
   if (header.last) part.last = header.index;
   part.pieces.emplace(header.index, std::move(piece));
-  // Indices are one of a kind, so as many as up to the last, the highest one being it, are all.
+  // The numbers are all different. If there are as many as the last number says, and none is
+  // higher, the sample is complete.
   const bool whole = part.last && part.pieces.size() == *part.last + 1U &&
                      part.pieces.rbegin()->first == *part.last;
   if (!whole) return;
@@ -156,6 +158,7 @@ void XsensDecoder::join(Channel& channel, const XsensHeader& header, XsensSample
   give(channel, std::move(sample), out);
 }
 
+/// The incomplete sample with this counter. Drops the oldest one if there are too many.
 XsensDecoder::Part& XsensDecoder::part_of(Channel& channel, std::uint32_t counter) {
   for (auto& [known, part] : channel.parts) {
     if (known == counter) return part;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The network stream of Xsens MVN, as one sender's bytes arrive over TCP or in datagrams. Layout
+// Decodes the network stream of Xsens MVN, from one sender's bytes over TCP or in datagrams. Layout
 // and rules: docs/formats/xsens_mvn_stream.md.
 #pragma once
 
@@ -13,24 +13,24 @@
 
 namespace kinalign {
 
-/// Why a datagram, or a sample of several, gave nothing.
+/// Reasons for a datagram, or a sample of several datagrams, to be dropped.
 enum class XsensRefusal : std::uint8_t {
-  wrong_size,           // the payload is not what type and number of items ask for
-  torn,                 // another datagram begins before this one is complete
-  incomplete,           // a sample whose further datagrams did not come
-  repeated,             // a datagram of a sample that is there, or that is held already
-  too_many_items,       // more than 256 in a sample
-  too_many_characters,  // the 17th and later
-  count_of_refusals     // none: how many there are
+  wrong_size,      // the payload does not fit the type and the number of items
+  torn,            // another datagram begins before this one is complete
+  incomplete,      // a sample of which some datagrams did not arrive
+  repeated,        // a datagram of a sample that was output, or a datagram that is kept already
+  too_many_items,  // more than 256 in a sample
+  too_many_characters,  // the 17th character and later ones
+  count_of_refusals     // not a refusal: the number of refusals
 };
 
 std::string_view to_string(XsensRefusal refusal);
 
 struct XsensCounts {
-  std::uint64_t samples = 0;        // that were given on
-  std::uint64_t bytes_skipped = 0;  // in no datagram
+  std::uint64_t samples = 0;        // samples that were output
+  std::uint64_t bytes_skipped = 0;  // bytes outside of datagrams
   std::array<std::uint64_t, static_cast<std::size_t>(XsensRefusal::count_of_refusals)> refused{};
-  std::array<std::uint64_t, 100> other_types{};  // datagrams that were passed over, by type
+  std::array<std::uint64_t, 100> other_types{};  // datagrams of types that are not read, by type
 
   std::uint64_t operator[](XsensRefusal r) const { return refused[static_cast<std::size_t>(r)]; }
   bool operator==(const XsensCounts&) const = default;
@@ -38,7 +38,7 @@ struct XsensCounts {
 
 struct XsensArrival {
   XsensSample sample;
-  Order order = Order::newest;  // among those of its character and type
+  Order order = Order::newest;  // among the samples of its character and type
 };
 
 /// A character's samples of one type.
@@ -49,38 +49,41 @@ struct XsensChannel {
   auto operator<=>(const XsensChannel&) const = default;
 };
 
-/// One sender.
+/// Decodes the bytes of one sender.
 class XsensDecoder {
  public:
-  /// Takes bytes cut anywhere and appends the samples that they complete, duplicates and late ones
-  /// too. The samples don't depend on where the bytes were cut.
+  /// Takes bytes cut anywhere and appends the samples that they complete, including duplicates and
+  /// late ones. The samples don't depend on the cuts.
   void feed(std::span<const std::uint8_t> bytes, std::vector<XsensArrival>& out);
 
   const XsensCounts& counts() const { return counts_; }
-  /// Lost, late and doubled by the sample counter.
+  /// Lost, late and duplicate samples by the sample counter.
   std::map<XsensChannel, SequenceCounts> channels() const;
-  /// Bytes that wait for their rest: never more than 70 kB. Beside them at most four incomplete
-  /// samples of 256 items are held for each of 48 channels.
+  /// Number of bytes that wait for more: never above 70 kB. In addition at most four incomplete
+  /// samples of 256 items are kept for each of 48 channels.
   std::size_t waiting() const { return held_.size() - at_; }
 
-  /// What the user should know of this stream; `name` stands in the messages.
+  /// Findings about this stream for the user; `name` appears in the messages.
   Findings findings(const std::string& name) const;
 
  private:
+  /// A sample of several datagrams that is not complete yet.
   struct Part {
     std::size_t items = 0;
-    std::map<unsigned, XsensSample> pieces;  // by the datagram's index
-    std::optional<unsigned> last;            // the index that ends the sample
+    std::map<unsigned, XsensSample> pieces;  // by the datagram's number within the sample
+    std::optional<unsigned> last;            // number of the sample's last datagram
   };
   struct Channel {
     SequenceCount by_counter;
     std::deque<std::pair<std::uint32_t, Part>> parts;  // by sample counter, oldest first
-    std::optional<std::uint32_t> joined;               // the sample of several that came last
+    /// Number of the latest sample that was joined from several datagrams.
+    std::optional<std::uint32_t> joined;
   };
 
   std::span<const std::uint8_t> ahead() const { return std::span(held_).subspan(at_); }
   bool step(std::vector<XsensArrival>& out);
   bool torn(std::size_t size);
+  /// Handles a complete datagram: outputs its sample, or joins it with others.
   void datagram(const XsensHeader& header, XsensItems items, std::vector<XsensArrival>& out);
   void join(Channel& channel, const XsensHeader& header, XsensSample piece,
             std::vector<XsensArrival>& out);
@@ -91,8 +94,8 @@ class XsensDecoder {
   void take(std::size_t bytes);
 
   std::vector<std::uint8_t> held_;
-  std::size_t at_ = 0;        // of `held_`: what is before is done
-  std::size_t searched_ = 0;  // bytes of a datagram in which no other begins
+  std::size_t at_ = 0;        // position in `held_`; the bytes before it are done
+  std::size_t searched_ = 0;  // bytes of the datagram in which no other datagram begins
   XsensCounts counts_;
   std::map<XsensChannel, Channel> channels_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples as Xsens MVN sends them.
+// Writes samples in the form of Xsens MVN.
 #include "kinalign/protocols/xsens/layout.h"
 #include "kinalign/wire/bytes.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The items of a sample one by one.
+/// The items of a sample, one by one.
 struct Items {
   unsigned type = 0;
   std::vector<Bytes> items;
@@ -57,6 +57,7 @@ Result<Items> items_of(const XsensPose& pose) {
   return all;
 }
 
+/// All trackers must be of one form, because the items of a datagram have one size.
 Result<Items> items_of(const XsensTrackers& trackers) {
   Items all{23, {}};
   for (const auto& t : trackers.trackers) {
@@ -71,6 +72,7 @@ Result<Items> items_of(const XsensTrackers& trackers) {
   return all;
 }
 
+/// Writes "HH:MM:SS.mmm".
 Result<Items> items_of(const XsensTimeCode& code) {
   using namespace std::chrono;
   const auto ms = duration_cast<milliseconds>(code.time_of_day).count();

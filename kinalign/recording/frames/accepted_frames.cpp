@@ -16,7 +16,7 @@ NodeTime counter_at(std::uint64_t us) {
   return NodeTime{std::chrono::microseconds(static_cast<std::int64_t>(us))};
 }
 
-/// A node's frame, or its request; absent: neither, or damaged.
+/// Decodes a node's frame or request. Absent if the message is neither, or damaged.
 std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
   Envelope envelope;
   if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
@@ -41,6 +41,7 @@ std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
 
 }  // namespace
 
+// The exchange is remembered until the next message, which must be the accepted datagram.
 AnyExchange AcceptedFrames::take_exchange(const RecordedMessage& message) {
   if (auto recorded = to_exchange(message.payload)) {
     Exchange& e = recorded->exchange;
@@ -57,10 +58,11 @@ AnyExchange AcceptedFrames::take_exchange(const RecordedMessage& message) {
   return {};
 }
 
+// The message must be the one that follows its exchange: same arrival, and same counter or number.
 std::optional<AcceptedFrame> AcceptedFrames::take(const RecordedMessage& message) {
   const auto accepted = std::exchange(accepted_, std::nullopt);
   const bool in_time = accepted && accepted->at == message.arrival;
-  if (in_time && accepted->confirms) return std::nullopt;  // brings no sample
+  if (in_time && accepted->confirms) return std::nullopt;  // a confirm has no sample
   auto frame = frame_in(message);
   const auto low = [](std::int64_t number) { return static_cast<std::uint32_t>(number); };
   const bool same = in_time && frame && accepted->n_tx == frame->n_tx &&

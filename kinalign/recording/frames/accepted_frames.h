@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of inertial nodes out of a recording: those that the recorder accepted, with what it found
-// out about their clock.
+// Reads the frames of inertial nodes from a recording: those that the recorder accepted, with the
+// clock exchanges that it stored.
 #pragma once
 
 #include "kinalign/recording/format.h"
@@ -13,15 +13,15 @@
 
 namespace kinalign {
 
-/// The number of a request, since its node started.
+/// The number of a request, counted from the start of its node.
 inline std::int64_t number_of(const ClocklessExchange& e) {
   return static_cast<std::int64_t>(e.frame) - (std::int64_t{1} << 32);
 }
 
-/// What brought samples and was accepted when it came.
+/// A datagram with samples that was accepted during recording.
 struct AcceptedFrame {
   BootKey life = 0;
-  std::optional<NodeTime> n_tx;  // absent: the node has no counter, its requests have numbers
+  std::optional<NodeTime> n_tx;  // absent: the node has no counter, but numbers its requests
   std::int64_t number = 0;
   std::array<NodeSample, max_node_samples> samples{};
   std::size_t sample_count = 0;
@@ -29,15 +29,17 @@ struct AcceptedFrame {
 
 using AnyExchange = std::variant<std::monostate, Exchange, ClocklessExchange>;
 
-/// What was held, came twice or came late is in the recording, too; of an accepted datagram the
-/// exchange stands before it, with the same counter or number, and arrival.
+/// Selects the accepted datagrams. A recording also contains held, duplicate and late datagrams.
+/// Before each accepted datagram stands its exchange, with the same counter or number and the same
+/// arrival.
 class AcceptedFrames {
  public:
-  /// The exchange, if it is one; its boot is the life's key.
+  /// Decodes an exchange. Its `boot` is the key of the clock model, see life_of().
   AnyExchange take_exchange(const RecordedMessage& message);
-  /// The frame, if the exchange before it says that it was accepted.
+  /// Returns the frame if the exchange before it says that it was accepted.
   std::optional<AcceptedFrame> take(const RecordedMessage& message);
 
+  /// Datagrams that were not accepted, or do not fit the exchange before them.
   std::uint64_t others = 0;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a Kinect out of a recording, with their bodies together.
+// Reads the frames of a Kinect from a recording and joins the bodies of each frame.
 #pragma once
 
 #include "kinalign/protocols/kinect/frames.h"
@@ -17,16 +17,17 @@
 
 namespace kinalign {
 
-/// One sensor's, in the order of arrival.
+/// The frames of one sensor, in the order of arrival.
 class KinectFrames {
  public:
-  /// Appends what the message completes. Parts as they came go to `heard`.
+  /// Appends the frames that the message completes. The single parts are appended to `heard`.
   void take(const RecordedMessage& message, std::vector<JoinedKinectFrame>& out,
             std::vector<KinectFrame>* heard) {
     messages_.clear();
     KinectStreamDecoder& decoder = decoders_[message.channel_id];
     decoder.feed(octets(message.payload), messages_);
-    if (is_datagrams(message.channel->transport)) decoder.finish(messages_);  // it has one message
+    // a datagram contains whole messages
+    if (is_datagrams(message.channel->transport)) decoder.finish(messages_);
     for (KinectMessage& one : messages_) {
       auto* frame = std::get_if<KinectFrame>(&one);
       if (frame == nullptr) continue;
@@ -43,10 +44,12 @@ class KinectFrames {
   KinectFrameCounts counts() const { return joiner_.counts(); }
   const std::optional<KinectTwins>& twins() const { return joiner_.twins(); }
 
+  /// Frames of other sensors, which were left out. The first frame selects the sensor.
   std::uint64_t of_other_sensors = 0;
 
  private:
-  std::map<std::uint16_t, KinectStreamDecoder> decoders_;  // by channel: a sender or a connection
+  // by channel: one sender or connection each
+  std::map<std::uint16_t, KinectStreamDecoder> decoders_;
   std::vector<KinectMessage> messages_;
   std::optional<std::uint32_t> sensor_;
   KinectFrameJoiner joiner_;

@@ -13,16 +13,16 @@ namespace kinalign {
 
 namespace {
 
-// A stamp that is farther from its arrival is of a clock that is wrong.
+// A stamp that is further from its arrival comes from a clock that is wrong.
 constexpr Duration most_ahead = std::chrono::seconds(1);
 constexpr Duration most_behind = std::chrono::seconds(10);
 
-/// Whether something was measured about when it arrived.
+/// Returns whether a stamp is plausible for its arrival.
 bool is_credible(Time stamp, Time arrival) {
   return stamp <= arrival + most_ahead && stamp >= arrival - most_behind;
 }
 
-/// Messages between two of a channel, by their numbers, which rise.
+/// The number of missing messages between two messages of a channel, whose numbers increase.
 std::uint32_t missing_between(std::uint32_t before, std::uint32_t behind) {
   const std::uint32_t missing = behind - before - 1U;
   return missing < 0x8000'0000U ? missing : 0U;
@@ -37,9 +37,9 @@ Failure no_stream(std::string found) {
 struct LiveStream::Channel {
   RawChannel raw;
   bool is_marks = false;
-  NodeDevice* node = nullptr;  // absent, too: of another device
+  NodeDevice* node = nullptr;  // nullptr: the channel belongs to no node
   KinectDevice* kinect = nullptr;
-  std::optional<std::uint32_t> number;  // of its newest message
+  std::optional<std::uint32_t> number;  // number of the newest message
 };
 
 struct LiveStream::NodeDevice {
@@ -48,8 +48,8 @@ struct LiveStream::NodeDevice {
   LiveClock clock;
 };
 
-/// Two clocks, as kinect_rows.cpp has them: of the sender by its pings, of the sensor by when the
-/// sender had its frames.
+/// A Kinect has two clocks, as in kinect_rows.cpp: the sender's, from its pings, and the sensor's,
+/// from the times at which the sender received its frames.
 struct LiveStream::KinectDevice {
   RawChannel raw;
   KinectFrames frames;
@@ -57,7 +57,7 @@ struct LiveStream::KinectDevice {
   KinectPerson person{std::nullopt};
   LiveClock sender, sensor;
   std::uint32_t epoch = 0;            // of the host's axis
-  HostTime newest = HostTime::min();  // by the sender's clock
+  HostTime newest = HostTime::min();  // when the sender received its newest frame
 };
 
 LiveStream::LiveStream() = default;
@@ -92,6 +92,7 @@ Result<void> LiveStream::take_record(const McapRecord& record, LiveNews& news) {
   return {};
 }
 
+// A channel without raw payloads is only remembered.
 Result<void> LiveStream::define(const McapChannel& channel) {
   if (channels_.contains(channel.id)) return {};
   if (channels_.size() == most_channels) {
@@ -119,6 +120,7 @@ Result<void> LiveStream::define(const McapChannel& channel) {
   return {};
 }
 
+// The checks refuse a stream that is not kinalign's before its times are used.
 Result<void> LiveStream::take_message(const McapMessage& message, LiveNews& news) {
   if (!facts_) return no_stream("messages before what record says of itself");
   if (message.log_time > static_cast<std::uint64_t>(latest_log_time))
@@ -143,6 +145,7 @@ Result<void> LiveStream::take_message(const McapMessage& message, LiveNews& news
   return {};
 }
 
+// If the clock is not known yet, a sample is stamped by its arrival and age.
 void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, LiveNews& news) {
   if (message.is_exchange()) {
     const AnyExchange any = device.frames.take_exchange(message);
@@ -167,6 +170,7 @@ void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, L
   }
 }
 
+// An exchange updates the sender's clock. Other messages may complete frames.
 void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& message, LiveNews& news) {
   if (message.is_exchange()) {
     if (auto recorded = to_exchange(message.payload)) {
@@ -181,6 +185,8 @@ void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& messag
   for (const JoinedKinectFrame& one : device.joined) take_frame(device, one.frame, message, news);
 }
 
+// If the sender's clock is not known yet, the arrival minus the time that the frame spent in the
+// sender is used.
 void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
                             const RecordedMessage& message, LiveNews& news) {
   const BootKey life = life_of(frame.origin.session, device.epoch);
@@ -190,7 +196,7 @@ void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
     return message.arrival -
            (kinect_sender_time(frame.sent_ticks) - kinect_sender_time(frame.taken_ticks));
   }();
-  device.newest = std::max(device.newest, sender_had);  // a clock takes arrivals that rise
+  device.newest = std::max(device.newest, sender_had);  // the clock needs increasing arrivals
   const NodeTime ticks = kinect_sender_time(frame.device_ticks);
   device.sensor.push_up(life, ticks, device.newest);
   const auto at = device.sensor.host_from_node(life, ticks);

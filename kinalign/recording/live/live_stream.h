@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `kinalign record --live-port` serves, decoded as it comes: samples of nodes, frames of a
-// Kinect and marks, each stamped on the axis of the recording's log times (UTC). Stamps need no
-// later message: they come from the live clock, and from the arrival until that knows enough.
+// Decodes the stream of `kinalign record --live-port` as it arrives: samples of nodes, frames of a
+// Kinect, and marks. Stamps are on the axis of the recording's log times (UTC). They need no later
+// message: they come from the live clock or, until that is known, from the arrival.
 #pragma once
 
 #include "kinalign/clock/live/live_clock.h"
@@ -23,16 +23,16 @@
 namespace kinalign {
 
 struct LiveNodeSample {
-  const RawChannel* node = nullptr;  // as long as the stream
+  const RawChannel* node = nullptr;  // valid as long as the stream object
   Time stamp{}, arrival{};
-  NodeSample sample;  // finite; an orientation is not zero
+  NodeSample sample;  // all values are finite, and an orientation is not zero
 };
 
-/// One row of joints (kinect_joints) of the person who is followed.
+/// One row of joints (kinect_joints) of the followed person.
 struct LiveKinectRow {
   const RawChannel* kinect = nullptr;
   Time arrival{};
-  PointFrames row;  // with its stamp
+  PointFrames row;  // one row, with its stamp
 };
 
 struct LiveMark {
@@ -40,7 +40,7 @@ struct LiveMark {
   Time at{};
 };
 
-/// What a piece of the stream brought, each in the order of arrival.
+/// The content of a piece of the stream, each kind in the order of arrival.
 struct LiveNews {
   std::vector<LiveNodeSample> samples;
   std::vector<LiveKinectRow> rows;
@@ -49,15 +49,17 @@ struct LiveNews {
 
 struct LiveStreamCounts {
   std::uint64_t messages = 0;
-  std::uint64_t lost = 0;     // between others: this program read too slowly
-  std::uint64_t refused = 0;  // samples and frames whose stamp or numbers can't be
+  std::uint64_t lost = 0;     // missing in the stream, because this program read too slowly
+  std::uint64_t refused = 0;  // samples and frames with an implausible stamp or impossible values
 };
 
 class LiveStream {
  public:
+  // Bytes of one record.
   static constexpr std::uint64_t most_record = std::uint64_t{1} << 20;
   static constexpr std::size_t most_channels = 1024;
-  /// The recorder sends a message each second. Arrivals that are farther apart are no recorder's.
+  /// The recorder sends a message every second. A longer gap between arrivals means that the stream
+  /// does not come from the recorder.
   static constexpr Duration longest_silence = std::chrono::seconds(60);
 
   LiveStream();
@@ -65,17 +67,17 @@ class LiveStream {
   LiveStream& operator=(const LiveStream&) = delete;
   ~LiveStream();
 
-  /// The next bytes. Appends to `news`. Fails where they are no stream of kinalign record; it may
-  /// then not be used again.
+  /// Takes the next bytes and appends their content to `news`. Fails if they are not a stream of
+  /// kinalign record; the object must not be used again then.
   Result<void> take(std::string_view bytes, LiveNews& news);
 
-  /// No more bytes come.
+  /// Call when no more bytes come.
   void end();
-  /// The stream has ended as record ends it.
+  /// Returns whether the stream was ended properly by record.
   bool closed() const { return reader_.closed(); }
   /// Arrival of the newest message; absent before the first one.
   std::optional<Time> now() const { return now_; }
-  /// Who recorded; absent before the beginning was read.
+  /// The facts of the recording. Absent before the beginning was read.
   const std::optional<RecordingFacts>& facts() const { return facts_; }
   const LiveStreamCounts& counts() const { return counts_; }
 
@@ -98,7 +100,7 @@ class LiveStream {
   std::optional<RecordingFacts> facts_;
   std::optional<Time> now_;
   std::map<std::uint16_t, Channel> channels_;
-  std::map<std::string, std::unique_ptr<NodeDevice>> nodes_;      // by stream and id
+  std::map<std::string, std::unique_ptr<NodeDevice>> nodes_;      // by stream and node id
   std::map<std::string, std::unique_ptr<KinectDevice>> kinects_;  // by stream
   LiveStreamCounts counts_;
 };

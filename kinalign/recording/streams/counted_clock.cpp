@@ -10,18 +10,20 @@ namespace kinalign {
 
 namespace {
 
-// Chosen: further back than any network reorders, or an hour ahead at 100 Hz, is another count.
+// Limits in frames, both choices. A number further back than any network reorders, or more than an
+// hour ahead at 100 Hz, begins a new count.
 constexpr std::int64_t furthest_back = 1000, furthest_ahead = 360'000;
-constexpr double believed = 0.01;            // of a step: Noitom's programs state three decimals
-constexpr std::int64_t enough_frames = 100;  // to contradict what is stated
-// Chosen: so many that one with a pause does not count, so long that a few milliseconds on the way
-// are a thousandth.
+// accepted deviation from the stated step; Noitom's programs state three decimals
+constexpr double believed = 0.01;
+constexpr std::int64_t enough_frames = 100;  // needed to contradict the stated step
+// Both values are choices. There are so many windows that one with a pause does not matter, and
+// each is so long that a delay of a few milliseconds is a thousandth of it.
 constexpr int windows = 8;
 constexpr Duration shortest_window = std::chrono::milliseconds(500);
 constexpr Duration longest_window = std::chrono::seconds(5);
-constexpr double slowest_step_ns = 2e9;  // so that no number of 32 bits overflows its counter
+constexpr double slowest_step_ns = 2e9;  // keeps the counter of a 32-bit number from overflowing
 
-/// The frame of each window of a life that was the least on its way, if frames are `step` ns apart.
+/// For each window of a life, the frame with the shortest delay, if frames are `step` ns apart.
 std::vector<CountedFrame> earliest_of_windows(const std::vector<CountedFrame>& frames,
                                               Duration window, double step) {
   std::vector<CountedFrame> out;
@@ -41,7 +43,8 @@ std::vector<CountedFrame> earliest_of_windows(const std::vector<CountedFrame>& f
   return out;
 }
 
-/// From each to the next of its life: the quarter points, 0 where there are no two.
+/// Steps from each frame to the next of its life, ns per number: quartiles; 0 if no two frames
+/// follow each other.
 struct Steps {
   double low = 0.0, middle = 0.0, high = 0.0;
   bool agree() const { return high - low <= 2.0 * believed * middle; }
@@ -64,13 +67,13 @@ Steps steps_of(const std::vector<CountedFrame>& frames) {
   return {at(1), at(2), at(3)};
 }
 
-/// The median of windows, of which a pause in which the device did not count spoils one or two;
-/// where there are pauses in many, that of neighbouring frames.
+/// The median step of the windows. A pause in which the device does not count falsifies only one or
+/// two windows. If many windows have pauses, the median step of neighbouring frames is used.
 double measured_step_ns(const std::vector<CountedFrame>& frames) {
   if (frames.empty()) return 0.0;
   const Duration length = frames.back().arrival - frames.front().arrival;
   const Duration window = std::clamp(length / windows, shortest_window, longest_window);
-  Steps steps;  // first of the first frame of each window
+  Steps steps;  // the first round uses the first frame of each window
   for (int round = 0; round < 3; ++round) {
     steps = steps_of(earliest_of_windows(frames, window, steps.middle));
   }
@@ -116,7 +119,7 @@ CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_
   for (const CountedFrame& frame : frames) {
     exchanges.push_back({frame.life, counter_of(frame, out.step_ns), frame.arrival, {}});
   }
-  frames = {};  // an hour at 125 Hz is 11 MB
+  frames = {};  // frees memory: an hour at 125 Hz is 11 MB
   out.clock = device_clock(exchanges, utc_minus_host);
   return out;
 }

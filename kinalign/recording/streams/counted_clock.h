@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of a device that numbers its frames and sends them by a steady rate: the number plays
-// the part of a counter, the earliest arrivals tell the rest.
+// The clock of a device that numbers its frames and sends them at a steady rate. The frame number
+// serves as the counter, and the earliest arrivals determine the model.
 #pragma once
 
 #include "kinalign/clock/offline/device_clock.h"
@@ -13,18 +13,18 @@
 
 namespace kinalign {
 
-/// A frame by its number, unwrapped. A life ends where the device counts anew.
+/// A frame with its unwrapped number. A life ends when the device starts a new count.
 struct CountedFrame {
   BootKey life = 0;
   std::int64_t number = 0;
   HostTime arrival{};
 };
 
-/// Goes on over the wraps of a sender's number, and begins a life where it counts anew.
+/// Unwraps a sender's numbers. A new life begins when the sender starts a new count.
 class FrameNumbers {
  public:
   CountedFrame place(std::uint32_t number, HostTime arrival);
-  /// Another connection, or another sender.
+  /// Call for another connection or another sender.
   void begin_life() { begins_ = true; }
 
  private:
@@ -34,12 +34,12 @@ class FrameNumbers {
 };
 
 struct CountedClock {
-  double step_ns = 0.0;  // of a number
-  DeviceClock clock;     // of counters that are number * step
-  Findings findings;     // that the rate is not the one stated
+  double step_ns = 0.0;  // between two numbers
+  DeviceClock clock;     // for the counter number * step
+  Findings findings;     // one if the stated rate is wrong
 };
 
-/// `stated_step_ns`, 0 where nobody says: believed while the arrivals are within 1 % of it.
+/// `stated_step_ns`: 0 if it is unknown. It is used while the arrivals agree with it within 1 %.
 CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_ns,
                            Duration utc_minus_host, const std::string& file);
 

@@ -9,6 +9,7 @@ namespace kinalign {
 
 namespace {
 
+/// The functions that make rows of a protocol's poses, points or inertial samples.
 DeviceProtocol maker_of(Protocol protocol) {
   switch (protocol) {
     case Protocol::nodes:
@@ -30,7 +31,8 @@ std::string selected(const StreamOptions& options, const char* key, const std::s
   return found == options.select.end() ? otherwise : found->second;
 }
 
-/// "10.0.0.21" and "1" of "10.0.0.21/1", a tracker's sensor; other nodes are returned as they are.
+/// Splits a tracker's node into address and sensor: "10.0.0.21/1" into "10.0.0.21" and "1". Other
+/// nodes are returned unchanged with an empty sensor.
 std::pair<std::string, std::string> tracker_of(const std::string& node) {
   const auto slash = node.rfind('/');
   const bool has_sensor = slash != std::string::npos && slash + 1 < node.size() &&

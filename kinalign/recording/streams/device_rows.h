@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the messages of a recorded device to rows: a first pass learns the device's clock, later
-// passes stamp rows by it.
+// Converts the messages of a recorded device to rows. A first pass learns the device's clock, and
+// later passes use it to stamp the rows.
 #pragma once
 
 #include "kinalign/clock/offline/device_clock.h"
@@ -23,47 +23,48 @@
 
 namespace kinalign {
 
-/// Which device of a recording.
+/// Selects one device of a recording.
 struct DeviceChoice {
   std::string stream;
-  std::string node;  // of inertial nodes: an id, or a place where the lab named it; empty: the only
-  std::string sender;  // the address, with its port or without; empty: the one that sent most
-  std::set<std::string> passed_over{};  // senders at that address that are not taken
+  std::string node;  // inertial nodes: an id, or a place if the lab named it; empty: the only node
+  std::string sender;  // address, with or without port; empty: the sender with the most messages
+  std::set<std::string> passed_over{};  // senders at that address that are left out
 
   bool operator==(const DeviceChoice&) const = default;
 };
 
-/// What rows are asked for.
+/// The rows to make: of which device, and with which options.
 struct DeviceWish {
   StreamOptions options;
   StreamFile file;
   DeviceChoice choice;
-  std::string skeleton{};  // a BVH's header, where the options name one
-  /// Of a Kinect; avatar or character of mocap; a SlimeVR tracker's sensor.
+  std::string skeleton{};  // header of the BVH that the options name, if any
+  /// Body of a Kinect, avatar or character of mocap, or sensor of a SlimeVR tracker.
   std::optional<std::uint64_t> body{};
-  bool trackers = false;  // of Xsens: inertial samples, not poses
+  bool trackers = false;  // Xsens only: inertial samples instead of poses
 };
 
-/// The wish of a stream of a manifest: select["stream"], by default the options' name;
+/// Reads the selection of a manifest's stream: select["stream"], by default the options' name;
 /// select["node"], by default the file's node; select["sender"], select["body"], select["kind"]. A
-/// tracker's node is its address, with "/1" behind it its sensor 1. Fails where a key or a body is
-/// none.
+/// tracker's node is its address; "/1" after it selects its sensor 1. Fails if a key is unknown or
+/// a body is not a number.
 Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file);
 
-/// What listening has found.
+/// The result of the first pass over a device's messages.
 struct HeardDevice {
   RawChannel channel;
-  std::string skeleton;  // a BVH's header, where the recording has one
+  std::string skeleton;  // header of a BVH; empty: the recording has none
   Duration utc_minus_host{};
   DeviceClock clock;
-  double step_ns = 0.0;     // of frames that are counted, or come in one datagram
-  bool by_arrival = false;  // of devices that say no time and no number: stamps are UTC of arrival
-  ImuContent content;       // of a node
-  HostEpochs epochs;        // of a Kinect
+  double step_ns = 0.0;     // ns between frames that are counted, or that share a datagram
+  bool by_arrival = false;  // the device sends no time and no number; stamps are UTC of arrival
+  ImuContent content;       // nodes only
+  HostEpochs epochs;        // Kinects only
   Findings findings;
 };
 
-/// `what`: what rows would be made of. `others`: what came of the protocol and is something else.
+/// The error for a device without rows. `what`: the content that rows need. `others`: messages of
+/// the right protocol with other content.
 inline Error nothing_of(std::string_view what, const std::string& file, const HeardDevice& heard,
                         std::uint64_t others = 0) {
   const std::string expected = "of stream " + shown(heard.channel.stream) + " " + std::string(what);
@@ -78,7 +79,7 @@ inline Error nothing_of(std::string_view what, const std::string& file, const He
           "none", ErrorKind::no_rows_in_recording};
 }
 
-/// Of a device whose packets say no time, and no number that could stand for it.
+/// Marks a device whose packets have neither a time nor a number that could replace it.
 inline void stamp_by_arrival(const std::string& file, HeardDevice& heard) {
   heard.by_arrival = true;
   heard.findings.push_back(
@@ -86,29 +87,28 @@ inline void stamp_by_arrival(const std::string& file, HeardDevice& heard) {
        "stamps are arrivals, late by unknown times", "offset_ms takes off a delay that is known"});
 }
 
-/// Learns from a device's messages what its rows need to be stamped: the first pass.
+/// The first pass: learns from a device's messages how to stamp its rows.
 class DeviceListener {
  public:
   using TakeStamp = std::function<void(Time)>;
 
   virtual ~DeviceListener() = default;
   virtual void take(const RecordedMessage& message) = 0;
-  /// After the last message, once. `heard` has channel, skeleton and utc_minus_host. Fails where no
-  /// rows could be made.
+  /// Call once, after the last message. `heard` contains channel, skeleton and utc_minus_host.
+  /// Fails if no rows can be made.
   virtual Result<void> finish(const DeviceWish& wish, HeardDevice& heard) = 0;
-  /// After finish(): the stamp of each row that DeviceRows makes, in their order.
+  /// Call after finish(). Gives the stamp of each row that DeviceRows makes, in their order.
   virtual void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const = 0;
 };
 
-/// The stamps of rows in the order that RowsInOrder brings them into. `Row`: what is known of a
-/// row.
+/// The stamps of rows in the order of RowsInOrder. `Row`: the data kept of a row.
 template <class Row>
 class OrderedStamps {
  public:
   OrderedStamps(std::size_t most_overtaking, std::function<void(Time, const Row&)> take)
       : waiting_(most_overtaking), take_(std::move(take)) {}
   void add(Time stamp, Row row) { waiting_.add(stamp, std::move(row)); }
-  /// A message has ended: what need not wait any more is taken.
+  /// Call at the end of a message. Passes on the stamps that need not wait any longer.
   void settle() {
     while (const auto first = waiting_.take_first()) take_(first->first, first->second);
   }
@@ -122,25 +122,25 @@ class OrderedStamps {
   std::function<void(Time, const Row&)> take_;
 };
 
-/// Makes rows of the same messages: each later pass. After a failure it may not be used again.
+/// A later pass: makes rows from the same messages. It must not be used again after a failure.
 template <class Frames>
 class DeviceRows {
  public:
   using Header = std::conditional_t<
       std::is_same_v<Frames, ClipFrames>, Skeleton,
       std::conditional_t<std::is_same_v<Frames, PointFrames>, PointHeader, ImuHeader>>;
-  /// `file`: its name, for messages.
+  /// `file`: its name, used in messages.
   explicit DeviceRows(std::string file) : file_(std::move(file)) {}
   virtual ~DeviceRows() = default;
   virtual Result<void> take(const RecordedMessage& message, Frames& out) = 0;
   virtual Result<void> finish(Frames& out) = 0;
-  /// nullptr where the first row has to say it.
+  /// nullptr until the first row, if the header depends on it.
   virtual const Header* header() const = 0;
   Findings findings;  // complete after finish()
 
  protected:
   const std::string& file() const { return file_; }
-  /// A note, unless the count is 0.
+  /// Adds a note, unless the count is 0.
   void tell(std::uint64_t count, std::string_view expected, std::string_view found,
             std::string_view meaning) {
     if (count == 0) return;
@@ -149,7 +149,7 @@ class DeviceRows {
          Error{file_, 0, std::string(expected), std::to_string(count) + " " + std::string(found)},
          std::string(meaning), ""});
   }
-  /// `rows`: what they are, in words. A warning, unless none came too late.
+  /// Adds a warning, unless no row came too late. `rows`: a word for the rows.
   template <class Row>
   void tell_too_late(const RowsInOrder<Row>& order, std::string_view rows) {
     if (order.too_late() == 0) return;
@@ -171,12 +171,12 @@ using AnyDeviceRows =
     std::variant<std::unique_ptr<DeviceRows<ClipFrames>>, std::unique_ptr<DeviceRows<PointFrames>>,
                  std::unique_ptr<DeviceRows<ImuSamples>>>;
 
-/// A protocol that rows can be made of.
+/// The functions for a protocol of which rows can be made.
 struct DeviceProtocol {
   std::unique_ptr<DeviceListener> (*listen)(std::optional<std::uint64_t> body);
   AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
 };
-/// `body`: which one of several, see DeviceWish.
+/// `body`: selects one of several, see DeviceWish.
 template <class Listener, class Rows>
 DeviceProtocol device_protocol() {
   return {[](std::optional<std::uint64_t> body) -> std::unique_ptr<DeviceListener> {
@@ -187,14 +187,15 @@ DeviceProtocol device_protocol() {
           }};
 }
 
-/// By the name that recordings have; absent where no rows, or no trackers, can be made of it.
+/// Finds a protocol by its name in recordings. Absent if no rows, or no trackers, can be made of
+/// it.
 std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers);
 
-DeviceProtocol node_protocol();           // node_rows.cpp: inertial nodes of ours
+DeviceProtocol node_protocol();           // node_rows.cpp: kinalign's inertial nodes
 DeviceProtocol kinect_protocol();         // kinect_rows.cpp
 DeviceProtocol noitom_protocol();         // noitom_rows.cpp
 DeviceProtocol xsens_protocol();          // xsens_rows.cpp: poses
-DeviceProtocol xsens_tracker_protocol();  // inertial samples out of the same stream
+DeviceProtocol xsens_tracker_protocol();  // inertial samples of the same stream
 DeviceProtocol slimevr_protocol();        // slimevr_rows.cpp
 
 }  // namespace kinalign

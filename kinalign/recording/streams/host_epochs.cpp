@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-/// Host less device.
+/// Host time minus device time.
 Duration offset_of(NodeTime sent, HostTime arrival) {
   return arrival.time_since_epoch() - sent.time_since_epoch();
 }
@@ -24,6 +24,8 @@ void HostEpochs::add(const RecordedExchange& recorded) {
   epochs.back().last = recorded.exchange;
 }
 
+// A message between two epochs could belong to either. The device's clock does not change, so the
+// epoch with the nearer clock offset is chosen.
 BootKey HostEpochs::life_at(BootKey boot, NodeTime sent, HostTime arrival) const {
   const auto found = boots_.find(boot);
   if (found == boots_.end()) return boot;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's axis begins anew where it slept: another life for the clock of a device, which did not
-// sleep. Exchanges say which epoch they are of; what a device says beside them does not.
+// A suspension of the host starts a new epoch of its time axis. A device that did not sleep then
+// needs a new clock model. Exchanges contain their epoch; other messages of a device do not.
 #pragma once
 
 #include "kinalign/recording/format.h"
@@ -13,10 +13,11 @@ namespace kinalign {
 
 class HostEpochs {
  public:
-  /// In the order of arrival.
+  /// Call in the order of arrival.
   void add(const RecordedExchange& exchange);
-  /// The life of what a device sent at `sent` of its clock. Between the last exchange of an epoch
-  /// and the first of the next that one which is nearer to it by what the clocks differ.
+  /// The key of the clock model for a message that a device sent at `sent` of its clock. Between
+  /// the last exchange of an epoch and the first of the next one, the epoch with the nearer clock
+  /// offset is chosen.
   BootKey life_at(BootKey boot, NodeTime sent, HostTime arrival) const;
 
  private:

@@ -11,11 +11,12 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_ids = 1000;
-// Chosen: a person moves less while the SDK gives it another id, and walks no faster in a lab.
+// Both values are choices. A person moves less than near_m while the SDK assigns another id, and
+// does not walk faster than walk_m_per_s in a lab.
 constexpr double near_m = 1.0, walk_m_per_s = 1.0;
 constexpr double tick_s = 1e-7;
 
-/// The middle of the joints that are there, if any is.
+/// The mean position of the tracked joints. Absent if there is none.
 std::optional<Vec3> place_of(const KinectBody& body) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -37,7 +38,7 @@ std::optional<std::uint64_t> KinectPerson::operator()(const KinectFrame& frame) 
     if (ids_.size() < most_ids) ids_.insert(body.id);
   }
   if (wanted_) return wanted_;
-  if (session_ != frame.origin.session) {  // its ids and ticks are others
+  if (session_ != frame.origin.session) {  // a new session has other ids and ticks
     session_ = frame.origin.session;
     last_.reset();
     seen_.reset();
@@ -52,7 +53,7 @@ std::optional<std::uint64_t> KinectPerson::operator()(const KinectFrame& frame) 
   return body->id;
 }
 
-/// The same one, or the nearest of those that may be.
+/// The body with the followed id, or else the nearest body that may be the person.
 const KinectBody* KinectPerson::body_in(const KinectFrame& frame) const {
   const KinectBody* nearest = nullptr;
   double least = 0.0;
@@ -68,6 +69,7 @@ const KinectBody* KinectPerson::body_in(const KinectFrame& frame) const {
   return nearest;
 }
 
+// The longer the person was lost, the further away it may be found.
 bool KinectPerson::may_be(const KinectBody& body, const Vec3& place, std::int64_t ticks) const {
   if (!seen_) return true;
   const double lost_s = tick_s * static_cast<double>(std::max<std::int64_t>(0, ticks - *seen_));
@@ -81,12 +83,14 @@ void KinectPerson::follow(const KinectFrame& frame, const KinectBody& body) {
   place_ = place_of(body).value_or(place_);
   for (const KinectBody& other : frame.bodies) {
     if (other.id == last_ || others_.size() >= most_ids) continue;
-    // The SDK sees one person twice now and then: these two stand in each other.
+    // The SDK sometimes sees one person as two bodies at the same place. Such a body is not another
+    // person.
     const auto place = place_of(other);
     if (place && (*place - place_).norm() > near_m / 2.0) others_.insert(other.id);
   }
 }
 
+/// Reports a missing id, changes of the id, other bodies, and frames without the person.
 void KinectPerson::report(const std::string& file, Findings& findings) const {
   if (wanted_ && ids_.count(*wanted_) == 0) {
     findings.push_back({Severity::warning,

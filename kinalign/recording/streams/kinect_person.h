@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of the bodies that a Kinect sees is the recorded person. The SDK gives a body another id
-// when it has lost it; anybody else in view has one, too.
+// Finds the recorded person among the bodies that a Kinect sees. The SDK gives a body a new id
+// after it has lost it. Other people in view have ids too.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,14 +14,15 @@
 
 namespace kinalign {
 
-/// Begins with the body nearest to the sensor and follows its id. When that is gone, a body near to
-/// where it was goes on, unless it stood beside it before: that one is somebody else.
+/// Begins with the body nearest to the sensor and follows its id. If the id disappears, a body near
+/// its last position continues, unless it was seen apart from the person before, since it is
+/// somebody else then.
 class KinectPerson {
  public:
-  /// `wanted`: an id, which alone is taken.
+  /// `wanted`: if given, only this id is used.
   explicit KinectPerson(std::optional<std::uint64_t> wanted) : wanted_(wanted) {}
 
-  /// The id to take from the next frame; absent where the person isn't in it.
+  /// The id to take from the next frame. Absent if the person is not in it.
   std::optional<std::uint64_t> operator()(const KinectFrame& frame);
 
   void report(const std::string& file, Findings& findings) const;
@@ -34,8 +35,10 @@ class KinectPerson {
   std::optional<std::uint64_t> wanted_;
   std::optional<std::uint32_t> session_;
   std::optional<std::uint64_t> last_;
-  Vec3 place_ = Vec3::Zero();         // of the body when it was seen last; at first the sensor's
-  std::optional<std::int64_t> seen_;  // then, device ticks; absent: not in this session
+  // position of the body when it was last seen; at first that of the sensor
+  Vec3 place_ = Vec3::Zero();
+  // time of that, device ticks; absent: not seen in this session
+  std::optional<std::int64_t> seen_;
   std::set<std::uint64_t> ids_, others_;
   std::uint64_t several_ = 0, followed_ = 0, without_ = 0;
 };

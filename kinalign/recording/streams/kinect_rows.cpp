@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kinect's frames: the sensor's ticks, put on UTC in two steps, since nothing answers on its
-// clock: the sender had the frame in its hands at `taken`, and pings put the sender's clock on the
-// host's. Stamps are late by the least time from the sensor to the sender.
+// Rows of a Kinect. The sensor's ticks are converted to UTC in two steps, because the sensor's
+// clock cannot be pinged. The sender received each frame at `taken` of its own clock, and pings
+// relate the sender's clock to the host's. Stamps are late by the shortest delay from the sensor to
+// the sender.
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/recording/frames/kinect_frames.h"
 #include "kinalign/recording/streams/device_rows.h"
@@ -18,16 +19,17 @@ namespace kinalign {
 
 namespace {
 
-/// When the sensor took a frame, when the sender had it, and when he sent it.
+/// The times of a frame: taken by the sensor (`device`), received by the sender (`sender`), sent,
+/// and arrived.
 struct Taken {
-  BootKey life = 0;  // the session until the host's epochs are known
+  BootKey life = 0;  // the session, until the host's epochs are known
   NodeTime device{}, sender{}, sent{};
   HostTime arrival{};
 };
 
 bool came_before(const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; }
 
-/// The life of a frame's sender; `arrival`: of the message that completed it.
+/// The stamp of a frame. `arrival`: arrival of the message that completed the frame.
 std::optional<Time> stamp_of_frame(const HeardDevice& heard, BootKey session, NodeTime sent,
                                    NodeTime device, HostTime arrival) {
   return stamp_of(heard.clock, heard.epochs.life_at(session, sent, arrival), device, arrival);
@@ -40,6 +42,7 @@ class KinectListener final : public DeviceListener {
  public:
   explicit KinectListener(std::optional<std::uint64_t>) {}
 
+  /// Keeps the exchanges, the times of each part, and the times of each complete frame.
   void take(const RecordedMessage& message) override {
     if (message.is_exchange()) {
       if (const auto recorded = to_exchange(message.payload)) {
@@ -61,6 +64,8 @@ class KinectListener final : public DeviceListener {
     add_joined();
   }
 
+  /// First fits the sender's clock to the pings and to the arrivals of frames. Then fits the
+  /// sensor's clock to the times at which the sender received its frames.
   Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
     if (taken_.empty()) return Failure(nothing_of("frames of a Kinect", wish.file.path, heard));
     joined_.clear();
@@ -101,7 +106,7 @@ class KinectListener final : public DeviceListener {
   struct Joined {
     BootKey session = 0;
     NodeTime sent{}, device{};
-    HostTime arrival{};  // of the message that completed it
+    HostTime arrival{};  // arrival of the message that completed the frame
     bool ends_message = false;
   };
   void add_joined() {
@@ -117,7 +122,7 @@ class KinectListener final : public DeviceListener {
   KinectFrames frames_;
   std::vector<KinectFrame> parts_;
   std::vector<JoinedKinectFrame> joined_;
-  std::vector<Exchange> exchanges_;  // of pings
+  std::vector<Exchange> exchanges_;  // from pings, and later also from frames
   HostEpochs epochs_;
   std::vector<Taken> taken_;
 };
@@ -139,6 +144,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     return {};
   }
 
+  /// Makes the remaining rows and reports what was left out.
   Result<void> finish(PointFrames& out) override {
     joined_.clear();
     frames_.finish(joined_);
@@ -170,6 +176,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
   const PointHeader* header() const override { return &header_; }
 
  private:
+  /// Stamps the joined frames. A frame without a known clock is counted and left out.
   void stamp_joined() {
     for (JoinedKinectFrame& joined : joined_) {
       KinectFrame& frame = joined.frame;

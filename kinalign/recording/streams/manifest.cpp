@@ -13,7 +13,8 @@ namespace kinalign {
 
 namespace {
 
-/// Mocap is the most exact and has the highest rate: its stamps become the grid.
+/// Order of streams in a manifest. Mocap comes first, because it is the most accurate and has the
+/// highest rate: its stamps become the grid.
 constexpr int kinect_rank = 1;
 constexpr int last_rank = 2;
 int rank_of(std::string_view recorded_protocol) {
@@ -35,16 +36,18 @@ bool is_named_by_address(const RawChannel& raw) {
   return protocol && row_of(*protocol).is_named_by_address;
 }
 
-/// What tells those of a stream apart.
+/// The data by which devices of one stream are distinguished.
 struct Nodes {
-  std::map<std::string, std::uint32_t> sensors;         // of SlimeVR's trackers, by address
-  std::map<std::string, std::set<std::string>> called;  // by stream and name: ids
+  // sensors of SlimeVR trackers with rotations, one bit each, by address
+  std::map<std::string, std::uint32_t> sensors;
+  std::map<std::string, std::set<std::string>> called;  // ids of nodes, by stream and name
 };
-/// How often nodes are called by anything: ids too are names.
+/// The key of Nodes::called. A name is an id or a place.
 std::string called(const RawChannel& raw, const std::string& name) {
   return raw.stream + "/" + name;
 }
 
+/// Collects the sensors and names of all devices in the recording.
 Nodes nodes_in(const RecordingSurvey& survey) {
   Nodes nodes;
   for (const ChannelSurvey& one : survey.channels) {
@@ -58,9 +61,10 @@ Nodes nodes_in(const RecordingSurvey& survey) {
   return nodes;
 }
 
-/// What a manifest calls those of several that are a stream: trackers are told apart by their
-/// addresses, and their sensors by numbers behind these, where there are some; nodes by their
-/// places, where these name one alone; of mocap and Kinects listening finds the one.
+/// The names by which a manifest lists the devices of one stream. Trackers are named by address,
+/// followed by the sensor's number if there are several. A node is named by its place if no other
+/// node has that place. For mocap and Kinects the name is empty, because the first pass finds the
+/// device.
 std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
   if (!is_named_by_address(raw)) {
     const bool has_place =
@@ -77,7 +81,7 @@ std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
   return names;
 }
 
-/// Each name once: a node may have had several addresses.
+/// Adds each name once: a node may have had several addresses.
 void add_nodes(const std::string& path, const std::vector<std::string>& names,
                std::vector<StreamFile>& files) {
   for (const std::string& name : names) {

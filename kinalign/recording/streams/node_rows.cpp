@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of an inertial node of ours: the counter's reading of each sample, put on UTC by the
-// exchanges that the recorder made out of frames and replies. Of a node without a counter the
-// number of its request is the counter.
+// Rows of kinalign's inertial nodes. The counter reading of each sample is converted to UTC with
+// the exchanges that the recorder made from frames and replies. For a node without a counter, the
+// request's number serves as the counter.
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/recording/frames/accepted_frames.h"
 #include "kinalign/recording/streams/device_rows.h"
@@ -18,8 +18,8 @@ namespace kinalign {
 
 namespace {
 
-/// Where requests leave on a steady timer their number plays the part of a counter: the earliest
-/// arrivals tell it, less the least half of a round trip (clock/offline/clockless.h).
+/// If requests are sent by a steady timer, their number serves as a counter. The earliest arrivals
+/// determine the clock, minus the shortest one-way delay (clock/offline/clockless.h).
 void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const DeviceWish& wish,
                      HeardDevice& heard) {
   const auto least = least_one_way_delay(exchanges);
@@ -35,10 +35,11 @@ void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const Devi
        "its stamps are late by the way of its fastest request", ""});
 }
 
-/// The stamp of a sample; absent where nothing is known of its clock.
+/// The stamp of a sample. Absent if its clock is not known.
 std::optional<Time> stamp_of_sample(const HeardDevice& heard, const AcceptedFrame& frame,
                                     std::uint32_t age_us, HostTime arrival) {
-  const bool counted = heard.step_ns > 0.0;  // this node's requests
+  // this node has no counter, so its requests are counted
+  const bool counted = heard.step_ns > 0.0;
   if (counted == frame.n_tx.has_value()) return std::nullopt;
   const NodeTime sent =
       counted ? counter_of({frame.life, frame.number, {}}, heard.step_ns) : *frame.n_tx;
@@ -52,6 +53,7 @@ class NodeListener final : public DeviceListener {
  public:
   explicit NodeListener(std::optional<std::uint64_t>) {}
 
+  /// Keeps the exchanges, and the index of its exchange and the ages of its samples for each frame.
   void take(const RecordedMessage& message) override {
     if (message.is_exchange()) {
       const AnyExchange any = frames_.take_exchange(message);
@@ -75,6 +77,7 @@ class NodeListener final : public DeviceListener {
     }
   }
 
+  /// Fits the clock: to the exchanges or, for a node without a counter, to the request numbers.
   Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
     if (exchanges_.empty() && clockless_.empty()) {
       return Failure(Error{wish.file.path, 0, "frames of node " + heard.channel.node,
@@ -90,6 +93,7 @@ class NodeListener final : public DeviceListener {
     return {};
   }
 
+  /// Stamps the samples in the order in which NodeRows makes its rows.
   void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
     OrderedStamps<bool> stamps(most_overtaking_samples, [&take](Time stamp, bool) { take(stamp); });
     auto age_us = ages_us_.begin();
@@ -120,10 +124,10 @@ class NodeListener final : public DeviceListener {
     std::uint8_t samples = 0;
     bool has_counter = false;
   };
-  // Deques, since a vector that grows has up to twice the room that it needs.
+  // Deques, because a growing vector occupies up to twice the memory that it needs.
   AcceptedFrames frames_;
   std::deque<HeardFrame> heard_;
-  std::deque<std::uint32_t> ages_us_;  // of all samples, frame after frame
+  std::deque<std::uint32_t> ages_us_;  // of all samples, in the order of the frames
   std::deque<Exchange> exchanges_;
   std::deque<ClocklessExchange> clockless_;
   ImuContent content_;
@@ -141,6 +145,8 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     header_.content = heard_->content;
   }
 
+  /// Stamps the samples of an accepted frame. A sample without a known clock is counted and left
+  /// out.
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
     if (message.is_exchange()) {
       (void)frames_.take_exchange(message);
@@ -161,6 +167,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     return {};
   }
 
+  /// Makes the remaining rows and reports what was left out.
   Result<void> finish(ImuSamples& out) override {
     waiting_.finish();
     append_waiting(out);
@@ -186,6 +193,8 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     }
   }
 
+  /// Appends one row. A sample that lacks a part of the stream's content, or has another kind of
+  /// acceleration, is not valid.
   void append(const NodeSample& sample, ImuSamples& out) {
     const std::array<double, 4> q{sample.orientation[0], sample.orientation[1],
                                   sample.orientation[2], sample.orientation[3]};

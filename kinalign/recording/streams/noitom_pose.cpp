@@ -11,7 +11,8 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t noitom_joints = 59, telling_joint = 10;
-constexpr double largest = 1e15;  // as in a BVH's rows (formats/bvh/rows.cpp)
+// as in formats/bvh/rows.cpp; a greater value is not a coordinate or an angle
+constexpr double largest = 1e15;
 constexpr std::string_view both =
     "the stream does not say which of Noitom's two 59-joint hierarchies it follows, legacy (Axis "
     "Neuron: joint 10 is Spine3) or Studio (Axis Studio: joint 10 is Neck)";

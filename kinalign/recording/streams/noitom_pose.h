@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From frames of the Noitom stream, which carry no skeleton, to poses of the skeleton of a BVH.
+// Converts frames of the Noitom stream, which contain no skeleton, to poses of the skeleton of a
+// BVH.
 #pragma once
 
 #include "kinalign/formats/bvh/bvh.h"
@@ -7,7 +8,7 @@
 
 namespace kinalign {
 
-/// The two orders of 59 joints that Noitom's programs use; the tenth joint tells them apart.
+/// The two orders of 59 joints in Noitom's programs. Joint 10, counted from 0, distinguishes them.
 enum class NoitomHierarchy : std::uint8_t {
   legacy,  // Axis Neuron: Spine3 and one neck
   studio,  // Axis Studio: Neck and Neck1, the shoulders on Spine2
@@ -15,20 +16,23 @@ enum class NoitomHierarchy : std::uint8_t {
 };
 NoitomHierarchy noitom_hierarchy(const BvhHierarchy& hierarchy);
 
-/// Whether every value of a frame is a number that can be a coordinate or an angle.
+/// Returns whether all values of a frame are plausible as coordinates or angles.
 bool has_sound_values(std::span<const float> row);
 
-/// Takes a frame for a row of the BVH: its channels' order, its units.
+/// Uses a frame as a row of the BVH, with its channel order and units.
 class NoitomPoser {
  public:
-  /// `name` of the header's file, for messages. `options.start` is not used: frames have stamps.
+  /// `name`: the header's file, used in messages. `options.start` is not used, since frames have
+  /// stamps.
   NoitomPoser(BvhHierarchy hierarchy, const BvhOptions& options, std::string name);
 
-  /// Appends the pose; a reference in front is left out. Fails, and appends nothing, where the row
-  /// has not as many values as the header has channels or holds one that is no number.
+  /// Appends the pose. A reference in front of the pose is left out. Fails and appends nothing if
+  /// the number of values differs from the header's number of channels, or if a value is not a
+  /// number.
   Result<void> append(const NoitomFrame& frame, Time stamp, ClipFrames& out);
 
-  /// That the header is neither of Noitom's two: then its channels need not mean what is sent.
+  /// A warning if the header has neither of Noitom's two orders, since its channels may then not
+  /// match the values.
   Findings findings() const;
 
  private:

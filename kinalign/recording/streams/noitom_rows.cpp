@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noitom's frames: poses of the skeleton that the recording has a header of, stamped by the number
-// that the source gives its frames; over a connection, which loses none, by their count; in
-// datagrams without a number by arrival.
+// Rows of Noitom's frames: poses of the skeleton whose BVH header the recording contains. Stamps
+// come from the frame number that the source sends. Over a connection, which loses no frame, frames
+// without a number are counted. In datagrams without a number, stamps are arrivals.
 #include "kinalign/protocols/noitom/receiver.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/noitom_pose.h"
@@ -23,6 +23,7 @@ struct NoitomSource {
 };
 using NoitomFrames = NumberedFrames<NoitomSource>;
 
+/// The hierarchy of the BVH header. Fails if neither recording nor manifest has one.
 Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& file) {
   if (heard.skeleton.empty()) {
     return Failure(Error{file, 0,
@@ -36,7 +37,8 @@ Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& f
   return parse_bvh_hierarchy(heard.skeleton, heard.channel.stream + ".bvh", rows, odd);
 }
 
-/// Values in a frame; 0 where one is no number (NoitomPoser takes no such frame).
+/// The number of values in a frame; 0 if one is not a number, since NoitomPoser refuses such a
+/// frame.
 std::uint32_t noitom_shape(const NoitomFrame& frame) {
   const auto row = frame.row();
   return has_sound_values(row) ? static_cast<std::uint32_t>(row.size()) : 0;
@@ -52,6 +54,7 @@ class NoitomListener final : public DeviceListener {
     keys_.add(placed_, noitom_shape);
   }
 
+  /// Counts frames at the header's frame time. If any frame has no number, all stamps are arrivals.
   Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
     placed_.clear();
     frames_.finish(placed_);
@@ -87,7 +90,8 @@ class NoitomRows final : public NumberedRows<NoitomSource, ClipFrames> {
  public:
   NoitomRows(const DeviceWish& wish, const std::shared_ptr<const HeardDevice>& heard)
       : NumberedRows(wish, heard) {
-    const auto hierarchy = hierarchy_of(*heard, wish.file.path);  // listening has read it before
+    // the first pass has read it without an error
+    const auto hierarchy = hierarchy_of(*heard, wish.file.path);
     if (!hierarchy) return;
     const BvhOptions options = bvh_options(wish.options);
     const std::string name = heard->channel.stream + ".bvh";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a source that numbers them, out of a recording: noitom_rows.cpp, xsens_rows.cpp, and
-// of nodes without a counter the clock, node_rows.cpp.
+// Reads frames of a source that numbers them: noitom_rows.cpp and xsens_rows.cpp. Also makes the
+// clock of nodes without a counter for node_rows.cpp.
 #pragma once
 
 #include "kinalign/protocols/protocols.h"
@@ -23,19 +23,19 @@ namespace kinalign {
 template <class Frame>
 struct PlacedFrame {
   Frame frame;
-  std::optional<CountedFrame> place;  // absent: nobody numbers it
+  std::optional<CountedFrame> place;  // absent: the frame has no number
   HostTime arrival{};
 };
 
-/// One body's frames, without those that came twice. `Source` has a Decoder, an Arrival and a Frame
-/// and says of an arrival its frame, if it is one, its body and its number. Each connection, and
-/// each sender, has a decoder and a count of its own.
+/// The frames of one body, without duplicates. `Source` has the types Decoder, Arrival and Frame,
+/// and gives an arrival's frame (if it is one), body and number. Each connection and each sender
+/// has its own decoder and count.
 template <class Source>
 class NumberedFrames {
  public:
   using Placed = PlacedFrame<typename Source::Frame>;
 
-  /// Without a body the first that is heard.
+  /// Without a body, the body of the first frame is used.
   explicit NumberedFrames(std::optional<std::uint64_t> body) : body_(body) {}
 
   void take(const RecordedMessage& message, std::vector<Placed>& out) {
@@ -46,20 +46,20 @@ class NumberedFrames {
     feed(from, message);
     place(from, message.arrival, out);
   }
-  /// Nothing follows: what a decoder has held back, if it ever does.
+  /// Call after the last message. Passes on frames that a decoder held back.
   void finish(std::vector<Placed>& out) {
     if constexpr (holds_back) {
       for (auto& [id, from] : channels_) {
         arrivals_.clear();
         from.decoder.finish(arrivals_);
-        place(from, HostTime{}, out);  // each has its own arrival
+        place(from, HostTime{}, out);  // these frames have arrivals of their own
       }
     }
   }
 
-  /// Of other types or bodies than are asked for.
+  /// Arrivals of other types or bodies than selected.
   std::uint64_t others() const { return others_; }
-  /// What the user should know of the bytes; what several connections have alike, once.
+  /// Findings about the bytes. A finding that several connections have in common is returned once.
   Findings findings(const std::string& file) const {
     Findings all;
     for (const auto& [id, channel] : channels_) {
@@ -73,7 +73,7 @@ class NumberedFrames {
 
  private:
   using Arrival = typename Source::Arrival;
-  /// Its decoder looks at datagrams, and a frame may be given later than it came.
+  /// The decoder looks at whole datagrams and may return a frame later than it arrived.
   static constexpr bool holds_back = requires(Arrival one) { one.arrival; };
   struct Channel {
     typename Source::Decoder decoder;
@@ -92,6 +92,8 @@ class NumberedFrames {
     }
     from.decoder.feed(octets(message.payload), arrivals_);
   }
+  /// Selects the body's frames and gives each its number. The channel is part of the life, so that
+  /// connections have separate counts.
   void place(Channel& from, HostTime arrival, std::vector<Placed>& out) {
     for (Arrival& one : arrivals_) {
       auto* frame = Source::frame(one);
@@ -119,23 +121,24 @@ class NumberedFrames {
   std::vector<Arrival> arrivals_;
 };
 
-/// The stamp of a frame that has a number; absent where its clock is not known.
+/// The stamp of a numbered frame. Absent if its clock is not known.
 template <class Frame>
 std::optional<Time> stamp_of(const HeardDevice& heard, const PlacedFrame<Frame>& one) {
   if (!one.place) return std::nullopt;
   return stamp_of(heard.clock, one.place->life, counter_of(*one.place, heard.step_ns), one.arrival);
 }
 
-constexpr std::size_t most_overtaking_frames = 16;  // more have not been seen to overtake one
+// no frame was seen to arrive later than that many newer ones
+constexpr std::size_t most_overtaking_frames = 16;
 
-/// Stamps of the frames of one datagram that says no time: the last frame's is the arrival, those
-/// before it are a step apart, or less where that would reach back to the message before.
+/// Stamps the frames of a datagram without a time. The last frame's stamp is the arrival. The
+/// frames before it are one step apart, or less if they would reach back to the previous message.
 class ArrivalStamps {
  public:
   explicit ArrivalStamps(const HeardDevice& heard)
       : step_(std::llround(heard.step_ns)), utc_minus_host_(heard.utc_minus_host) {}
 
-  /// Calls `take` with each of the message's `frames` stamps.
+  /// Calls `take` once for each of the message's `frames` frames.
   template <class Take>
   void add(HostTime arrived, std::size_t frames, const Take& take) {
     const Time arrival{arrived.time_since_epoch() + utc_minus_host_};
@@ -153,10 +156,11 @@ class ArrivalStamps {
   Time before_{};
 };
 
-/// What is kept of each frame, so that its row can be stamped once the clock is known.
+/// The data kept of each frame, so that its row can be stamped when the clock is known.
 class FrameKeys {
  public:
-  /// A message's frames. `shape` says of a frame what decides whether a row can be made of it.
+  /// Adds a message's frames. `shape` returns a value that decides whether a row can be made of a
+  /// frame.
   template <class Frame, class Shape>
   void add(const std::vector<PlacedFrame<Frame>>& placed, const Shape& shape) {
     for (const auto& one : placed) {
@@ -177,7 +181,8 @@ class FrameKeys {
     }
     return frames;
   }
-  /// `fits`: by a frame's shape, asked in the order of the rows.
+  /// Passes on the stamp of each row. `fits`: decides by a frame's shape; called in the order of
+  /// the rows.
   template <class Fits>
   void stamp_rows(const HeardDevice& heard, Fits fits,
                   const DeviceListener::TakeStamp& take) const {
@@ -203,6 +208,7 @@ class FrameKeys {
     bool is_numbered = false, ends_message = false;
     std::uint32_t shape = 0;
   };
+  /// Stamps the frames of each message by its arrival.
   template <class Put>
   void stamp_by_arrivals(const HeardDevice& heard, const Put& put) const {
     ArrivalStamps stamps(heard);
@@ -217,12 +223,12 @@ class FrameKeys {
     }
   }
 
-  std::deque<Key> keys_;  // a vector that grows has up to twice the room that it needs
+  std::deque<Key> keys_;  // a growing vector occupies up to twice the memory that it needs
 };
 
-/// Rows of such frames, in the order of their numbers: what was overtaken in a network is put where
-/// it belongs. `Source` also says what they are: `frames`, and as what they were expected
-/// where there is none.
+/// Rows of numbered frames, in the order of their numbers: frames that the network reordered are
+/// sorted. `Source::frames` is a word for the frames, `Source::what` the text for an error without
+/// any.
 template <class Source, class Frames>
 class NumberedRows : public DeviceRows<Frames> {
  public:
@@ -236,6 +242,8 @@ class NumberedRows : public DeviceRows<Frames> {
     return {};
   }
 
+  /// Makes the remaining rows and reports what was left out. Fails if there is no row, unless the
+  /// header is known and every frame fitted.
   Result<void> finish(Frames& out) final {
     placed_.clear();
     frames_.finish(placed_);
@@ -258,7 +266,7 @@ class NumberedRows : public DeviceRows<Frames> {
   }
 
  private:
-  /// Fails, and appends nothing, where the frame does not fit.
+  /// Fails and appends nothing if the frame does not fit.
   virtual Result<void> append(const typename Source::Frame& frame, Time stamp, Frames& out) = 0;
   virtual Findings further_findings() const { return {}; }
 
@@ -271,6 +279,7 @@ class NumberedRows : public DeviceRows<Frames> {
     if (!misfit_) misfit_ = std::move(appended).error();
     ++misfits_;
   }
+  /// Makes rows of the placed frames, which are stamped by arrival or by their clock.
   void put_placed(Frames& out) {
     if (placed_.empty()) return;
     if (heard_->by_arrival) {
@@ -295,12 +304,12 @@ class NumberedRows : public DeviceRows<Frames> {
   NumberedFrames<Source> frames_;
   std::vector<PlacedFrame<typename Source::Frame>> placed_;
   RowsInOrder<typename Source::Frame> waiting_{most_overtaking_frames};
-  ArrivalStamps arrivals_{*heard_};  // of frames that are stamped so
+  ArrivalStamps arrivals_{*heard_};  // for frames that are stamped by arrival
   std::optional<Error> misfit_;
   std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
 };
 
-/// The clock of frames that are numbered. A rate that the options state wins over `step_ns`.
+/// Makes the clock of numbered frames. A rate in the options has precedence over `step_ns`.
 inline void count_clock(std::vector<CountedFrame> frames, double step_ns, const DeviceWish& wish,
                         HeardDevice& heard) {
   const double rate = wish.options.rate_hz;

@@ -13,9 +13,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_hosts = 8;  // of a stream that are listened to in the first pass
+constexpr std::size_t most_hosts = 8;  // hosts of one stream that are listened to in the first pass
 
-/// Which streams are to be listened to, and in which variants.
+/// The streams to listen to, and their variants.
 class Wanted {
  public:
   explicit Wanted(const std::vector<StreamOptions>& streams) {
@@ -36,12 +36,13 @@ class Wanted {
   std::map<std::string, std::set<ListenVariant>> variants_;
 };
 
-/// The first pass: indexes the files, surveys and hashes them, and listens to the devices.
+/// The first pass: indexes the files, surveys and hashes them, and learns the devices' clocks.
 class Scan {
  public:
   Scan(ScannedRecording& state, std::optional<Wanted> wanted)
       : state_(state), wanted_(std::move(wanted)) {}
 
+  /// Reads one file of the recording.
   Result<void> read(std::size_t part, const Progress& progress) {
     const std::string& path = state_.parts[part].path;
     part_ = part;
@@ -72,7 +73,7 @@ class Scan {
     return {};
   }
 
-  /// After the last file.
+  /// Call after the last file.
   void finish() {
     const std::string& path = state_.parts[part_].path;
     Findings& findings = state_.shared.findings;
@@ -94,6 +95,7 @@ class Scan {
   }
 
  private:
+  /// Keeps a record's data for the later passes.
   void take_record(const McapRecord& record, const McapReader& reader) {
     if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
       if (!state_.facts) state_.facts = to_facts(*metadata);
@@ -111,7 +113,8 @@ class Scan {
     }
   }
 
-  /// Each chunk names its channels again, and so does a summary, which may be damaged.
+  /// Each chunk repeats the definitions of its channels, and so does the summary, which may be
+  /// damaged. A definition covered by a checksum is preferred.
   void add(const McapChannel& defined) {
     const McapChannel* proved = proved_channel(state_.parts, defined.id);
     const McapChannel& channel = proved == nullptr ? defined : *proved;
@@ -137,6 +140,7 @@ class Scan {
     }
   }
 
+  /// Assigns a channel to the listeners of its device, one for each variant.
   void listen_to(DeviceChannel& channel) {
     const RawChannel& raw = channel.raw;
     const std::string host = raw.node.empty() ? host_of(raw.sender) : "";
@@ -152,6 +156,7 @@ class Scan {
     }
   }
 
+  // A message that does not count is stored in the index as left out, so that later passes skip it.
   void take_message(const McapMessage& message, const McapReader& reader) {
     const std::uint32_t place = place_of(reader);
     const bool counts = guard_.believes(message, reader.unchecked()) && state_.facts &&
@@ -180,6 +185,7 @@ class Scan {
     }
   }
 
+  /// Keeps a mark. Marks beyond most_marks are only counted.
   void take_mark(const McapMessage& message) {
     auto& marks = state_.shared.marks;
     if (marks.size() >= most_marks) {
@@ -193,7 +199,7 @@ class Scan {
                      std::move(said->source)});
   }
 
-  /// The message's place in its chunk, of those that the reader yields.
+  /// The index of the message in its chunk, among the messages that the reader returns.
   std::uint32_t place_of(const McapReader& reader) {
     if (!is_in_chunk_ || chunk_.at != reader.at()) {
       end_chunk();
@@ -217,6 +223,7 @@ class Scan {
     if (at == channels.end() || *at != id) channels.insert(at, id);
   }
 
+  /// Reports damage and truncation of a file.
   void judge_file(const std::string& path, const McapReader& reader) {
     Findings& findings = state_.shared.findings;
     for (Finding finding : reader.findings()) {
@@ -236,15 +243,15 @@ class Scan {
   NumberGuard guard_;
   std::vector<StoredChunks::File> versions_;
   std::vector<StoredChunk> chunks_;
-  StoredChunk chunk_;  // that messages come from
+  StoredChunk chunk_;  // the chunk of the present messages
   bool is_in_chunk_ = false;
   std::uint32_t places_ = 0;
   std::map<std::uint16_t, McapSchema> schemas_;
   std::set<std::uint16_t> mark_channels_, json_channels_;
-  std::map<std::string, std::size_t> hosts_;  // by stream: how many
-  std::uint64_t more_marks_ = 0;              // than are looked at
+  std::map<std::string, std::size_t> hosts_;  // hosts of each stream
+  std::uint64_t more_marks_ = 0;              // marks beyond most_marks
   std::optional<RecordingEnd> end_;
-  bool ended_ = false;  // or torn for good
+  bool ended_ = false;  // the recording has ended, or recover found it truncated
   bool is_closed_ = false;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first pass over a recording: it indexes the chunks, hashes and surveys the files, and listens
-// to the devices.
+// The first pass over a recording. It indexes the chunks, hashes and surveys the files, and learns
+// the devices' clocks.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -24,7 +24,7 @@
 
 namespace kinalign {
 
-/// What a listener is made for beside its device.
+/// The options of a listener besides its device.
 struct ListenVariant {
   bool trackers = false;
   std::optional<std::uint64_t> body;
@@ -32,18 +32,18 @@ struct ListenVariant {
   auto operator<=>(const ListenVariant&) const = default;
 };
 
-/// Listens to the channels of one device.
+/// Passes the messages of one device's channels to a listener.
 class Listening {
  public:
   explicit Listening(ListenVariant variant) : variant_(variant) {}
 
-  /// Channels are defined before their messages come.
+  /// Channels must be defined before their messages are taken.
   void define(std::uint16_t id, const RawChannel& raw) {
     channels_.push_back(id);
     if (!chosen_ && raw.protocol != exchange_encoding) chosen_ = raw;
   }
   void take(const RecordedMessage& message) {
-    if (!chosen_) {  // exchanges before the first payload
+    if (!chosen_) {  // exchanges before the first payload are kept
       if (early_.size() < most_early) early_.push_back({message, std::string(message.payload)});
       return;
     }
@@ -56,10 +56,11 @@ class Listening {
     listener_->take(message);
   }
 
-  const std::vector<std::uint16_t>& channels() const { return channels_; }  // as defined
-  /// The device's first channel of payloads.
+  // in the order of definition
+  const std::vector<std::uint16_t>& channels() const { return channels_; }
+  /// The first channel of payloads of the device.
   const std::optional<RawChannel>& chosen() const { return chosen_; }
-  /// After the last message, once. nullptr: no rows can be made of the protocol.
+  /// Call once, after the last message. nullptr: no rows can be made of the protocol.
   std::unique_ptr<DeviceListener> release() { return begin() ? std::move(listener_) : nullptr; }
   bool is_released() const { return begun_ && !listener_; }
 
@@ -85,19 +86,19 @@ class Listening {
   std::unique_ptr<DeviceListener> listener_;
 };
 
-/// A device by its stream and node id or, without one, by its sender's host.
+/// A device, identified by its stream and node id or, without a node id, by its sender's host.
 using DeviceKey = std::tuple<std::string, std::string, std::string, ListenVariant>;
 
 struct DeviceChannel {
   RawChannel raw;
   std::uint16_t id = 0;
-  std::optional<std::size_t> sender{};  // its number on the stream's roll
+  std::optional<std::size_t> sender{};  // number in the stream's SenderRoll
   std::optional<std::uint32_t> last_number{};
-  std::uint64_t missing = 0;  // messages between others
+  std::uint64_t missing = 0;  // messages missing between others
   std::vector<Listening*> listening{};
 };
 
-/// What the first pass has found.
+/// The result of the first pass.
 struct ScannedRecording {
   FileSystem* files = nullptr;
   std::string path;
@@ -108,8 +109,8 @@ struct ScannedRecording {
   std::shared_ptr<const StoredChunks> chunks;
   std::optional<RecordingFacts> facts;
   std::map<std::uint16_t, DeviceChannel> channels;
-  std::vector<const DeviceChannel*> in_order;      // as they were defined
-  std::map<std::string, SenderRoll> senders;       // by stream, without its nodes
+  std::vector<const DeviceChannel*> in_order;      // in the order of definition
+  std::map<std::string, SenderRoll> senders;       // by stream; nodes are not included
   std::map<std::string, std::string> attachments;  // BVH headers, by name
   std::map<DeviceKey, Listening> listening;
   std::vector<JsonChannel> json;
@@ -120,13 +121,13 @@ struct ScannedRecording {
   }
 };
 
-/// Which streams are listened to.
+/// Selects the streams to listen to.
 struct ListenTo {
   bool any = false;
-  std::vector<StreamOptions> wanted{};  // with paths as they can be opened; empty: all streams
+  std::vector<StreamOptions> wanted{};  // paths can be opened as they are; empty: all streams
 };
 
-/// Reads the file and, as they lie in the same folder, those that its recording went on in.
+/// Reads the file, and the files in the same folder in which its recording continues.
 Result<ScannedRecording> scan_recording(FileSystem& files, const std::string& path,
                                         const ListenTo& listen, const Progress& progress);
 

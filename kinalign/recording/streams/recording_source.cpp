@@ -17,8 +17,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_names = 32;  // of streams and nodes in messages
+constexpr std::size_t most_names = 32;  // streams or nodes named in one message
 
+/// The functions for the device's protocol. Fails if the protocol does not fit the selection.
 Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
   const std::string& file = wish.file.path;
   const auto protocol = find_recorded_protocol(channel.protocol);
@@ -49,12 +50,13 @@ void remember(std::set<std::string>& names, const std::string& name) {
   if (names.size() < most_names) names.insert(name);
 }
 
-/// The channels of a wish, and what its error needs.
+/// The channels of the wanted device, and names for an error.
 struct Chosen {
-  std::vector<const DeviceChannel*> channels;   // as they were defined
-  std::optional<RawChannel> first;              // of payloads
-  std::set<std::string> streams, nodes, meant;  // that are there; that the wish's node names
-  DeviceChoice choice;                          // with what it left open
+  std::vector<const DeviceChannel*> channels;  // in the order of definition
+  std::optional<RawChannel> first;             // the first channel of payloads
+  // names: all streams, all nodes, and the nodes that the selection names
+  std::set<std::string> streams, nodes, meant;
+  DeviceChoice choice;  // the selection, with open values filled in
 
   std::vector<std::uint16_t> ids() const {
     std::vector<std::uint16_t> ids;
@@ -67,7 +69,7 @@ bool is_wanted(const RawChannel& raw, Chosen& chosen) {
   remember(chosen.streams, shown(raw.stream));
   DeviceChoice& choice = chosen.choice;
   if (raw.stream != choice.stream) return false;
-  if (!raw.node.empty()) {  // a node may come from another address after a while
+  if (!raw.node.empty()) {  // a node may change its address
     remember(chosen.nodes, node_name(raw));
     if (choice.node.empty()) choice.node = raw.node;
     const bool is_meant =
@@ -81,7 +83,7 @@ bool is_wanted(const RawChannel& raw, Chosen& chosen) {
   return host == choice.sender || raw.sender == choice.sender;
 }
 
-/// Fails where the recording has no such device.
+/// Fails if the recording has no such device.
 Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
   const DeviceChoice& choice = wish.choice;
   const std::string& file = state.parts.back().path;
@@ -124,13 +126,13 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
                        ErrorKind::no_rows_in_recording});
 }
 
-/// Fails if the user pressed Ctrl-C.
+/// Reports progress. Fails if the user pressed Ctrl-C.
 Result<void> report_chunk(const Progress& progress, const MessagePass& pass) {
   if (go_on(progress, "reading again", pass.done(), pass.all())) return {};
   return Failure(interruption());
 }
 
-/// Goes once more over the messages of a device that the first pass did not listen to as a whole.
+/// Reads the messages of a device again, if the first pass did not listen to all of its channels.
 Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& state,
                                                      const Chosen& chosen, ListenVariant variant,
                                                      const Progress& progress) {
@@ -146,7 +148,8 @@ Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& sta
   return listening.release();
 }
 
-/// The listener of the first pass where it has heard the same channels, else that of another pass.
+/// Returns the listener of the first pass if it has the same channels. Otherwise makes another
+/// pass.
 Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, const Chosen& chosen,
                                                     ListenVariant variant,
                                                     const Progress& progress) {
@@ -166,7 +169,7 @@ struct Heard {
   DeviceProtocol protocol;
 };
 
-/// Fails where no rows could be made of the device.
+/// Fails if no rows can be made of the device.
 Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWish& wish,
                    const Progress& progress) {
   const DeviceProtocol protocol = KA_TRY(protocol_of(*chosen.first, wish));
@@ -182,7 +185,7 @@ Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWi
                protocol};
 }
 
-/// That messages between others are missing.
+/// Reports messages that are missing between others.
 Findings judge_missing(const ScannedRecording& state, const Chosen& chosen) {
   std::uint64_t missing = 0;
   for (const DeviceChannel* one : chosen.channels) missing += one->missing;
@@ -210,7 +213,8 @@ Findings judge_order(const std::string& file, const DeviceStream& stream) {
            "still in the network"}};
 }
 
-/// Reads as far as the header needs; to the end where there are no rows, which may have a reason.
+/// Reads until the header is known. Without any rows it reads to the end, because an error there
+/// may give the reason.
 template <class Frames>
 Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>& passes,
                                                       bool any_rows, const Progress& progress) {
@@ -222,6 +226,8 @@ Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>
   return *pass.header();
 }
 
+// The stamps are computed here, so that the listener and its memory are no longer needed for the
+// rows.
 Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chosen,
                                const DeviceWish& wish, Heard heard, const Progress& progress) {
   DeviceStream out;
@@ -262,6 +268,7 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
 
 }  // namespace
 
+// A chunk may complete no row, so chunks are read until there is one.
 template <class Frames>
 Result<bool> DevicePass<Frames>::next(Frames& block, const Progress& progress) {
   block = {};
@@ -325,7 +332,7 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
   }));
   const auto roll = state_->senders.find(wish.choice.stream);
   const SenderRoll senders = roll == state_->senders.end() ? SenderRoll() : roll->second;
-  std::optional<Error> why;  // no rows came of the busiest one
+  std::optional<Error> why;  // the reason why the sender with the most messages gave no rows
   for (const DeviceChoice& choice : choices(wish.choice, senders)) {
     wish.choice = choice;
     const Chosen chosen = KA_TRY(choose(*state_, wish));

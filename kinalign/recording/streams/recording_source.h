@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording, opened once: one pass over its files hashes them, surveys them, reads the exchanges
-// of all clocks and lists all senders. Its devices' streams are then read by the chunk index.
+// An opened recording. One pass over its files hashes them, surveys them, reads the exchanges of
+// all clocks and lists all senders. The streams of its devices are then read with the chunk index.
 // docs/formats/recording.md.
 #pragma once
 
@@ -26,14 +26,14 @@ namespace kinalign {
 
 struct ScannedRecording;
 
-/// Rows of one device, in blocks.
+/// The rows of one device, in blocks.
 template <class FramesType>
 class DevicePass {
  public:
   using Frames = FramesType;
   using Header = typename DeviceRows<Frames>::Header;
 
-  using Channels = std::map<std::uint16_t, RawChannel>;  // of the device, by id
+  using Channels = std::map<std::uint16_t, RawChannel>;  // channels of the device, by id
 
   DevicePass(MessagePass messages, std::shared_ptr<const Channels> channels,
              Duration utc_minus_host, std::unique_ptr<DeviceRows<Frames>> rows)
@@ -42,10 +42,10 @@ class DevicePass {
         utc_minus_host_(utc_minus_host),
         rows_(std::move(rows)) {}
 
-  /// Replaces the block by the next one; false behind the last. `progress` is told of each chunk,
-  /// since many may have no row.
+  /// Replaces the block by the next one. False after the last block. `progress` is called for each
+  /// chunk, since many chunks may have no row.
   Result<bool> next(Frames& block, const Progress& progress = {});
-  /// nullptr while the first row has not come that has to say it.
+  /// nullptr until the first row, if the header depends on it.
   const Header* header() const { return rows_->header(); }
   /// Complete after the last block.
   const Findings& findings() const { return rows_->findings; }
@@ -58,30 +58,30 @@ class DevicePass {
   bool ended_ = false;
 };
 
-/// Starts a new pass from the front.
+/// Starts a new pass from the beginning.
 template <class Frames>
 using DevicePasses = std::function<DevicePass<Frames>()>;
 
-/// One device's stream.
+/// The stream of one device.
 struct DeviceStream {
-  StampSurvey survey;                               // of its rows' stamps
-  std::shared_ptr<const std::vector<Time>> stamps;  // of its rows, in their order
-  TimeModel clock;                                  // from the device's stamps to UTC
-  Findings findings;                                // those of its rows come with a pass
+  StampSurvey survey;                               // survey of the rows' stamps
+  std::shared_ptr<const std::vector<Time>> stamps;  // stamps of the rows, in their order
+  TimeModel clock;                                  // converts the device's stamps to UTC
+  Findings findings;  // findings about the rows themselves come with a pass
   std::variant<DevicePasses<ClipFrames>, DevicePasses<PointFrames>, DevicePasses<ImuSamples>>
       passes;
   std::variant<Skeleton, PointHeader, ImuHeader> header;
-  std::string skeleton_path;  // of the BVH that the options name; empty: none
+  std::string skeleton_path;  // path of the BVH that the options name; empty: none
 };
 
 class RecordingSource {
  public:
-  /// Whether streams will be asked for: then the pass learns the devices' clocks, too.
+  /// Whether streams will be read. If so, the first pass learns the devices' clocks too.
   enum class Devices { unheard, heard };
 
-  /// Reads the file and, as they lie in the same folder, those that its recording went on in.
-  /// `wanted`: streams of a manifest that may ask for a body or for trackers. `files` must outlive
-  /// the source and what it hands out. An MCAP file of another program can be surveyed alone.
+  /// Reads the file, and the files in the same folder in which its recording continues. `wanted`:
+  /// streams of a manifest that may select a body or trackers. `files` must outlive the source and
+  /// the objects that it returns. An MCAP file of another program can only be surveyed.
   static Result<std::shared_ptr<RecordingSource>> open(
       FileSystem& files, const std::string& path, Devices devices,
       const std::vector<StreamOptions>& wanted = {}, const Progress& progress = {});
@@ -91,18 +91,18 @@ class RecordingSource {
 
   const std::string& path() const;
   const RecordingParts& parts() const;
-  /// Of the first file alone, and of all of them as one.
+  /// The survey of the first file, and of all files together.
   const RecordingSurvey& first_survey() const;
   RecordingSurvey survey() const;
   /// Hash and length of each file, under the file's own name.
   const std::vector<InputFacts>& facts() const;
-  /// What is wrong with the files, and the marks in them, whichever stream is read.
+  /// Findings about the files, and the marks, which do not depend on the stream.
   SharedFile shared() const;
 
-  /// The stream of select["stream"], by default of the options' name; select["node"], by default
-  /// the file's node, says which inertial node, select["sender"] and select["body"] (of mocap the
-  /// avatar, of a SlimeVR tracker the sensor) which of several. A tracker's node is its address.
-  /// Not to be called on two threads at once.
+  /// The stream of select["stream"], by default of the options' name. select["node"], by default
+  /// the file's node, selects an inertial node. select["sender"] and select["body"] select one of
+  /// several senders or bodies (the avatar of mocap, the sensor of a SlimeVR tracker). A tracker's
+  /// node is its address. Must not be called from two threads at once.
   Result<DeviceStream> stream(const StreamOptions& options, const StreamFile& file,
                               const Progress& progress = {});
 
@@ -114,9 +114,9 @@ class RecordingSource {
   std::unique_ptr<ScannedRecording> state_;
 };
 
-/// All devices of a recording as streams of a manifest: mocap first, whose stamps are then the
-/// grid, and a Kinect is fitted into its space; nodes that are one stream share it. `path` as the
-/// manifest shall name the file.
+/// A manifest with all devices of a recording as streams. Mocap comes first, so that its stamps are
+/// the grid, and a Kinect is fitted to its space. Nodes of one stream share one entry. `path`: the
+/// name of the file in the manifest.
 Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& path);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows out of a network, which lets some overtake others, in the order of their stamps.
+// Sorts rows that a network reordered by their stamps.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -15,11 +15,11 @@ namespace kinalign {
 template <class Row>
 class RowsInOrder {
  public:
-  /// `most_overtaking`: so many rows wait for those that they have overtaken.
+  /// `most_overtaking`: number of rows that wait for delayed ones.
   explicit RowsInOrder(std::size_t most_overtaking)
       : most_overtaking_(most_overtaking), wait_(most_overtaking) {}
 
-  /// One that is earlier than a row that was taken already is counted and left out.
+  /// Adds a row. A row earlier than a row that was already taken is counted and left out.
   void add(Time stamp, Row row) {
     if (taken_ && stamp < *taken_) {
       ++too_late_;
@@ -27,9 +27,9 @@ class RowsInOrder {
     }
     waiting_.emplace(stamp, std::move(row));
   }
-  /// No more rows come: none has to wait.
+  /// Call after the last row. No row needs to wait any longer.
   void finish() { wait_ = 0; }
-  /// The earliest; absent where there is none, or it waits still.
+  /// Returns the earliest row. Absent if there is none, or if it must still wait.
   std::optional<std::pair<Time, Row>> take_first() {
     if (waiting_.size() <= wait_) return std::nullopt;
     auto first = waiting_.extract(waiting_.begin());
@@ -43,7 +43,7 @@ class RowsInOrder {
  private:
   std::size_t most_overtaking_, wait_;
   std::multimap<Time, Row> waiting_;
-  std::optional<Time> taken_;  // the last one's stamp
+  std::optional<Time> taken_;  // stamp of the last taken row
   std::uint64_t too_late_ = 0;
 };
 

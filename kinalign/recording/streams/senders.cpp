@@ -13,11 +13,11 @@ namespace kinalign {
 
 namespace {
 
-// Chosen: who is silent for longer has gone. The slowest of the devices says something twice a
+// A choice: a sender that is silent for longer is considered gone. The slowest devices send twice a
 // second.
 constexpr Duration still_there = std::chrono::seconds(1);
 
-constexpr std::size_t most_named = 8;
+constexpr std::size_t most_named = 8;  // senders named in one message
 
 std::string some_of(std::vector<std::string> names) {
   const std::size_t all = names.size();
@@ -74,8 +74,9 @@ std::vector<std::size_t> SenderRoll::of_host(std::string_view host) const {
   return found;
 }
 
-/// Of the one that says less: a tenth of its messages stood between two of the other's, or the
-/// other way around. Chosen: while a connection is made anew some come from both.
+/// Returns whether two senders sent at the same time. They did if more than a tenth of the messages
+/// of the less active one alternate with those of the other. The limit is a choice: while a device
+/// reconnects, a few messages arrive from both connections.
 bool SenderRoll::is_beside(std::size_t a, std::size_t b) const {
   const auto between = [this](std::size_t one, std::size_t other) {
     const auto found = senders_[one].between.find(other);
@@ -85,6 +86,7 @@ bool SenderRoll::is_beside(std::size_t a, std::size_t b) const {
   return 10 * (between(a, b) + between(b, a)) > less;
 }
 
+// The senders of the address are taken in the order of their message counts.
 std::set<std::string> SenderRoll::beside(std::string_view host) const {
   std::vector<std::size_t> taken;
   std::set<std::string> others;
@@ -107,10 +109,10 @@ std::vector<std::string> SenderRoll::senders(std::string_view host) const {
 }
 
 std::vector<DeviceChoice> choices(const DeviceChoice& wished, const SenderRoll& senders) {
-  constexpr std::size_t most_choices = 8;  // each takes a pass over the file
+  constexpr std::size_t most_choices = 8;  // each needs a pass over the file
   std::vector<std::string> hosts{wished.sender};
   if (wished.sender.empty()) hosts = senders.hosts();
-  if (hosts.empty()) return {wished};  // nodes
+  if (hosts.empty()) return {wished};  // nodes have no sender to choose
   hosts.resize(std::min(hosts.size(), most_choices));
   std::vector<DeviceChoice> all;
   for (const std::string& host : hosts) {
@@ -131,7 +133,7 @@ Error with_senders(Error error, const std::string& chosen, const SenderRoll& sen
 Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error) {
   if (!wish.choice.node.empty()) return error;
   std::string path = wish.file.path;
-  for (const StreamFile& file : wish.options.files) {  // as the manifest has it
+  for (const StreamFile& file : wish.options.files) {  // the path as written in the manifest
     if (wish.file.path.ends_with(file.path)) path = file.path;
   }
   auto manifest = manifest_of(survey, path);

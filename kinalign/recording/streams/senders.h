@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several senders of one stream: who sent how much and at whose side, which of them is the device,
-// and what is told of the others. Anybody can send a datagram to a port, and a device may come back
-// from another port of its own.
+// Chooses among several senders of one stream: which of them is the device, and what is reported
+// about the others. Any program can send a datagram to a port, and a device may return from another
+// port of its own.
 #pragma once
 
 #include "kinalign/recording/streams/device_rows.h"
@@ -18,22 +18,23 @@
 
 namespace kinalign {
 
-/// "192.168.7.20" of "192.168.7.20:51234".
+/// The host of a sender: "192.168.7.20" for "192.168.7.20:51234".
 std::string host_of(std::string_view sender);
 
+/// The senders of one stream with the numbers of their messages.
 class SenderRoll {
  public:
-  /// The number of a sender, an address with its port; a new one where it was not added before.
+  /// Returns the number of a sender, given by address and port. A new sender gets a new number.
   std::size_t add(const std::string& sender);
-  /// A message of this one; in the order of arrival.
+  /// Counts a message of a sender. Call in the order of arrival.
   void hear(std::size_t number, HostTime at);
 
-  /// Addresses of which anything was heard, the one with the most messages first.
+  /// Addresses with at least one message, the one with the most messages first.
   std::vector<std::string> hosts() const;
-  /// Of an address: senders that spoke in turn with one that said more. Who comes back from another
-  /// port speaks behind the one before, not beside it.
+  /// Senders at an address that sent at the same time as a more active one. A device that returns
+  /// from another port sends after its earlier self, not at the same time, so it is not included.
   std::set<std::string> beside(std::string_view host) const;
-  /// The address's senders, the one with the most messages first.
+  /// The senders at an address, the one with the most messages first.
   std::vector<std::string> senders(std::string_view host) const;
 
  private:
@@ -41,28 +42,31 @@ class SenderRoll {
     std::string name, host;
     std::uint64_t messages = 0;
     HostTime last{};
-    std::map<std::size_t, std::uint64_t> between{};  // its messages: others' that stood in between
+    // by sender: how often that sender's messages stood between two of this one
+    std::map<std::size_t, std::uint64_t> between{};
   };
   std::vector<std::size_t> of_host(std::string_view host) const;
   bool is_beside(std::size_t a, std::size_t b) const;
 
   std::vector<Sender> senders_;
   std::map<std::string, std::size_t, std::less<>> numbers_;
-  std::map<std::string, std::size_t, std::less<>> speaking_;  // who spoke last, by address
+  // the last active sender of each address
+  std::map<std::string, std::size_t, std::less<>> speaking_;
 };
 
-/// Whom to listen to, in this order until rows can be made of one: those with most messages come
-/// first, of an address without those that speak beside a busier one.
+/// The devices to try, in this order, until rows can be made of one. Addresses with the most
+/// messages come first. Senders that sent at the same time as a more active one of their address
+/// are left out.
 std::vector<DeviceChoice> choices(const DeviceChoice& wished, const SenderRoll& senders);
 
-/// Of the chosen one no rows could be made: with the names of all.
+/// Adds the names of all senders to an error: no rows could be made of the chosen one.
 Error with_senders(Error error, const std::string& chosen, const SenderRoll& senders);
 
-/// A recording has several nodes of the stream and none was asked for: with lines of a manifest
-/// that ask for one, or for all. Any other error as it is.
+/// Adds help to an error if the stream has several nodes and none was selected: lines for the
+/// manifest that select one node, or all. Other errors are returned unchanged.
 Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error);
 
-/// That there are others than the ones that are read. `any_sender`: nobody asked for one.
+/// Reports senders that are not read. `any_sender`: the user selected none.
 Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderRoll& senders);
 
 }  // namespace kinalign

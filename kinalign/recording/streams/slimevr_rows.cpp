@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations of one sensor of a SlimeVR tracker, each with the acceleration that came with it or
-// just before. Their packets carry no time: stamps are arrivals.
+// Rows of one sensor of a SlimeVR tracker: rotations, each with the acceleration that arrived with
+// it or just before. The packets contain no time, so stamps are arrivals.
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/protocols/slimevr/packet.h"
@@ -17,7 +17,7 @@ namespace kinalign {
 
 namespace {
 
-/// An acceleration belongs to the rotation behind it for so long.
+/// An acceleration belongs to the next rotation if it is at most this old.
 constexpr Duration goes_with = std::chrono::milliseconds(50);
 
 struct SlimeSample {
@@ -25,11 +25,12 @@ struct SlimeSample {
   std::optional<std::array<double, 3>> acceleration;
 };
 
-/// One sensor's samples: of each sender's datagrams those that go on from the ones before.
+/// The samples of one sensor. Late and duplicate datagrams of each sender are left out.
 class SlimeSamples {
  public:
   explicit SlimeSamples(std::optional<std::uint64_t> sensor) : sensor_(sensor) {}
 
+  /// Appends the samples that a datagram completes. A handshake resets the sender's numbers.
   void take(const RecordedMessage& message, std::vector<SlimeSample>& out) {
     SlimeDatagram datagram;
     if (!decode_slime(octets(message.payload), datagram)) return;
@@ -53,8 +54,9 @@ class SlimeSamples {
     }
   }
 
+  /// Late and duplicate datagrams.
   std::uint64_t overtaken = 0;
-  std::set<unsigned> sensors;  // that were heard
+  std::set<unsigned> sensors;  // sensors with at least one rotation or acceleration
 
  private:
   static constexpr std::size_t most_sensors = 32;
@@ -65,6 +67,7 @@ class SlimeSamples {
     std::optional<std::array<double, 3>> acceleration{};
     HostTime felt{};
 
+    /// Keeps an acceleration. A rotation completes a sample and uses the acceleration up.
     void add(const SlimeMotion& motion, HostTime arrival, std::vector<SlimeSample>& out) {
       if (motion.acceleration) {
         acceleration = slime_acceleration(*motion.acceleration, protocol);
@@ -109,7 +112,8 @@ class SlimeListener final : public DeviceListener {
           "none", ErrorKind::no_rows_in_recording});
     }
     stamp_by_arrival(file, heard);
-    // Few of many have one where the tracker sends them now and then: then they are no stream's.
+    // A tracker may send accelerations rarely. If fewer than half of the samples have one, the
+    // stream has no acceleration.
     heard.content = {true, 2 * accelerations_ > rotations_, false, false};
     if (any_sensor_ && samples_.sensors.size() > 1) {
       heard.findings.push_back(
@@ -131,7 +135,7 @@ class SlimeListener final : public DeviceListener {
   bool any_sensor_;
   SlimeSamples samples_;
   std::vector<SlimeSample> taken_;
-  std::vector<HostTime> arrivals_;  // of the samples
+  std::vector<HostTime> arrivals_;  // arrivals of the samples
   std::uint64_t rotations_ = 0, accelerations_ = 0;
 };
 
@@ -147,6 +151,8 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
     header_.content = heard_->content;
   }
 
+  /// Makes a row for each sample. If the stream has accelerations, a sample without one is not
+  /// valid.
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
     taken_.clear();
     samples_.take(message, taken_);

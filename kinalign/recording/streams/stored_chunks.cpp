@@ -15,8 +15,7 @@ Error altered(const std::string& path) {
   return {path, 0, "a file that stays as it is while it is read", "one that changed"};
 }
 
-/// The records of a chunk as they were before they were stored; of a message that stands in no
-/// chunk the record itself.
+/// The unpacked records of a chunk. For a message outside of chunks, the record itself.
 Result<std::string> records_of(const StoredChunk& chunk, const std::string& path,
                                const std::string& bytes) {
   if (bytes.size() < mcap_record_head) return Failure(altered(path));
@@ -29,7 +28,7 @@ Result<std::string> records_of(const StoredChunk& chunk, const std::string& path
   });
 }
 
-/// The messages of unpacked records, as McapReader yields them.
+/// The messages of unpacked records, as McapReader returns them, without those left out.
 std::vector<ChunkMessage> messages_in(std::string_view records,
                                       const std::vector<std::uint32_t>& left_out) {
   std::vector<ChunkMessage> messages;
@@ -64,6 +63,7 @@ StoredChunks::StoredChunks(FileSystem& files, std::vector<File> parts,
   for (const StoredChunk& chunk : chunks_) bytes_ += chunk.size;
 }
 
+// The chunk used least recently is removed first.
 Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) const {
   const std::lock_guard lock(mutex_);
   if (const auto known = places_.find(k); known != places_.end()) {
@@ -82,6 +82,7 @@ Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) con
   return opened;
 }
 
+// The version is checked after reading, so that a change during reading is noticed too.
 Result<std::shared_ptr<const OpenedChunk>> StoredChunks::read(const StoredChunk& chunk) const {
   const File& part = parts_[chunk.part];
   auto& file = open_files_[chunk.part];
@@ -102,6 +103,7 @@ MessagePass::MessagePass(std::shared_ptr<const StoredChunks> chunks,
   std::sort(channels_.begin(), channels_.end());
 }
 
+// Chunks without a message of the wanted channels are not read.
 Result<bool> MessagePass::next_chunk(const Take& take) {
   const auto is_mine = [this](std::uint16_t channel) {
     return std::binary_search(channels_.begin(), channels_.end(), channel);

@@ -46,7 +46,8 @@ bool sound(const std::array<float, n>& values) {
 
 std::optional<Quat> unit_quaternion(const std::array<float, 4>& q) {
   const Quat turn(q[0], q[1], q[2], q[3]);
-  // Chosen: floats round by 1e-7; what is off by more than a hundredth is no rotation.
+  // The limit is a choice: floats round by 1e-7, and a norm that is wrong by more than 1 % is not a
+  // rotation.
   if (!sound(q) || std::abs(turn.norm() - 1.0) > 0.01) return std::nullopt;
   return turn.normalized();
 }
@@ -59,10 +60,12 @@ Vec3 ours(const std::array<float, 3>& values) {
 }
 
 struct Global {
-  std::array<Vec3, xsens_segments> places;  // of the stream's unit, y up
-  std::array<Quat, xsens_segments> turns;   // space and segments turned: at rest both are y up
+  std::array<Vec3, xsens_segments> places;  // in the stream's unit, y up
+  // rotated so that space and segments are y up in the rest pose
+  std::array<Quat, xsens_segments> turns;
 };
 
+// Segments may come in any order, but the first 23 items must be the 23 segments.
 Result<Global> global_of(const XsensPose& pose, const std::string& name) {
   const auto refused = [&name](const std::string& expected, const std::string& found) {
     return Failure(Error{name, 0, expected, found});
@@ -95,10 +98,10 @@ Result<Global> global_of(const XsensPose& pose, const std::string& name) {
 
 constexpr double centimetre = 0.01;
 
-/// Bits of the shape of a sample of trackers.
+/// Bits of the shape of a sample of trackers, see xsens_shape().
 constexpr std::uint32_t can_begin = 1, begins_raw = 2, all_raw = 4, none_raw = 8;
 
-/// Ids that are known, each once.
+/// The segment ids of the trackers. Fails if an id is unknown or occurs twice.
 Result<std::vector<std::int32_t>> ids_of(const XsensTrackers& trackers, const std::string& name) {
   std::vector<std::int32_t> ids;
   for (const XsensTracker& t : trackers.trackers) {
@@ -135,8 +138,9 @@ bool XsensFits<XsensTrackers>::operator()(std::uint32_t shape) {
 
 std::span<const std::string_view, xsens_segments> xsens_segment_names() { return names; }
 
-// The document says centimetres, MVN sends metres. A pelvis 0.3 to 3 above the lowest segment is in
-// metres, one above 30 in centimetres; of who lies, the segment farthest from the pelvis decides.
+// Chooses the unit of length. Xsens' document says centimetres, but MVN sends metres. If the pelvis
+// is 0.3 to 3 above the lowest segment, the unit is metres; from 30 on it is centimetres. If the
+// person lies, the segment furthest from the pelvis decides.
 void XsensPoser::begin(std::span<const double> heights, double reach) {
   const double height = heights[0] - *std::min_element(heights.begin(), heights.end());
   const bool clear = (height >= 0.3 && height < 3.0) || height >= 30.0;
@@ -151,6 +155,7 @@ void XsensPoser::begin(std::span<const double> heights, double reach) {
        metres ? "lengths are read as metres" : "lengths are read as centimetres", ""});
 }
 
+// The first pose also fixes the unit of length and the skeleton.
 Result<void> XsensPoser::append(const XsensPose& pose, Time stamp, ClipFrames& out) {
   const Global global = KA_TRY(global_of(pose, name_));
   if (!skeleton_) {
@@ -200,7 +205,7 @@ Result<void> XsensNodes::begin(const XsensTrackers& trackers) {
 
 namespace {
 
-/// One tracker of a sample that is all zeros and not valid so far.
+/// Writes one tracker of a sample. The sample is zero and not valid before.
 void put(const XsensTracker& t, std::size_t at, ImuSamples& out) {
   const auto turn = unit_quaternion(t.rotation);
   const bool raw = t.raw.has_value();
@@ -218,6 +223,7 @@ void put(const XsensTracker& t, std::size_t at, ImuSamples& out) {
 
 }  // namespace
 
+// Trackers that the first sample did not have are ignored.
 Result<void> XsensNodes::append(const XsensTrackers& trackers, Time stamp, ImuSamples& out) {
   if (ids_.empty()) KA_TRY(begin(trackers));
   const auto other_kind = [this](const XsensTracker& t) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the samples of Xsens MVN to poses of its 23 segments and to inertial samples, in our axes.
+// Converts samples of Xsens MVN to poses of its 23 segments and to inertial samples, in kinalign's
+// axes.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -16,14 +17,14 @@ namespace kinalign {
 
 constexpr std::size_t xsens_segments = 23;
 
-/// Pelvis, L5, ... LeftToe: the segment of id k stands at k - 1.
+/// Pelvis, L5, ... LeftToe. The name of segment id k is at index k - 1.
 std::span<const std::string_view, xsens_segments> xsens_segment_names();
 
-/// What decides whether XsensPoser takes a pose, or XsensNodes a sample of trackers.
+/// A value that decides whether XsensPoser accepts a pose, or XsensNodes a sample of trackers.
 std::uint32_t xsens_shape(const XsensPose& pose);
 std::uint32_t xsens_shape(const XsensTrackers& trackers);
 
-/// Says of one shape after the other whether its sample is taken.
+/// Decides for one shape after the other whether its sample is accepted.
 template <class Items>
 class XsensFits;
 template <>
@@ -45,17 +46,17 @@ class XsensPoser {
  public:
   explicit XsensPoser(std::string name) : name_(std::move(name)) {}
 
-  /// Appends the pose of the first 23 items. Type 02 has global places and rotations: local ones
-  /// are computed, so local positions are those of each frame, not of a skeleton. Fails, and
-  /// appends nothing, where one of the 23 segments lacks, comes twice, is no number or is not
-  /// turned by a unit quaternion.
+  /// Appends the pose of the first 23 items. Type 02 contains global positions and rotations. Local
+  /// ones are computed, so local positions are those of each frame, not of a skeleton. Fails and
+  /// appends nothing if one of the 23 segments is missing, occurs twice, contains a value that is
+  /// not a number, or has no unit quaternion.
   Result<void> append(const XsensPose& pose, Time stamp, ClipFrames& out);
 
-  /// The 23 segments; nullptr before the first pose, whose local positions are the rest offsets,
-  /// since the stream has no rest pose.
+  /// The 23 segments. nullptr before the first pose. The local positions of the first pose are the
+  /// rest offsets, since the stream has no rest pose.
   const Skeleton* skeleton() const { return skeleton_ ? &*skeleton_ : nullptr; }
 
-  /// Which unit was seen, and by what.
+  /// The unit of length, and the reason for choosing it.
   Findings findings;
 
  private:
@@ -71,11 +72,11 @@ class XsensNodes {
  public:
   explicit XsensNodes(std::string name) : name_(std::move(name)) {}
 
-  /// Appends a sample of the trackers that the first sample had; those that lack, or hold what is
-  /// no number, are not valid. Items of 68 bytes give acceleration with gravity and angular
-  /// velocity; those of 44 bytes the free acceleration, turned into the sensor's space, without
-  /// gravity. Fails where the kind of items changes or a first sample names a segment twice or none
-  /// that is known.
+  /// Appends a sample of the trackers of the first sample. A tracker that is missing, or has a
+  /// value that is not a number, is not valid. Items of 68 bytes contain acceleration with gravity
+  /// and angular velocity. Items of 44 bytes contain the free acceleration without gravity, which
+  /// is rotated into the sensor's space. Fails if the kind of items changes, or if the first sample
+  /// has an unknown segment or names one twice.
   Result<void> append(const XsensTrackers& trackers, Time stamp, ImuSamples& out);
 
   const std::vector<std::string>& node_names() const { return node_names_; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of Xsens MVN's stream, or its trackers' inertial samples, stamped by its sample counter.
+// Rows of Xsens MVN's stream: poses, or the inertial samples of its trackers. Stamps come from the
+// sample counter.
 #include "kinalign/protocols/xsens/stream.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/numbered_frames.h"

@@ -13,15 +13,15 @@ namespace {
 
 using Offsets = std::array<Vec3, kinect_joint_count>;
 
-// Of the variance between takes, what is the camera's own: the rest comes from how a person stands
-// and both cameras see it (0.7 to 1.8 cm between two parallel Kinects against 1.8 to 5.2 between
-// takes).
+// Share of the variance between takes that belongs to the camera. The rest comes from the way a
+// person stands and is common to both cameras: two parallel Kinects differ by 0.7 to 1.8 cm, takes
+// by 1.8 to 5.2 cm.
 constexpr double camera_share = 0.15;
-// Of the sd between takes, what is no matter of their poses (kinect_pose_error.h): fitted to
+// Share of the sd between takes that does not come from the poses (kinect_pose_error.h). Fitted to
 // PA-MPJPE.
 constexpr double left_of_take = 0.45;
 
-/// Unit normals along the tree of joints.
+/// Standard normal draws for all joints, correlated along the tree of joints.
 Offsets tree_of_draws(const RandomStream& random) {
   Offsets draws;
   for (const KinectJoint j : kinect_tree_order) {
@@ -33,7 +33,7 @@ Offsets tree_of_draws(const RandomStream& random) {
   return draws;
 }
 
-/// In heading space, of this person in this take.
+/// Offsets of this person in this take, in heading space, m.
 Offsets standing_offsets(const KinectIds& ids) {
   const Offsets person = tree_of_draws(kinect_person_stream(KinectDraw::person_bias, ids));
   const Offsets take = tree_of_draws(kinect_take_stream(KinectDraw::take_bias, ids));
@@ -50,10 +50,11 @@ Offsets standing_offsets(const KinectIds& ids) {
   return offsets;
 }
 
-// Estimates from two Kinects at 45 and 90 degrees, m.
+// Estimated from two Kinects at 45 and 90 degrees, m.
 constexpr double trunk_turned = 0.06, near_turned = 0.04, far_leg_turned = 0.05,
                  far_arm_turned = 0.05;
 
+/// Size of the error, m, of a joint of a body seen from the side.
 double turned_bias(const KinectLimb& place, bool left_is_far) {
   if (place.part == KinectPart::trunk) return trunk_turned;
   const bool far = (place.side == KinectSide::left) == left_is_far;
@@ -61,7 +62,8 @@ double turned_bias(const KinectLimb& place, bool left_is_far) {
   return place.part == KinectPart::arm ? far_arm_turned : far_leg_turned;
 }
 
-/// Where a turned body's joints are drawn to: half along the optical axis, the rest anywhere.
+/// Directions in which the joints of a turned body are displaced: half along the optical axis, the
+/// rest at random.
 Offsets turned_directions(const RandomStream& random) {
   Offsets directions = tree_of_draws(random);
   for (Vec3& direction : directions) {
@@ -72,10 +74,12 @@ Offsets turned_directions(const RandomStream& random) {
   return directions;
 }
 
-// A back shows the tracker less than a side does: fitted to two Kinects before a body that turns.
+// Factor for a back, of which the tracker sees less than of a side. Fitted to two Kinects in front
+// of a body that turns.
 constexpr double of_back = 1.9;
 
-/// Hardly anything up to 45 degrees (of limbs 1.3 to 3.0 cm are measured there), 1 at 90.
+/// Share of the error for a turned body: small up to 45 degrees (limbs show 1.3 to 3.0 cm there), 1
+/// at 90 degrees.
 double turned_share(double yaw) {
   const double sideways = std::pow(std::sin(yaw), 2);
   return yaw <= std::numbers::pi / 2.0 ? sideways : of_back + (1.0 - of_back) * sideways;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stays: offsets of all people, of a person, of a take, and of a body that is turned away.
+// Constant errors: offsets common to all people, of a person, of a take, and of a body that is
+// turned away.
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_scene.h"
 
 namespace kinalign {
 
-/// Adds to `joints` [T,25,3] m.
+/// Adds the offsets to `joints` [T,25,3] m.
 void add_kinect_bias(const KinectScene& scene, const KinectIds& ids, std::span<double> joints);
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body as Kinect v2 reports it: 25 joints in the SDK's order, who hangs on whom, and the
-// capsules that hide joints from a camera.
+// The body as Kinect v2 reports it: 25 joints in the SDK's order, their parents, and the radii of
+// the body's parts.
 #pragma once
 
 #include "kinalign/motion/kinect_joints.h"
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// JointType's numbers; kinalign/motion/kinect_joints.h has their names.
+/// Numbers of the SDK's JointType; kinalign/motion/kinect_joints.h has the names.
 enum KinectJoint : std::uint8_t {
   spine_base,
   spine_mid,
@@ -45,13 +45,14 @@ enum class KinectPart : std::uint8_t { trunk, arm, leg };
 enum class KinectSide : std::uint8_t { middle, left, right };
 
 struct KinectLimb {
-  KinectJoint parent;  // of the root: itself
+  KinectJoint parent;  // the root's parent is the root itself
   KinectPart part;
   KinectSide side;
-  KinectJoint partner;  // the same joint of the other side; in the middle: itself
+  /// The same joint of the other side; a joint in the middle is its own partner.
+  KinectJoint partner;
 };
 
-/// [25] in JointType order.
+/// Place of each joint in the body; [25] in JointType order.
 inline constexpr std::array<KinectLimb, kinect_joint_count> kinect_limbs = [] {
   using enum KinectPart;
   using enum KinectSide;
@@ -79,13 +80,13 @@ static_assert([] {
   return true;
 }());
 
-/// What a tracker finds by the torso's surface: the trunk and the joints that sit on it.
+/// True for joints that a tracker finds by the torso's surface: the trunk and the joints on it.
 constexpr bool of_torso(KinectJoint joint) {
   return kinect_limbs[joint].part == KinectPart::trunk || joint == shoulder_left ||
          joint == shoulder_right || joint == hip_left || joint == hip_right;
 }
 
-/// All 25, each behind its parent.
+/// All 25 joints, each after its parent.
 inline constexpr std::array<KinectJoint, kinect_joint_count> kinect_tree_order{
     spine_base,     spine_mid,      spine_shoulder, neck,        head,
     shoulder_left,  elbow_left,     wrist_left,     hand_left,   hand_tip_left,
@@ -93,7 +94,7 @@ inline constexpr std::array<KinectJoint, kinect_joint_count> kinect_tree_order{
     hand_tip_right, thumb_right,    hip_left,       knee_left,   ankle_left,
     foot_left,      hip_right,      knee_right,     ankle_right, foot_right};
 
-/// How thick parts of the body are, m. Estimates.
+/// Radii of the body's parts, m. Estimates.
 struct KinectRadii {
   double head = 0.10, trunk = 0.12, upper_arm = 0.05, forearm = 0.04, thigh = 0.08, shank = 0.055;
 };

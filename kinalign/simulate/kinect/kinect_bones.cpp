@@ -8,15 +8,15 @@ namespace kinalign {
 
 namespace {
 
-// Of the deviation from a bone's mean length, what the tracker lets through: chosen so that the sd
-// of bones on UI-PRMD is the measured one.
+// Share of the deviation from a bone's mean length that the tracker reports. Chosen so that the sd
+// of bones on UI-PRMD equals the measured one.
 constexpr double let_through = 0.53;
 
 struct Bone {
   KinectJoint from, to;
 };
 
-// From the trunk outwards.
+// In the order from the trunk outwards.
 constexpr std::array<Bone, 17> limb_bones = [] {
   return std::array<Bone, 17>{{{shoulder_left, elbow_left},
                                {elbow_left, wrist_left},
@@ -36,7 +36,7 @@ constexpr std::array<Bone, 17> limb_bones = [] {
                                {ankle_right, foot_right},
                                {hip_left, hip_right}}};
 }();
-constexpr std::size_t hips = 16;  // place of the hips' width in the list
+constexpr std::size_t hips = 16;  // index of the hips' width in the list
 
 using Lengths = std::array<double, limb_bones.size()>;
 
@@ -51,7 +51,7 @@ Lengths lengths(std::span<const double> joints, std::size_t t) {
   return found;
 }
 
-/// How much too long bones are, mean over the take.
+/// Mean excess of the bones' lengths over the true ones, m, over the take.
 Lengths mean_excess(const KinectScene& scene, std::span<const double> joints) {
   Lengths means{};
   for (std::size_t t = 0; t < scene.frames(); ++t) {
@@ -63,6 +63,7 @@ Lengths mean_excess(const KinectScene& scene, std::span<const double> joints) {
   return means;
 }
 
+/// Lengths with reduced deviation from the true length plus the mean excess.
 Lengths held_lengths(const Lengths& now, const Lengths& truth, const Lengths& excess) {
   Lengths held{};
   for (std::size_t b = 0; b < held.size(); ++b) {
@@ -72,7 +73,7 @@ Lengths held_lengths(const Lengths& now, const Lengths& truth, const Lengths& ex
   return held;
 }
 
-/// One frame [25,3].
+/// Gives the bones of one frame [25,3] the lengths `held`, from the trunk outwards.
 void hold_frame(const Lengths& held, std::span<double> joints) {
   std::array<Vec3, kinect_joint_count> before;
   for (std::size_t j = 0; j < kinect_joint_count; ++j) before[j] = vec3(joints, j);

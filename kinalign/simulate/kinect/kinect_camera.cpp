@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of the model in their order; each stands in a file of its own.
+// Applies the steps of the model in their order; each step has a file of its own.
 #include "kinalign/simulate/kinect/kinect_camera.h"
 
 #include "kinalign/simulate/kinect/kinect_bias.h"
@@ -14,7 +14,8 @@ namespace kinalign {
 
 namespace {
 
-/// Legs below the image are guessed by the tracker, other joints outside it are not there.
+/// Visibility of a joint. The tracker guesses legs below the image; other joints outside of it are
+/// missing.
 Unseen seen_at(const Vec3& place, KinectPart part, const KinectView& view) {
   const double z = place.z();
   if (!(z >= view.nearest && z <= view.farthest)) return Unseen::out_of_view;
@@ -23,6 +24,7 @@ Unseen seen_at(const Vec3& place, KinectPart part, const KinectView& view) {
   return part == KinectPart::leg && place.y() < 0.0 ? Unseen::below_image : Unseen::out_of_view;
 }
 
+/// Visibility of each joint [T,25].
 std::vector<Unseen> unseen_joints(const KinectScene& scene, const KinectOptions& options) {
   std::vector<Unseen> unseen(scene.known.size(), Unseen::no);
   for (std::size_t i = 0; i < unseen.size(); ++i) {
@@ -44,7 +46,7 @@ bool body_is_there(std::span<const Unseen> unseen) {
   return out < 2;
 }
 
-/// A missing joint holds zeros; where the trunk is not seen, all are missing.
+/// Sets missing joints to zero. If the trunk is not seen, all joints are missing.
 void leave_out(std::span<const Unseen> unseen, PointFrames& frames) {
   for (std::size_t t = 0; t < frames.size(); ++t) {
     const std::size_t first = t * kinect_joint_count;

@@ -7,21 +7,24 @@ namespace kinalign {
 
 namespace {
 
-// What lies less than this before a joint is the joint's own flesh, m. An estimate.
+// Anything less than this far before a joint is the joint's own flesh, m. An estimate.
 constexpr double own_flesh = 0.05;
-// Shoulders lie inside the trunk's capsule or at its side: only its core, well before them, hides
-// one. Estimates: with the whole capsule a narrow person's shoulders were hidden from the front.
+// Shoulders lie inside the trunk's capsule or at its side, so only the core of the trunk, well
+// before them, hides one. Estimates: with the whole capsule, a narrow person's shoulders were
+// hidden from the front.
 constexpr double shoulder_flesh = 0.14, core = 0.4;
 
 bool is_shoulder(KinectJoint joint) { return joint == shoulder_left || joint == shoulder_right; }
 
-/// Hands count to forearms and feet to shanks; hips and the spine to the trunk, shoulders do not:
-/// the far one of a turned body is hidden by it.
+/// True if the joint belongs to the capsule's part of the body. Hands belong to forearms, feet to
+/// shanks, hips and spine to the trunk. Shoulders don't: the trunk hides the far shoulder of a
+/// turned body.
 bool belongs(KinectJoint joint, const KinectCapsule& capsule) {
   if (joint == capsule.from || joint == capsule.to) return true;
   const KinectLimb& place = kinect_limbs[joint];
   const bool hip = joint == hip_left || joint == hip_right;
-  // The tracker finds these by the torso's whole surface: an arm before it hides too little.
+  // The tracker finds these joints by the torso's whole surface; an arm in front of it hides too
+  // little.
   if (of_torso(joint) && kinect_limbs[capsule.to].part == KinectPart::arm) return true;
   if (capsule.to == head) return place.part == KinectPart::trunk || is_shoulder(joint);
   if (capsule.from == spine_base) return place.part == KinectPart::trunk ? joint != head : hip;
@@ -34,6 +37,7 @@ bool belongs(KinectJoint joint, const KinectCapsule& capsule) {
                                                                    : false;
 }
 
+/// Parameter of a point on a segment, clamped to [0, 1]; 0 on a segment of no length.
 double along(double way, double length_squared) {
   return length_squared > 1e-12 ? std::clamp(way / length_squared, 0.0, 1.0) : 0.0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body as capsules, and whether one of them stands between a camera and a joint.
+// The body as capsules, and a test whether one of them hides a joint from a camera.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -39,8 +39,8 @@ struct NearestOnSegments {
 NearestOnSegments nearest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0,
                                       const Vec3& b1);
 
-/// Where the thing lies that hides a joint: on the axis of a capsule. `joints` [25,3] m, the camera
-/// at the origin. Parts that a joint belongs to don't hide it.
+/// The point that hides a joint, on the axis of a capsule; absent if the joint is visible. `joints`
+/// [25,3] m, with the camera at the origin. Parts to which a joint belongs don't hide it.
 std::optional<Vec3> hidden_behind(std::span<const double> joints, KinectJoint joint,
                                   const KinectRadii& radii);
 

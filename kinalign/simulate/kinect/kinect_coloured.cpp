@@ -12,29 +12,31 @@ namespace kinalign {
 
 namespace {
 
-// Sizes, times the measured sd inside a take: fitted to the sd per joint with the autocorrelation
-// at 5 and 15 frames, and with how much of a residual other repetitions foretell at the nearest
-// pose.
+// Sizes in units of the measured sd within a take. Fitted to the sd of each joint, to the
+// autocorrelation at 5 and 15 frames, and to the part of a residual that other repetitions predict
+// at the nearest pose.
 constexpr double pose_share = 1.3, moving_share = 0.8;
-constexpr double at_rest = 0.0014;     // m, of a still body: the thigh's length trembles by 0.6 %
-constexpr std::int64_t warm_up = 300;  // frames: four time constants of a joint at rest
+constexpr double at_rest = 0.0014;  // m, for a still body: the length of the thigh varies by 0.6 %
+constexpr std::int64_t warm_up = 300;  // number of frames: four time constants of a joint at rest
 
-// What the pose does to the tracker two cameras see alike: these shares of the variance. With all
-// drawn apart two parallel cameras before a stepping person differ by 5.8 cm instead of 3.3.
+// Two cameras see the same effect of the pose on the tracker: these shares of the variance are
+// common. If all draws were independent, two parallel cameras in front of a stepping person would
+// differ by 5.8 cm instead of 3.3.
 constexpr double pose_shared = 0.9, moving_shared = 0.77;
 
-// The moving part runs with the joint's own speed and hardly at rest. With a clock that runs
-// evenly, joints at rest of a body that moves tremble by 0.7 mm; 0.13 are measured.
+// The clock of the moving part follows the joint's own speed and hardly runs at rest. With a clock
+// of constant rate, joints at rest on a moving body would vary by 0.7 mm; 0.13 are measured.
 constexpr double rest_rate = 0.15, most_rate = 1.3;
 constexpr double full_rate_speed = 0.165;  // m/s
 constexpr double with_pose = 0.05;
 
+/// Rate of the process's clock for a joint's speed and change of pose, m/s.
 double rate(double speed, double stir) {
   const double moving = (1.0 - with_pose) * speed + with_pose * stir;
   return std::min(rest_rate + moving / full_rate_speed, most_rate);
 }
 
-/// One process per joint and axis; draws come down the tree of joints.
+/// One process for each joint and axis; the draws are correlated along the tree of joints.
 class WanderingBody {
  public:
   explicit WanderingBody(const KinectIds& ids)
@@ -43,7 +45,7 @@ class WanderingBody {
         of_both_(std::sqrt(moving_shared)),
         of_one_(std::sqrt(1.0 - moving_shared)) {}
 
-  /// Asked for each frame in turn, from -warm_up on.
+  /// Call for each frame in turn, from -warm_up on.
   void step(std::int64_t frame, std::span<const double> speeds, std::span<const double> stir) {
     const auto k = static_cast<std::uint64_t>(frame + warm_up) * channels;
     for (const KinectJoint j : kinect_tree_order) {
@@ -64,6 +66,7 @@ class WanderingBody {
  private:
   static constexpr std::size_t channels = 3 * kinect_joint_count;
 
+  /// Draws for joint j, after those of the joint on which they depend.
   void draw(KinectJoint j, std::uint64_t k) {
     const KinectJointNoise& noise = kinect_joint_noise()[j];
     const double own = std::sqrt(1.0 - noise.kinship * noise.kinship);
@@ -84,8 +87,8 @@ class WanderingBody {
   std::array<SmoothNoise, channels> noises_{};
 };
 
-/// How much larger or smaller than usual a take's errors are, log-normal, rms 1. Of UI-PRMD's
-/// residuals above 10 cm two fifths (feet) to all (spine) lie in five of 64 takes.
+/// Size of a take's errors relative to the usual size, log-normal with rms 1. In UI-PRMD, five of
+/// 64 takes hold two fifths (feet) to all (spine) of the residuals above 10 cm.
 std::array<double, kinect_joint_count> take_sizes(const KinectIds& ids) {
   const RandomStream random = kinect_take_stream(KinectDraw::take_size, ids);
   std::array<double, kinect_joint_count> draws{}, sizes{};
@@ -102,7 +105,7 @@ std::array<double, kinect_joint_count> take_sizes(const KinectIds& ids) {
 }  // namespace
 
 SmoothStep::SmoothStep(double x) {
-  // exp(F x) for F = N - 1 with N^3 = 0, and the covariance of the state that it keeps.
+  // exp(F x) for F = N - 1 with N^3 = 0, and the stationary covariance of the state.
   const Eigen::Matrix3d n{{1.0, 1.0, 0.0}, {0.0, 1.0, 1.0}, {-1.0, -3.0, -2.0}};
   const Eigen::Matrix3d kept{{1.0, 0.0, -1.0 / 3.0}, {0.0, 1.0 / 3.0, 0.0}, {-1.0 / 3.0, 0.0, 1.0}};
   transition_ = std::exp(-x) * (Eigen::Matrix3d::Identity() + x * n + 0.5 * x * x * (n * n));
@@ -123,7 +126,7 @@ void add_coloured_noise(const KinectScene& scene, const KinectIds& ids, std::spa
     const std::span<const double> speeds(&scene.speeds[t * kinect_joint_count], kinect_joint_count);
     const std::span<const double> stir(&scene.stir[t * kinect_joint_count], kinect_joint_count);
     const BodyHeading& heading = scene.headings[t];
-    // What a long gap made of it nobody can tell from a fresh start.
+    // After a long gap the process can't be told from a new one.
     if (number - next >= warm_up) body = WanderingBody(ids);
     for (next = std::max(next, number - warm_up); next <= number; ++next)
       body.step(next, speeds, stir);

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// What wanders: a smooth error of each joint, part of it bound to the pose and part to the moment,
-// growing as the pose changes; and the tracker's soft hold on the lengths of bones.
+// Slow errors: a smooth error of each joint. One part of it depends on the pose, the other on the
+// time, and it grows as the pose changes. Also the tracker's tendency to keep the lengths of bones.
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_scene.h"
 
 namespace kinalign {
 
-/// A Gaussian process of unit variance and third order: three equal first-order filters in series,
-/// with autocorrelation (1 + x + x^2 / 3) exp(-x), x = 2.904 t / tau, which is 1/e at tau. Its
-/// clock may run quicker or slower from step to step; the variance stays.
+/// A Gaussian process of unit variance and third order: three equal first-order filters in series.
+/// Its autocorrelation is (1 + x + x^2 / 3) exp(-x) with x = 2.904 t / tau, which is 1/e at tau.
+/// Its clock may run at a different rate in each step; the variance stays the same.
 struct SmoothNoise {
-  Vec3 state = Vec3::Zero();  // the value, its first and second derivative by x
+  Vec3 state = Vec3::Zero();  // the value and its first and second derivative by x
 
   double value() const { return state[0]; }
   static constexpr double per_tau = 2.904;
 };
 
-/// The transition over a step of x. Two draws: what is left of the covariance P - A P A^T when the
-/// derivatives are known is left out: 1e-4 of the variance for the usual x of 0.3, 0.2 % for 0.55.
+/// The transition over a step of x, with two draws. It neglects the part of the covariance P - A P
+/// A^T that remains once the derivatives are known: 1e-4 of the variance for the usual x of 0.3,
+/// 0.2 % for 0.55.
 class SmoothStep {
  public:
   explicit SmoothStep(double x);
@@ -34,12 +35,13 @@ class SmoothStep {
 
 inline constexpr double kinect_frame_s = 1.0 / 30.0;
 
-/// Adds to `joints` [T,25,3] m.
+/// Adds the slow errors to `joints` [T,25,3] m.
 void add_coloured_noise(const KinectScene& scene, const KinectIds& ids, std::span<double> joints);
 
-/// Draws how much longer or shorter than the true one each limb's bone is, and the hips' width,
-/// towards its mean over the take. Against the truth, since the markers' bones stretch with the
-/// pose (upper arms by centimetres): to hold those was to add an error that goes with the pose.
+/// Moves the length error of each limb's bone, and of the hips' width, towards its mean over the
+/// take. The error is taken against the truth, because the markers' bones stretch with the pose
+/// (upper arms by centimetres): keeping those lengths constant would add an error that depends on
+/// the pose.
 void hold_bones(const KinectScene& scene, std::span<double> joints);
 
 }  // namespace kinalign

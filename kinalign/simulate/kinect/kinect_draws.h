@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The streams of a simulated Kinect's random numbers: one for each thing that is drawn, and for
-// each of those that it belongs to.
+// Streams of a simulated Kinect's random numbers: one for each quantity drawn, and for each person,
+// take or camera to which it belongs.
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_camera.h"
@@ -24,17 +24,17 @@ enum class KinectDraw : std::uint8_t {
   take_size
 };
 
-/// Of a person: the same in all takes and for all cameras.
+/// Stream of a person: the same in all takes and for all cameras.
 inline RandomStream kinect_person_stream(KinectDraw draw, const KinectIds& ids) {
   return {ids.seed, mix64(mix64(0x4B32 + static_cast<std::uint64_t>(draw)) ^ ids.person)};
 }
-/// Of a take of that person: the same for all cameras.
+/// Stream of a take of that person: the same for all cameras.
 inline RandomStream kinect_take_stream(KinectDraw draw, const KinectIds& ids) {
   const std::uint64_t person =
       mix64(mix64(0x4B33 + 16 * static_cast<std::uint64_t>(draw)) ^ ids.person);
   return {ids.seed, mix64(person ^ ids.take)};
 }
-/// Of a take as one camera sees it.
+/// Stream of a take as one camera sees it.
 inline RandomStream kinect_stream(KinectDraw draw, const KinectIds& ids) {
   const std::uint64_t person =
       mix64(mix64(0x4B34 + 256 * static_cast<std::uint64_t>(draw)) ^ ids.person);

@@ -17,24 +17,25 @@ enum class Group : std::uint8_t { body, legs, arms };
 
 struct Shares {
   Group group;
-  double sideways;  // share of frames where left and right lie one behind the other
+  double sideways;  // share of frames, if left and right lie one behind the other
 };
-// Fitted to two Kinects at 0, 45 and 90 degrees, of which one looks along the shoulders at times.
+// Fitted to two Kinects at 0, 45 and 90 degrees, one of which at times looks along the shoulders.
 constexpr std::array<Shares, 3> groups{
     {{Group::body, 0.07}, {Group::legs, 0.16}, {Group::arms, 0.14}}};
-// Labels are lost as limbs pass one another, less on a body that stands (at 90 degrees the two
-// Kinects are 9.8 cm apart while it stands, 13.6 while it steps) …
+// Labels are lost as limbs pass one another, less often on a body that stands: at 90 degrees the
+// two Kinects differ by 9.8 cm while it stands and by 13.6 cm while it steps.
 constexpr double still_share = 0.4, full_bustle = 0.25;  // m/s
-// … and hold for as long while a turning body passes through its profile. An estimate.
+// Labels stay right for this long while a turning body passes through its profile. An estimate.
 constexpr double labels_hold_s = 2.0;
-// Sides that lie further apart than this across the view are not confused, m.
+// Sides that are farther apart across the view than this are not confused, m.
 constexpr double told_apart = 0.25;
 
-// Estimates: a log-normal of median 0.4 s, and how many turns of the back are misread.
+// Estimates: durations are log-normal with a median of 0.4 s; back_misread is the share of turns of
+// the back that are misread.
 constexpr double median_s = 0.4, spread = 0.5;
 constexpr double mean_s = median_s * 1.1331484530668263;  // exp(spread^2 / 2)
 constexpr double back_from = 110.0 * std::numbers::pi / 180.0;
-constexpr double turn_s = 4.0;  // cameras that see a back within as long see the same turn
+constexpr double turn_s = 4.0;  // cameras that see a back within this time see the same turn
 constexpr double back_misread = 0.04;
 
 bool in_group(KinectLimb place, Group group) {
@@ -43,6 +44,7 @@ bool in_group(KinectLimb place, Group group) {
   return (group == Group::arms) == (place.part == KinectPart::arm);
 }
 
+/// Swaps left and right of a group in frame t.
 void exchange(PointFrames& frames, std::size_t t, Group group) {
   for (std::size_t j = 0; j < kinect_joint_count; ++j) {
     const KinectLimb& place = kinect_limbs[j];
@@ -56,7 +58,7 @@ void exchange(PointFrames& frames, std::size_t t, Group group) {
   }
 }
 
-/// How nearly left and right of a group lie one behind the other as the camera sees them: 1 where
+/// Measure of how far left and right of a group lie one behind the other in the camera's view: 1 if
 /// they do, 0 from `told_apart` on.
 double confusable(std::span<const double> joints, Group group) {
   double apart = 0.0, pairs = 0.0;
@@ -72,17 +74,18 @@ double confusable(std::span<const double> joints, Group group) {
   return std::pow(std::max(0.0, 1.0 - apart / pairs / told_apart), 2);
 }
 
-/// Cameras side by side are misled alike: they draw the same number at the same time.
+/// Cameras side by side make the same mistakes: they draw the same number at the same time.
 std::uint64_t shared_key(double seconds, double each_s) {
   return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(seconds / each_s)));
 }
 
-/// In turn until when, drawn so that the share of frames is as wanted.
+/// Periods of exchange. Their lengths and gaps are drawn so that they cover the wanted share of
+/// frames.
 class Spells {
  public:
   Spells(RandomStream random, std::uint64_t lane) : random_(random), lane_(lane) {}
 
-  /// `likeness`: how nearly the sides lie one behind the other; counts by how long they have.
+  /// True during a period. `likeness`: result of confusable(); its mean over labels_hold_s counts.
   bool step(const KinectTick& tick, double step_s, double share, double likeness) {
     if (!lasted_) lasted_ = likeness;
     *lasted_ += (likeness - *lasted_) * step_s / labels_hold_s;

@@ -9,8 +9,8 @@ constexpr double cm = 1e-2, mm = 1e-3;
 
 using Table = std::array<KinectJointNoise, kinect_joint_count>;
 
-// Fitted, joint by joint: `white` to the second differences by speed, `twitch` to the
-// autocorrelation at one frame, `spread` to the shares of residuals above 10 cm.
+// Fitted joint by joint: `white` to the second differences by speed, `twitch` to the
+// autocorrelation at one frame, `spread` to the share of residuals above 10 cm.
 constexpr double slow_limbs = 0.33, quick_feet = 0.23;  // s
 constexpr double usual_tail = 3.0, feet_tail = 1.5;
 
@@ -19,6 +19,7 @@ struct Bias {
   double person, take;
 };
 
+/// A joint with the usual values; lengths are in cm.
 KinectJointNoise joint(KinectJoint source, double kinship, const Bias& bias, const Vec3& within) {
   return {.source = source,
           .kinship = kinship,
@@ -50,11 +51,12 @@ KinectJointNoise on_the_ground(KinectJointNoise noise) {
   return with_white(noise, 0.2, 1.3);
 }
 
-/// Hands were not in the table against Vicon: the wrist's figures, larger.
+/// A joint of the hand. Hands were not measured against Vicon, so they get the wrist's figures
+/// times `factor`.
 KinectJointNoise of_hand(const KinectJointNoise& wrist, KinectJoint source, double factor) {
   KinectJointNoise noise = wrist;
   noise.source = source;
-  noise.kinship = 0.9;  // an estimate: hands go with wrists
+  noise.kinship = 0.9;  // an estimate: hands move with wrists
   noise.offset *= factor;
   noise.person *= factor;
   noise.take *= factor;
@@ -70,9 +72,11 @@ void put_trunk(Table& t) {
   t[spine_shoulder].spread = 0.7;
   t[head].spread = 0.85;
   t[spine_mid].twitch = t[spine_shoulder].twitch = t[head].twitch = 1.3;
-  t[neck] = joint(neck, 0.0, {}, Vec3::Zero());  // the mean of its neighbours: no draw of its own
+  // The neck is the mean of its neighbours and has no draw of its own.
+  t[neck] = joint(neck, 0.0, {}, Vec3::Zero());
 }
 
+/// Fills the arms; hands follow from the wrists.
 void put_arms(Table& t) {
   t[shoulder_left] = joint(spine_shoulder, 0.5, {{0.6, -3.5, 2.1}, 1.4, 3.7}, {1.2, 1.4, 1.5});
   t[shoulder_right] = joint(spine_shoulder, 0.5, {{-2.2, -2.7, 1.0}, 1.9, 3.7}, {1.5, 1.5, 1.4});
@@ -95,6 +99,7 @@ void put_arms(Table& t) {
   t[thumb_right] = with_white(of_hand(t[wrist_right], hand_right, 1.5), 3.0, 8.0);
 }
 
+/// Fills the legs; ankles and feet stand on the ground, which has its own figures.
 void put_legs(Table& t) {
   t[hip_left] = joint(spine_base, 0.93, {{-2.1, -1.8, 0.8}, 2.7, 2.8}, {1.4, 1.5, 1.5});
   t[hip_right] = joint(spine_base, 0.93, {{2.6, -2.0, 0.3}, 2.3, 2.6}, {1.3, 1.5, 1.5});

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far off each joint of a Kinect v2 is: figures measured on UI-PRMD against Vicon (620
-// repetitions of seven people) and on the two-Kinect recordings of KinectMultiTrack. Where a figure
-// had to move so that the model's statistics meet the measured ones, docs/kinect_noise.md says why.
+// Size of the error of each joint of a Kinect v2. The figures were measured on UI-PRMD against
+// Vicon (620 repetitions of seven people) and on the two-Kinect recordings of KinectMultiTrack.
+// docs/kinect_noise.md explains each figure that was changed so that the model's statistics equal
+// the measured ones.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -11,21 +12,22 @@
 
 namespace kinalign {
 
-/// One joint. Heading space: x to the person's left, y up, z to where the body faces.
+/// Error of one joint. Heading space: x to the person's left, y up, z in the direction that the
+/// body faces.
 struct KinectJointNoise {
-  KinectJoint source;   // draws go down a tree: from this joint …
-  double kinship;       // … with this correlation
-  Vec3 offset;          // m, of all people, x for a left joint or one in the middle
+  KinectJoint source;   // draws are correlated with those of this joint
+  double kinship;       // correlation with the source
+  Vec3 offset;          // m, common to all people; x is that of a left joint or one in the middle
   double person;        // m, sd of the offset between people, norm of three axes
-  double take;          // m, sd between takes of one person, likewise
-  Vec3 within;          // m, sd inside a take, per axis
-  double spread;        // of the log of that sd between takes: how much they differ
-  double tau;           // s, of the fast coloured part
-  double white;         // m, per axis, at rest …
-  double white_speed;   // … what a speed of 1 m/s adds …
-  double white_stir;    // … and a pose that changes by 1 m/s
-  double tail;          // degrees of freedom of Student's t that the white part is drawn from
-  double twitch = 1.0;  // how often it twitches, times the usual
+  double take;          // m, sd between takes of one person, norm of three axes
+  Vec3 within;          // m, sd within a take, for each axis
+  double spread;        // sd of the log of a take's errors: how much takes differ
+  double tau;           // s, time constant of the moving part of the slow error
+  double white;         // m, for each axis, at rest
+  double white_speed;   // m, added at a speed of 1 m/s
+  double white_stir;    // m, added if the pose changes by 1 m/s
+  double tail;          // degrees of freedom of Student's t, from which white noise is drawn
+  double twitch = 1.0;  // frequency of twitches, relative to the usual
 };
 
 /// [25] in JointType order.

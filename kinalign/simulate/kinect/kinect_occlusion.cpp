@@ -12,19 +12,21 @@ namespace kinalign {
 
 namespace {
 
-constexpr int patience = 2;                  // frames that a joint may be hidden without a word
-constexpr double gives_up = 0.93;            // else the tracker follows what hides the joint
-constexpr double way_per_frame = 1.0 / 3.0;  // to the guess
+constexpr int patience = 2;  // number of frames that a joint may be hidden without being marked
+constexpr double gives_up = 0.93;  // probability that the tracker guesses; otherwise it follows the
+                                   // object that hides the joint
+constexpr double way_per_frame = 1.0 / 3.0;  // share of the way to the guess
 constexpr double guess_tau_s = 0.8;
-constexpr double doubt = 0.003;  // of a frame of a joint that is seen, for one or two frames
+// Probability, for a frame of a visible joint, that it is marked for one or two frames.
+constexpr double doubt = 0.003;
 
-// A guess is off by an angle: the bone's length times these, sd per axis. Fitted to the far side of
-// a body that stands and steps at 90 degrees: far arm, far leg, rms of all joints.
+// A guess is wrong by an angle: an sd for each axis, times the bone's length. Fitted to the far
+// side of a body that stands and steps at 90 degrees: rms of far arm, far leg and all joints.
 struct GuessNoise {
   double at_entry, process;  // rad
 };
-constexpr double of_parent = 0.7;         // of a guessed parent's error: the same rows
-constexpr double longest_bone = 1.0;      // m: beyond it nothing is a bone
+constexpr double of_parent = 0.7;     // share of a guessed parent's error; fitted to the same data
+constexpr double longest_bone = 1.0;  // m; nothing longer is a bone
 constexpr double still_limb_share = 0.3;  // a still limb is guessed better
 
 GuessNoise guess_noise(KinectPart part) {
@@ -39,18 +41,18 @@ GuessNoise guess_noise(KinectPart part) {
   return {0.1, 0.0};
 }
 
-/// What the tracker remembers of one joint.
+/// The tracker's memory of one joint.
 struct Memory {
-  int hidden = 0;             // frames in a row
-  bool infers = false;        // else it follows, once patience is over
-  double away = 0.0;          // share of the way to the guess
-  double back = 1.0;          // share of that way per frame when the joint is seen again
-  int doubted = 0;            // frames that are still to be marked
-  Vec3 bone = Vec3::Zero();   // from the parent, heading space, as last seen
-  Vec3 entry = Vec3::Zero();  // draw at entry, unit
-  std::array<SmoothNoise, 3> wandering{};  // unit
+  int hidden = 0;             // number of frames in a row
+  bool infers = false;        // false: it follows the hiding object, once patience is over
+  double away = 0.0;          // share of the way to the guess that is reached
+  double back = 1.0;          // share of that way for each frame once the joint is seen again
+  int doubted = 0;            // number of frames that are still to be marked
+  Vec3 bone = Vec3::Zero();   // m, from the parent, in heading space, when last seen
+  Vec3 entry = Vec3::Zero();  // draw at the beginning of the guess, sd 1
+  std::array<SmoothNoise, 3> wandering{};  // slow part of the error, sd 1
   Vec3 guess = Vec3::Zero();               // m, camera space, without its error
-  Vec3 error = Vec3::Zero();               // m, heading space, of a guess
+  Vec3 error = Vec3::Zero();               // m, heading space, error of the guess
 
   Vec3 wander() const { return {wandering[0].value(), wandering[1].value(), wandering[2].value()}; }
 };
@@ -85,6 +87,8 @@ class Tracker {
     return static_cast<std::uint64_t>(scene_.ticks[t].number) * kinect_joint_count + j;
   }
 
+  /// One joint in one frame. The reported position moves to the guess while the joint is hidden,
+  /// and back when it is seen again.
   void step(std::size_t t, KinectJoint j, const std::optional<Vec3>& hider, bool below) {
     Memory& memory = memories_[j];
     const std::uint64_t k = counter(t, j);
@@ -107,7 +111,7 @@ class Tracker {
     mark(t, j, lost && memory.infers, k);
   }
 
-  /// Runs on whether it is used or not, so that it does not begin anew at each entry.
+  /// The process also runs while it is not used, so that it does not start anew at each guess.
   void wander(Memory& memory, std::uint64_t k) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto [first, second] = random_.normals(k, 2 + 2 * a);
@@ -116,12 +120,12 @@ class Tracker {
   }
 
   void enter(Memory& memory, KinectJoint j, std::uint64_t k, bool below) {
-    const bool torso = of_torso(j);  // too large to be another part
+    const bool torso = of_torso(j);  // too large to be taken for another part
     memory.infers = below || torso || random_.chance(k, 0, gives_up);
     memory.entry = Vec3(random_.normal(k, 8), random_.normal(k, 10), random_.normal(k, 12));
   }
 
-  /// Where it is from its parent: what a guess begins with.
+  /// Keeps the joint's position relative to its parent, from which a later guess starts.
   void remember(std::size_t t, KinectJoint j, const Vec3& seen) {
     Memory& memory = memories_[j];
     memory.guess = seen;
@@ -129,6 +133,8 @@ class Tracker {
         scene_.headings[t].axes.transpose() * (seen - memories_[kinect_limbs[j].parent].guess);
   }
 
+  /// Computes the guess: the hiding object, or the parent's guess plus the bone, each with an
+  /// error.
   void put_guess(std::size_t t, KinectJoint j, const Vec3& seen, const std::optional<Vec3>& hider) {
     Memory& memory = memories_[j];
     const Memory& parent = memories_[kinect_limbs[j].parent];
@@ -151,6 +157,7 @@ class Tracker {
         (1.0 - memory.away) * seen + memory.away * guessed;
   }
 
+  /// Marks inferred joints, and now and then a visible one.
   void mark(std::size_t t, KinectJoint j, bool inferred, std::uint64_t k) {
     Memory& memory = memories_[j];
     if (options_.parts.occlusion && memory.doubted == 0 && random_.chance(k, 14, doubt)) {

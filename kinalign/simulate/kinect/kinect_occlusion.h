@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tracker does with a joint that it can't see: it guesses, or takes what hides it.
+// The tracker's behaviour for a joint that it can't see: it guesses the position, or takes the
+// object that hides the joint.
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_scene.h"
 
 namespace kinalign {
 
-/// Why a joint is not seen in a frame.
+/// Reason why a joint is not seen in a frame.
 enum class Unseen : std::uint8_t { no, below_image, out_of_view };
 
-/// Moves `joints` [T,25,3] m that are hidden and marks `state` [T,25] inferred.
-/// `unseen` [T,25]; out of view is left to who asks.
+/// Moves hidden joints of `frames`, positions [T,25,3] m, and marks their states [T,25] as
+/// inferred. `unseen` [T,25]; joints out of view are left to the caller.
 void guess_hidden(const KinectScene& scene, const KinectOptions& options, const KinectIds& ids,
                   std::span<const Unseen> unseen, PointFrames& frames);
 

@@ -11,8 +11,8 @@ namespace kinalign {
 
 namespace {
 
-// How far apart poses are whose errors have little in common: fitted to the autocorrelation at 15
-// frames, whose fall below zero at 20 and 30 it gives, too.
+// Distance of poses whose errors have little in common. Fitted to the autocorrelation at 15 frames;
+// it also reproduces the negative values at 20 and 30 frames.
 constexpr double reach = 0.25;  // m
 
 Vec3 normals(const RandomStream& random, std::uint64_t k, std::uint64_t lane) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes with the pose: the same error each time the body is the same way.
+// Errors that depend on the pose: the same error whenever the body has the same pose.
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_scene.h"
@@ -8,15 +8,15 @@
 
 namespace kinalign {
 
-/// A smooth random function of each joint's pose, of unit variance per axis over all poses
-/// (correlation exp(-d^2 / 2 l^2) between poses d apart), correlated down the tree of joints: a sum
-/// of waves, «random Fourier features» (Rahimi and Recht, NIPS 2007).
+/// A smooth random function of each joint's pose, of unit variance for each axis over all poses.
+/// Poses at distance d have the correlation exp(-d^2 / 2 l^2). The function is correlated along the
+/// tree of joints. It is a sum of waves, «random Fourier features» (Rahimi and Recht, NIPS 2007).
 class KinectPoseError {
  public:
-  /// `shared`: the share of the variance that cameras before one take have in common.
+  /// `shared`: share of the variance that is common to all cameras on a take.
   KinectPoseError(const KinectIds& ids, double shared);
 
-  /// [25], heading space, of poses [25,3] m.
+  /// Errors [25] in heading space, sd 1, for poses [25,3] m.
   std::array<Vec3, kinect_joint_count> at(std::span<const double> poses) const;
 
  private:

@@ -8,9 +8,10 @@ namespace kinalign {
 
 namespace {
 
-constexpr double furthest = 100.0;  // m: beyond it a joint is not believed
+constexpr double furthest = 100.0;  // m; a joint farther away is not accepted
 constexpr double bustle_s = 0.5;
-constexpr std::int64_t longest_gap = 10;  // frames over which a difference is still a motion
+// Number of frames over which a difference still counts as a motion.
+constexpr std::int64_t longest_gap = 10;
 
 void take_truth(const KinectJointsAt& joints_at, const RigidTransform& world_from_kinect,
                 KinectScene& scene) {
@@ -25,14 +26,15 @@ void take_truth(const KinectJointsAt& joints_at, const RigidTransform& world_fro
       scene.known[i] = p.norm() < furthest ? 1 : 0;
       if (scene.known[i] != 0) {
         vec3(scene.truth, i) = p;
-      } else if (t > 0) {  // held, so that nothing else goes wild with it
+      } else if (t > 0) {  // keeps the last position, so that other quantities stay valid
         vec3(scene.truth, i) = vec3(scene.truth, i - kinect_joint_count);
       }
     }
   }
 }
 
-/// Left is across hips and shoulders, level; where that is nothing, as it was before.
+/// Finds the heading. The left is the level direction across hips and shoulders; without such a
+/// direction it stays as in `before`.
 BodyHeading heading(std::span<const double> joints, const Vec3& up, const BodyHeading& before) {
   const Vec3 across = vec3(joints, hip_left) - vec3(joints, hip_right) +
                       vec3(joints, shoulder_left) - vec3(joints, shoulder_right);
@@ -54,6 +56,7 @@ BodyHeading heading(std::span<const double> joints, const Vec3& up, const BodyHe
   return found;
 }
 
+/// Fills scene.poses.
 void take_poses(KinectScene& scene) {
   for (std::size_t t = 0; t < scene.frames(); ++t) {
     const std::span<const double> joints = scene.joints(t);
@@ -68,7 +71,7 @@ void take_poses(KinectScene& scene) {
   }
 }
 
-/// How fast joints of `places` [T,25,3] m are, m/s [T,25].
+/// Speeds of joints at `places` [T,25,3] m: [T,25] m/s.
 std::vector<double> speeds(const KinectScene& scene, const std::vector<double>& places) {
   const std::size_t frames = scene.frames();
   std::vector<double> found(scene.known.size(), 0.0);
@@ -86,7 +89,7 @@ std::vector<double> speeds(const KinectScene& scene, const std::vector<double>& 
   return found;
 }
 
-/// Means over half a second of `values` [T,C].
+/// Means of `values` [T,C] over half a second.
 std::vector<double> smoothed(const KinectScene& scene, const std::vector<double>& values,
                              std::size_t channels) {
   const std::size_t frames = scene.frames();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stamps. Streams are told apart by kinect_draws.h.
+// The sensor's stamps; its random streams are listed in kinect_draws.h.
 #include "kinalign/simulate/kinect/kinect_camera.h"
 #include "kinalign/simulate/kinect/kinect_draws.h"
 
@@ -10,12 +10,14 @@ namespace kinalign {
 
 namespace {
 
-// Device ticks of 100 ns: two frames of three are 32.98 ms apart, one 34.03 (mean 33.33).
+// Device ticks of 100 ns: of three steps between frames two are 32.98 ms and one is 34.03 ms (mean
+// 33.33).
 constexpr std::int64_t short_step = 329'800, long_step = 340'300, even_step = 333'300;
 constexpr double tick_s = 1e-7;
-constexpr double goes_on = 0.06;  // a run of dropped frames, after each
+constexpr double goes_on = 0.06;  // probability that another frame is dropped after a dropped one
 
-/// One long step in each three, at a place of its own: they alternate rather than cluster.
+/// Step between frames k and k + 1. Each group of three steps has one long step at a random place,
+/// so that long steps don't cluster.
 std::int64_t step(const RandomStream& random, std::int64_t k, bool uneven) {
   if (!uneven) return even_step;
   const auto three = static_cast<std::uint64_t>(k / 3);

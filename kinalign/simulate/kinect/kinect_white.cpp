@@ -12,18 +12,20 @@ namespace kinalign {
 
 namespace {
 
-constexpr double of_robust = 0.75;   // the measured figures are of second differences
+constexpr double of_robust = 0.75;   // the measured figures belong to second differences
 constexpr double most_white = 0.08;  // m
 
-// Twitches: the measured autocorrelation falls within one frame by 5 % (trunk) to 24 % (feet) while
-// the usual second difference stays under a millimetre, so a few frames must be far off. The rate,
-// and how it differs between joints, was fitted to each joint's autocorrelation at one frame.
-constexpr double twitch_rate = 0.0115, twitch_at_rest = 0.02;  // per frame; share of it at rest
-constexpr double twitch_sd = 0.025;                            // m per axis, times an exponential
-constexpr int longest_twitch = 4;                              // frames
+// Twitches. The measured autocorrelation falls by 5 % (trunk) to 24 % (feet) within one frame,
+// while the usual second difference stays below a millimetre. So a few frames must be far off. The
+// rate, and its differences between joints, were fitted to each joint's autocorrelation at one
+// frame.
+// For each frame; share of that rate at rest.
+constexpr double twitch_rate = 0.0115, twitch_at_rest = 0.02;
+constexpr double twitch_sd = 0.025;  // m for each axis, times an exponential draw
+constexpr int longest_twitch = 4;    // number of frames
 
 struct Twitch {
-  int left = 0;  // frames
+  int left = 0;  // remaining frames
   Vec3 offset = Vec3::Zero();
 };
 

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// What trembles: independent from frame to frame, more with a joint's speed, with heavy tails.
+// Fast errors: independent from frame to frame, greater at higher speed of the joint, with heavy
+// tails.
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_scene.h"
 
 namespace kinalign {
 
-/// Adds to `joints` [T,25,3] m.
+/// Adds white noise to `joints` [T,25,3] m.
 void add_white_noise(const KinectScene& scene, const KinectIds& ids, std::span<double> joints);
 
-/// Adds, too: a joint that the tracker puts elsewhere for some frames and takes back.
+/// Adds twitches: the tracker reports a joint elsewhere for some frames.
 void add_twitches(const KinectScene& scene, const KinectIds& ids, std::span<double> joints);
 
-/// Student's t from two uniform numbers (Bailey, «Polar generation of random variates with the
-/// t-distribution», Mathematics of Computation 62, 1994).
+/// A draw of Student's t from two uniform numbers (Bailey, «Polar generation of random variates
+/// with the t-distribution», Mathematics of Computation 62, 1994).
 double student_t(double degrees, double u, double v);
 
 }  // namespace kinalign

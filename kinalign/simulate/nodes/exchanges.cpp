@@ -13,9 +13,9 @@ namespace kinalign {
 namespace {
 
 constexpr double dither_s = 1e-3;
-constexpr double turnaround_s = 30e-6;  // of the host, on the average
+constexpr double turnaround_s = 30e-6;  // mean, on the host
 
-/// The counter of the node with all that befalls it.
+/// The node's counter with all steps, reboots and changes of rate.
 class Counter {
  public:
   Counter(std::uint64_t seed, const ExchangeOptions& options)
@@ -33,7 +33,7 @@ class Counter {
 
   Reading at(double t) const {
     std::uint64_t id = 0;
-    double begin = -1.0;  // of the boot
+    double begin = -1.0;  // start of the current boot
     for (std::size_t i = 0; i < options_.reboots.size() && options_.reboots[i].at <= t; ++i) {
       begin = options_.reboots[i].at + options_.reboots[i].gap;
       if (!options_.reboots[i].same_id) id = i + 1;
@@ -62,6 +62,7 @@ std::int64_t microseconds(double seconds) {
   return static_cast<std::int64_t>(std::floor(seconds * 1e6));
 }
 
+/// Fills the frames with the node's readings; the sequence restarts after a reboot.
 void send_frames(const Counter& counter, std::uint64_t seed, SimulatedExchanges& run) {
   const ExchangeOptions& o = run.options;
   const RandomStream random(seed, 4);
@@ -87,7 +88,7 @@ void send_frames(const Counter& counter, std::uint64_t seed, SimulatedExchanges&
   }
 }
 
-/// Frames to the host; gives those heard in the order of their arrival.
+/// Sends the frames to the host. Returns the indices of those that arrive, in the order of arrival.
 std::vector<std::size_t> carry_up(std::uint64_t seed, SimulatedExchanges& run) {
   std::vector<double> sent(run.frames.size());
   for (std::size_t k = 0; k < sent.size(); ++k) sent[k] = run.frames[k].sent;
@@ -104,7 +105,7 @@ std::vector<std::size_t> carry_up(std::uint64_t seed, SimulatedExchanges& run) {
   return heard;
 }
 
-/// The host replies to each frame that it heard; what reaches the node is read from its counter.
+/// Sends a reply to each frame that arrived. The node reads its counter when a reply reaches it.
 void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<std::size_t>& heard,
                 SimulatedExchanges& run) {
   const RandomStream random(seed, 4);
@@ -119,13 +120,13 @@ void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<st
     SimulatedFrame& frame = run.frames[heard[j]];
     if (!arrivals[j].first || !counter.powered(*arrivals[j].first)) continue;
     const Counter::Reading reading = counter.at(*arrivals[j].first);
-    if (reading.boot_id != frame.boot_id) continue;  // a reply to an earlier life
+    if (reading.boot_id != frame.boot_id) continue;  // a reply to an earlier boot
     frame.reply_heard = arrivals[j].first;
     frame.n_rx_us = microseconds(reading.seconds);
   }
 }
 
-/// Each frame carries the newest of the replies that came since the frame before it.
+/// Echoes: each frame carries the newest reply that came since the frame before it.
 void echo_replies(SimulatedExchanges& run) {
   auto& frames = run.frames;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -138,7 +139,7 @@ void echo_replies(SimulatedExchanges& run) {
   }
 }
 
-/// The paper's third packet, from a node without a clock.
+/// The third packet of the paper's exchange, sent by a node without a clock.
 void confirm(std::uint64_t seed, SimulatedExchanges& run) {
   const RandomStream random(seed, 4);
   std::vector<std::pair<double, std::size_t>> answers;

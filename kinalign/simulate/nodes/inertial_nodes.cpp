@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 115 of a node's seed: number 0 lane 0 the phase of its timer; by the tick, lane 1 how late
-// it is served. Of the pass: poses every chip step, the last five of which give the true reading in
-// their middle.
+// Stream 115 of a node's seed: number 0 lane 0 is the phase of its timer; lane 1, by tick, is the
+// delay until the tick is served. The pass poses the body at every chip step; the last five poses
+// give the true reading in their middle.
 #include "kinalign/simulate/nodes/inertial_nodes.h"
 
 #include <cmath>
@@ -12,16 +12,17 @@ namespace kinalign {
 
 namespace {
 
-// From the timer to the reading: estimated, a task of high priority on an idle core.
+// Delay from the timer to the reading; estimated for a task of high priority on an idle core.
 constexpr double service_s = 15e-6;
 
-/// The timer's ticks on the node's counter, and when they are served.
+/// The timer's ticks on the node's counter, and the times at which they are served.
 class NodeTimer {
  public:
   NodeTimer(const InertialNodeOptions& options, std::uint64_t seed, double length_s)
       : clock_(seed, length_s, options.clock),
         random_(seed, 115),
-        period_us_(1'000'000 / options.rate_hz) {  // whole microseconds, as the firmware's timer
+        // In whole microseconds, like the firmware's timer.
+        period_us_(1'000'000 / options.rate_hz) {
     const double phase = static_cast<double>(period_us_) * random_.uniform(0, 0);
     next_us_ = static_cast<std::uint64_t>(clock_.reading(0.0) * 1e6 + phase) + 1;
     plan();
@@ -49,7 +50,7 @@ class NodeTimer {
   double served_s_ = 0.0;
 };
 
-/// Mean rate of a sensor that lies still.
+/// Mean rate of a sensor that lies still, rad/s.
 Vec3 mean_rate_at_rest(SimulatedSensor& sensor, const Vec3& gravity, double rest_s) {
   const auto steps = static_cast<std::size_t>(rest_s * chip_rate_hz);
   Vec3 sum = Vec3::Zero();
@@ -67,6 +68,7 @@ MahonyOptions calibrated(const InertialNodeOptions& options, SimulatedSensor& se
   return filter;
 }
 
+/// One node during the pass: chip, filter and timer, and the samples so far.
 class NodeAtWork {
  public:
   NodeAtWork(const Mounting& mounting, const InertialNodeOptions& options, std::uint64_t seed,
@@ -79,7 +81,7 @@ class NodeAtWork {
     node_.seed = seed;
   }
 
-  /// A chip step that ends at `t`, in the middle of the five last poses.
+  /// Runs the chip for one step; its reading belongs to the middle of the last five poses.
   void chip_step(const std::array<const GlobalPose*, 5>& poses) {
     std::array<SensorPlace, 5> places;
     for (std::size_t k = 0; k < 5; ++k) places[k] = place_of(node_.mounting, *poses[k]);
@@ -87,7 +89,7 @@ class NodeAtWork {
     if (options_.orientation) filter_.update(chip_step_s, sensor_.reading_of(registers_));
   }
 
-  /// Ticks that are served before `t`: until then the registers hold what they hold.
+  /// Takes a sample for each tick that is served before `t`; the registers don't change until then.
   void serve(double t, const Motion& motion) {
     for (; timer_.served_s() < t; timer_.advance()) {
       SimulatedNodeSample taken{timer_.counter_us(), sensor_.sample_of(registers_)};
@@ -149,9 +151,9 @@ Result<std::vector<SimulatedNode>> simulate_nodes(const Motion& motion,
   for (std::size_t n = 0; n < mountings.size(); ++n) {
     nodes.push_back(
         std::make_unique<NodeAtWork>(mountings[n], options, mix64(seed) + n, motion.length_s));
-    nodes.back()->skip(2.0 * chip_step_s);  // before the first reading there is none to take
+    nodes.back()->skip(2.0 * chip_step_s);  // no reading exists before that
   }
-  std::array<GlobalPose, 5> poses;  // pose i of the motion in place i % 5
+  std::array<GlobalPose, 5> poses;  // pose i of the motion is at index i % 5
   Pose pose;
   const auto steps = static_cast<std::size_t>(motion.length_s * chip_rate_hz + 1e-6);
   for (std::size_t i = 0; i <= steps; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Streams of a chip's seed: 110 and 111 the noise of gyroscope and accelerometer (lanes 0, 2, 4),
-// 112 the walks (lanes 0 to 10), 113 scale, misalignment and zeros (number 0 the gyroscope's, 1 the
-// accelerometer's; lanes 0 to 8 the matrix, 9 to 11 zeros).
+// 112 the walks (lanes 0 to 10), 113 scale, misalignment and zeros (number 0 for the gyroscope, 1
+// for the accelerometer; lanes 0 to 8 the matrix, 9 to 11 the zeros).
 #include "kinalign/simulate/nodes/inertial_sensor.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Vec3 drawn_zero(const RandomStream& random, std::uint64_t number, double most) {
           evenly(random, number, 11, most)};
 }
 
-/// Rounded to steps of the range over 32768, and held where the range ends.
+/// Rounds to steps of the range over 32768 and clamps at the ends of the range.
 std::array<std::int16_t, 3> quantised(const Vec3& value, double range) {
   std::array<std::int16_t, 3> raw{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -48,7 +48,8 @@ std::array<std::int16_t, 3> quantised(const Vec3& value, double range) {
 }  // namespace
 
 ChipLowPass::ChipLowPass(double bandwidth_hz) {
-  // Each pole at bandwidth / sqrt(sqrt(2) - 1): both together are 3 dB down at the bandwidth.
+  // Each pole lies at bandwidth / sqrt(sqrt(2) - 1), so that both together are 3 dB down at the
+  // bandwidth.
   const double pole = 2.0 * std::numbers::pi * bandwidth_hz / std::sqrt(std::numbers::sqrt2 - 1.0);
   const double w = pole * chip_step_s;
   take_ = w / (2.0 + w);
@@ -96,7 +97,7 @@ void SimulatedSensor::walk(double seconds) {
 
 RawReading SimulatedSensor::step(const InertialReading& truth) {
   walk(chip_step_s);
-  // A density over the band up to half the chip's rate.
+  // The noise density applies to the band up to half of the chip's rate.
   const double band = std::sqrt(0.5 * chip_rate_hz);
   const Vec3 rate = errors_.gyroscope_scale * truth.angular_velocity + errors_.gyroscope_zero +
                     model_.gyroscope_noise * band * normal(gyroscope_noise_, steps_, 0);

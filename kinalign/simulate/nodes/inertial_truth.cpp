@@ -14,7 +14,7 @@ SensorPlace place_of(const Mounting& mounting, const GlobalPose& pose) {
 
 InertialReading true_reading(const std::array<SensorPlace, 5>& places, double step_s) {
   const Quat to_sensor = places[2].world_from_sensor.conjugate();
-  // Rotation vectors from the middle: their derivative there is the angular rate itself.
+  // Rotation vectors relative to the middle: their derivative there is the angular rate.
   const auto turned = [&](std::size_t k) {
     return rotation_vector(to_sensor * places[k].world_from_sensor);
   };

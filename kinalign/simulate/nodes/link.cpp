@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Streams of a seed: 3 the link's own draw, 10 to 12 delays, 20 and 21 good and bad states, 30
-// roams, 40 to 42 reordering and duplicates, 50 bursts, 60 to 62 losses of faults.
+// changes of route, 40 to 42 reordering and duplicates, 50 bursts, 60 to 62 losses of faults.
 #include "kinalign/simulate/nodes/link.h"
 
 #include "kinalign/simulate/random.h"
@@ -21,6 +21,7 @@ struct Shares {
   double lost, duplicated, reordered;
 };
 
+/// Shares of packets that each link loses, duplicates and reorders.
 Shares shares(Link link) {
   switch (link) {
     case Link::wired:
@@ -40,13 +41,13 @@ Shares shares(Link link) {
   return {};
 }
 
-/// Two states in turn with exponential dwells, the good one first.
+/// Two alternating states with exponential durations; the good one comes first.
 class Dwells {
  public:
   Dwells(RandomStream random, double good_s, double bad_s)
       : random_(random), good_s_(good_s), bad_s_(bad_s) {}
 
-  /// Asked at rising times.
+  /// Call with rising times.
   bool bad(double t) {
     while (end_ <= t) {
       end_ += random_.exponential(dwell_, 0, dwell_ % 2 == 0 ? good_s_ : bad_s_);
@@ -62,12 +63,13 @@ class Dwells {
   std::uint64_t dwell_ = 0;
 };
 
-/// A roam every 20 s + Exp(40 s): an outage of 0.2 to 2 s, then a route of its own each way.
+/// A change of route every 20 s + Exp(40 s): an outage of 0.2 to 2 s, then another extra delay in
+/// each direction.
 class Roams {
  public:
   Roams(RandomStream random, Way way) : random_(random), down_(way == Way::down) { next_ = step(); }
 
-  /// Asked at rising times: what the route adds, and whether it is being changed.
+  /// Call with rising times: the extra delay of the route, and whether it is changing.
   Transit at(double t) {
     while (next_ <= t) {
       last_ = next_;
@@ -96,9 +98,9 @@ double quiet_delay(const RandomStream& s, std::uint64_t k) {
   return d;
 }
 
-/// How long the access point keeps a reply until the next beacon that the node hears.
+/// Time that the access point keeps a reply, until the next beacon that the node receives.
 double beacon_wait(const RandomStream& s, std::uint64_t seed, std::uint64_t k, double sent) {
-  if (s.chance(k, 4, 0.10)) return 0.0;  // still awake
+  if (s.chance(k, 4, 0.10)) return 0.0;  // the node is still awake
   const RandomStream link(seed, 3);
   const double period = 0.1024 * (1.0 + 20e-6 * (2.0 * link.uniform(0, 1) - 1.0));
   const double ahead = std::fmod(0.1024 * link.uniform(0, 2) - sent, period);
@@ -111,13 +113,13 @@ double congested_delay(const RandomStream& s, std::uint64_t k, bool down, bool b
 }
 
 struct Packet {
-  std::uint64_t k = 0;  // its number in its direction
+  std::uint64_t k = 0;  // number in its direction
   double sent = 0.0;
   Way way = Way::up;
-  bool bad = false;  // state of a link that knows two
+  bool bad = false;  // state of a link with two states
 };
 
-/// What is added to the floor.
+/// Delay in addition to the floor, s.
 double above_floor(Link link, const RandomStream& s, std::uint64_t seed, const Packet& packet) {
   const std::uint64_t k = packet.k;
   const bool down = packet.way == Way::down;
@@ -128,7 +130,7 @@ double above_floor(Link link, const RandomStream& s, std::uint64_t seed, const P
     case Link::quiet:
     case Link::roaming:
       return quiet_delay(s, k);
-    case Link::paper:  // 9 % meet an idle channel and an awake radio
+    case Link::paper:  // 9 % find an idle channel and an awake radio
       return s.exponential(k, 0, 1.9 * ms) +
              (s.chance(k, 1, 0.91) ? 59.0 * ms * s.uniform(k, 2) : 0.0);
     case Link::thin_floor:
@@ -216,7 +218,7 @@ std::vector<Arrival> transmit(const LinkOptions& options, std::uint64_t seed, Wa
     if (random.chance(k, 0, share.reordered + options.reordered)) {
       arrival += 40.0 * ms * random.uniform(k, 1);
     } else {
-      last = arrival = std::max(arrival, last + queue_gap_s);  // a lost one was in the queue, too
+      last = arrival = std::max(arrival, last + queue_gap_s);  // a lost packet was in the queue too
     }
     const bool lost = way_through[k].lost || (options.bursts && bursts.bad(sent[k]));
     if (lost) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radio and wire between a node and the host: seven links, each by its delays, losses, duplicates
-// and reorderings, as docs/clock.md describes them. Seconds; the same seed gives the same link.
+// Links between a node and the host: seven kinds, with the delays, losses, duplicates and
+// reorderings that docs/clock.md describes. Times are in seconds; the same seed gives the same
+// link.
 #pragma once
 
 #include <cstdint>
@@ -12,52 +13,52 @@ namespace kinalign {
 
 enum class Link : std::uint8_t {
   wired,        // A: a switch
-  quiet,        // B: Wi-Fi with modem sleep off
+  quiet,        // B: Wi-Fi without modem sleep
   paper,        // C: d = 33 +- 13 ms, as the paper measured
   modem_sleep,  // D: the downlink waits for a beacon
-  congested,    // E: good and bad states, unlike both ways
+  congested,    // E: good and bad states, different in both directions
   roaming,      // F: B with a new route every minute
-  thin_floor    // G: d as C's, but hardly a packet near the floor
+  thin_floor    // G: d as in C, but hardly a packet near the floor
 };
 inline constexpr std::uint8_t links = 7;
-/// A … G, as the tables name them.
+/// A … G, as in the tables.
 constexpr char letter(Link link) { return static_cast<char>('A' + static_cast<int>(link)); }
 
-enum class Way : std::uint8_t { up = 0, down = 1, confirm = 2 };  // confirm goes up, too
+enum class Way : std::uint8_t { up = 0, down = 1, confirm = 2 };  // `confirm` packets go up too
 
-/// A pathology on top of the link's own: each from `begin` to `end`, s, by the time of sending.
+/// A fault in addition to the link's own behaviour, for packets sent from `begin` to `end`, s.
 struct LinkFault {
   double begin = 0.0, end = 0.0;
-  double lost_up = 0.0, lost_down = 0.0;    // share that is lost on top
-  double extra_up = 0.0, extra_down = 0.0;  // s, a longer route
+  double lost_up = 0.0, lost_down = 0.0;    // additional share that is lost
+  double extra_up = 0.0, extra_down = 0.0;  // s, as on a longer route
 };
 
 struct LinkOptions {
   Link link = Link::quiet;
-  bool bursts = false;      // 2 s of total loss and 2 s without in turn, on the average
-  double duplicated = 0.0;  // share, on top of the link's own
-  double reordered = 0.0;   // share that comes up to 40 ms later than it would
+  bool bursts = false;      // alternately 2 s of total loss and 2 s without loss, on average
+  double duplicated = 0.0;  // share, in addition to the link's own
+  double reordered = 0.0;   // share that arrives up to 40 ms later
   std::vector<LinkFault> faults{};
 };
 
-/// The least one-way delays of the link, s.
+/// The least delays of the link in each direction, s.
 struct Floors {
   double up = 0.0, down = 0.0;
 };
 Floors floors(Link link, std::uint64_t seed);
 
 struct Transit {
-  double delay = 0.0;  // s, before it queues behind earlier packets
+  double delay = 0.0;  // s, before the packet queues behind earlier ones
   bool lost = false;
 };
-/// Of packets sent at these rising times.
+/// The delays of packets that are sent at the rising times `sent`.
 std::vector<Transit> transits(const LinkOptions& options, std::uint64_t seed, Way way,
                               std::span<const double> sent);
 
 struct Arrival {
   std::optional<double> first, duplicate;
 };
-/// In order but for the reordered few, at least 20 us apart; absent: lost.
+/// Arrivals in order, except for the few reordered ones, at least 20 us apart; absent: lost.
 std::vector<Arrival> transmit(const LinkOptions& options, std::uint64_t seed, Way way,
                               std::span<const double> sent);
 

@@ -12,11 +12,11 @@ namespace kinalign {
 namespace {
 
 constexpr double grid_s = 0.1;
-constexpr double first_reading_s = 5.0;   // the node was on before the host heard of it
-constexpr std::size_t grid_margin = 200;  // steps behind the recording's end
+constexpr double first_reading_s = 5.0;  // the node was on before the host received its first frame
+constexpr std::size_t grid_margin = 200;  // steps after the end of the recording
 constexpr double pi = std::numbers::pi;
 
-/// What `ramp` and `curvature` add to the frequency error at t.
+/// Frequency error at t that `ramp` and `curvature` add.
 double bend(const NodeClockOptions& o, double t) {
   const double w = 2.0 * pi / o.period_s;
   return o.ramp * t + o.curvature / w * (1.0 - std::cos(w * t));

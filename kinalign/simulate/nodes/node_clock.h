@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counter of a node whose crystal is a little off, ages, warms up and is noisy. All times in
-// seconds; the axis of truth is the host's. Constants: an uncompensated crystal at most 20 ppm off
-// (table 1 of «Time synchronisation for millisecond-precision on bio-loggers», Movement Ecology
-// 2024); 0.3 ppm per degree and 12 degrees of warming in some minutes are estimates.
+// The counter of a node. Its crystal has a small error, ages, warms up and is noisy. All times are
+// in seconds; the truth is the host's axis. Constants: an uncompensated crystal is at most 20 ppm
+// off (table 1 of «Time synchronisation for millisecond-precision on bio-loggers», Movement Ecology
+// 2024); 0.3 ppm per degree and warming by 12 degrees in some minutes are estimates.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,20 @@ namespace kinalign {
 
 struct NodeClockOptions {
   std::optional<double> frequency_error;  // 1e-6: 1 ppm fast; absent: drawn, up to 20 ppm
-  bool temperature = true;                // warms up from the first second
-  double ramp = 0.0;                      // added change of the frequency error, per second
-  double curvature = 0.0;                 // of an added sine: its greatest change, per second …
-  double period_s = 20.0;                 // … and its period
+  bool temperature = true;                // the node warms up from the first second on
+  double ramp = 0.0;                      // additional change of the frequency error, per second
+  double curvature = 0.0;                 // greatest change of an additional sine, per second
+  double period_s = 20.0;                 // period of that sine
 };
 
-/// Reading n(t) = 5 s + t + X(t) on a grid of 0.1 s, linear in between. X' is the constant error, a
-/// random walk (1e-9 per root second), white noise (Allan deviation 1e-9 at 1 s) and temperature.
+/// The reading is n(t) = 5 s + t + X(t), on a grid of 0.1 s and linear in between. X' is the sum of
+/// the constant error, a random walk (1e-9 per root second), white noise (Allan deviation 1e-9 at 1
+/// s) and the effect of temperature.
 class SimulatedClock {
  public:
   SimulatedClock(std::uint64_t seed, double length_s, const NodeClockOptions& options = {});
 
-  /// What the node's crystal has counted at host time t, s; and when it had counted n.
+  /// reading(): count of the node's crystal at host time t, s. host(): the inverse.
   double reading(double host_s) const;
   double host(double reading_s) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 114 of a seed, by the node's number: lane 0 how far along the bone, 1 to 3 how far beside,
-// 4 to 6 the axis and 8 the angle of the turn. Lengths in cm of a person whose shank has 41.87.
+// Stream 114 of a seed, by the node's number: lane 0 the position along the bone, 1 to 3 the
+// displacement from it, 4 to 6 the axis and 8 the angle of the turn. Lengths are in cm for a person
+// with a shank of 41.87 cm.
 #include "kinalign/motion/rotation.h"
 #include "kinalign/simulate/nodes/inertial_nodes.h"
 #include "kinalign/simulate/random.h"
@@ -15,16 +16,16 @@ namespace kinalign {
 namespace {
 
 struct Worn {
-  std::string_view node, joint, end;  // the bone goes from one to the other; `end` empty: upwards
-  double from_cm, to_cm;              // along the bone, from its beginning, of a shank of 41.87 cm
-  bool from_end;                      // or back from its end
+  std::string_view node, joint, end;  // the bone goes from `joint` to `end`; `end` empty: upwards
+  double from_cm, to_cm;              // along the bone from its beginning, for a shank of 41.87 cm
+  bool from_end;                      // true: backwards from its end
   Vec3 outward;                       // in the rest pose
-  double beside_cm;                   // outward, from the bone's axis
+  double beside_cm;                   // outward from the bone's axis
 };
 
 std::array<Worn, 5> worn() {
   const Vec3 up = Vec3::UnitY(), back = -Vec3::UnitZ();
-  const Vec3 left = Vec3(0.6, 0.0, 0.8), right = Vec3(-0.6, 0.0, 0.8);  // front and outside
+  const Vec3 left = Vec3(0.6, 0.0, 0.8), right = Vec3(-0.6, 0.0, 0.8);  // to the front and outside
   return {{{"waist", "Hips", "", 5.0, 5.0, false, back, 10.0},
            {"wrist_left", "LeftForeArm", "LeftHand", 3.0, 5.0, true, up, 3.0},
            {"wrist_right", "RightForeArm", "RightHand", 3.0, 5.0, true, up, 3.0},
@@ -45,13 +46,14 @@ Result<std::size_t> needed_joint(const Skeleton& skeleton, std::string_view name
                        "none of that name"});
 }
 
-/// A bone of the skeleton to wear a node on.
+/// The bone on which a node is worn.
 struct Bone {
   std::size_t joint = 0;
   Vec3 way = Vec3::UnitY();  // m, to its end
-  double scale = 1.0;        // of the person's lengths
+  double scale = 1.0;        // size of the person; 1: a shank of 41.87 cm
 };
 
+/// The mounting of a node, with random position along the bone, displacement and turn.
 Mounting mounted(const Worn& where, const Bone& bone, const RandomStream& random,
                  std::uint64_t number) {
   const auto near = [&](std::uint64_t lane) { return 2.0 * random.uniform(number, lane) - 1.0; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a simulated link does to the packets of one way, one after the other, where it is not known
-// beforehand when they will be sent: for real sockets.
+// Effects of a simulated link on the packets of one direction, one after the other. For real
+// sockets, where the times of sending are not known in advance.
 #pragma once
 
 #include "kinalign/simulate/nodes/link.h"
@@ -13,7 +13,7 @@
 
 namespace kinalign {
 
-/// Drawn beforehand for packets at a steady rate, which real ones have nearly.
+/// Fates are drawn in advance for packets at a steady rate, which real ones nearly have.
 class PacketFates {
  public:
   using Delay = std::chrono::nanoseconds;
@@ -22,7 +22,7 @@ class PacketFates {
   };
 
   PacketFates(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz) {
-    constexpr std::size_t packets = 1 << 16;  // then from the front again
+    constexpr std::size_t packets = 1 << 16;  // after that they repeat
     std::vector<double> sent(packets);
     for (std::size_t k = 0; k < packets; ++k) sent[k] = static_cast<double>(k) / rate_hz;
     const auto arrivals = transmit(options, seed, way, sent);

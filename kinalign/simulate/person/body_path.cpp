@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point that walks from goal to goal with limited speed, acceleration and rate of turning; its
-// places every 0.2 s are the controls of the path. Stream 103 of a seed, by the goal's number in
-// all the motion: lane 0 direction, 1 distance, 2 how far to turn.
+// A point walks from goal to goal with limited speed, acceleration and rate of turning. Its
+// positions every 0.2 s are the controls of the path. Stream 103 of a seed, by the number of the
+// goal in the whole motion: lane 0 direction, 1 distance, 2 angle of the turn.
 #include "kinalign/simulate/person/body_path.h"
 
 #include "kinalign/simulate/random.h"
@@ -17,13 +17,15 @@ namespace {
 
 using std::numbers::pi;
 constexpr double control_s = 0.2;
-constexpr double tick_s = 0.05;         // four to a control
-constexpr double most_turn_rate = 1.2;  // rad/s, estimated: a quarter turn in 1.3 s and two steps
+constexpr double tick_s = 0.05;  // four ticks for each control
+// rad/s, estimated: a quarter turn takes 1.3 s and two steps.
+constexpr double most_turn_rate = 1.2;
 constexpr double most_acceleration = 1.0;  // m/s2
 constexpr double arrival_m = 0.2;
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * pi); }
 
+/// Moves the point in ticks, act by act.
 class Walker {
  public:
   Walker(std::uint64_t seed, double scale) : random_(seed, 103), scale_(scale) {}
@@ -34,13 +36,14 @@ class Walker {
     const StepTimes steps = step_times(act);
     act_ = &act;
     may_move_from_ = steps.first_s;
-    // The last two steps bring the feet under a body that has come to rest.
+    // The last two steps bring the feet under a body that has come to rest already.
     rest_from_ = steps.count < 4 ? steps.first_s : steps.leaves(steps.count - 2);
     going_home_ = turning_ = false;
     goal_number_ = 0;
     choose();
   }
 
+  /// Moves the point by one tick; outside of the steps it slows down to rest.
   void tick(double t) {
     const bool moves = t >= may_move_from_ && t < rest_from_ && act_->piece != Piece::step;
     if (!moves) {
@@ -55,8 +58,10 @@ class Walker {
   }
 
  private:
-  double top_speed() const { return act_->speed * std::sqrt(scale_); }  // as pendulums go
+  // m/s; it grows with the root of the size, like a pendulum's.
+  double top_speed() const { return act_->speed * std::sqrt(scale_); }
 
+  /// Chooses the next goal of the act: a position, or an angle to turn to.
   void choose() {
     const std::uint64_t n = goals_++;
     ++goal_number_;
@@ -76,7 +81,7 @@ class Walker {
   void approach(double speed) {
     speed_ += std::clamp(speed - speed_, -most_acceleration * tick_s, most_acceleration * tick_s);
   }
-  /// How far off the wanted yaw it was.
+  /// Turns towards a yaw; returns the distance to it before the turn, rad.
   double steer(double yaw) {
     const double off = yaw - place_.yaw;
     place_.yaw += std::clamp(4.0 * off, -most_turn_rate, most_turn_rate) * tick_s;
@@ -84,6 +89,7 @@ class Walker {
   }
   double home_yaw() const { return 2.0 * pi * std::round(place_.yaw / (2.0 * pi)); }
 
+  /// Turns in place to goal after goal, and back to the front in time.
   void turn(double t) {
     approach(0.0);
     const double needed = std::abs(home_yaw() - place_.yaw) / most_turn_rate + 1.0;
@@ -96,6 +102,7 @@ class Walker {
     }
   }
 
+  /// Walks to goal after goal, and home in time to turn to the front.
   void walk(double t) {
     const double away = std::hypot(place_.x, place_.z);
     const double needed = away / (0.7 * top_speed()) + (away > 0.15 ? pi / most_turn_rate : 0.0) +
@@ -105,7 +112,7 @@ class Walker {
     const double dx = target.x - place_.x, dz = target.z - place_.z;
     const double distance = std::hypot(dx, dz);
     if (going_home_ && (turning_ || distance < 0.08)) {
-      turning_ = true;  // is there: faces the front again
+      turning_ = true;  // at home: turns to the front again
       approach(0.0);
       steer(home_yaw());
       return;
@@ -131,6 +138,7 @@ struct Controls {
   std::vector<double> x, z, yaw;
 };
 
+/// Walks through all acts and records the point's position for each control.
 Controls walked(const std::vector<Act>& acts, std::uint64_t seed, double scale) {
   Controls controls;
   Walker walker(seed, scale);

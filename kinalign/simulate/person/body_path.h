@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the body of a simulated person is on the floor, and where it faces, and the times of its
-// steps.
+// Position and heading of a simulated person on the floor, and the times of the steps.
 #pragma once
 
 #include "kinalign/simulate/person/programme.h"
@@ -10,11 +9,11 @@ namespace kinalign {
 
 struct FloorPlace {
   double x = 0.0, z = 0.0;  // m
-  double yaw = 0.0;         // rad about +y from facing +z, counted on over whole turns
+  double yaw = 0.0;         // rad about +y from facing +z, not wrapped
 };
 
-/// The steps of an act: the k-th foot (in turn, the act's side first) leaves the floor at
-/// first_s + k stride_s / 2, and is in the air for swing_s.
+/// The steps of an act. Foot k (alternating, the act's side first) leaves the floor at first_s + k
+/// stride_s / 2 and is in the air for swing_s.
 struct StepTimes {
   double first_s = 0.0, stride_s = 1.0, swing_s = 0.4;
   std::size_t count = 0;
@@ -23,14 +22,15 @@ struct StepTimes {
   double lands(std::size_t k) const { return leaves(k) + swing_s; }
   double stance_s() const { return stride_s - swing_s; }
 };
-/// None of an act without steps, or too short for two.
+/// The step times of an act; none for an act without steps, or one too short for two.
 StepTimes step_times(const Act& act);
 
-/// Four times continuously differentiable. At rest outside the steps; home, where there was time to
-/// go, is 0, 0, facing +z (yaw a multiple of a turn).
+/// The path of the body, four times continuously differentiable. The body rests outside of the
+/// steps. It then stands at home if there was time to go there: at 0, 0, facing +z (yaw a multiple
+/// of a turn).
 class BodyPath {
  public:
-  /// `scale`: the person's size, 1 for 1.75 m.
+  /// `scale`: the person's size; 1: 1.75 m.
   BodyPath(const std::vector<Act>& acts, std::uint64_t seed, double scale);
 
   FloorPlace at(double t) const { return {x_.at(t), z_.at(t), yaw_.at(t)}; }

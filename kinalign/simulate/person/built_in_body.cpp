@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 104 of a seed: rates and phases of sway, breath and glances, by their number, and lanes 0
-// to 2 of number 10 how a person holds feet and arms. Sizes of sway (5 mm), breath (half a degree a
-// segment) and of what pelvis and trunk do in walking (4 degrees) are estimates.
+// Stream 104 of a seed: frequencies and phases of sway, breath and glances, by their number; lanes
+// 0 to 2 of number 10 are the person's style of holding feet and arms. Sway (5 mm), breath (half a
+// degree for each segment) and the movement of pelvis and trunk in walking (4 degrees) are
+// estimates.
 #include "kinalign/simulate/person/built_in_body.h"
 
 #include "kinalign/motion/rotation.h"
@@ -15,16 +16,17 @@ namespace kinalign {
 namespace {
 
 using std::numbers::pi;
-constexpr double longest_leg = 0.9985;  // share of its bones' length that hip and ankle are apart
-constexpr double bend_depth = 0.75;     // rad, of the pelvis
-constexpr double squat_depth = 0.30;    // m
-constexpr double deep = 1.3;            // a deep squat, in those of a usual one
+// Longest distance of hip and ankle, as a share of the length of the leg's bones.
+constexpr double longest_leg = 0.9985;
+constexpr double bend_depth = 0.75;   // rad, of the pelvis
+constexpr double squat_depth = 0.30;  // m
+constexpr double deep = 1.3;          // depth of a deep squat in units of a usual one
 
 Quat about_x(double angle) { return rotation(Vec3(angle, 0, 0)); }
 Quat about_y(double angle) { return rotation(Vec3(0, angle, 0)); }
 Quat about_z(double angle) { return rotation(Vec3(0, 0, angle)); }
 
-/// Bumps of an act, one a repetition, that fit between its ends.
+/// The repetitions of an act: bumps that fit between its ends.
 double repeated(const Act& act, double t) {
   const double room = act.end_s - act.begin_s;
   const auto times = std::max(1.0, std::floor(room / act.tempo_s));
@@ -33,10 +35,10 @@ double repeated(const Act& act, double t) {
   return act.amplitude * bump(x - std::clamp(std::floor(x), 0.0, times - 1.0));
 }
 
-/// Both arms do the same.
+/// Makes both arms do the same.
 void do_with_both(Doing& doing, const ArmDoing& arm) { doing.left = doing.right = arm; }
 
-/// A push: the hand comes before the chest, goes away from there and back, and comes down.
+/// A push: the hand comes before the chest, moves away from there and back, and is lowered.
 ArmDoing push_of(const Repetition& one, double t) {
   const double x = one.share(t);
   ArmDoing arm;
@@ -45,7 +47,8 @@ ArmDoing push_of(const Repetition& one, double t) {
   return arm;
 }
 
-/// Adds the movement of a slow act. Shapes are estimates; tests hold each within people's ranges.
+/// Adds the movement of a slow act. The curves are estimates; tests check that each stays within
+/// people's ranges.
 void do_slowly(const Act& act, double t, Doing& doing) {
   const Repetition& one = repetition_at(act.repetitions, t);
   const double size = one.size(t);
@@ -120,6 +123,7 @@ BuiltInBody::BuiltInBody(double height_m, std::uint64_t person, std::uint64_t se
       hang_(1.32 + 0.1 * RandomStream(person, 104).uniform(10, 1)),
       elbow_(0.2 + 0.15 * RandomStream(person, 104).uniform(10, 2)) {}
 
+/// Amount of each movement at t, by the act.
 Doing BuiltInBody::doing_at(double t) const {
   const Act& act = act_at(acts_, t);
   Doing doing;
@@ -146,7 +150,8 @@ Doing BuiltInBody::doing_at(double t) const {
       if (steps.count == 0) break;
       const double end = steps.lands(steps.count - 1);
       doing.gait = rise((t - act.begin_s) / 1.0) * rise((end - t) / 1.0);
-      // Half a turn on where the right foot is first: phase 0 is the left one's leaving the floor.
+      // Phase 0 is the moment at which the left foot leaves the floor, so it is shifted by half a
+      // turn if the right foot is first.
       doing.gait_phase =
           2.0 * pi * (t - steps.first_s) / steps.stride_s + (act.side > 0 ? 0.0 : pi);
       const bool walks = act.piece == Piece::walk || act.piece == Piece::walk_turn;
@@ -162,7 +167,7 @@ Doing BuiltInBody::doing_at(double t) const {
   return doing;
 }
 
-/// The height at which the nearer of both legs is as long as it may be.
+/// The height of the pelvis at which the more stretched leg reaches its longest length.
 double BuiltInBody::hip_height(const Pelvis& level, const FootState& left, const FootState& right,
                                double width) const {
   const double reach = longest_leg * (bones_.thigh + bones_.shank);
@@ -177,11 +182,12 @@ double BuiltInBody::hip_height(const Pelvis& level, const FootState& left, const
                   allowed(NeuronJoint::right_up_leg, right), width);
 }
 
+/// Position and rotation of the pelvis, from the path, the steps and the act.
 BuiltInBody::Pelvis BuiltInBody::pelvis_at(double t, const Doing& doing, const FootState& left,
                                            const FootState& right) const {
   const FloorPlace body = path_.at(t);
-  // The left foot is in the air for phases up to 0.8 pi: the body is over the right one then, and
-  // the left hip is in front when it lands.
+  // The left foot is in the air for phases up to 0.8 pi. Meanwhile the body is above the right
+  // foot. The left hip is in front when the left foot lands.
   const double over = std::cos(doing.gait_phase - 0.4 * pi);
   const double front = std::cos(doing.gait_phase - 0.85 * pi);
   Pelvis pelvis;
@@ -224,7 +230,7 @@ void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
         about_z(0.012 * over - 0.11 * doing.lean);
   }
   const double bent = bend_depth * doing.bend + 0.35 * doing.squat + 4.0 * pitch;
-  const double free = 1.0 - 0.7 * (1.0 - doing.down);  // in T-pose one looks ahead
+  const double free = 1.0 - 0.7 * (1.0 - doing.down);  // in T-pose the person looks ahead
   for (const auto joint : {NeuronJoint::neck, NeuronJoint::head}) {
     pose.local_rotations[index(joint)] =
         about_y(0.07 * free * glance_.at(t + 3.0) - 0.04 * front + 0.25 * doing.twist) *
@@ -233,6 +239,7 @@ void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
   }
 }
 
+/// Rotations of one arm's joints; `side` is +1 for the left arm.
 void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose) const {
   const std::size_t shoulder =
       index(side > 0 ? NeuronJoint::left_shoulder : NeuronJoint::right_shoulder);
@@ -241,7 +248,8 @@ void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose)
   const double front = doing.gait * std::cos(doing.gait_phase - 0.85 * pi);
   const double bent = bend_depth * doing.bend + 4.0 * 0.13 * doing.bend;
   const double slow = side * sway_x_.at(t + 7.0 * side) + breath_.at(t);
-  // Back (+) as the leg of its side goes forward; forward in a bend, so that it hangs.
+  // An arm swings back (+) while the leg of its side moves forward. In a bend it swings forward, so
+  // that it hangs down.
   const double swing =
       doing.down * (side * (0.08 + 0.27 * doing.reach) * front - 0.85 * bent - 1.1 * doing.squat +
                     0.01 * slow - 2.2 * arm.front - 0.4 * arm.guard - 0.95 * arm.reach);
@@ -251,7 +259,8 @@ void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose)
   const double elbow = elbow_ * doing.down * (1.0 - wave) + wave * (1.35 + 0.42 * forth) +
                        0.15 * doing.gait * doing.reach * (1.0 - side * front) + 0.03 +
                        1.85 * arm.guard - 1.45 * arm.reach;
-  const double outward = -1.4 * wave;  // the forearm, which bends forward, comes to point up
+  // Turns the forearm, which bends forward, so that it comes to point upwards.
+  const double outward = -1.4 * wave;
   pose.local_rotations[shoulder] =
       about_z(side * (0.22 * wave + 0.003 * breath_.at(t) + 0.3 * arm.side + 0.2 * arm.front));
   pose.local_rotations[shoulder + 1] = about_x(swing) * about_z(-side * lowered) * about_x(outward);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The person of built_in_motion.h: what each joint does, by the act and the time within it.
+// The person of built_in_motion.h: the rotation of each joint, by the act and the time within it.
 #pragma once
 
 #include "kinalign/motion/pose.h"
@@ -12,10 +12,10 @@
 
 namespace kinalign {
 
-/// Sway, breath and glances: four sines of drawn phase, rms 1 over a long time.
+/// Sway, breath and glances: four sines of random phase, rms 1 over a long time.
 class SlowNoise {
  public:
-  /// Rates from `least_hz` on, over two octaves and a half.
+  /// Frequencies start at `least_hz` and span two and a half octaves.
   SlowNoise(const RandomStream& random, std::uint64_t number, double least_hz);
   double at(double t) const;
 
@@ -23,26 +23,28 @@ class SlowNoise {
   std::array<double, 4> rate_{}, phase_{};  // rad/s, rad
 };
 
-/// The share of each slow movement in one arm's pose; 1: as far as an amplitude of 1 goes.
+/// Amount of each slow movement in the pose of one arm; 1 corresponds to an amplitude of 1.
 struct ArmDoing {
-  double front = 0.0, side = 0.0;   // raised
-  double guard = 0.0, reach = 0.0;  // the hand before the chest; pushed away from there
+  double front = 0.0, side = 0.0;  // raised to the front; raised to the side
+  /// Guard: the hand is before the chest; reach: it is pushed away from there.
+  double guard = 0.0, reach = 0.0;
 };
 
-/// How much of each movement there is at a moment.
+/// Amount of each movement at a moment.
 struct Doing {
-  double down = 1.0;  // the arms; 0 in T-pose
+  double down = 1.0;  // arms hang down; 0 in T-pose
   double wave = 0.0, wave_phase = 0.0;
-  double bend = 0.0, squat = 0.0;                    // 1: as far as an amplitude of 1 goes
-  double gait = 0.0, gait_phase = 0.0, reach = 0.0;  // reach: 1 where one walks at 0.8 m/s
-  double side = 1.0;                                 // of the waving hand
-  double lean = 0.0, twist = 0.0;                    // of the trunk; above 0 to the left
+  double bend = 0.0, squat = 0.0;                    // 1 corresponds to an amplitude of 1
+  double gait = 0.0, gait_phase = 0.0, reach = 0.0;  // reach: 1 for walking at 0.8 m/s
+  double side = 1.0;                                 // side of the waving hand
+  double lean = 0.0, twist = 0.0;                    // movements of the trunk; positive to the left
   ArmDoing left, right;
 };
 
 class BuiltInBody {
  public:
-  /// `person`: whose proportions and habits; `seed`: of all that differs from time to time.
+  /// `person` determines proportions and personal style; `seed` everything that differs from time
+  /// to time.
   BuiltInBody(double height_m, std::uint64_t person, std::uint64_t seed, std::vector<Act> acts);
 
   void pose_at(double t, Pose& pose) const;
@@ -74,7 +76,7 @@ class BuiltInBody {
   LegBones bones_;
   FootTrack left_, right_;
   SlowNoise sway_x_, sway_z_, breath_, glance_, nod_, lean_;
-  double hang_, elbow_;  // rad: how far the upper arms hang down, how far elbows are bent
+  double hang_, elbow_;  // rad: how far the upper arms hang down, and how far the elbows are bent
 };
 
 }  // namespace kinalign

@@ -17,15 +17,15 @@ namespace kinalign {
 
 namespace {
 
-/// A joint of the body, and what three kinds of skeletons call it. `next`: the row of the joint to
-/// which its bone leads; -1: the joint turns as the source's does.
+/// A joint of the body and its names in three kinds of skeletons. `next`: row of the joint to which
+/// its bone leads; -1: the joint takes the source's rotation.
 struct CarriedJoint {
   NeuronJoint joint = NeuronJoint::hips;
   std::array<std::string_view, 3> names{};  // Perception Neuron, CMU by cgspeed, CMU's ASF
   int next = -1;
 };
 
-constexpr int tip = -2;  // `next` of a foot: its toes, which no suit has as a joint
+constexpr int tip = -2;  // `next` of a foot: its toes, which are no joint in any suit
 
 constexpr std::array<CarriedJoint, 21> carried_joints{
     {{NeuronJoint::hips, {"Hips", "Hips", "root"}},
@@ -50,7 +50,7 @@ constexpr std::array<CarriedJoint, 21> carried_joints{
      {NeuronJoint::left_fore_arm, {"LeftForeArm", "LeftForeArm", "lradius"}, 20},
      {NeuronJoint::left_hand, {"LeftHand", "LeftHand", "lhand"}}}};
 
-/// The source's joint of each row of carried_joints.
+/// The source's joint for each row of carried_joints.
 using SourceJoints = std::array<std::size_t, carried_joints.size()>;
 
 std::optional<SourceJoints> joints_of_kind(const Skeleton& skeleton, std::size_t kind) {
@@ -74,7 +74,7 @@ std::vector<Vec3> rest_places(const Skeleton& skeleton) {
   return out;
 }
 
-/// From a joint to its end site, or to its first child.
+/// Offset from a joint to its end site, or to its first child.
 Vec3 tip_of(const Skeleton& skeleton, std::size_t joint) {
   for (const EndSite& end : skeleton.end_sites) {
     if (end.parent == static_cast<int>(joint)) return end.offset;
@@ -85,7 +85,7 @@ Vec3 tip_of(const Skeleton& skeleton, std::size_t joint) {
   return Vec3::Zero();
 }
 
-/// Moves a body as a source moves.
+/// Poses a body like the source.
 class Carrier {
  public:
   Carrier(Motion source, const SourceJoints& joints, Skeleton body)
@@ -110,6 +110,7 @@ class Carrier {
     origin_.y() = 0.0;
   }
 
+  /// The root's position and all rotations of the body at time t.
   void pose_at(double t, Pose& pose) const {
     Pose local;
     GlobalPose global;
@@ -123,7 +124,7 @@ class Carrier {
       const int parent = body_.parents[j];
       const Quat above = parent < 0 ? Quat::Identity() : turned[static_cast<std::size_t>(parent)];
       turned[j] = above;
-      if (row_of_[j] < 0) continue;  // fingers stay as they are at rest
+      if (row_of_[j] < 0) continue;  // fingers stay in their rest pose
       const auto row = static_cast<std::size_t>(row_of_[j]);
       turned[j] = (global.rotations[joints_[row]] * aligned_[row]).normalized();
       pose.local_rotations[j] = above.conjugate() * turned[j];
@@ -153,19 +154,21 @@ class Carrier {
   Motion source_;
   SourceJoints joints_;
   Skeleton body_;
-  std::array<int, neuron_joints> row_of_ = no_rows();  // of carried_joints; -1: none
-  std::array<Quat, carried_joints.size()> aligned_{};  // body's rest bone onto the source's
+  std::array<int, neuron_joints> row_of_ = no_rows();  // row in carried_joints; -1: none
+  // Rotates the body's rest bone onto the source's.
+  std::array<Quat, carried_joints.size()> aligned_{};
   double scale_ = 1.0;
   Vec3 origin_ = Vec3::Zero();
 };
 
-/// Seconds of the motion after `t` seconds of one way through `length_s` of it: speeds up within
-/// `ramp_s`, keeps the motion's own speed, slows down. The way lasts length_s + ramp_s.
+/// Time in the motion after `t` seconds of a single passage through `length_s` of it. The passage
+/// speeds up within `ramp_s`, keeps the motion's own speed, and slows down. It lasts length_s +
+/// ramp_s.
 double way(double t, double length_s, double ramp_s) {
   const double all = length_s + ramp_s;
   if (t > 0.5 * all) return length_s - way(all - t, length_s, ramp_s);
   if (t >= ramp_s) return t - 0.5 * ramp_s;
-  const double u = std::max(t, 0.0) / ramp_s;  // the integral of rise, as in glide
+  const double u = std::max(t, 0.0) / ramp_s;  // the integral of rise(), as in glide()
   return ramp_s * u * u * u * u * u * (7.0 + u * (-14.0 + u * (10.0 - 2.5 * u)));
 }
 

@@ -10,9 +10,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr double heel_before_s = 0.2;  // of the toes the heel leaves the floor
+constexpr double heel_before_s = 0.2;  // the heel leaves the floor this much before the toes
 
-/// Where the toes stand under a body that is at `body`.
+/// Position of the toes under a body at `body`.
 FloorPlace print_under(const FloorPlace& body, const FootShape& shape, double side, double narrow) {
   const double aside = side * shape.half_apart * narrow;
   const double yaw = body.yaw + side * shape.toes_out;
@@ -24,7 +24,8 @@ struct Gait {
   double narrow, lift_m, heel_rad;
 };
 
-/// Of a step that goes `far` m: toes lift by 3 cm of walking, the more the less it is one.
+/// Shape of a step that goes `far` m. In walking, toes are lifted by 3.5 cm, and by up to 6 cm in
+/// shorter steps.
 Gait gait_of(const Act& act, double far, double scale) {
   if (act.piece == Piece::step) return {1.0, 0.11 * scale * act.amplitude, 0.30 * act.amplitude};
   const double reach = std::min(far / (0.8 * scale), 1.0);
@@ -40,7 +41,7 @@ FootTrack::FootTrack(const std::vector<Act>& acts, const BodyPath& path, const F
   for (const Act& act : acts) {
     const StepTimes steps = step_times(act);
     for (std::size_t k = side == act.side ? 0 : 1; k < steps.count; k += 2) {
-      // In the middle of its stance a foot is under the body; a little behind, since the heel
+      // In the middle of its stance a foot is under the body, or a little behind, because the heel
       // rises.
       const FloorPlace body = path.at(steps.lands(k) + 0.46 * steps.stance_s());
       const double far = std::hypot(print_under(body, shape, side, 1.0).x - stands.x,
@@ -57,7 +58,7 @@ FootState FootTrack::at(double t) const {
   FootState foot;
   FloorPlace place = start_;
   double lift = 0.0, heel = 0.0;
-  // The heel rises for a swing that has not begun yet: that one counts, where there is one.
+  // The heel rises before the swing begins, so the next swing is used if its heel rises already.
   const auto behind =
       std::upper_bound(swings_.begin(), swings_.end(), t + heel_before_s,
                        [](double at, const Swing& swing) { return at < swing.leaves_s; });

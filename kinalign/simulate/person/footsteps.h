@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where both feet are at any time. A foot stands until its swing begins, on the tip of its toes:
-// the heel rises before the toes leave the floor, and the whole foot comes down at once.
+// Positions of both feet at any time. A foot stands until its swing begins on the tip of its toes.
+// The heel rises before the toes leave the floor, and the whole foot comes down at once.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -8,31 +8,31 @@
 
 namespace kinalign {
 
-/// Measures of a foot below the ankle and of the stance, m.
+/// Measures of a foot below the ankle, and of the stance, m.
 struct FootShape {
-  double height = 0.0;      // of the ankle above the sole
+  double height = 0.0;      // height of the ankle above the sole
   double length = 0.0;      // from the ankle forward to the tip of the toes
-  double half_apart = 0.0;  // of the feet where one stands
-  double toes_out = 0.0;    // rad
+  double half_apart = 0.0;  // half the distance of the feet in standing
+  double toes_out = 0.0;    // rad that the toes point outwards
 };
 
 struct FootState {
   Vec3 ankle = Vec3::Zero(), toes = Vec3::Zero();  // m
-  double yaw = 0.0;                                // rad, counted on over whole turns
-  Quat rotation = Quat::Identity();                // global
-  bool planted = true;                             // the toes stand
+  double yaw = 0.0;                                // rad, not wrapped
+  Quat rotation = Quat::Identity();                // global rotation
+  bool planted = true;                             // the toes stand on the floor
 };
 
-/// Of one foot; three times continuously differentiable.
+/// The movement of one foot; three times continuously differentiable.
 class FootTrack {
  public:
   struct Swing {
     double leaves_s = 0.0, lands_s = 0.0;
-    FloorPlace from, to;    // of the toes
-    double lift_m = 0.0;    // of the toes, in the middle
-    double heel_rad = 0.0;  // the heel's rise
+    FloorPlace from, to;    // positions of the toes
+    double lift_m = 0.0;    // m that the toes are lifted, in the middle of the swing
+    double heel_rad = 0.0;  // rad that the heel rises
   };
-  /// `side` +1: the left foot. `scale`: the person's size, 1 for 1.75 m.
+  /// `side` +1: the left foot. `scale`: the person's size; 1: 1.75 m.
   FootTrack(const std::vector<Act>& acts, const BodyPath& path, const FootShape& shape, double side,
             double scale);
 
@@ -42,7 +42,7 @@ class FootTrack {
  private:
   FootShape shape_;
   FloorPlace start_;
-  std::vector<Swing> swings_;  // one behind the other
+  std::vector<Swing> swings_;  // one after the other, in time
 };
 
 }  // namespace kinalign

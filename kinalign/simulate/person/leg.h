@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A leg of two bones that reaches from the hip to the ankle, by the law of cosines.
+// A leg of two bones that reaches from the hip to the ankle, computed by the law of cosines.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -12,11 +12,11 @@ struct LegBones {
 
 struct BentLeg {
   Quat thigh = Quat::Identity(), shank = Quat::Identity();  // global; at rest along -y, facing +z
-  double knee = 0.0;                                        // rad, 0 straight, bent backwards above
+  double knee = 0.0;  // rad; 0: straight, positive: bent backwards
 };
 
-/// `forward`: where the knee points, across the leg as far as it is not. An ankle that is out of
-/// reach is reached for: straight, or bent as far as the bones allow.
+/// `forward`: direction of the knee; only its part across the leg counts. If the ankle is out of
+/// reach, the leg is straight, or bent as far as the bones allow.
 BentLeg reach(const LegBones& bones, const Vec3& hip, const Vec3& ankle, const Vec3& forward);
 
 }  // namespace kinalign

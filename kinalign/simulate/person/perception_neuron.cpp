@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 100 of a person's seed: lane 0 legs, 2 arms, 4 hips' and shoulders' width, 6 feet. The
+// Stream 100 of a person's seed: lane 0 legs, 2 arms, 4 width of hips and shoulders, 6 feet. The
 // deviations are estimates from the spread of segments over stature in Drillis and Contini's
-// tables as Winter prints them (Biomechanics and Motor Control of Human Movement, chapter 4).
+// tables, as printed by Winter (Biomechanics and Motor Control of Human Movement, chapter 4).
 #include "kinalign/simulate/person/perception_neuron.h"
 
 #include "kinalign/simulate/random.h"
@@ -32,14 +32,14 @@ Proportions proportions(double height_m, std::uint64_t person) {
   Proportions of;
   const double leg = near_one(0, 0.02);
   of.leg = scale * leg;
-  of.trunk = scale * (1.0 - (leg - 1.0) * leg_cm / trunk_cm);  // the height stays
+  of.trunk = scale * (1.0 - (leg - 1.0) * leg_cm / trunk_cm);  // keeps the height
   of.arm = scale * near_one(2, 0.025);
   of.width = scale * near_one(4, 0.03);
   of.foot = scale * near_one(6, 0.025);
   return of;
 }
 
-/// Collects joints in the order of the file; `side` is +1 for the left, -1 for the right.
+/// Adds joints in the order of the file; `side` is +1 for the left, -1 for the right.
 class Builder {
  public:
   explicit Builder(const Proportions& of) : of_(of) {}
@@ -63,7 +63,7 @@ class Builder {
     end(foot, {0, -of_.leg * 7.69, of_.foot * 17.5});
   }
 
-  /// From the hips to the head; the joint that both shoulders hang on.
+  /// Adds the joints from the hips to the head. Returns the joint at which both shoulders begin.
   int trunk(int hips) {
     const auto up = [&](double cm) -> Vec3 { return {0, of_.trunk * cm, 0}; };
     const int spine = add("Spine", hips, up(14.307));
@@ -92,7 +92,7 @@ class Builder {
     const double a = of_.arm;
     const std::string name = side_name + "Hand";
     finger(name + "Thumb", hand, {a * 2.5 * side, -a * 0.3, a * 3.0}, side);
-    double across = 2.4;  // cm forward of the middle of the hand, of the finger's root
+    double across = 2.4;  // cm from the middle of the hand forward to the finger's root
     for (const char* one : {"Index", "Middle", "Ring", "Pinky"}) {
       const int palm =
           add(side_name + "InHand" + one, hand, {a * 3.4 * side, a * 0.4, a * 0.6 * across});

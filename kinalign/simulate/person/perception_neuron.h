@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A body of any size on the skeleton that Perception Neuron suits write: 59 joints and 13 end
-// sites, the older («legacy») hierarchy. Its lengths are those of a real file of a person of the
-// class 1.75 m; of the hands, which stand there in no source of ours, they are estimates.
+// sites, the older («legacy») hierarchy. Its lengths come from a real file of a person of the class
+// 1.75 m. Those of the hands are estimates, because none of our sources states them.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-/// Joints by their place in the hierarchy, as far as something is done with them.
+/// The joints that are used, by their index in the hierarchy.
 enum class NeuronJoint : std::size_t {
   hips = 0,
   right_up_leg = 1,
@@ -40,8 +40,8 @@ inline constexpr std::size_t neuron_joints = 59;
 constexpr std::size_t index(NeuronJoint joint) { return static_cast<std::size_t>(joint); }
 
 /// The rest pose is a T-pose: y up, facing +z, left is +x, palms down, soles at y = 0. `height_m`
-/// goes through all lengths alike; a `person` other than 0 has legs, arms, trunk and widths of
-/// their own, each some percent (the deviation) off those of the file, and the same height.
+/// scales all lengths alike. A `person` other than 0 has individual legs, arms, trunk and widths,
+/// which deviate by some percent (sd) from those of the file, with the same height.
 Skeleton perception_neuron(double height_m, std::uint64_t person);
 
 }  // namespace kinalign

@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-/// s, of the default programme: long enough to walk away and come back.
+/// s, in the default programme: long enough to walk away and come back.
 double usual_length(Piece piece) {
   switch (piece) {
     case Piece::t_pose:
@@ -31,12 +31,12 @@ double usual_length(Piece piece) {
     case Piece::bend:
     case Piece::squat:
       return 7.0;
-    default:  // slow pieces stand in no default programme
+    default:  // slow pieces are in no default programme
       return 0.0;
   }
 }
 
-/// s, of one repetition: least and most.
+/// s for one repetition: least and most.
 std::pair<double, double> tempo(Piece piece) {
   switch (piece) {
     case Piece::wave:
@@ -59,6 +59,7 @@ std::pair<double, double> tempo(Piece piece) {
   }
 }
 
+/// An act of this piece with random side, size, tempo and speed.
 Act drawn(const RandomStream& random, std::uint64_t number, Piece piece) {
   const auto between = [&](std::uint64_t lane, double least, double most) {
     return least + (most - least) * random.uniform(number, lane);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 105 of a seed, by 4096 times the act's number plus the repetition's: lane 0 length, 1 and
-// 2 how long it goes forth and back, 3 amplitude.
+// Stream 105 of a seed, by 4096 times the act's number plus that of the repetition: lane 0 length,
+// 1 and 2 duration forth and back, 3 amplitude.
 #include "kinalign/simulate/person/repetitions.h"
 
 #include "kinalign/simulate/random.h"

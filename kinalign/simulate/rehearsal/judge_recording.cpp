@@ -13,7 +13,7 @@ namespace {
 
 using TrueTimes = std::function<std::optional<Time>(Time stamp)>;
 
-/// Calls `use` with each block of a stream of `Input`.
+/// Calls `use` with each block of a stream of type `Input`.
 template <class Frames, class Input, class Use>
 Result<void> each_block(const Input& input, const Use& use) {
   Pass<Frames> pass = KA_TRY(input.passes());
@@ -22,6 +22,7 @@ Result<void> each_block(const Input& input, const Use& use) {
   return {};
 }
 
+/// The stamps of all samples of a stream.
 Result<std::vector<Time>> stamps_of(const RecordedStream& stream) {
   std::vector<Time> stamps;
   const auto add = [&](const auto& block) {
@@ -37,13 +38,13 @@ Result<std::vector<Time>> stamps_of(const RecordedStream& stream) {
   return stamps;
 }
 
-/// A node's name in a stream; empty of what are no nodes.
+/// The node's name in a stream; empty for a stream without nodes.
 std::string node_of(const RecordedStream& stream) {
   const auto* imu = std::get_if<ImuInput>(&stream.data);
   return imu == nullptr || imu->node_names.empty() ? "" : imu->node_names.front();
 }
 
-/// By its name, or its number where nobody named it.
+/// Finds a node by its name, or by its number if it has no name.
 const TrueNode* true_node(const TrueRecording& truth, const std::string& stream,
                           const std::string& node) {
   const auto found = std::find_if(truth.nodes.begin(), truth.nodes.end(), [&](const TrueNode& one) {
@@ -52,7 +53,7 @@ const TrueNode* true_node(const TrueRecording& truth, const std::string& stream,
   return found == truth.nodes.end() ? nullptr : &*found;
 }
 
-/// Frames are evenly spaced; live, a stamp is the frame's number in steps.
+/// Frames are evenly spaced. In a live recording, a stamp is the frame's number times the step.
 TrueTimes mocap_times(const TrueRecording& truth, Time first) {
   const TrueMocap& mocap = truth.mocap;
   const Time zero = truth.host ? Time{} : first;
@@ -63,7 +64,7 @@ TrueTimes mocap_times(const TrueRecording& truth, Time first) {
   };
 }
 
-/// "imu waist", or "mocap" of what has no nodes.
+/// "imu waist", or "mocap" for a stream without nodes.
 std::string device_name(const std::string& stream, const std::string& node) {
   return node.empty() ? stream : stream + " " + node;
 }
@@ -74,6 +75,7 @@ std::string true_devices(const TrueRecording& truth) {
   return names;
 }
 
+/// Function from the stream's stamps to true times; fails if the truth has no such device.
 Result<TrueTimes> true_times(const RecordedStream& stream, const TrueRecording& truth, Time first) {
   if (stream.name == truth.mocap.stream) return mocap_times(truth, first);
   const TrueClock* clock = nullptr;
@@ -91,7 +93,7 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-/// Root of a mean square.
+/// Computes the root of a mean square.
 struct Rms {
   double sum = 0.0;
   std::uint64_t count = 0;
@@ -103,7 +105,7 @@ struct Rms {
   double value() const { return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count)); }
 };
 
-/// The truth at any time of the axis that stamps are on.
+/// The true pose at any time on the axis of the stamps.
 class TruthAt {
  public:
   explicit TruthAt(const JudgedTake& judged)
@@ -114,7 +116,7 @@ class TruthAt {
     forward_kinematics(motion_.skeleton, local_, global_);
     return global_;
   }
-  /// How fast each joint's bone turns, rad/s.
+  /// Rotation rate of each joint's bone, rad/s.
   std::vector<double> rates(Time t) {
     constexpr double h = 2e-3;
     const std::vector<Quat> before = pose(t, -h).rotations;
@@ -145,7 +147,7 @@ const RecordedStream* stream_of(const JudgedTake& judged, const std::string& nam
   return nullptr;
 }
 
-/// When a stamp was true, on the axis that stamps are on.
+/// Function from stamps to true times, both on the axis of the stamps.
 Result<TrueTimes> moved_times(const RecordedStream& stream, const JudgedTake& judged) {
   const std::vector<Time> stamps = KA_TRY(stamps_of(stream));
   const Time first = stamps.empty() ? Time{} : stamps.front();
@@ -156,6 +158,7 @@ Result<TrueTimes> moved_times(const RecordedStream& stream, const JudgedTake& ju
   });
 }
 
+/// Compares the joints of a skeleton's rows with the truth.
 ValueJudgement judge_clip(const JudgedTake& judged, std::size_t g, const ClipGroup& group) {
   TruthAt truth(judged);
   Rms error;
@@ -179,7 +182,7 @@ ValueJudgement judge_clip(const JudgedTake& judged, std::size_t g, const ClipGro
           std::nullopt};
 }
 
-/// The valid points of a take's rows against the truth.
+/// Compares the valid points of a take's rows with the truth.
 Rms points_in_take(const JudgedTake& judged, std::size_t g, const KinectMap& map) {
   TruthAt truth(judged);
   std::vector<double> known(3 * kinect_joints.size());
@@ -196,6 +199,7 @@ Rms points_in_take(const JudgedTake& judged, std::size_t g, const KinectMap& map
   return error;
 }
 
+/// Compares the points of a stream with the truth: as sent, with the true camera, and in the take.
 Result<ValueJudgement> judge_points(const JudgedTake& judged, std::size_t g) {
   const std::string& name = judged.take.header.groups[g].name;
   const KinectMap map = KA_TRY(kinect_map(judged.motion.skeleton));
@@ -224,7 +228,7 @@ Result<ValueJudgement> judge_points(const JudgedTake& judged, std::size_t g) {
   return ValueJudgement{name, "", after.count, before.value(), after.value(), alone.value()};
 }
 
-/// Of one node: its column of the take, and its stream.
+/// Compares one node with the truth: its column of the take, and its stream.
 Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::size_t column,
                                   std::size_t columns, const TrueNode& node) {
   const TakeGroup& group = judged.take.header.groups[g];

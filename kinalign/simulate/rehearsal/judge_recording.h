@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of a simulated recording, held against the truth: of every sample the time that it
-// was given, and of a take's rows the values.
+// Compares the recording of a simulated scene with the truth: the time that each sample was given,
+// and the values in the rows of a take.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -21,38 +21,40 @@ namespace kinalign {
 struct TimeJudgement {
   std::string stream, node;
   std::uint64_t samples = 0;
-  double median_s = 0.0, most_s = 0.0, worst_s = 0.0;  // most: of 95 %
-  std::optional<double> half_width_s;                  // the widest of the intervals
-  std::uint64_t certified = 0, outside = 0;  // stamps with an interval; beyond it of these
+  double median_s = 0.0, most_s = 0.0, worst_s = 0.0;  // most: 95 % of the errors are not greater
+  std::optional<double> half_width_s;                  // greatest half-width of all intervals
+  /// Number of stamps with an interval, and of those whose error exceeds it.
+  std::uint64_t certified = 0, outside = 0;
 };
 
-/// `shift`: how much later the recording's UTC is than the truth's, of the same instant. Fails
-/// where the truth has no such device, or the stream can't be read.
+/// `shift`: the recording's UTC minus that of the truth at the same instant. Fails if the truth has
+/// no such device, or if the stream can't be read.
 Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecording& truth,
                                  Duration shift);
 
-/// Errors of what a stream says, rms: m of points and skeletons, rad/s of nodes' turning.
+/// Errors of a stream's values, rms: m for points and skeletons, rad/s for the rotation of nodes.
 struct ValueJudgement {
   std::string stream, node;
   std::uint64_t count = 0;
-  std::optional<double> before;  // as the device gave it: points in the camera's space
-  double after = 0.0;            // in the take, against the truth at the row's stamp
-  std::optional<double> alone;   // by the device's own noise, at true times, in its true place
+  std::optional<double> before;  // error of the device's own values: points in the camera's space
+  double after = 0.0;            // in the take, compared with the truth at the row's stamp
+  /// The device's own noise: at true times and with the true position of the camera.
+  std::optional<double> alone;
 };
 
 struct JudgedTake {
   const Take& take;
   const Recording& recording;
   const TrueRecording& truth;
-  const Motion& motion;  // the truth's
+  const Motion& motion;  // motion of the truth
   Duration shift{};
 };
 
-/// All nodes of a stream as one, each as often as it has rows in the take: "all nodes".
+/// All nodes of a stream together, weighted by their rows in the take: "all nodes".
 ValueJudgement together(std::span<const ValueJudgement> nodes);
 
-/// Of every group of the take whose device the truth has; of nodes how fast they turn, which does
-/// not depend on how they are worn: each, and behind them all.
+/// Judges every group of the take whose device is in the truth. For nodes it compares the speed of
+/// rotation, which does not depend on how they are worn: first each node, then all together.
 Result<std::vector<ValueJudgement>> judge_values(const JudgedTake& judged);
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 120 of the seed: number 0 lanes 0 to 3 where the camera stands, 4 and 5 how it leans, 6
-// its clock; number 1 lanes 0 and 2 the clicks' latencies, 4 the phase of the suit's frames.
+// Stream 120 of the seed: number 0 lanes 0 to 3 position of the camera, 4 and 5 its tilt, 6 its
+// clock; number 1 lanes 0 and 2 the clicks' latencies, 4 the phase of the suit's frames.
 #include "kinalign/simulate/rehearsal/rehearsal.h"
 
 #include "kinalign/motion/kinect_joints.h"
@@ -20,7 +20,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 RandomStream draws(std::uint64_t seed) { return {seed, 120}; }
 
-/// The joints that a camera looks for, at any time.
+/// The joints that a camera reports, at any time.
 class JointsOf {
  public:
   JointsOf(const Motion& motion, const KinectMap& map) : motion_(motion), map_(map) {}
@@ -39,7 +39,7 @@ class JointsOf {
   GlobalPose global_;
 };
 
-/// The height of the lowest joint or end: on what a person stands, m.
+/// Height of the lowest joint or end site, m: the floor.
 double lowest_of(const Skeleton& skeleton, const GlobalPose& pose) {
   double lowest = pose.positions.front().y();
   for (const Vec3& p : pose.positions) lowest = std::min(lowest, p.y());
@@ -50,6 +50,7 @@ double lowest_of(const Skeleton& skeleton, const GlobalPose& pose) {
   return lowest;
 }
 
+/// Draws the clicks, their latencies and the suit's frames.
 MocapRun mocap_run(double length_s, std::uint64_t seed) {
   const RandomStream random = draws(seed);
   MocapRun run;
@@ -65,7 +66,8 @@ MocapRun mocap_run(double length_s, std::uint64_t seed) {
   return run;
 }
 
-/// The pairs a second apart and more, the first and the last: a crystal is even enough in between.
+/// Keeps the first pair, the last one, and one for each second: a crystal is steady enough in
+/// between.
 TrueClock thinned(const TrueClock& all) {
   TrueClock clock;
   const std::size_t count = all.stamps_ns.size();
@@ -79,7 +81,7 @@ TrueClock thinned(const TrueClock& all) {
   return clock;
 }
 
-/// The device's clock as stamps of a file: right at the first frame.
+/// The camera's clock with the stamps of kinect_file(), which is right at the first frame.
 TrueClock kinect_clock(const Rehearsal& rehearsal, Time zero) {
   TrueClock clock;
   const PointStream file = kinect_file(rehearsal, zero);
@@ -90,7 +92,7 @@ TrueClock kinect_clock(const Rehearsal& rehearsal, Time zero) {
   return thinned(clock);
 }
 
-/// Appends sample `i` of one node with another stamp.
+/// Appends sample `i` of one node, with another stamp.
 void append_sample(const ImuSamples& all, std::size_t i, Time stamp, ImuSamples& to) {
   const auto copy = [i](const std::vector<double>& from, std::size_t width,
                         std::vector<double>& onto) {
@@ -104,6 +106,7 @@ void append_sample(const ImuSamples& all, std::size_t i, Time stamp, ImuSamples&
   to.valid.push_back(1);
 }
 
+/// The truth about a node: where it is worn, its errors, and its clock.
 TrueNode true_node(const SimulatedNode& node, const Motion& motion, Time zero) {
   TrueNode truth;
   truth.stream = "imu";
@@ -139,7 +142,7 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   const double floor = lowest_of(motion.skeleton, joints_of.global());
   const Vec3 middle = sum / count;
   Vec3 facing = (vec3(joints, hip_left) - vec3(joints, hip_right)).cross(Vec3::UnitY());
-  if (facing.norm() < 1e-3) facing = Vec3::UnitZ();  // hips above each other: no side is the front
+  if (facing.norm() < 1e-3) facing = Vec3::UnitZ();  // hips above each other show no front
 
   const RandomStream random = draws(seed);
   const auto near = [&](std::uint64_t lane) { return 2.0 * random.uniform(0, lane) - 1.0; };
@@ -225,7 +228,7 @@ ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
 
 ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
-  std::vector<std::pair<double, std::size_t>> heard;  // at, which
+  std::vector<std::pair<double, std::size_t>> heard;  // arrival and index
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
     if (arrivals[i].first) heard.emplace_back(*arrivals[i].first, i);
   }

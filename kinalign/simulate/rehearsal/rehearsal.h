@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One motion as a suit, a Kinect and five nodes would have recorded it, with the truth beside it.
-// Times are the motion's, s: the nodes and the camera run through all of it, the suit from a click
-// on «record» to one on «stop».
+// Simulates the recordings of one motion by a suit, a Kinect and five nodes, together with the
+// truth. Times are those of the motion, s. The nodes and the camera record all of it, the suit from
+// a click on «record» to one on «stop».
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_camera.h"
@@ -15,7 +15,7 @@ namespace kinalign {
 
 inline constexpr double least_rehearsal_s = 3.0;  // two clicks and a second between them
 
-/// A suit's program knows neither when a click took effect nor the time of a frame.
+/// A suit's program knows neither when a click takes effect nor the time of a frame.
 struct MocapRun {
   double rate_hz = 60.0;
   double start_click_s = 0.0, stop_click_s = 0.0;
@@ -25,62 +25,63 @@ struct MocapRun {
   double frame_s(std::size_t k) const { return first_frame_s + static_cast<double>(k) / rate_hz; }
 };
 
-/// Delay from a click to the first frame, in the mean: 45 ms with a deviation of 6, an estimate
-/// (time-sync.md 4.9 has the same), and half a frame until the next one is due.
+/// Mean delay from a click to the first frame: 45 ms with a deviation of 6 ms, an estimate
+/// (time-sync.md 4.9 has the same), plus half a frame until the next one is due.
 inline constexpr double click_latency_s = 0.045 + 0.5 / 60.0;
 
-/// Beyond any crystal of node_clock.h, and of the camera's.
+/// Greater than the drift of any crystal in node_clock.h and of the camera's.
 inline constexpr double most_drift = 25e-6;
 
 struct RehearsalOptions {
   std::uint64_t seed = 1;
   std::uint32_t node_rate_hz = 100;
-  std::optional<std::uint64_t> person{};  // whose body the camera sees, where not the seed's
+  std::optional<std::uint64_t> person{};  // person whose body the camera sees; absent: the seed's
 };
 
 struct Rehearsal {
   MocapRun mocap;
   KinectOptions camera;
   std::vector<KinectTick> ticks;
-  PointFrames kinect;  // of the ticks; stamps are the sensor's, from the epoch on
+  PointFrames kinect;  // at the ticks; the sensor's stamps, counted from the epoch
   std::vector<SimulatedNode> nodes;
 };
 
-/// Fails where the motion is shorter than least_rehearsal_s, or where its skeleton is none that a
-/// camera (kinect_map.h) and nodes (five_nodes) are known for.
+/// Fails if the motion is shorter than least_rehearsal_s, or if its skeleton is not supported by
+/// the camera (kinect_map.h) or the nodes (five_nodes).
 Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options);
 
-/// The suit's frames from `begin` until `end`; `zero` is the stamp of time 0.
+/// The suit's frames from `begin` to before `end`; `zero` is the stamp of time 0.
 ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t begin,
                         std::size_t end, Time zero);
 
-/// A camera on a tripod, 0.9 to 1.2 m above the floor and 2.7 to 3.0 m before the middle of where
-/// the person goes, up to 15 degrees beside where they face at first, not quite level.
+/// A camera on a tripod, 0.9 to 1.2 m above the floor, not quite level. It stands 2.7 to 3.0 m in
+/// front of the middle of the person's path, up to 15 degrees off the person's first line of sight.
 Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed);
 
-/// As a program on the host would have stamped the camera's frames that was right about the first
-/// one, and believed the sensor's clock from then on.
+/// The camera's stream with the stamps of a program on the host that knew the time of the first
+/// frame and used the sensor's clock from then on.
 PointStream kinect_file(const Rehearsal& rehearsal, Time zero);
 
-/// Likewise a node, whose counter was read when it stood at its first value.
+/// The stream of a node with stamps by its counter, whose first value was stamped correctly.
 ImuStream node_file(const SimulatedNode& node, Time zero);
 
 /// The stream of node_file() without the samples that the link loses. Each sample has its own
 /// packet.
 ImuStream received_node(const SimulatedNode& node, Link link, Time zero);
 
-/// Each sample in a packet of its own over the link, stamped when it arrived: as the paper's nodes
-/// without a clock. What is lost is not there.
+/// The stream of a node without a clock, as in the paper: each sample has its own packet and is
+/// stamped on arrival. Lost samples are absent.
 struct ArrivedNode {
   ImuStream stream;
-  TrueClock clock;  // of each arrival
+  TrueClock clock;  // pairs of the arrivals' stamps and the true times
 };
 ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero);
 
-/// Without clocks of arrivals: those of the devices.
+/// The truth about all devices, with the devices' own clocks and not those of arrivals.
 TrueRecording truth_of(const Rehearsal& rehearsal, const Motion& motion, Time zero);
 
-/// ns to a second on; as all stamps of a rehearsal are made.
+/// The time `seconds_behind` s after `zero`, to the nanosecond; all stamps of a rehearsal are made
+/// so.
 inline Time time_at(Time zero, double seconds_behind) {
   return zero + Duration{static_cast<std::int64_t>(std::llround(seconds_behind * 1e9))};
 }

@@ -27,7 +27,7 @@ std::array<std::pair<std::string_view, std::uint64_t>, 3> verdicts_of(const Data
   return {{{"bad", page.bad}, {"usable", page.usable}, {"good", page.good}}};
 }
 
-/// "3 bad, 12 usable, 385 good".
+/// The line below the title: "3 bad, 12 usable, 385 good".
 std::string headline(const DatasetPage& page) {
   if (page.takes == 0) return "no takes yet";
   std::string out;
@@ -42,6 +42,7 @@ std::string_view quality(const DatasetPage& page) {
   return page.bad > 0 ? "bad" : page.usable > 0 ? "usable" : "good";
 }
 
+/// A bar whose parts are the shares of the verdicts.
 std::string verdict_bar(const DatasetPage& page) {
   if (page.takes == 0) return "";
   std::string out = fmt::format(
@@ -66,6 +67,7 @@ std::string facts_of(const DatasetPage& page) {
   return escaped(fmt::format("{}", fmt::join(facts, " · ")));
 }
 
+/// The counts of frames, in all and by modality.
 std::string numbers_of(const DatasetPage& page) {
   std::string out;
   const auto add = [&out](const std::string& number, std::string_view what) {
@@ -95,7 +97,7 @@ std::string small(std::string_view text) {
   return text.empty() ? "" : fmt::format("<small>{}</small>", escaped(text));
 }
 
-/// The cells stand in the order of the head in assets/dataset.html.
+/// A row of the table. Its cells have the order of the head in assets/dataset.html.
 std::string row_of(const DatasetTake& take) {
   const std::string name = escaped(take.name);
   const std::string link = take.page.empty()
@@ -116,6 +118,7 @@ std::string row_of(const DatasetTake& take) {
   return out;
 }
 
+/// Licence, citation and contact of the data set.
 std::string about_list(const DatasetPage& page) {
   const std::array<std::pair<std::string_view, const std::string*>, 3> texts{
       {{"Licence", &page.licence}, {"Citation", &page.citation}, {"Contact", &page.contact}}};
@@ -127,7 +130,7 @@ std::string about_list(const DatasetPage& page) {
   return out;
 }
 
-/// A sentence about the takes that the table leaves out.
+/// A sentence about takes that the table leaves out; empty if it has all.
 std::string cut_of(const DatasetPage& page) {
   if (page.worst.size() == page.takes) return "";
   return fmt::format(
@@ -154,6 +157,7 @@ std::string not_built_of(const DatasetPage& page) {
 
 }  // namespace
 
+/// Fills the page's template with its parts.
 std::string dataset_html(const DatasetPage& page) {
   const std::string style = std::string(page_style()) + std::string(dataset_style());
   PageParts parts;

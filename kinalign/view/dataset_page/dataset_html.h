@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of a data set: one HTML text that needs nothing beside it. The same DatasetPage gives
+// The page of a data set: one HTML text without external files. The same DatasetPage always gives
 // the same text.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-/// Stands in the head of every such page: a file that has it may be replaced.
+/// This tag is in the head of every such page; a file that has it may be replaced.
 inline constexpr std::string_view dataset_page_mark =
     "<meta name=\"kinalign-page\" content=\"data set\">";
 

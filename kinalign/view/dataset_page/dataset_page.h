@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that the page of a data set shows, as plain data. The room dataset/report fills it in;
+// The content of a data set's page as plain data. The room dataset/report fills it in;
 // dataset_html.h makes the page.
 #pragma once
 
@@ -16,27 +16,27 @@ namespace kinalign {
 /// A row of the page's table.
 struct DatasetTake {
   std::string name, subject, class_id, action, action_name;
-  std::string verdict, reason;  // "usable"; the worst finding in words
+  std::string verdict, reason;  // "usable"; the most severe finding in words
   std::uint64_t frames = 0;
   double seconds = 0.0;
   bool has_mocap = false, has_kinect = false, has_imu = false;
   std::optional<double> residual_cm;
   std::optional<double> kinect_valid, imu_valid;  // shares, of the worst stream
-  std::string page;              // relative link to the take's page; empty: it has none
-  std::vector<PageBody> bodies;  // one row of each, K = 1; empty: no picture
+  std::string page;                               // relative link to the take's page; empty: none
+  std::vector<PageBody> bodies;                   // one row of each, K = 1; empty: no picture
 };
 
 struct DatasetPage {
   std::string name, licence, contact, description, citation, software;
   std::uint64_t people = 0, takes = 0;
-  std::uint64_t mocap_frames = 0, kinect_frames = 0, imu_frames = 0;  // as the paper counts
+  std::uint64_t mocap_frames = 0, kinect_frames = 0, imu_frames = 0;  // counted as in the paper
   std::uint64_t good = 0, usable = 0, bad = 0;
   std::uint64_t not_built = 0;  // manifests without a take
   double seconds = 0.0;
-  std::string folder;                    // as the user named it, for commands
+  std::string folder;                    // the user's text, for commands
   std::vector<Table> tables;             // the paper's tables 6 and 7, pairs and triples
-  std::vector<DatasetTake> worst;        // the takes that are shown, worst first
-  std::uint64_t takes_without_page = 0;  // of those shown
+  std::vector<DatasetTake> worst;        // the takes in the table, worst first
+  std::uint64_t takes_without_page = 0;  // among the takes in the table
 };
 
 }  // namespace kinalign

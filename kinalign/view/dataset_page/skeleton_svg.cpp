@@ -14,17 +14,18 @@ namespace kinalign {
 
 namespace {
 
-// Units of the picture: it is shown half as large, so that a unit is half a pixel.
+// Units of the picture. A unit is half a pixel, since the picture is shown at half its size.
 constexpr double width = 120.0, height = 160.0, margin = 6.0;
-constexpr double most_units_per_m = 90.0;  // a small body, as in a file of other units, shows
-constexpr double farthest_m = 1000.0;      // a broken number does not blow the picture up
+constexpr double most_units_per_m = 90.0;  // a small body, from a file in other units, stays small
+constexpr double farthest_m = 1000.0;      // farther places are broken numbers and would shrink the
+                                           // picture
 
 struct Bone {
   Vec3 from, to;
   bool inferred = false;
 };
 
-/// A joint without a bone, as markers are.
+/// A joint without a bone, such as a marker.
 struct Dot {
   Vec3 at;
   bool inferred = false;
@@ -35,7 +36,7 @@ struct Drawn {
   std::vector<Bone> bones;
   std::vector<Dot> dots;
 
-  /// All that the picture has to hold.
+  /// All places that the picture has to contain.
   std::vector<Vec3> places() const {
     std::vector<Vec3> out;
     for (const Bone& bone : bones) out.insert(out.end(), {bone.from, bone.to});
@@ -58,6 +59,7 @@ std::vector<bool> joints_on_bones(const PageBody& body) {
   return out;
 }
 
+/// The bones and dots of a body. Parts with a missing end, or too far away, are left out.
 Drawn drawn(const PageBody& body) {
   Drawn out{to_string(body.colour), {}, {}};
   const auto state = [&body](std::size_t joint) {
@@ -80,7 +82,8 @@ Drawn drawn(const PageBody& body) {
   return out;
 }
 
-/// The horizontal axis along which bones' lower ends and dots are spread most; towards +x, else +z.
+/// The horizontal axis along which the lower ends of bones and the dots are spread most; its sign
+/// is towards +x, else +z.
 Vec3 widest_axis(const std::vector<Drawn>& bodies) {
   double n = 0.0, x = 0.0, z = 0.0, xx = 0.0, xz = 0.0, zz = 0.0;
   const auto add = [&](const Vec3& place) {
@@ -100,7 +103,7 @@ Vec3 widest_axis(const std::vector<Drawn>& bodies) {
   return {std::cos(angle), 0.0, std::sin(angle)};  // within 90 degrees of +x
 }
 
-/// From metres to units of the picture.
+/// Converts metres into units of the picture.
 class Camera {
  public:
   explicit Camera(const std::vector<Drawn>& bodies) : axis_(widest_axis(bodies)) {
@@ -128,7 +131,8 @@ class Camera {
   double bottom_ = left_, top_ = -left_, scale_ = 1.0;
 };
 
-/// A path of the bones that are inferred, or of those that are not; bones of a pixel are left out.
+/// The path of all bones that are inferred, or of all others. Bones shorter than a pixel are left
+/// out.
 std::string path_of(const std::vector<Bone>& bones, bool inferred, const Camera& camera) {
   std::string out;
   std::pair<int, int> pen{-1, -1};
@@ -143,7 +147,7 @@ std::string path_of(const std::vector<Bone>& bones, bool inferred, const Camera&
   return out;
 }
 
-/// A path of the dots: lines without length, whose round ends are drawn.
+/// The path of the dots: lines without length, of which the round ends are drawn.
 std::string path_of(const std::vector<Dot>& dots, bool inferred, const Camera& camera) {
   std::string out;
   for (const Dot& dot : dots) {

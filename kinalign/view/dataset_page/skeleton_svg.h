@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small picture of one instant: the skeletons and markers of a take drawn over each other.
+// A small picture of one instant: all skeletons and markers of a take in one drawing.
 #pragma once
 
 #include "kinalign/view/page/take_page.h"
@@ -9,10 +9,10 @@
 
 namespace kinalign {
 
-/// An <svg> element of one row of each body (K = 1), seen from the side from which the pose is
-/// widest. Bones are red, green or blue by PageBody::colour, dashed where an end is inferred, and
-/// left out where an end is missing. A joint without bones, as markers are, is a dot, pale where it
-/// is inferred. Bodies outside the take's space are not drawn. Empty where nothing can be drawn.
+/// An <svg> element with one row of each body (K = 1), seen from the side from which the pose is
+/// widest. Bones have the colour of PageBody::colour; they are dashed if an end is inferred, and
+/// left out if an end is missing. A joint without bones, such as a marker, is a dot, pale if
+/// inferred. Bodies outside the take's space are not drawn. Empty if there is nothing to draw.
 std::string skeleton_svg(const std::vector<PageBody>& bodies);
 
 }  // namespace kinalign

@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// A <figure> with the table, which scrolls sideways where it is too wide, and its caption.
+/// A <figure> with the table and its caption. A wide table scrolls sideways.
 std::string table_html(const Table& table);
 
 }  // namespace kinalign

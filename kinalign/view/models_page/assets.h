@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fixed parts of the page, which the build joins into the library (cmake/embed_page.cmake).
+// The fixed parts of the page; the build embeds them in the library (cmake/embed_page.cmake).
 #pragma once
 
 #include <string_view>

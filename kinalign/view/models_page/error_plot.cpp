@@ -17,7 +17,7 @@ namespace {
 constexpr float plot_left = 46, plot_top = 10, plot_wide = 820, plot_high = 250;  // units
 constexpr std::size_t curve_colours = 12;  // .c0 to .c11 of assets/models.css
 
-/// A step of 1, 2 or 5 times a power of ten that divides a length into 4 to 10 parts.
+/// The step, 1, 2 or 5 times a power of ten, that divides a length into 4 to 10 parts.
 float step_for(float length) {
   const float power = std::pow(10.0F, std::floor(std::log10(length / 4.0F)));
   for (const float times : {5.0F, 2.0F}) {
@@ -26,7 +26,7 @@ float step_for(float length) {
   return power;
 }
 
-/// The numbers that stand at an axis from 0 to `length`.
+/// The numbers written at an axis from 0 to `length`.
 std::vector<float> marks_up_to(float length) {
   const float step = step_for(length);
   std::vector<float> out;
@@ -36,14 +36,15 @@ std::vector<float> marks_up_to(float length) {
   return out;
 }
 
-/// Where seconds and centimetres lie in the picture.
+/// The positions of seconds and centimetres in the picture.
 struct Axes {
-  float seconds = 1.0F, cm = 1.0F;  // at the right and upper end
+  float seconds = 1.0F, cm = 1.0F;  // values at the right and at the upper end
 
   float x(float s) const { return plot_left + plot_wide * s / seconds; }
   float y(float value) const { return plot_top + plot_high * (1.0F - value / cm); }
 };
 
+/// Axes that hold all curves, up to a whole step.
 Axes axes_of(const ErrorPlot& plot) {
   Axes out{plot.step_s, 1.0F};
   for (const ErrorCurve& curve : plot.curves) {
@@ -55,6 +56,7 @@ Axes axes_of(const ErrorPlot& plot) {
   return out;
 }
 
+/// Grid lines, numbers and titles of both axes.
 std::string grid_of(const Axes& axes) {
   std::string out;
   for (const float value : marks_up_to(axes.cm)) {

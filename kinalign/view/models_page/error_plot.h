@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors over time as an SVG with axes, units and a legend.
+// The errors over time as an SVG with axes, units and a legend.
 #pragma once
 
 #include "kinalign/view/models_page/models_page.h"
@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// A <figure>; a line of its own colour for each method. Empty without curves.
+/// A <figure> with one line for each method, in its own colour. Empty without curves.
 std::string error_plot_html(const ErrorPlot& plot);
 
 }  // namespace kinalign

@@ -28,6 +28,7 @@ std::string numbers_html(const ModelsPage& page) {
   return out;
 }
 
+/// A section with its pictures, tables, and a note about anything missing.
 std::string section_html(const PosePictures& pictures) {
   std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", escaped(pictures.id),
                                 escaped(pictures.title));
@@ -54,6 +55,7 @@ std::string links_html(const ModelsPage& page) {
 
 }  // namespace
 
+/// Fills the page's template. Without moving bodies the page has no script.
 std::string models_html(const ModelsPage& page) {
   const std::string style = std::string(page_style()) + std::string(models_style());
   PageParts parts;

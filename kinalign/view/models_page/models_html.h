@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of a benchmark: one HTML text that needs nothing beside it. The same ModelsPage gives
+// The page of a benchmark: one HTML text without external files. The same ModelsPage always gives
 // the same text.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-/// Stands in the head of every such page: a file that has it may be replaced.
+/// This tag is in the head of every such page; a file that has it may be replaced.
 inline constexpr std::string_view models_page_mark =
     "<meta name=\"kinalign-page\" content=\"benchmark\">";
 

@@ -18,15 +18,16 @@ namespace {
 constexpr float units_per_m = 100.0F;
 constexpr int picture_margin = 8;  // units
 constexpr double from_left_deg = 25.0, from_above_deg = 8.0;
-constexpr float farthest_m = 10.0F;  // from the picture's origin; a joint beyond it is not drawn
+constexpr float farthest_m = 10.0F;  // from the picture's origin; farther joints are not drawn
 
 constexpr std::array<std::string_view, 5> colour_names{"mocap", "kinect", "imu", "method", "both"};
 
-/// A place in a picture, in its units: to the right and upwards from the origin.
+/// A place in a picture, in its units to the right and upwards from the origin.
 struct Spot {
   int right = 0, up = 0;
 };
 
+/// Projects a place in parallel onto the picture.
 Spot seen_from_camera(const float* place) {
   constexpr double degree = std::numbers::pi / 180.0;
   static const auto side = static_cast<float>(std::sin(from_left_deg * degree)),
@@ -50,6 +51,7 @@ struct Line {
   bool inferred = false;
 };
 
+/// The bones of a figure. A bone with a missing or far end is left out.
 std::vector<Line> lines_of(const StickFigure& figure) {
   const auto state = [&](std::size_t joint) {
     return figure.states.empty() ? Tracking::tracked : static_cast<Tracking>(figure.states[joint]);
@@ -66,7 +68,7 @@ std::vector<Line> lines_of(const StickFigure& figure) {
   return out;
 }
 
-/// What all pictures of a table must show, in units.
+/// The area that all pictures of a table must show, in units.
 struct Bounds {
   int left = 0, right = 0, bottom = 0, top = 0;
 
@@ -78,6 +80,7 @@ struct Bounds {
   }
 };
 
+/// One area for all pictures, so that they have one scale.
 Bounds bounds_of(const PosePictures& pictures) {
   Bounds out;
   for (const auto& [name, row] : pictures.rows) {
@@ -103,6 +106,7 @@ std::string path_of(const std::vector<Line>& lines, bool inferred, const Bounds&
   return out;
 }
 
+/// The figures of a picture, each with one path for tracked and one for inferred bones.
 std::string svg_of(const PosePicture& picture, const Bounds& bounds, const std::string& label) {
   std::string out =
       fmt::format("<svg viewBox=\"{} {} {} {}\" role=\"img\" aria-label=\"{}\">", -picture_margin,

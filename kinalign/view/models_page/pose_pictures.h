@@ -8,9 +8,9 @@
 
 namespace kinalign {
 
-/// The camera stands before a person who looks to +z, 25 degrees to that person's left and 8
-/// degrees above the horizon. Bones with an inferred end are dashed; those with a missing end are
-/// left out. Empty without a picture.
+/// The camera stands before a person who looks to +z, 25 degrees to the person's left and 8 degrees
+/// above the horizon. Bones with an inferred end are dashed; bones with a missing end are left out.
+/// Empty without a picture.
 std::string pictures_html(const PosePictures& pictures);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data of moving bodies, for the page's script (assets/side_by_side.js).
+// The data of moving bodies for the page's script (assets/side_by_side.js).
 #pragma once
 
 #include "kinalign/view/models_page/models_page.h"
@@ -8,8 +8,8 @@
 
 namespace kinalign {
 
-/// One JSON object, safe inside a <script> of HTML: no '<' stands in it. Places are rounded to 1
-/// mm, distances to 0.1 mm.
+/// One JSON object that may stand inside a <script> of HTML: it contains no '<'. Places are rounded
+/// to 1 mm, distances to 0.1 mm.
 std::string side_by_side_json(const SideBySide& motion);
 
 }  // namespace kinalign

@@ -10,10 +10,10 @@ namespace kinalign {
 
 namespace {
 
-/// Shorter end sites are fingertips: too small to see.
+/// Shorter end sites are fingertips, too small to see.
 constexpr double shortest_end_m = 0.04;
 
-/// The parents of a Kinect's joints; other points have none.
+/// The parents of a Kinect's joints; -1 for all other points.
 std::vector<int> point_parents(const std::vector<std::string>& names) {
   std::vector<int> parents(names.size(), -1);
   for (std::size_t j = 0; j < names.size(); ++j) {
@@ -52,7 +52,8 @@ Tracking JointRows::state(std::size_t row, std::size_t joint) const {
     return valid_->empty() || (*valid_)[row] != 0 ? Tracking::tracked : Tracking::missing;
   }
   if (!valid_->empty() && (*valid_)[cell] == 0) return Tracking::missing;
-  // Between a missing and a tracked sample a valid row has the lesser state: it was not measured.
+  // A valid row between a missing and a tracked sample has the worse state of both, but it is not
+  // missing.
   return std::max((*states_)[cell], Tracking::inferred);
 }
 
@@ -67,6 +68,7 @@ void pose_of_row(const Skeleton& skeleton, const ClipRows& rows, std::size_t row
   forward_kinematics(skeleton, local, pose);
 }
 
+/// The colour of points: a Kinect's if they have a Kinect's bones, else that of a mocap.
 BodyFigures::BodyFigures(const TakeGroup& group, std::size_t body) : number_(body) {
   body_.name = group.name;
   body_.in_take_space = group.space == "take";
@@ -108,6 +110,7 @@ void BodyFigures::add(const std::variant<ClipRows, PointRows, ImuRows>& rows, st
   if (keep) keep_row(*joints, rows, row);
 }
 
+/// Updates the lengths of the bones whose ends are both tracked (Welford's method).
 void BodyFigures::add_bones(const JointRows& rows, std::size_t row) {
   for (std::size_t j = 0; j < bones_.size(); ++j) {
     const int parent = body_.parents[j];
@@ -127,6 +130,8 @@ void BodyFigures::add_bones(const JointRows& rows, std::size_t row) {
   }
 }
 
+/// Stores a row for the page. End sites are computed from the pose, and missing unless all joints
+/// are tracked.
 void BodyFigures::keep_row(const JointRows& joints,
                            const std::variant<ClipRows, PointRows, ImuRows>& rows,
                            std::size_t row) {

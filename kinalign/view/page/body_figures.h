@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream of joints on its way to the page: the rows that are kept, how often each joint was
-// tracked, how constant each bone is.
+// The figures of one stream of joints for the page: the stored rows, the states of each joint, and
+// the lengths of each bone.
 #pragma once
 
 #include "kinalign/motion/pose.h"
@@ -13,10 +13,10 @@
 
 namespace kinalign {
 
-/// Rows of joints in a slab, whatever their kind.
+/// The rows of joints in a slab, for skeletons and for points.
 class JointRows {
  public:
-  /// Absent where the rows are of nodes.
+  /// Absent for rows of nodes.
   static std::optional<JointRows> of(const std::variant<ClipRows, PointRows, ImuRows>& rows,
                                      std::size_t joints);
   Tracking state(std::size_t row, std::size_t joint) const;
@@ -27,12 +27,12 @@ class JointRows {
 
  private:
   const std::vector<double>* positions_ = nullptr;
-  const std::vector<Tracking>* states_ = nullptr;     // of points
-  const std::vector<std::uint8_t>* valid_ = nullptr;  // of points [n,J], of a clip [n] or empty
+  const std::vector<Tracking>* states_ = nullptr;     // only for points
+  const std::vector<std::uint8_t>* valid_ = nullptr;  // points [n,J]; clip [n] or empty
   std::size_t joints_ = 0;
 };
 
-/// Appends x, y, z.
+/// Appends x, y and z.
 inline void put_vector(std::vector<float>& to, const Vec3& v) {
   for (const double x : {v.x(), v.y(), v.z()}) to.push_back(static_cast<float>(x));
 }
@@ -50,13 +50,13 @@ class BodyFigures {
   std::size_t joints() const { return joints_; }
   PageBody take_body() { return std::move(body_); }
   JointStates take_states() { return std::move(states_); }
-  /// The bones that were seen at least twice; a clip has none.
+  /// The bones that were seen in at least two rows; none for a clip.
   std::vector<BoneLength> bones() const;
 
  private:
   struct Sums {
     std::uint64_t rows = 0;
-    double mean = 0.0, squares = 0.0, shortest = 0.0, longest = 0.0;  // Welford's
+    double mean = 0.0, squares = 0.0, shortest = 0.0, longest = 0.0;  // m; squares: Welford's sum
   };
   void add_bones(const JointRows& rows, std::size_t row);
   void keep_row(const JointRows& joints, const std::variant<ClipRows, PointRows, ImuRows>& rows,

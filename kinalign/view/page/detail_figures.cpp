@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-/// Between the rows that are kept.
+/// The place of the other body's root at a time, interpolated between the stored rows.
 Vec3 onto_root_at(const RawMove& move, double at) {
   const std::vector<float>& times = *move.onto_seconds;
   const auto behind = std::lower_bound(times.begin(), times.end(), static_cast<float>(at));
@@ -19,8 +19,8 @@ Vec3 onto_root_at(const RawMove& move, double at) {
   return (1.0 - share) * move.onto_root[b - 1] + share * move.onto_root[b];
 }
 
-/// The transform of one raw sample; by the paper each has its own, and none where the root was not
-/// seen.
+/// The transform of one raw sample. By the paper's method each sample has its own, and none if the
+/// root was not seen.
 std::optional<RigidTransform> transform_of(const RawPoints& raw, const RawMove& move, std::size_t t,
                                            std::size_t joints, double at) {
   if (move.space == nullptr) return RigidTransform{};

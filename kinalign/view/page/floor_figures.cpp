@@ -13,7 +13,7 @@ std::optional<PageFloor> floor_of(const SpaceReport& space, std::size_t body) {
   floor.camera = space.transform.translation;
   Vec3 forward = space.transform.rotation * Vec3::UnitZ();
   forward.y() = 0.0;
-  constexpr double shortest = 0.1;  // of a unit vector: 84 degrees above or below the floor
+  constexpr double shortest = 0.1;  // length along the floor: 84 degrees above or below it
   if (forward.norm() < shortest) return std::nullopt;
   floor.forward = forward.normalized();
   return floor;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kinect's place in a take's space, and the paper's zones on the floor before it (section
+// The place of a Kinect in a take's space, and the paper's zones on the floor before it (section
 // 2.2: best 0.8 to 3.5 m, largest 0.5 to 4.5 m; 70 degrees across).
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace kinalign {
 
-/// The Kinect's own place and direction: absent where its transform differs from row to row, and
-/// where it looks up or down so steeply that it has no direction along the floor.
+/// The Kinect's own place and direction. Absent if its transform differs from row to row, or if it
+/// looks up or down so steeply that it has no direction along the floor.
 std::optional<PageFloor> floor_of(const SpaceReport& space, std::size_t body);
 
-/// Zone of a place in the take's space.
+/// The zone of a place in the take's space.
 Zone zone_of(const PageFloor& floor, const Vec3& place);
 
-/// Counts a row's joints by their zones.
+/// Counts the joints of a row by their zones.
 void count_zones(const JointRows& joints, std::size_t row, PageFloor& floor);
 
 }  // namespace kinalign

@@ -7,6 +7,7 @@
 
 namespace kinalign {
 
+/// A lane for the group, or one for each node.
 LaneFigures::LaneFigures(const TakeGroup& group, std::size_t bins) {
   PageLane lane;
   lane.stream = group.name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams over time, in equal bins of a take: how much of each was measured, how far from raw
-// samples, how certain its stamps are.
+// Streams over time, in equal bins of a take: the share that was measured, the distance from raw
+// samples, and the certainty of stamps.
 #pragma once
 
 #include "kinalign/take/take.h"
@@ -27,7 +27,7 @@ class LaneFigures {
   void add_distance(const SampleDistance& distance, std::size_t sample, std::size_t lane,
                     std::size_t bin);
 
-  std::size_t joints_ = 0;  // of a body
+  std::size_t joints_ = 0;  // a body's joints
   std::vector<PageLane> lanes_;
   std::vector<std::vector<Counts>> counts_;  // [lanes][bins]
 };

@@ -16,17 +16,18 @@ namespace kinalign {
 namespace {
 
 constexpr double standard_gravity = 9.80665;  // m/s2
-constexpr double half_window_s = 0.05;  // keeps 8 Hz and less, half of what a node of 15 Hz has
+constexpr double half_window_s = 0.05;        // passes 8 Hz and less: half of a 15 Hz node's range
 constexpr double most_lag_s = 0.25;
-constexpr std::size_t fewest_rows = 20;  // to compare anything
+constexpr std::size_t fewest_rows = 20;  // needed for a comparison
 
 // ---- by name
 
-/// Words of a node's name, and joints by the usual names: "*" stands for the side.
+/// Words in a node's name, and the usual names of its joints; "*" stands for the side.
 struct Wear {
   std::vector<std::string_view> words, turns, place;
 };
 
+/// The order matters: of the entries with a word in the name, the first whose joints exist counts.
 const std::vector<Wear>& wears() {
   static const std::vector<Wear> all{
       {{"waist", "pelvis", "hips"}, {"Hips", "Pelvis", "hip"}, {"Hips", "Pelvis", "hip"}},
@@ -52,7 +53,7 @@ const std::vector<Wear>& wears() {
   return all;
 }
 
-/// "Wrist_L": "wristl".
+/// The letters of a name in lower case: "Wrist_L" gives "wristl".
 std::string plain(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -63,7 +64,7 @@ std::string plain(const std::string& name) {
   return out;
 }
 
-/// "Left", "Right", or empty: of "wrist_left", "L_Foot", "shank_r".
+/// The side in a name: "Left" or "Right" for "wrist_left", "L_Foot", "shank_r"; else empty.
 std::string_view side_of(const std::string& name) {
   const std::string text = plain(name);
   const auto has = [&](std::string_view word, std::string_view letters) {
@@ -77,6 +78,7 @@ std::string_view side_of(const std::string& name) {
   return has("right", "rR") ? "Right" : "";
 }
 
+/// The first joint that fits a pattern; patterns with a side need one in the node's name.
 std::optional<std::size_t> joint_called(std::span<const std::string_view> patterns,
                                         std::string_view side,
                                         const std::vector<std::string>& joints) {
@@ -94,7 +96,7 @@ std::optional<std::size_t> joint_called(std::span<const std::string_view> patter
 
 // ---- fits
 
-/// The rotation R with the largest sum of to . R from, where `cross` is the sum of to * from^T
+/// The rotation R with the largest sum of to . R from, if `cross` is the sum of to * from^T
 /// (Wahba's problem; Markley 1988).
 Quat best_rotation(const Eigen::Matrix3d& cross) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -107,7 +109,7 @@ Quat best_rotation(const Eigen::Matrix3d& cross) {
 
 using Matrix4 = Eigen::Matrix4d;
 
-/// p * q as a matrix of p times the parts w,x,y,z of q.
+/// The matrix M with p * q = M q, q as w,x,y,z.
 Matrix4 left_of(const Quat& p) {
   Matrix4 m;
   m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), -p.z(), p.y(), p.y(), p.z(), p.w(), -p.x(),
@@ -115,7 +117,7 @@ Matrix4 left_of(const Quat& p) {
   return m;
 }
 
-/// q * p as a matrix of p times the parts of q.
+/// The matrix M with q * p = M q, q as w,x,y,z.
 Matrix4 right_of(const Quat& p) {
   Matrix4 m;
   m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), p.z(), -p.y(), p.y(), -p.z(), p.w(), p.x(),
@@ -135,8 +137,8 @@ struct OrientationFit {
   Quat predicted(const Quat& bone) const { return world * bone * sensor; }
 };
 
-/// Minimises the sum of |world^-1 node - bone sensor|^2 over both unit quaternions: the largest
-/// singular value of a 4 x 4 matrix. The signs of the quaternions are settled by three rounds.
+/// Minimises the sum of |world^-1 node - bone sensor|^2 over both unit quaternions, by the largest
+/// singular value of a 4 x 4 matrix. Three rounds determine the signs of the quaternions.
 OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
   OrientationFit fit;
   for (int round = 0; round < 3; ++round) {
@@ -145,7 +147,7 @@ OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
     const Eigen::JacobiSVD<Matrix4> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
     fit.world = quat_of(svd.matrixV().col(0)).conjugate();
     fit.sensor = quat_of(svd.matrixU().col(0));
-    // With the sensor's sign chosen so, the sum of node . (world bone sensor) is positive.
+    // With this sign of the sensor, the sum of node . (world bone sensor) is positive.
     bool flipped = false;
     for (OrientationPair& p : pairs) {
       if (p.node.dot(fit.predicted(p.bone)) >= 0.0) continue;
@@ -157,7 +159,7 @@ OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
   return fit;
 }
 
-/// Sums for Pearson's correlation.
+/// The sums for Pearson's correlation.
 struct Correlation {
   double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
   void add(double a, double b) { n += 1, x += a, y += b, xx += a * a, yy += b * b, xy += a * b; }
@@ -167,10 +169,11 @@ struct Correlation {
   }
 };
 
-/// Weights of values at `times` for the first two coefficients of a parabola: slope and bend at 0.
+/// The weights of values at `times` in the fit of a parabola: for its slope and its bend at time 0.
 struct Weights {
   std::vector<double> slope, bend;
 };
+/// Least squares by the normal equations of 1, t and t^2.
 Weights parabola(std::span<const double> times) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   for (const double t : times) {
@@ -187,7 +190,7 @@ Weights parabola(std::span<const double> times) {
   return out;
 }
 
-/// A signal of a node against its bone's, over the rows where both are known.
+/// A signal of a node and that of its bone, over the rows in which both are known.
 struct SignalFit {
   std::vector<float> node, bone;  // [K,3]; the bone's in the node's space
   double rms = 0.0, correlation = 0.0;
@@ -256,6 +259,7 @@ BoneReading bone_reading(std::span<const TimedPose* const> poses, std::size_t mi
   return out;
 }
 
+/// If a node's name does not name its bone, all joints of the skeleton are candidates for it.
 NodeCompare::NodeCompare(const ImuGroup& group, const Skeleton& skeleton, double rate_hz)
     : group_(group),
       skeleton_(skeleton),
@@ -286,6 +290,8 @@ void NodeCompare::add(double seconds, const ClipRows& clip, const ImuRows& nodes
   }
 }
 
+/// Computes the bones' readings of a row, once the rows after it have come. A gap within the window
+/// leaves them unknown.
 void NodeCompare::settle_next() {
   const std::size_t middle = next_++;
   Waiting& row = waiting_[middle];
@@ -307,6 +313,7 @@ void NodeCompare::settle_next() {
   }
 }
 
+/// The candidate for a node: the bone by its name, else the one that turns most like it.
 std::size_t NodeCompare::candidate_of(std::size_t node) const {
   if (named_[node]) return node;
   std::size_t best = 0;
@@ -320,7 +327,7 @@ std::size_t NodeCompare::candidate_of(std::size_t node) const {
   return best;
 }
 
-/// Correlation of the magnitudes of the angular velocities.
+/// The correlation of the magnitudes of both angular velocities.
 double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
   Correlation sums;
   for (const Kept& row : kept_) {
@@ -330,6 +337,7 @@ double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
   return sums.value();
 }
 
+/// The joint of another node that turns clearly more like this node than its own bone; else empty.
 std::string NodeCompare::more_like(std::size_t node) const {
   constexpr double clearly = 0.1, sure = 0.8;
   if (!named_[node] || !group_.content.angular_velocity) return "";
@@ -346,7 +354,8 @@ std::string NodeCompare::more_like(std::size_t node) const {
 
 namespace {
 
-/// `of_node(row)` and `of_bone(row)` are vectors; rows that are not `known` have zeros.
+/// Fits the rotation from the bone's vectors to the node's. `of_node(row)` and `of_bone(row)` give
+/// the vectors; rows that are not `known` get zeros.
 template <class Rows, class Known, class OfNode, class OfBone>
 SignalFit fit_signal(const Rows& rows, Known known, OfNode of_node, OfBone of_bone) {
   SignalFit out;
@@ -377,8 +386,8 @@ double length_at(const std::vector<float>& vectors, std::size_t k) {
                     static_cast<double>(vectors[i + 2]));
 }
 
-/// The shift of `node` against `bone` at which their magnitudes agree best, by the parabola through
-/// the best one and its neighbours. Absent where rows are too far apart to tell.
+/// The time shift of `node` against `bone` at which their magnitudes agree best, by a parabola
+/// through the best shift and its neighbours. Absent if rows are too far apart.
 std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uint8_t>& known,
                              double step_s) {
   const auto most = static_cast<std::ptrdiff_t>(std::floor(most_lag_s / step_s));
@@ -404,6 +413,7 @@ std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uin
 
 }  // namespace
 
+/// Compares angular velocities; the lag comes from them, too.
 void NodeCompare::compare_rate(const Pair& pair, double kept_step_s, NodeFigures& out) const {
   SignalFit fit = fit_signal(
       kept_, [&pair](const Kept& row) { return is_known(row, pair); },
@@ -417,6 +427,7 @@ void NodeCompare::compare_rate(const Pair& pair, double kept_step_s, NodeFigures
   out.mocap_rate = std::move(fit.bone);
 }
 
+/// Compares accelerations. Gravity is added to the bone's if the node measures it.
 void NodeCompare::compare_acceleration(const Pair& pair, NodeFigures& out) const {
   const Vec3 up(0.0, group_.content.gravity ? standard_gravity : 0.0, 0.0);
   SignalFit fit = fit_signal(
@@ -433,6 +444,7 @@ void NodeCompare::compare_acceleration(const Pair& pair, NodeFigures& out) const
   out.mocap_acceleration = std::move(fit.bone);
 }
 
+/// Compares orientations after the best constant rotations of world and sensor.
 void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const {
   std::vector<OrientationPair> pairs;
   for (const Kept& row : kept_) {
@@ -458,6 +470,7 @@ void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const 
   out.orientation_rms = std::sqrt(squares / static_cast<double>(out.rows));
 }
 
+/// Compares a node with its bone. With too few rows there is no comparison.
 NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
   const Pair pair{node, candidate_of(node)};
   NodeFigures out;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes against the bones that they are worn on: angular velocity and acceleration that the mocap's
-// poses imply at the node's bone, and its orientation, each after the best constant rotation, since
-// nobody knows exactly how a node is strapped on.
+// Compares nodes with the bones that they are worn on: the angular velocity and acceleration that
+// the mocap's poses imply at the bone, and its orientation. Each comparison uses the best constant
+// rotation, since the exact mounting of a node is not known.
 #pragma once
 
 #include "kinalign/motion/pose.h"
@@ -18,15 +18,16 @@
 
 namespace kinalign {
 
-/// The bone that a node is worn on: its rotation is `turns`, and the node lies near `place`.
+/// The bone of a node: `turns` has its rotation, and the node lies near the joint `place`.
 struct WornOn {
   std::size_t turns = 0, place = 0;
 };
 
-/// The usual names of nodes and joints decide ("wrist_left", "LeftForeArm"); absent for others.
+/// The bone by the usual names of nodes and joints ("wrist_left", "LeftForeArm"); absent for other
+/// names.
 std::optional<WornOn> worn_on(const std::string& node, const std::vector<std::string>& joints);
 
-/// A node's values as it measured them, whatever the take's space: orientation of the sensor in the
+/// A node's values as measured, whatever the take's space: the orientation of the sensor in the
 /// node's own world, vectors in the sensor's space.
 struct NodeReading {
   bool valid = false;
@@ -34,23 +35,23 @@ struct NodeReading {
   Vec3 rate = Vec3::Zero(), acceleration = Vec3::Zero();
 };
 
-/// Row `row` of a group, its step into the root node's space undone.
+/// Row `row` of a group, brought back from the root node's space.
 std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& rows, std::size_t row);
 
-/// A bone at one time; its rate and acceleration are in its own space.
+/// A bone at one time. Rate and acceleration are in its own space.
 struct BoneReading {
-  Quat rotation = Quat::Identity();                       // of the bone, in the take's space
-  Vec3 rate = Vec3::Zero(), acceleration = Vec3::Zero();  // rad/s; m/s2 with gravity
+  Quat rotation = Quat::Identity();                       // the bone's, in the take's space
+  Vec3 rate = Vec3::Zero(), acceleration = Vec3::Zero();  // rad/s; m/s2, without gravity
 };
 
-/// Poses around one time, by which derivatives are taken.
+/// A pose and its time; derivatives are taken from several of them.
 struct TimedPose {
   double seconds = 0.0;
   GlobalPose pose;
 };
 
-/// Least squares over the poses: parabolas through rotations and places, in the time of the pose
-/// that is the `middle` one. At least three poses.
+/// The derivatives by least squares: parabolas through rotations and places, at the time of pose
+/// `middle`. Needs at least three poses.
 BoneReading bone_reading(std::span<const TimedPose* const> poses, std::size_t middle,
                          const WornOn& bone);
 
@@ -58,17 +59,17 @@ class NodeCompare {
  public:
   NodeCompare(const ImuGroup& group, const Skeleton& skeleton, double rate_hz);
 
-  /// Each row of the take, in order; `keep`: the page keeps it.
+  /// Adds each row of the take, in order. `keep`: the page stores the row.
   void add(double seconds, const ClipRows& clip, const ImuRows& nodes, std::size_t row, bool keep);
-  /// One of each node. `kept_step_s`: between rows that are kept.
+  /// The figures of each node. `kept_step_s`: the time between stored rows.
   std::vector<NodeFigures> finish(double kept_step_s);
 
  private:
-  /// A row that waits for those behind it, by which derivatives are taken.
+  /// A row that waits for the rows after it, which its derivatives need.
   struct Waiting {
     TimedPose pose;
     bool keep = false, known = false;  // known: the mocap's row is valid
-    std::vector<NodeReading> nodes;    // of a kept row
+    std::vector<NodeReading> nodes;    // only if keep
   };
   struct Kept {
     std::vector<NodeReading> nodes;  // [S]
@@ -78,7 +79,7 @@ class NodeCompare {
   double alike(std::size_t node, std::size_t candidate) const;
   std::size_t candidate_of(std::size_t node) const;
   std::string more_like(std::size_t node) const;
-  /// A node, and the bone that it is compared with.
+  /// A node, and the candidate that it is compared with.
   struct Pair {
     std::size_t node = 0, candidate = 0;
   };
@@ -92,12 +93,12 @@ class NodeCompare {
 
   ImuGroup group_;
   Skeleton skeleton_;
-  std::size_t half_window_;                   // rows on each side of one that is differentiated
-  double longest_step_s_;                     // between rows of a window: longer ones are gaps
+  std::size_t half_window_;                   // rows on each side of the row to be differentiated
+  double longest_step_s_;                     // longer steps within a window are gaps
   std::vector<std::optional<WornOn>> named_;  // [S]
-  std::vector<WornOn> candidates_;            // the named ones, or one for each joint behind them
+  std::vector<WornOn> candidates_;            // the named ones, then possibly one for each joint
   std::deque<Waiting> waiting_;
-  std::size_t next_ = 0;  // of waiting_, to be settled
+  std::size_t next_ = 0;  // index in waiting_ of the next row to compute
   std::vector<Kept> kept_;
 };
 

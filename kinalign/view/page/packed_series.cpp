@@ -44,13 +44,13 @@ std::uint32_t unsigned_of(std::int64_t x) {
   return static_cast<std::uint32_t>(x < 0 ? -2 * x - 1 : 2 * x);
 }
 
-/// Bits that a number takes behind k.
+/// The bits that a number takes with that k.
 std::uint64_t cost(std::uint32_t u, unsigned k) {
   const std::uint32_t zeros = u >> k;
   return zeros < most_zeros ? zeros + 1 + k : most_zeros + 32;
 }
 
-/// A block as values, differences or differences of these, without the sign.
+/// A block as values, differences or second differences, mapped to unsigned numbers.
 struct Coded {
   std::array<std::uint32_t, block_rows> numbers{};
   std::size_t count = 0;
@@ -58,6 +58,7 @@ struct Coded {
   std::uint64_t bits = 0;
 };
 
+/// Tries the few k near the mean's logarithm and keeps the one with the fewest bits.
 void choose_k(Coded& block) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < block.count; ++i) sum += block.numbers[i];
@@ -75,7 +76,7 @@ void choose_k(Coded& block) {
   }
 }
 
-/// `values` begins two before the block.
+/// The block coded in that order. `values` begins two values before the block.
 Coded coded(std::span<const std::int64_t> values, unsigned order) {
   Coded block;
   block.count = values.size() - 2;
@@ -87,6 +88,7 @@ Coded coded(std::span<const std::int64_t> values, unsigned order) {
   return block;
 }
 
+/// Writes a block in the order with the fewest bits.
 void put_block(std::span<const std::int64_t> values, BitWriter& out) {
   unsigned best = 0;
   Coded block = coded(values, 0);
@@ -111,11 +113,11 @@ void put_block(std::span<const std::int64_t> values, BitWriter& out) {
   }
 }
 
-/// `at(row, column)` gives the numbers.
+/// Packs the numbers that `at(row, column)` gives.
 template <class At>
 std::string packed(std::size_t rows, std::size_t columns, At at) {
   BitWriter out;
-  std::vector<std::int64_t> values(rows + 2);  // two zeros in front
+  std::vector<std::int64_t> values(rows + 2);  // with two zeros in front
   for (std::size_t c = 0; c < columns; ++c) {
     for (std::size_t r = 0; r < rows; ++r) values[r + 2] = at(r, c);
     for (std::size_t first = 0; first < rows; first += block_rows) {

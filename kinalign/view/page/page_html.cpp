@@ -20,6 +20,7 @@ std::string any_node(const TakePage& page, Has has) {
   return flag(std::any_of(page.nodes.begin(), page.nodes.end(), has));
 }
 
+/// All texts of the page, by the names of their places in the template.
 PageParts parts_of(const TakePage& page) {
   PageParts parts;
   parts["policy"] = page_policy(page_script(), page_style());
@@ -55,7 +56,7 @@ PageParts parts_of(const TakePage& page) {
   return parts;
 }
 
-/// Which blocks of the template a take has.
+/// Sets which blocks of the template the page has.
 void put_flags(const TakePage& page, PageParts& parts) {
   const auto lane = [&](auto has) {
     return flag(std::any_of(page.lanes.begin(), page.lanes.end(), has));

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Steps to which series are rounded: below what any of the devices can tell.
+// Rounding steps of series, below the resolution of any of the devices.
 constexpr double second_step = 1e-4, metre_step = 5e-4, rate_step = 0.01, acceleration_step = 0.02;
 constexpr double angle_step = 2e-5, rotation_step = 1.0 / 2048.0;
 
@@ -35,6 +35,7 @@ Json bins_json(const std::vector<float>& bins, double factor, double step) {
   return out;
 }
 
+/// A body with its packed positions and states.
 Json body_json(const PageBody& body) {
   const std::size_t joints = body.joint_names.size();
   return {{"name", body.name},
@@ -47,6 +48,7 @@ Json body_json(const PageBody& body) {
           {"state", series_json(body.state, joints)}};
 }
 
+/// A space with its transform and residuals.
 Json space_json(const PageSpace& space) {
   const Quat& q = space.report.transform.rotation;
   Json joints = Json::array();
@@ -90,6 +92,7 @@ Json bone_json(const BoneLength& bone) {
           {"longest_m", rounded(bone.longest_m, 1e-5)}};
 }
 
+/// A lane; distances and intervals only if the stream has them.
 Json lane_json(const PageLane& lane) {
   Json out{{"stream", lane.stream},
            {"part", lane.part},
@@ -103,6 +106,7 @@ Json lane_json(const PageLane& lane) {
   return out;
 }
 
+/// A node's signals; only those that it measures.
 Json node_json(const NodeFigures& node) {
   Json out{{"node", node.node},
            {"joint", node.joint},
@@ -130,6 +134,7 @@ Json node_json(const NodeFigures& node) {
   return out;
 }
 
+/// A detail; its own rows are absent if the page stores every row.
 Json detail_json(const TakePage& page, const PageDetail& detail) {
   const std::size_t joints = page.bodies[detail.body].joint_names.size();
   Json out{{"body", detail.body},

@@ -14,18 +14,18 @@
 
 namespace kinalign {
 
-/// "mocap", "kinect", "imu": as the style sheet names colours.
+/// "mocap", "kinect", "imu": the colours' names in the style sheet.
 std::string_view to_string(PageColour colour);
 
-/// A series [rows,columns], packed, as assets/data.js reads it. Numbers are rounded to `step`.
+/// A series [rows,columns], packed for assets/data.js. Numbers are rounded to `step`.
 nlohmann::ordered_json series_json(const std::vector<float>& values, std::size_t columns,
                                    double step);
 nlohmann::ordered_json series_json(const std::vector<std::uint8_t>& values, std::size_t columns);
 
-/// JSON with each '<' as \\u003c: it may stand inside a <script> of HTML.
+/// The JSON with each '<' as \\u003c, so that it may stand inside a <script> of HTML.
 std::string safe_in_script(const std::string& json);
 
-/// One JSON object, safe inside a <script> of HTML: no '<' stands in it.
+/// One JSON object that may stand inside a <script> of HTML: it contains no '<'.
 std::string page_json(const TakePage& page);
 
 }  // namespace kinalign

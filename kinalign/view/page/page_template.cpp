@@ -15,7 +15,7 @@ std::string_view part_called(const PageParts& parts, std::string_view name) {
   return found == parts.end() ? std::string_view() : std::string_view(found->second);
 }
 
-/// A hash as a Content-Security-Policy names it.
+/// A hash in the form of a Content-Security-Policy.
 std::string policy_hash(std::string_view text) {
   Sha256 hash;
   hash.update(text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fixed frame of a page filled with words, and the policy that keeps a browser from loading
-// more.
+// Fills the fixed template of a page with texts, and makes the policy that keeps a browser from
+// loading anything else.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,11 @@
 
 namespace kinalign {
 
-/// HTML by the name of its place in the frame.
+/// HTML by the name of its place in the template.
 using PageParts = std::map<std::string, std::string, std::less<>>;
 
-/// Puts parts into a frame: {{name}} becomes the part; {{#name}}...{{/name}} stays only where the
-/// part is there and not empty.
+/// Puts parts into a template: {{name}} becomes the part; {{#name}}...{{/name}} stays only if the
+/// part exists and is not empty.
 std::string filled(std::string_view frame, const PageParts& parts);
 
 /// A Content-Security-Policy that allows this script and this style and nothing else.

@@ -30,7 +30,7 @@ const PageBody* body_called(const TakePage& page, const std::string& name) {
   return found == page.bodies.end() ? nullptr : &*found;
 }
 
-/// A row of cells; the ones that begin with '=' hold words.
+/// A row of cells. Cells that begin with '=' contain words and are left-aligned.
 std::string row(std::string_view cell, const std::vector<std::string>& cells) {
   std::string out = "<tr>";
   for (const std::string& text : cells) {
@@ -53,14 +53,14 @@ std::string stream_name(const StreamReport& s) {
   return s.nodes.empty() ? s.stream : fmt::format("{} {}", s.stream, fmt::join(s.nodes, ", "));
 }
 
-/// The mean over the whole stream: what the device really sent.
+/// The mean rate over the whole stream, which the device really sent at.
 std::string real_rate(const StampSurvey& survey) {
   const double length = seconds(survey.last - survey.first);
   if (survey.kept() < 2 || !(length > 0.0)) return "";
   return fmt::format("{:.4g} Hz", static_cast<double>(survey.kept() - 1) / length);
 }
 
-/// Samples that the steps longer than usual leave room for.
+/// The samples that would fit into the steps longer than usual.
 std::string lost(const StampSurvey& survey) {
   if (survey.median_step_ns <= 0) return "";
   const double room =
@@ -95,7 +95,7 @@ std::string how_moved(const PageSpace& space) {
          "every frame, so that the root has no residual";
 }
 
-/// "kinect and kinect_2".
+/// The names of bodies with measured bones: "kinect and kinect_2".
 std::string bodies_with_bones(const TakePage& page) {
   std::vector<std::string> names;
   for (const BoneLength& bone : page.bones) {
@@ -107,6 +107,7 @@ std::string bodies_with_bones(const TakePage& page) {
 
 }  // namespace
 
+/// Subject, action, length, frames and date.
 std::string facts_text(const TakePage& page) {
   const AlignmentReport& report = page.report;
   std::vector<std::string> facts;
@@ -125,6 +126,7 @@ Quality quality_of(const TakePage& page) {
   return worst;
 }
 
+/// The verdicts in one line, bad streams first.
 std::string headline(const TakePage& page) {
   std::vector<std::string> good, usable, bad;
   for (const Verdict& verdict : page.verdicts) {
@@ -142,6 +144,7 @@ std::string headline(const TakePage& page) {
   return escaped(fmt::format("{}", fmt::join(parts, "; ")));
 }
 
+/// A list item for each stream's verdict.
 std::string verdict_items(const TakePage& page) {
   std::string out;
   for (const Verdict& verdict : page.verdicts) {
@@ -170,6 +173,8 @@ std::string worst_items(const TakePage& page) {
   return out;
 }
 
+/// The numbers of the first screen: residuals, worst interval in time, shares of joints, worst
+/// node.
 std::string numbers_list(const TakePage& page) {
   std::string out;
   const auto add = [&out](const std::string& number, const std::string& what) {
@@ -210,6 +215,7 @@ bool has_axes(const TakePage& page) {
                      [](const NodeFigures& n) { return n.has_orientation; });
 }
 
+/// The colours and marks of the player that occur in this take.
 std::string legend(const TakePage& page) {
   std::string out;
   bool points = false;
@@ -225,6 +231,7 @@ std::string legend(const TakePage& page) {
   return out;
 }
 
+/// The caption of the player, for the parts that this take has.
 std::string player_caption(const TakePage& page) {
   std::string text = "The take in its space; floor in squares of 1 m.";
   if (!page.spaces.empty()) text += " Lines join each Kinect joint to its counterpart.";
@@ -237,6 +244,7 @@ std::string player_caption(const TakePage& page) {
   return text;
 }
 
+/// The table of streams: what each device sent, and what alignment made of it.
 std::string time_table(const TakePage& page) {
   std::string rows;
   for (const StreamReport& s : page.report.streams) {
@@ -260,6 +268,7 @@ std::string time_table(const TakePage& page) {
                "invalid: within the take.");
 }
 
+/// The caption of figure 7. Without raw samples, the rows nearest to one stand for them.
 std::string detail_caption(const TakePage& page) {
   if (page.details.empty()) return "";
   const PageDetail& detail = page.details.front();
@@ -285,6 +294,7 @@ std::string detail_caption(const TakePage& page) {
   return text;
 }
 
+/// A paragraph for each stream that was moved, and for each that stays in its own space.
 std::string space_text(const TakePage& page) {
   std::string out;
   for (const PageSpace& space : page.spaces) {
@@ -302,6 +312,7 @@ std::string space_text(const TakePage& page) {
   return out;
 }
 
+/// The caption of table 5. Without one transform for the take, the places before it are not known.
 std::string table5_caption(const TakePage& page) {
   if (page.spaces.empty()) return "";
   const PageSpace& space = page.spaces.front();
@@ -318,6 +329,7 @@ std::string table5_caption(const TakePage& page) {
   return text + " Each panel has its own scale. Dashed bones and hollow joints: inferred.";
 }
 
+/// The caption of the residuals of each joint.
 std::string residual_caption(const TakePage& page) {
   if (page.spaces.empty()) return "";
   const SpaceReport& report = page.spaces.front().report;
@@ -330,6 +342,7 @@ std::string residual_caption(const TakePage& page) {
       several ? "" : " in " + escaped(report.onto));
 }
 
+/// The caption of the floor, with the zones if the Kinect's place is known.
 std::string floor_caption(const TakePage& page) {
   std::string text = "The floor from above: the ways of the root joints, and where they are now.";
   if (page.floors.empty()) {
@@ -341,6 +354,7 @@ std::string floor_caption(const TakePage& page) {
                     best_near_m, best_far_m, largest_near_m, largest_far_m, field_deg);
 }
 
+/// The table of joints by zone.
 std::string zone_table(const TakePage& page) {
   if (page.floors.empty()) return "";
   const PageFloor& floor = page.floors.front();
@@ -358,6 +372,7 @@ std::string zone_table(const TakePage& page) {
                "Joints by the zone of the floor that they were in, over all rows.");
 }
 
+/// The caption of the bones' constancy; empty without bones.
 std::string bones_caption(const TakePage& page) {
   if (page.bones.empty()) return "";
   return fmt::format(
@@ -369,6 +384,7 @@ std::string bones_caption(const TakePage& page) {
       bodies_with_bones(page));
 }
 
+/// The text about nodes, with a paragraph for each whose bone was not found by its name.
 std::string node_text(const TakePage& page) {
   std::string out =
       "<p>What each node measured against what the mocap says that its bone did. A node is "
@@ -385,6 +401,7 @@ std::string node_text(const TakePage& page) {
   return out;
 }
 
+/// The table of differences between each node and its bone.
 std::string node_table(const TakePage& page) {
   std::string rows;
   for (const NodeFigures& node : page.nodes) {
@@ -417,6 +434,7 @@ std::string raw_nodes_text(const TakePage& page) {
       page.raw_nodes_begin_s, page.raw_nodes_end_s);
 }
 
+/// The findings as a list.
 std::string findings_list(const TakePage& page) {
   if (page.report.findings.empty()) return "<p>Alignment found nothing.</p>";
   std::string out = "<ul class=\"findings\">";
@@ -433,6 +451,7 @@ std::string findings_list(const TakePage& page) {
   return out + "</ul>";
 }
 
+/// The table of input files.
 std::string inputs_table(const TakePage& page) {
   if (page.inputs.empty()) return "";
   std::string rows;
@@ -445,6 +464,7 @@ std::string inputs_table(const TakePage& page) {
   return table({"input", "bytes", "=SHA-256"}, rows, "The files that the take was made from.");
 }
 
+/// The note on how many rows the page stores.
 std::string thinning_text(const TakePage& page) {
   if (page.stride == 1) {
     return fmt::format("The page holds every row of the take ({}).", grouped(page.report.frames));

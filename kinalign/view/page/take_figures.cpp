@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-/// Numbers that the page keeps of one row of a group.
+/// The count of numbers that the page stores for one row of a group.
 std::uint64_t numbers_of(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return 3 * clip->skeleton.joints();
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
@@ -26,13 +26,13 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// A bin spans two rows or more: if stamps jitter by less than half a step, no bin is empty.
+/// A bin spans at least two rows: if stamps jitter by less than half a step, no bin is empty.
 std::size_t bins_of(const TakeHeader& header, std::size_t most) {
   const auto pairs = static_cast<std::size_t>(header.frames / 2);
   return std::max<std::size_t>(1, std::min(most, pairs));
 }
 
-/// Seconds of a stamp since the first row's.
+/// The seconds of a stamp since the first row's.
 double seconds_since(Time first, Time now) { return seconds(now - first); }
 
 }  // namespace
@@ -44,12 +44,12 @@ std::uint64_t page_stride(const TakeHeader& header, std::uint64_t most_numbers) 
   return std::max<std::uint64_t>(1, (header.frames + rows - 1) / rows);
 }
 
-/// A group of the take with all that is collected of it.
+/// A group of the take, with all the figures that are collected of it.
 struct GroupFigures {
   std::size_t group = 0;
   BodyFigures figures;
   std::optional<PageFloor> floor;
-  std::optional<std::size_t> space;  // of TakePage::spaces
+  std::optional<std::size_t> space;  // index in TakePage::spaces
   std::optional<DetailFigures> detail;
 };
 
@@ -99,6 +99,7 @@ void TakeFigures::State::plan_bodies() {
   }
 }
 
+/// The transforms of the report whose two bodies are on the page, with their pairs of joints.
 void TakeFigures::State::plan_spaces() {
   for (const SpaceReport& report : page.report.spaces) {
     const auto from = body_called(report.stream), onto = body_called(report.onto);
@@ -120,6 +121,7 @@ void TakeFigures::State::plan_spaces() {
   }
 }
 
+/// A detail for each resampled stream of points.
 void TakeFigures::State::plan_details() {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const TakeGroup& group = header.groups[bodies[b].group];
@@ -141,7 +143,7 @@ void TakeFigures::State::plan_nodes() {
   std::optional<std::size_t> clip, nodes;
   for (std::size_t g = header.groups.size(); g-- > 0;) {
     const TakeGroup& group = header.groups[g];
-    // A skeleton that stays in its own space turns like its nodes all the same.
+    // A skeleton outside the take's space can still be compared: it turns like its nodes.
     const bool better = !clip || group.space == "take";
     if (std::holds_alternative<ClipGroup>(group.kind) && better) clip = g;
     if (std::holds_alternative<ImuGroup>(group.kind)) nodes = g;
@@ -164,7 +166,7 @@ void TakeFigures::State::judge() {
   }
 }
 
-/// Adds a concern for each node that turns like another node's bone.
+/// Adds a concern for each node that turns like the bone of another node.
 void TakeFigures::State::judge_nodes() {
   const std::string& stream = header.groups[node_group].name;
   const auto verdict = std::find_if(page.verdicts.begin(), page.verdicts.end(),
@@ -184,6 +186,7 @@ std::size_t TakeFigures::State::bin_of(double s) const {
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(options.bins - 1)));
 }
 
+/// Adds one row to all figures; the page stores every stride-th row.
 void TakeFigures::State::add_row(const TakeSlab& slab, std::size_t r) {
   const double at = seconds_since(*first, slab.stamps[r]);
   const bool keep = row++ % page.stride == 0;
@@ -204,6 +207,7 @@ void TakeFigures::State::add_row(const TakeSlab& slab, std::size_t r) {
   }
 }
 
+/// Adds a row to a body's detail, with the joints that it was moved onto.
 void TakeFigures::State::add_detail(const TakeSlab& slab, std::size_t r, double at,
                                     GroupFigures& body) {
   const std::variant<ClipRows, PointRows, ImuRows>& rows = slab.rows[body.group];
@@ -216,7 +220,8 @@ void TakeFigures::State::add_detail(const TakeSlab& slab, std::size_t r, double 
                    *JointRows::of(rows, body.figures.joints()), onto, r);
 }
 
-/// Moves the raw samples of the detail's body; the page has its bodies by now.
+/// Adds the raw samples of the detail's body, moved like the body. The page must have its bodies
+/// already.
 void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
   const PageBody& body = page.bodies[detail.body];
   const auto raw = std::find_if(options.raw.begin(), options.raw.end(),
@@ -242,6 +247,7 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
   add_raw(*raw, move, *first, detail);
 }
 
+/// Adds the raw samples of nodes, for a part short enough to limit their number.
 void TakeFigures::State::add_raw_node_samples() {
   if (options.raw_nodes.empty() || !first) return;
   const DetailStretch detail{options.detail_begin_s,
@@ -270,7 +276,7 @@ double TakeFigures::State::kept_step_s() const {
   return static_cast<double>(page.seconds.back()) / static_cast<double>(page.seconds.size() - 1);
 }
 
-/// After the bodies and the lanes are in the page.
+/// Sets colours. The bodies and the lanes must be in the page already.
 void TakeFigures::State::colour() {
   for (const PageSpace& space : page.spaces) page.bodies[space.onto].colour = PageColour::mocap;
   for (PageLane& lane : page.lanes) {

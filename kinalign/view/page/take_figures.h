@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a take's rows to what its page shows, in one pass slab by slab. Memory grows with the rows
-// that the page keeps, never with the take's length.
+// Makes the content of a take's page from its rows, in one pass slab by slab. Memory grows with the
+// rows that the page stores, not with the take's length.
 #pragma once
 
 #include "kinalign/take/take.h"
@@ -15,18 +15,18 @@
 namespace kinalign {
 
 struct TakeFigureOptions {
-  /// The page keeps at most so many numbers of all bodies and nodes together: every stride-th row.
-  /// 4.5 million make a page of less than 6 MB, measured on ten minutes of the demo.
+  /// The most numbers that the page stores for all bodies and nodes together; it stores every
+  /// stride-th row. 4.5 million make a page of less than 6 MB, measured on ten minutes of the demo.
   std::uint64_t most_numbers = 4'500'000;
-  double detail_begin_s = 0.0;  // of the detail, from the first row
+  double detail_begin_s = 0.0;  // the detail's, s from the first row
   double detail_length_s = 60.0;
-  std::size_t bins = 240;  // of each lane at most; a short take has one for two rows
+  std::size_t bins = 240;  // bins of a lane at most; a short take has one for two rows
   std::vector<RawPoints> raw{};
   std::vector<RawNode> raw_nodes{};
-  std::size_t most_raw_node_samples = 40'000;  // of all nodes together: 0.3 MB
+  std::size_t most_raw_node_samples = 40'000;  // limit for all nodes together: 0.3 MB
 };
 
-/// Every stride-th row is kept so that the page stays small; 1: all are.
+/// Every stride-th row is stored, so that the page stays small; 1: all rows.
 std::uint64_t page_stride(const TakeHeader& header, std::uint64_t most_numbers);
 
 class TakeFigures {
@@ -39,9 +39,9 @@ class TakeFigures {
   TakeFigures& operator=(const TakeFigures&) = delete;
   ~TakeFigures();
 
-  /// The next rows of all groups, in order.
+  /// Adds the next rows of all groups, in order.
   void add(const TakeSlab& slab);
-  /// After the last slab; the figures are used up.
+  /// Call after the last slab. The figures are moved out.
   TakePage finish();
 
  private:
@@ -49,12 +49,12 @@ class TakeFigures {
   std::unique_ptr<State> state_;
 };
 
-/// The longest stretch of rows in which some stream of points has nothing valid, slab by slab: what
-/// a long take's detail is put around.
+/// The longest time in which a stream of points has nothing valid, slab by slab. The detail of a
+/// long take is put around it.
 class LongestGap {
  public:
   void add(const TakeSlab& slab);
-  /// Seconds from the first row to its middle; absent where there is none.
+  /// The seconds from the first row to its middle; absent if there is none.
   std::optional<double> middle_s() const;
 
  private:

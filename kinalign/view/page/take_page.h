@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that a take's page shows, as plain data. take_figures.h makes it out of a take's rows;
-// page_html.h makes the page. Metres, seconds, radians, right-handed, y up; row-major arrays.
-// T: rows of the take. K: rows that the page keeps, every stride-th. D: rows of the detail.
+// The content of a take's page as plain data. take_figures.h makes it from a take's rows;
+// page_html.h makes the page. Metres, seconds, radians, right-handed, y up; row-major arrays. T:
+// rows of the take. K: rows that the page stores, every stride-th. D: rows of the detail.
 #pragma once
 
 #include "kinalign/align/verdict.h"
@@ -19,35 +19,35 @@ namespace kinalign {
 
 enum class PageKind { clip, points };
 
-/// The paper's: mocap red, Kinect green, nodes blue. Points are red where others were moved onto
-/// them, and where their joints are not a Kinect's: both are a reference.
+/// The paper's colours: mocap red, Kinect green, nodes blue. Points are red if other streams were
+/// moved onto them, or if their joints are not a Kinect's: both are a reference.
 enum class PageColour { mocap, kinect, imu };
 
-/// A skeleton, or points, over the rows kept.
+/// A skeleton or points, over the stored rows.
 struct PageBody {
   std::string name;  // the take's group
   PageKind kind = PageKind::clip;
   PageColour colour = PageColour::mocap;
-  std::vector<std::string> joint_names;  // [J], of a clip with its longer end sites
+  std::vector<std::string> joint_names;  // [J], for a clip with its longer end sites
   std::vector<int> parents;              // [J] -1: none
   std::vector<float> positions;          // [K,J,3] m, zeros where missing
-  std::vector<std::uint8_t> state;       // [K,J] as Tracking; empty: all are tracked
-  bool in_take_space = true;             // else in the stream's own: it is not drawn with others
+  std::vector<std::uint8_t> state;       // [K,J] as Tracking; empty: all tracked
+  bool in_take_space = true;             // false: in the stream's own space; not drawn with others
 };
 
-/// A stretch of the take with every row and the raw samples of one body: the paper's figure 7.
+/// A part of the take with every row and the raw samples of one body: the paper's figure 7.
 struct PageDetail {
-  std::size_t body = 0;  // of TakePage::bodies, resampled points
+  std::size_t body = 0;  // index in TakePage::bodies; resampled points
   double begin_s = 0.0, end_s = 0.0;
-  /// All rows of the stretch; empty where the page keeps every row anyway.
+  /// All rows of the part; empty if the page stores every row anyway.
   std::vector<float> seconds;         // [D]
   std::vector<float> positions;       // [D,J,3] m
   std::vector<std::uint8_t> state;    // [D,J]
   std::vector<float> onto_positions;  // [D,P,3] m, counterparts of PageSpace::pairs
-  /// Rows nearest to a raw sample, which stand for it where the inputs can't be read.
+  /// The rows nearest to a raw sample. They stand for it if the inputs can't be read.
   std::vector<float> near_seconds;  // [N]
-  float near_s = 0.0f;              // they are no further from it than this
-  /// Raw samples of the stream's input, moved into the body's space; none if no input could be
+  float near_s = 0.0f;              // largest distance in time from the raw sample
+  /// Raw samples of the stream's input, moved into the body's space. None if no input could be
   /// read.
   bool has_raw = false;
   std::vector<float> raw_seconds;       // [R]
@@ -55,11 +55,13 @@ struct PageDetail {
   std::vector<std::uint8_t> raw_state;  // [R,J]
 };
 
-/// How a stream of points came into the space of another body, with what the page draws of it.
+/// The transform of a stream of points into the space of another body, and what the page draws of
+/// it.
 struct PageSpace {
   SpaceReport report;
-  std::size_t body = 0, onto = 0;                          // of TakePage::bodies
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;  // joints of both, as report.joints
+  std::size_t body = 0, onto = 0;  // indices in TakePage::bodies
+  /// Joints of both bodies, in the order of report.joints.
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
   bool once_per_take = true;  // one transform holds for all rows: `before` and the zones are known
 };
 
@@ -70,7 +72,7 @@ inline constexpr double best_near_m = 0.8, best_far_m = 3.5;
 inline constexpr double largest_near_m = 0.5, largest_far_m = 4.5;
 inline constexpr double field_deg = 70.0;
 
-/// The Kinect in the take's space, and how well it saw the joints by the zone that they were in.
+/// The Kinect in the take's space, and the states of joints by the zone that they were in.
 struct PageFloor {
   std::size_t body = 0;
   Vec3 camera = Vec3::Zero();    // m
@@ -79,17 +81,17 @@ struct PageFloor {
     std::uint64_t tracked = 0, inferred = 0;
   };
   std::array<Counts, zone_count> zones{};  // rows x joints
-  std::uint64_t missing = 0;               // of unknown place
+  std::uint64_t missing = 0;               // joints at an unknown place
 };
 
-/// How constant a bone is. A skeleton's bones are constant by construction, a Kinect's are not.
+/// The constancy of a bone. A skeleton's bones are constant by construction, a Kinect's are not.
 struct BoneLength {
   std::size_t body = 0, joint = 0;  // from the joint's parent to the joint
-  std::uint64_t rows = 0;           // in which both ends are tracked
+  std::uint64_t rows = 0;           // rows in which both ends are tracked
   double mean_m = 0.0, deviation_m = 0.0, shortest_m = 0.0, longest_m = 0.0;
 };
 
-/// Shares of the tracked, inferred and missing joints of a body, joint by joint, over all rows.
+/// The counts of tracked, inferred and missing rows of each joint of a body, over all rows.
 struct JointStates {
   std::size_t body = 0;
   std::vector<std::array<std::uint64_t, 3>> counts;  // [J] by Tracking
@@ -106,26 +108,26 @@ struct PageLane {
   std::vector<float> interval_s;         // [bins] largest half-width
 };
 
-/// A node against the bone that it is worn on. Signals in the node's own space, as it was mounted.
+/// A node and the bone that it is worn on. Signals are in the node's own space, as it was mounted.
 struct NodeFigures {
   std::string node, joint;    // "wrist_left", "LeftForeArm"
-  bool joint_by_name = true;  // else the joint that turns most like the node
-  std::string more_like;      // another node\'s joint that turns clearly more like this node
-  std::uint64_t rows = 0;     // compared
+  bool joint_by_name = true;  // false: the joint that turns most like the node
+  std::string more_like;      // another node's joint that turns clearly more like this node
+  std::uint64_t rows = 0;     // compared rows
   bool has_rate = false, has_acceleration = false, has_orientation = false;
   bool has_gravity = false;
   double rate_rms = 0.0;          // rad/s, of the difference after the best constant rotation
-  double rate_correlation = 0.0;  // of the magnitudes
-  double acceleration_rms = 0.0;  // m/s2, likewise
+  double rate_correlation = 0.0;  // correlation of the magnitudes
+  double acceleration_rms = 0.0;  // m/s2, in the same way
   double acceleration_correlation = 0.0;
   double orientation_rms = 0.0;  // rad, after the best constant rotations of world and sensor
-  std::optional<double> lag_s;   // by which the node is late against the mocap, by their rates
+  std::optional<double> lag_s;   // delay of the node against the mocap, by their rates
   std::vector<float> rate, mocap_rate;                  // [K,3] rad/s; zeros where not valid
   std::vector<float> acceleration, mocap_acceleration;  // [K,3] m/s2
   std::vector<float> orientation_error;                 // [K] rad
   std::vector<float> axes;          // [K,4] w,x,y,z, the node in the take's space
   std::vector<std::uint8_t> valid;  // [K]
-  /// Raw samples of the detail's time, in the node's own space, too; empty where no input was read.
+  /// Raw samples within the detail, also in the node's own space. Empty if no input was read.
   std::vector<float> raw_seconds;                 // [R]
   std::vector<float> raw_rate, raw_acceleration;  // [R,3]
 };
@@ -134,21 +136,21 @@ struct TakePage {
   std::string file;  // name of the take, without its folder
   std::string software, subject, action;
   AlignmentReport report;
-  std::vector<Verdict> verdicts;  // a stream each
+  std::vector<Verdict> verdicts;  // one for each stream
   std::vector<Concern> worst;     // at most three, worst first
   std::vector<InputFacts> inputs;
 
   std::uint64_t stride = 1;
-  std::vector<float> seconds;  // [K] since the first row
+  std::vector<float> seconds;  // [K] s since the first row
   std::vector<PageBody> bodies;
   std::vector<PageSpace> spaces;
   std::vector<PageFloor> floors;
   std::vector<BoneLength> bones;
   std::vector<JointStates> joint_states;
   std::vector<PageLane> lanes;
-  std::size_t node_body = 0;  // of `bodies`, that nodes are compared with
+  std::size_t node_body = 0;  // index in `bodies`: the body that nodes are compared with
   std::vector<NodeFigures> nodes;
-  double raw_nodes_begin_s = 0.0, raw_nodes_end_s = 0.0;  // in which `nodes` have raw samples
+  double raw_nodes_begin_s = 0.0, raw_nodes_end_s = 0.0;  // s, with raw samples in `nodes`
   std::vector<PageDetail> details;
 };
 

@@ -34,10 +34,10 @@ Result<int> fail(Mix& /*options*/, Call& call) {
   return Failure(Error{"walk.bvh", 142, "354 values in the frame", "353"});
 }
 
-/// To the line above, which is erased: that by itself, see start_of_lines().
+/// Moves to the line above and erases it. Why it is erased separately: see start_of_lines().
 const std::string up = "\x1b[A\x1b[K";
 
-/// A terminal whose size can be changed, and what was shown on it.
+/// A terminal whose size can be changed, and the text that was shown on it.
 class Pty {
  public:
   Pty() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
@@ -59,7 +59,7 @@ class Pty {
     const winsize size{24, columns, 0, 0};
     REQUIRE(::ioctl(master_, TIOCSWINSZ, &size) == 0);
   }
-  /// Since it was asked last.
+  /// The text that was shown since the last call.
   std::string shown() const {
     std::array<char, 4096> text{};
     const ssize_t got = ::read(master_, text.data(), text.size());
@@ -211,7 +211,8 @@ TEST_CASE("lines that a narrower terminal has broken anew are erased all the sam
   console.note("a note");
   const std::string narrow = "\x1b[31m" + std::string(19, 'x') + "\x1b[0m\r\n\r\nthree";
   CHECK(pty.shown() ==
-        "\r\x1b[K" + up + up + up + up + "a note\r\n" + narrow);  // three rows, one and one
+        // The lines took three rows, one and one.
+        "\r\x1b[K" + up + up + up + up + "a note\r\n" + narrow);
   console.show(
       {{std::string(19, 'x'), Colour::bad}, {"", Colour::plain}, {"three", Colour::plain}});
   CHECK(pty.shown() == "\r\x1b[K" + up + up + narrow);
@@ -234,7 +235,7 @@ TEST_CASE("no more lines are shown than a terminal has room for, nor half a char
     return 0;
   };
   const std::string err = Machine{.err_is_terminal = true}.run(job, {"mix", "a"}).err;
-  CHECK(std::count(err.begin(), err.end(), 'x') == 23);  // of 24 rows
+  CHECK(std::count(err.begin(), err.end(), 'x') == 23);  // the terminal has 24 rows
   CHECK(first_places("a\u00b1b", 2) == "a\u00b1");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verb of every kind of option, and a machine to run it on, for the tests of the frame.
+// A verb with every kind of option, and a machine to run it on, for tests of the command-line
+// frame.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -49,7 +50,7 @@ inline Usage describe_mix(Mix& o) {
   return usage;
 }
 
-/// What the verb does once its options stand; a test says.
+/// The work of the verb after its options are read; each test gives its own.
 using Job = std::function<Result<int>(Mix&, Call&)>;
 
 inline Verb mix_verb(const Job& job) {
@@ -64,7 +65,7 @@ inline Verb mix_verb(const Job& job) {
           }};
 }
 
-/// What came of one run.
+/// The result of one run.
 struct Outcome {
   int code;
   std::string out, err;
@@ -82,7 +83,7 @@ struct Machine {
   std::map<std::string, std::string> variables{};
   std::string folder = "/";
   bool out_is_terminal = false, err_is_terminal = false;
-  int out = -1;  // where stdout goes; -1: to Outcome::out
+  int out = -1;  // file descriptor for stdout; -1: stdout goes to Outcome::out
 
   Outcome run(const Job& job, const std::vector<std::string>& words) const {
     return run_verb(mix_verb(job), words);

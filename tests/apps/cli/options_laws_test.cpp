@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any options: as text, on a command line, in the environment and in files.
+// Rules for any options: as text, on a command line, in the environment and in files.
 #include "apps/cli/command_line.h"
 #include "apps/cli/field_text.h"
 #include "tests/apps/cli/fake_verb.h"
@@ -30,7 +30,7 @@ Mix any_mix(std::mt19937_64& random) {
   return mix;
 }
 
-/// All that the verb's options say, in one line.
+/// All options of the verb in one line.
 std::string told(Mix mix) {
   const Usage usage = describe_mix(mix);
   std::string text;
@@ -56,7 +56,7 @@ Words words_of(const Field& field, std::mt19937_64& random) {
   return {flag, value};
 }
 
-/// The options as a command line, flags and files in any order that keeps each one's own.
+/// The options as a command line. Flags and files come in any order that keeps the order of each.
 Words command_line(Mix mix, std::mt19937_64& random) {
   const Usage usage = describe_mix(mix);
   std::vector<Words> parts;
@@ -79,7 +79,7 @@ Words command_line(Mix mix, std::mt19937_64& random) {
   return all;
 }
 
-/// A value as TOML has it.
+/// A value as TOML text.
 std::string toml_of(const Field& field) {
   const bool text = std::holds_alternative<std::string*>(field.value);
   return field.name + " = " + (text ? "\"" + field_text(field) + "\"" : field_text(field)) + "\n";
@@ -168,7 +168,8 @@ TEST_CASE(
     for (std::size_t k = 0; k < 4 * to.size(); ++k) {
       const Field& field = from[k % 4][k / 4];
       if (random() % 2 == 0 || field_text(field).empty()) continue;
-      REQUIRE(set_field(to[k / 4], field_text(field)));  // nearer than the place before
+      // Each place takes precedence over the one before.
+      REQUIRE(set_field(to[k / 4], field_text(field)));
       say(field, k % 4);
     }
     folder.write(".config/kinalign/config.toml", users);

@@ -81,7 +81,8 @@ TEST_CASE("nor is a terminal that nobody reads") {
     }
     CHECK(read == 100'000);
   }
-  CHECK((::fcntl(slave, F_GETFL) & O_NONBLOCK) == 0);  // who else has it is not concerned
+  // Other users of the terminal keep their blocking mode.
+  CHECK((::fcntl(slave, F_GETFL) & O_NONBLOCK) == 0);
   ::close(master);
   ::close(slave);
 }
@@ -95,7 +96,7 @@ TEST_CASE("a reader that does not read is not waited for, and what it misses is 
     outlet.put(line);
     outlet.flush();
   }
-  CHECK(outlet.take_dropped() == 0);  // no room yet to tell it
+  CHECK(outlet.take_dropped() == 0);  // there is no room yet to report them
   std::string read;
   while (outlet.holds()) {
     read += pipe.read();
@@ -105,7 +106,7 @@ TEST_CASE("a reader that does not read is not waited for, and what it misses is 
   const std::uint64_t dropped = outlet.take_dropped();
   CHECK(read.size() % line.size() == 0);  // whole lines
   CHECK(read.size() / line.size() + dropped == 2000);
-  CHECK(dropped > 900);  // 1 MiB and the pipe are not
+  CHECK(dropped > 900);  // only 1 MiB and the pipe's content were kept
   CHECK(outlet.take_dropped() == 0);
   outlet.put("on\n");
   outlet.flush();
@@ -136,7 +137,7 @@ TEST_CASE("a full disk is a fault, and what it did not take is written once it h
   CHECK(!outlet.gave_up());
   CHECK(outlet.holds());
   Pipe pipe;
-  REQUIRE(::dup2(pipe.in(), fd) == fd);  // it has
+  REQUIRE(::dup2(pipe.in(), fd) == fd);  // the pipe has room
   outlet.put("two\n");
   outlet.flush();
   CHECK(outlet.fault() == 0);

@@ -14,7 +14,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A job that prints what is in force.
+/// A job that prints its options.
 Result<int> show(Mix& o, Call& call) {
   call.console.print(std::to_string(static_cast<int>(o.gap_ms)) + " " + std::to_string(o.rows) +
                      " " + std::to_string(call.jobs));

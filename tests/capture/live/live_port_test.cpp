@@ -25,7 +25,7 @@ Handle connected_to(std::uint16_t port) {
   return out;
 }
 
-/// All that there is, up to the end of the connection.
+/// All bytes up to the end of the connection.
 std::string all_from(const Handle& client) {
   std::string out;
   std::array<char, 1 << 16> room{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the recorder counts of what comes to its ports, over loopback: what is refused, lost and
-// told.
+// The recorder's counts of datagrams on its ports, over loopback: refused ones, lost ones, and the
+// findings about them.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
 #include "tests/protocols/slimevr/slimevr_bytes.h"
@@ -31,7 +31,7 @@ TEST_CASE(
     live.serve_until([&, n = ++sent] { return live.pieces() == n; });
   };
   for (const std::uint8_t name :
-       std::array<std::uint8_t, 3>{1, 1, 2}) {  // its own restart, then another tracker
+       std::array<std::uint8_t, 3>{1, 1, 2}) {  // the tracker's own restart, then another tracker
     send(handshake_packet({{2, 0, 0, 0, 0, name}}));
     for (const std::uint64_t heartbeat : {1, 5}) send(slime_datagram(0, heartbeat, {}));
   }
@@ -62,7 +62,7 @@ TEST_CASE("what is refused on the trackers' port is counted, and told where some
   live.finish();
   const auto streams = live.session().streams();
   REQUIRE(streams.size() == 3);
-  CHECK(streams[0].counts.refused == 0);  // the first tracker's, one of them twice
+  CHECK(streams[0].counts.refused == 0);  // the numbers of the first tracker; one came twice
   CHECK(streams[1].counts.refused == 5);
   CHECK(streams[2].counts.refused == 3);
 }
@@ -150,7 +150,7 @@ TEST_CASE("what a Kinect's frames are dropped for is counted") {
   };
   send(1, 7);
   send(2, 1);
-  send(1, 8);  // of a session that is over
+  send(1, 8);  // a frame of session 1, which is over
   live.serve_until([&] { return live.pieces() == 3; });
   live.finish();
   const SenderCounts counts = live.session().streams().at(0).counts;
@@ -259,7 +259,7 @@ TEST_CASE(
   LiveSession by_tcp({"kinect=kinect:tcp-listen:127.0.0.1:0"});
   LiveSession by_udp({"kinect=kinect:udp:127.0.0.1:0"});
   std::uint64_t sent = 0;
-  for (const std::uint32_t sequence : {1U, 5U, 6U}) {  // 2 to 4 fell between
+  for (const std::uint32_t sequence : {1U, 5U, 6U}) {  // 2 to 4 were lost
     ++sent;
     const Connection connection(by_tcp.port());
     connection.send(std::string(text_of(bytes(sequence, 1))));
@@ -281,7 +281,7 @@ namespace {
 
 using Payloads = std::map<std::string, std::vector<std::string>>;
 
-/// Of each Kinect's sender in /counts the last.
+/// The restarts in the last /counts message of each Kinect's sender.
 std::vector<std::uint64_t> restarts_told(const Payloads& payloads) {
   std::map<std::string, std::uint64_t> by_topic;
   for (const std::string& json : payloads.at("/counts")) {
@@ -320,7 +320,7 @@ std::array<std::vector<std::uint8_t>, 2> kinect_session(std::uint32_t session) {
   return frames;
 }
 
-/// Three sessions; `sender` gives for each what sends.
+/// Three sessions; `sender` gives the sender of each.
 template <class Sender>
 void check_restarts(LiveSession& live, std::size_t senders, const Sender& sender) {
   std::uint64_t sent = 0;
@@ -409,7 +409,7 @@ TEST_CASE("without keys, nodes that are not let in get no channels, and are coun
   LiveSession live({"imu=nodes:udp:127.0.0.1:0"});
   SystemClocks clocks;
   const Client radio;
-  for (std::uint32_t id = 1; id <= 70; ++id) {  // 64 have room
+  for (std::uint32_t id = 1; id <= 70; ++id) {  // there is room for 64
     TestNode node(id, id);
     node.drift = 0.0;
     node.offset_s = 1000.0;

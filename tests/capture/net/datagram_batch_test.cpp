@@ -27,7 +27,7 @@ Time now() {
   return Time{std::chrono::seconds(now.tv_sec) + Duration{now.tv_nsec}};
 }
 
-/// Sends each datagram back as it came, the first 64 bytes of it.
+/// Sends back the first 64 bytes of each datagram.
 void echo(DatagramBatch& batch, const UdpSocket& socket, std::size_t datagrams) {
   for (std::size_t i = 0; i < datagrams; ++i) {
     const Datagram asked = batch.at(i);
@@ -130,7 +130,8 @@ TEST_CASE("an answer that can't be sent is named and the others go") {
   REQUIRE(batch.receive(socket.fd()) == 3);
   for (std::size_t i = 0; i < 3; ++i) {
     Datagram asked = batch.at(i);
-    if (i == 1) asked.to[12] = 203;  // not ours: the system refuses to send from there
+    // An address that is not this host's: the system refuses to send from it.
+    if (i == 1) asked.to[12] = 203;
     batch.answer_to(i)[0] = asked.bytes[0];
     batch.queue(i, asked, 1);
   }

@@ -8,16 +8,16 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr double ppm_fast = 20.0;  // the sender's clock
-constexpr Duration began{5s};      // the sender's clock, at the host's 1000 s
+constexpr double ppm_fast = 20.0;  // by which the sender's clock is fast, ppm
+constexpr Duration began{5s};      // the sender's clock at 1000 s of the host's
 
-/// What the sender's clock reads at a moment of the host's.
+/// The reading of the sender's clock at a moment of the host's clock.
 NodeTime sender_at(HostTime host) {
   const double since = seconds(host - HostTime{1000s});
   return NodeTime{began + Duration{static_cast<std::int64_t>(since * (1e9 + 1e3 * ppm_fast))}};
 }
 
-/// A ping a second with the echo of the pong before; both ways take 2 ms.
+/// One ping a second, with the echo of the pong before; each way takes 2 ms.
 Exchange nth_exchange(int k) {
   const HostTime sent{1000s + k * 1s};
   Exchange exchange;

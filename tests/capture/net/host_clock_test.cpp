@@ -15,7 +15,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Kind = HostClockEvent::Kind;
 
-/// Clocks that stand still until they are told; reading takes 100 ns.
+/// Clocks that stand still until the test moves them; reading one takes 100 ns.
 struct FakeClocks : ClockReader {
   HostTime raw() override { return raw_now += Duration{50}; }
   Time utc() override { return utc_now + Duration{50}; }
@@ -43,7 +43,7 @@ TEST_CASE("stamps of the kernel say which came later, unless the clock was set b
   const auto moment = [](Duration at, Duration stamp) {
     return Moment{HostTime{at}, utc_time(1'700'000'000'000'000'000) + stamp};
   };
-  const Moment first = moment(microseconds(900), microseconds(100));  // waited longer
+  const Moment first = moment(microseconds(900), microseconds(100));  // the datagram waited longer
   const Moment second = moment(microseconds(800), microseconds(101));
   CHECK(is_behind(second, first));
   CHECK_FALSE(is_behind(first, second));
@@ -62,7 +62,7 @@ TEST_CASE("an arrival is never moved to before it was, and by little behind it")
   HostAxis axis(clocks);
   for (int i = 0; i < 1000; ++i) {
     const double slew =
-        (static_cast<double>(random() % 1001) - 500) * 1e-6;  // of the kernel: 500 ppm
+        (static_cast<double>(random() % 1001) - 500) * 1e-6;  // the kernel slews by 500 ppm at most
     clocks.pass(microseconds(random() % 60'000), 1 + slew);
     const HostTime truth = clocks.raw_now;
     const Time stamp = clocks.utc_now;
@@ -98,7 +98,7 @@ TEST_CASE("fault 17 host_step: a step of the wall clock moves no stamp, and is t
     axis.look();
     CHECK(axis.arrival(stamp) >= truth);
     CHECK(axis.arrival(stamp) - truth < microseconds(40));
-    for (int batch = 0; batch < 3; ++batch) {  // others were received first
+    for (int batch = 0; batch < 3; ++batch) {  // other datagrams were received first
       clocks.pass(microseconds(30));
       axis.look();
       CHECK(axis.arrival(stamp) >= truth);
@@ -211,7 +211,7 @@ TEST_CASE(
   for (int take = 0; take < 200; ++take) {
     CAPTURE(take);
     WallWatch watch;
-    Duration at = hours(3), wall = hours(500'000);  // the wall clock less the monotonic one
+    Duration at = hours(3), wall = hours(500'000);  // the wall clock minus the monotonic one
     const auto look = [&](Duration takes) {
       at += Duration{200'000};
       const Duration into{static_cast<std::int64_t>(random() % (takes.count() + 1))};

@@ -21,7 +21,7 @@ bool answered(RateLimit& limit, std::uint64_t hash, HostTime now) {
   return limit.ask(hash, now) == Verdict::answer;
 }
 
-/// The bucket as it is drawn in books: tokens that drop in one by one.
+/// A token bucket in its textbook form: tokens are added one by one.
 class Bucket {
  public:
   bool ask(HostTime now) {
@@ -72,7 +72,7 @@ TEST_CASE("law: the limit is the token bucket of the books, for any pattern of r
     Bucket bucket;
     HostTime now = start;
     for (int i = 0; i < 300; ++i) {
-      // whole quarters of a second: the book's doubles are exact
+      // Whole quarters of a second, so that the textbook's doubles are exact.
       now += 250ms * static_cast<int>(random() % (random() % 8 == 0 ? 60 : 6));
       REQUIRE(answered(limit, seed, now) == bucket.ask(now));
     }
@@ -103,7 +103,7 @@ TEST_CASE("strangers do not share a bucket, 10,000 of them neither") {
   CHECK(refused == 0);
   int answers = 0;
   for (const auto hash : hashes) answers += answered(limit, hash, start) ? 1 : 0;
-  // 10,000 in 16,384 sets of four: some 30 sets have five and more, where one forgets
+  // 10,000 addresses in 16,384 sets of four: some 30 sets have five or more, and forget one.
   CHECK(answers <= 300);
 }
 
@@ -137,9 +137,10 @@ TEST_CASE("fault 28 flood_strangers: 10,000 at 50,000 a second get eight each, a
     kisses += verdict == Verdict::kiss ? 1 : 0;
     drops += verdict == Verdict::drop ? 1 : 0;
   }
-  // One asks each 200 ms, 50 times: eight, and one more at 2, 4, 6 and 8 s.
+  // An address asks each 200 ms, 50 times: eight answers, and one more at 2, 4, 6 and 8 s.
   const auto as_stated = std::count(answers.begin(), answers.end(), 12);
-  CHECK(as_stated > 9'900);  // others share their set of four with four more, and are forgotten
+  // Other addresses share their set of four with four more, and are forgotten.
+  CHECK(as_stated > 9'900);
   CHECK(*std::min_element(answers.begin(), answers.end()) >= 12);
   CHECK(kisses * 16 <= kisses + drops);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who has a number on a port when there are many: strangers, forged addresses, a device's own past.
+// Which senders get a number on a port when there are many: strangers, forged addresses, and
+// earlier sessions of a device.
 #include "kinalign/capture/net/pieces.h"
 
 #include <doctest/doctest.h>
@@ -49,7 +50,8 @@ TEST_CASE("who has said much keeps its place for a minute's silence, and newcome
     for (int i = 0; i < 10; ++i) CHECK(senders.number(host(0, k), 7, begin + i * 1ms));
   }
   CHECK(!senders.number(host(1, 1), 7, begin + 59s));
-  CHECK(senders.number(host(1, 1), 7, begin + 61s) == 0);  // who was silent longest, the first
+  // It takes the place of the first sender, which was silent longest.
+  CHECK(senders.number(host(1, 1), 7, begin + 61s) == 0);
 }
 
 TEST_CASE("a device that returned 64 times within a minute is not locked out by its own past") {

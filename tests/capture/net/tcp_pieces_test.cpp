@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A device whose queue is full: whoever connects to it gets no answer.
+/// A device whose queue is full: a client that connects gets no answer.
 class FullDevice {
  public:
   FullDevice() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -46,7 +46,7 @@ class FullDevice {
   std::array<int, 4> guests_{};
 };
 
-/// The system's, and so much later.
+/// The system's clocks, set later by some time.
 struct LateClocks : SystemClocks {
   Duration late{0};
   HostTime raw() override { return SystemClocks::raw() + late; }
@@ -71,11 +71,11 @@ TEST_CASE("a connection that nobody answers is given up within seconds, and trie
   REQUIRE(fds().size() == 1);
   const HostTime begun = axis.now();
   pollfd waiting{fds().front(), POLLIN, 0};
-  CHECK(::poll(&waiting, 1, 20'000) == 1);  // the system has given it up
+  CHECK(::poll(&waiting, 1, 20'000) == 1);  // the system has given up the connection
   CHECK(axis.now() - begun < std::chrono::seconds(10));
   drain();
   drain();
-  CHECK(fds().size() == 1);  // another
+  CHECK(fds().size() == 1);  // another device
   CHECK(pieces->counts().links == 0);
 }
 
@@ -109,8 +109,8 @@ TEST_CASE("what a connection brought has the kernel's stamp, however late it is 
     REQUIRE(arrivals.size() == 1);
     return arrivals[0] - sent;
   };
-  // The kernel begins to stamp a moment after the first socket has asked for it: what comes in that
-  // moment is stamped when it is read.
+  // The kernel begins to stamp a moment after the first socket has asked for stamps. A datagram
+  // that comes before that is stamped when it is read.
   Duration took = seems_to_take();
   for (int i = 0; i < 20 && took > 5min; ++i) {
     std::this_thread::sleep_for(10ms);

@@ -20,7 +20,7 @@ std::string message(const Result<UdpSocket>& socket) {
   return socket ? "opened" : to_string(socket.error());
 }
 
-/// The first byte of each datagram that is there, or comes within two seconds.
+/// The first byte of each datagram that has come or comes within two seconds.
 std::vector<int> first_bytes(DatagramBatch& batch, const UdpSocket& socket) {
   pollfd waiting{socket.fd(), POLLIN, 0};
   ::poll(&waiting, 1, 2000);

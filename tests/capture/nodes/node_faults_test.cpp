@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every fault that a node or a stranger can bring to the desk (the numbers are those of the list of
-// faults that the clock's scenarios use too). Who is who: node_lives_test.cpp.
+// Every fault that a node or a stranger can cause at NodeDesk (the numbers are those of
+// docs/faults.md, which the clock's scenarios use too). Tests of who is who: node_lives_test.cpp.
 #include "tests/capture/test_node.h"
 
 #include "kinalign/capture/nodes/node_desk.h"
@@ -26,7 +26,8 @@ const LabKey lab = [] {
 }();
 const NodeAddress home = address_of(20), elsewhere = address_of(21);
 
-/// Accepted exchanges of some seconds at 15 frames/s; `beside` does what it likes after each frame.
+/// Exchanges some seconds of frames at 15 frames/s, and gives those that were accepted; `beside` is
+/// called after each frame.
 template <class Beside>
 std::vector<ClockStamp> stamps_with(TestDesk& host, TestNode& node, Beside beside) {
   LiveClock clock;
@@ -122,7 +123,8 @@ TEST_CASE("fault 12 replay: a capture of this run, and one of an earlier run, mo
   yesterday.echo() = ReplyEcho{3, 0xdeadbeef, 1000};
   const auto found = stamps_with(attacked, b, [&](const Bytes& frame, double t) {
     capture.push_back(frame);
-    const NodeAddress from = t < 10 ? elsewhere : home;  // as its own address too
+    // The old frames also come from the node's own address.
+    const NodeAddress from = t < 10 ? elsewhere : home;
     const Verdict old = attacked.take(capture[capture.size() / 2], from, host_s(t)).verdict;
     CHECK(old != Verdict::accepted);
     CHECK(attacked.take(yesterday.frame(host_s(t)), from, host_s(t)).verdict != Verdict::accepted);
@@ -136,7 +138,8 @@ TEST_CASE("fault 24 falseticker: what is no reply of ours is no reply to the nod
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   host.exchange(node, home, 0.0);
-  CHECK_FALSE(node.take_reply(node.frame(host_s(0.1)), host_s(0.1)));  // its own, sent back
+  // The node's own frame, sent back to it.
+  CHECK_FALSE(node.take_reply(node.frame(host_s(0.1)), host_s(0.1)));
   host.take(node.frame(host_s(0.2)), home, host_s(0.2));
   Bytes forged = host.reply(host_s(0.2));
   forged[35] ^= 1;  // h_tx
@@ -149,8 +152,9 @@ TEST_CASE("fault 25 spoofed_frame: no MAC, a wrong one, another node's: each by 
   const MacKey eight = node_key(lab, 8);
   TestDesk host(lab), open;
   TestNode bare(7, 1), wrong(7, 1, other), posing(7, 1);
-  posing.set_key(eight);  // a right MAC, of another node
-  // What would be looked at next: a counter beyond any, and who the sender is.
+  posing.set_key(eight);  // a correct MAC of another node
+  // The frames are also wrong in the points that are checked after the MAC: the counter is beyond
+  // any real one, and the sender is another. They must still be refused because of the MAC.
   for (TestNode* node : {&bare, &wrong, &posing}) node->offset_s = 1e11;
   const auto refused_as = [](TestDesk& desk, TestNode& node, NodeRefusal refusal) {
     const std::uint64_t before = desk.count(refusal);
@@ -163,11 +167,12 @@ TEST_CASE("fault 25 spoofed_frame: no MAC, a wrong one, another node's: each by 
   CHECK(refused_as(host, posing, NodeRefusal::wrong_mac));
   CHECK(refused_as(open, wrong, NodeRefusal::no_key));
   TestNode own(8, 1, lab);
-  Bytes renamed = own.frame(host_s(0));  // the number changed, and nothing else
+  Bytes renamed = own.frame(host_s(0));  // only the number was changed
   renamed[11] = 7;
   CHECK(host.take(renamed, home, host_s(0)).verdict == Verdict::refused);
   CHECK(host.count(NodeRefusal::bad_crc) == 1);
-  // Dropped before parsing further: refused is all that is counted, and nobody is held or known.
+  // They are dropped before they are parsed further: they are counted as refused, and no sender is
+  // held or known.
   CHECK(host.count(Verdict::refused) == 4);
   CHECK(host.desk.counts().verdicts.total() == 4);
   CHECK_FALSE(host.desk.stream(0).used);
@@ -181,7 +186,7 @@ TEST_CASE("fault 25 spoofed_frame: a node with a wrong key is told, a flood of t
   TestNode wrong(7, 1, other), bare(8, 1);
   for (int k = 0; k < 700; ++k) host.take(wrong.frame(host_s(0.1 * k)), home, host_s(0.1 * k));
   auto events = host.desk.take_events();
-  REQUIRE(events.size() == 1);  // in ten minutes
+  REQUIRE(events.size() == 1);  // one in ten minutes
   CHECK(events[0].kind == Kind::wrong_key);
   CHECK(events[0].node_id == 7);
   CHECK(events[0].address == home);
@@ -200,8 +205,8 @@ TEST_CASE("fault 25 spoofed_frame: a node with a wrong key is told, a flood of t
 }
 
 TEST_CASE("fault 28 flood_strangers: 50,000 packets a second take nothing from five nodes") {
-  // Ten seconds, from 10,000 addresses: without a MAC, with a wrong one, and what nodes sent in
-  // earlier runs, which has the right one.
+  // Ten seconds of a flood from 10,000 addresses: frames without a MAC, with a wrong one, and
+  // frames that nodes sent in earlier runs, whose MAC is correct.
   LabKey other = lab;
   other[0] ^= 1;
   std::vector<Bytes> sent;
@@ -244,7 +249,7 @@ TEST_CASE("fault 28 flood_strangers: 50,000 packets a second take nothing from f
   };
   const auto clean = served(0), flooded = served(100);
   CHECK(clean.size() > 5 * 1090);
-  CHECK(same(clean, flooded));  // each frame, each echo: their error is what it was
+  CHECK(same(clean, flooded));  // the error of each frame and echo is the same as without the fault
 }
 
 TEST_CASE("fault 33 echo_stale, echo_unknown: the echo is left out, the frame is kept") {
@@ -262,7 +267,7 @@ TEST_CASE("fault 33 echo_stale, echo_unknown: the echo is left out, the frame is
   node.echo() = ReplyEcho{100'000, 1, 1};
   news = host.take(node.frame(host_s(30.1)), home, host_s(30.1));
   CHECK(news.verdict == Verdict::accepted);
-  node.echo() = ReplyEcho{298, 1, 1};  // given, with another nonce
+  node.echo() = ReplyEcho{298, 1, 1};  // the echo that was given, with another nonce
   news = host.take(node.frame(host_s(30.2)), home, host_s(30.2));
   CHECK_FALSE(news.exchange->echo);
   CHECK(host.count(EchoVerdict::unknown) == 2);
@@ -331,7 +336,8 @@ TEST_CASE("fault 37 firmware_overload: a sample sent 50 ms late is stamped when 
   LiveClock clock, prompt_clock;
   const auto stamp_of = [](TestDesk& desk, TestNode& from, LiveClock& of, double t) {
     const NodeNews news = desk.exchange(from, home, t);
-    if (!news.exchange) return std::optional<ClockStamp>();  // the first one is held: it has a key
+    // The first frame is held, because the node has a key.
+    if (!news.exchange) return std::optional<ClockStamp>();
     of.push(*news.exchange);
     return of.host_from_node(news.exchange->boot, news.readings[0].n);
   };
@@ -379,7 +385,7 @@ TEST_CASE("fault 39 mac_key_rotation: the old key is good for 60 s, then not") {
   host.desk.replace_key(next, host_s(1.0));
   node.drop_echo();
   CHECK(host.exchange(node, home, 2.0).verdict == Verdict::accepted);
-  CHECK(node.echo());  // it took the reply: that was under the key that it has
+  CHECK(node.echo());  // the node took the reply, which was sealed with the node's own key
   CHECK(host.desk.life_of(host.desk.stream(0)).old_key);
   CHECK(host.exchange(node, home, 60.9).verdict == Verdict::accepted);
   CHECK(host.desk.counts().old_key == 2);

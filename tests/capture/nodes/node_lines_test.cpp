@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// One node, a server that is open to all, and what comes to it.
+/// One node, a server that accepts all nodes, and the datagrams that come.
 struct Server {
   std::vector<UdpSocket> open;
   NodeLines lines;
@@ -29,7 +29,7 @@ struct Server {
     sockets.push_back(UdpSocket::open("0.0.0.0", 0).value());
     return sockets;
   }
-  /// The least that the kernel lets through to a line.
+  /// The shortest datagram that the kernel's filter lets through.
   static std::vector<std::uint8_t> frame() {
     std::vector<std::uint8_t> bytes(max_node_datagram);
     bytes.resize(encode(NodeFrame{}, nullptr, bytes).size());
@@ -39,7 +39,7 @@ struct Server {
     NodeLines::Way way;
     bool over_a_line = false;
   };
-  /// What the node sends there, as it comes.
+  /// Sends one frame of the node to that address, and gives it as it arrives.
   Arrival sent_to(const std::string& host) {
     node.send(host, open[0].port(), frame());
     pollfd waiting{lines.fd(), POLLIN, 0};
@@ -84,7 +84,7 @@ TEST_CASE("where no socket was to be had one is asked for a second later") {
   Server server;
   const auto way = server.sent_to("127.0.0.1").way;
   auto nowhere = way;
-  nowhere.to[12] = 192;  // 192.0.0.1 is no address of ours
+  nowhere.to[12] = 192;  // 192.0.0.1 is no address of this host
   server.follow(nowhere, HostTime{10s});
   CHECK(!server.sent_to("127.0.0.1").over_a_line);
   server.follow(way, HostTime{10s + 500ms});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tells nodes and their starts apart (numbers as in docs/faults.md). What else goes wrong:
+// How nodes and their starts are told apart (numbers as in docs/faults.md). Tests of other faults:
 // node_faults_test.cpp.
 #include "tests/capture/test_node.h"
 
@@ -60,7 +60,7 @@ TEST_CASE("fault 2 reboot_same_id: a new life that outlasts the one before is st
       CHECK(host.events() == std::vector{Kind::joined, Kind::restarted});
       REQUIRE(frames.size() == 1);
       CHECK(frames.begin()->second.size() == 1);
-      CHECK(frames.begin()->second.begin()->second >= 298);  // the first is held
+      CHECK(frames.begin()->second.begin()->second >= 298);  // the first frame is held
     }
   }
 }
@@ -77,7 +77,7 @@ TEST_CASE("fault 2 reboot_same_id: a counter that could have gone round is told 
     for (int k = 0; k < 100; ++k) {
       taken += host.exchange(node, home, 10.1 + 0.1 * k).verdict == Verdict::accepted ? 1 : 0;
     }
-    CHECK(taken >= 80);  // where it seems to be a second behind, so long it is a duplicate
+    CHECK(taken >= 80);  // a frame that seems to be at most a second old counts as a duplicate
     CHECK(host.events() == std::vector{Kind::joined, Kind::restarted});
   }
 }
@@ -90,7 +90,7 @@ TEST_CASE("fault 2 reboot_same_id: nor do its other ports make two nodes of it")
   for (; k < 100; ++k) host.exchange(node, home, 0.1 * k);
   node.reboot(1, host_s(10.0));
   for (; k < 250; ++k) host.exchange(node, other_port, 0.1 * k);
-  for (; k < 300; ++k) host.exchange(node, home, 0.1 * k);  // where the earlier life was
+  for (; k < 300; ++k) host.exchange(node, home, 0.1 * k);  // the address of the earlier life
   CHECK(host.events() == std::vector{Kind::joined, Kind::restarted, Kind::moved});
   CHECK(host.count(Verdict::accepted) == 298);
 }
@@ -131,20 +131,21 @@ TEST_CASE("of a node that has echoed nothing four starts are held, each for a se
   for (std::uint32_t boot = 1; boot <= 4; ++boot) REQUIRE(table.hold(start(7, boot, 0.1 * boot)));
   CHECK(table.hold(start(7, 5, 0.5)) == nullptr);
   CHECK(table.hold(start(7, 5, 1.09)) == nullptr);
-  CHECK(table.hold(start(8, 1, 1.09)) != nullptr);  // another has its own
+  CHECK(table.hold(start(8, 1, 1.09)) != nullptr);  // another node has a stream of its own
   CHECK(table.hold(start(7, 5, 1.11)) != nullptr);
-  CHECK(table.life_of(start(7, 1, 1.11)) == nullptr);  // the oldest has made room
+  CHECK(table.life_of(start(7, 1, 1.11)) == nullptr);  // the oldest stream was given up for it
   for (std::uint32_t boot = 2; boot <= 5; ++boot) CHECK(table.life_of(start(7, boot, 1.11)));
 }
 
 TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") {
-  // Told apart by boot id, or where that is one, too, by counter and address.
+  // Two nodes with one number are told apart by their boot id, or if that is the same, too, by
+  // counter and address.
   for (const std::uint32_t boot_of_b : {2U, 1U}) {
     CAPTURE(boot_of_b);
     TestDesk host(lab);
     TestNode a(7, 1, lab), b(7, boot_of_b, lab);
     b.offset_s += 100;
-    std::map<BootKey, std::string> of_boot;  // which nodes' frames had this key
+    std::map<BootKey, std::string> of_boot;  // the nodes whose frames had each boot key
     std::map<std::size_t, std::string> of_stream;
     std::map<std::size_t, LiveClock> clocks;
     std::vector<NodeEvent> events;
@@ -171,7 +172,7 @@ TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") 
       if (k >= 20) exchange(b, 'b', elsewhere, 0.1 * k + 0.05);
     }
     for (const auto& [boot, nodes] : of_boot) CHECK(nodes.size() == 1);
-    int of_a = 0, of_b = 0;  // streams, once both were heard for two seconds
+    int of_a = 0, of_b = 0;  // each has a stream once both were heard for two seconds
     for (const auto& [stream, nodes] : of_stream) {
       of_a += nodes == "a" ? 1 : 0;
       of_b += nodes == "b" ? 1 : 0;
@@ -179,17 +180,18 @@ TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") 
     }
     CHECK(of_a == 1);
     CHECK(of_b == 1);
-    CHECK(taken >= 180 - 3);  // each is held at first, and one is of an earlier life
-    // b takes the place of a until a is heard again, which then has one of its own
+    CHECK(taken >= 180 - 3);  // each is held at first, and one frame is of an earlier life
+    // Node b takes the place of node a until a is heard again; then a gets a stream of its own.
     std::vector<Kind> kinds;
     for (const NodeEvent& event : events) kinds.push_back(event.kind);
     CHECK(kinds ==
           std::vector{Kind::joined, boot_of_b == 1 ? Kind::restarted : Kind::started, Kind::twins});
     CHECK(is_warning(Kind::twins));
-    CHECK(host.count(Verdict::earlier_life) == 1);  // before it had heard what was answered since
+    CHECK(host.count(Verdict::earlier_life) == 1);  // before it had received the answers since then
     for (auto& [stream, clock] : clocks) {
       for (const ClockEvent& event : clock.take_events()) {
-        CHECK(event.kind == ClockEvent::Kind::new_boot);  // no clock saw the other's counter
+        // No clock got a counter value of the other node.
+        CHECK(event.kind == ClockEvent::Kind::new_boot);
       }
     }
   }
@@ -230,20 +232,22 @@ TEST_CASE("fault 31 address_change: the rate limit follows, that of a node and t
     CHECK(host.count(Verdict::accepted) == 499);
     return host.desk.counts().answers;
   };
-  CHECK(answers_of(true) == answers_of(false));  // as one node, of 30 a second at most
+  // A node that moves has the rate limit of one node, 30 a second.
+  CHECK(answers_of(true) == answers_of(false));
   CHECK(answers_of(true) <= 5 * 30);
 
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   for (int k = 0; k < 5; ++k) host.exchange(node, home, 0.1 * k);
   Verdict of_stranger = Verdict::held;
-  for (std::uint32_t boot = 2; boot < 20; ++boot) {  // they use up what the address is allowed
+  // Frames of new starts use up the address's allowed answers.
+  for (std::uint32_t boot = 2; boot < 20; ++boot) {
     of_stranger =
         host.take(TestNode(8, boot, lab).frame(host_s(0.5)), elsewhere, host_s(0.5)).verdict;
   }
   CHECK(of_stranger == Verdict::limited);
   CHECK(host.exchange(node, elsewhere, 0.6).verdict == Verdict::accepted);
-  // And where a node is known, one that begins is not a stranger.
+  // A new node at the address of a known node is not treated as a stranger.
   TestNode begins(9, 1, lab);
   CHECK(host.exchange(begins, elsewhere, 0.7).verdict == Verdict::held);
   CHECK(host.exchange(begins, elsewhere, 0.8).verdict == Verdict::accepted);
@@ -264,7 +268,8 @@ TEST_CASE("fault 32 late_node, node_leaves, node_returns: after ten minutes it i
 }
 
 TEST_CASE("fault 32 node_returns: the same piece if its counter agrees within 100 ppm of the gap") {
-  // Of ten minutes that are 60 ms; its crystal is 20 ppm off, and known to be.
+  // 100 ppm of ten minutes are 60 ms. The node's crystal is 20 ppm off, and the clock has learnt
+  // that.
   for (const double wrong_s : {0.0, 0.1, -0.1}) {
     CAPTURE(wrong_s);
     TestDesk host(lab);
@@ -288,7 +293,8 @@ TEST_CASE("fault 32 node_returns: the same piece if its counter agrees within 10
     CHECK(host.count(Verdict::held) == 1);
     const auto events = clock.take_events();
     if (wrong_s == 0.0) {
-      // Its floors are known from ten minutes ago: that they are seen anew is all that is told.
+      // Its floors are known from ten minutes ago, so the only events are that they are measured
+      // anew.
       for (const ClockEvent& event : events) CHECK(event.kind == ClockEvent::Kind::route);
       CHECK(clock.piece()->origin().node == piece.node);
       CHECK(first->certainty == Certainty::certified);
@@ -335,7 +341,7 @@ TEST_CASE("fault 40 ipv6_only, dual_stack_same_node: one stream") {
 }
 
 TEST_CASE("fault 12 replay: captures of former lives, sent on and on, keep no node out") {
-  std::vector<std::array<Bytes, 2>> captured;  // of each life an early frame, and a late one
+  std::vector<std::array<Bytes, 2>> captured;  // for each life an early frame and a late one
   for (std::uint32_t boot = 1; boot <= 4; ++boot) {
     TestNode node(7, boot, lab);
     captured.push_back({node.frame(host_s(1.0)), node.frame(host_s(31.0))});
@@ -348,7 +354,7 @@ TEST_CASE("fault 12 replay: captures of former lives, sent on and on, keep no no
   for (int k = 0; k < 600; ++k) {
     const double t = 105.0 + 0.05 * k;
     for (std::uint8_t i = 0; i < captured.size();
-         ++i) {  // from its own host, which anybody can say
+         ++i) {  // the address is the node's own, which anybody can forge
       const NodeAddress from{home.host, static_cast<std::uint16_t>(6000 + i)};
       host.take(captured[i][1], from, host_s(t));
       host.take(captured[i][0], from, host_s(t));
@@ -356,7 +362,7 @@ TEST_CASE("fault 12 replay: captures of former lives, sent on and on, keep no no
     if (k < 100) continue;
     accepted += host.exchange(node, home, t + 0.02).verdict == Verdict::accepted ? 1 : 0;
   }
-  CHECK(accepted > 450);  // of 500: it is in within two seconds
+  CHECK(accepted > 450);  // 500 frames were sent: the node is accepted within two seconds
 }
 
 }  // namespace kinalign

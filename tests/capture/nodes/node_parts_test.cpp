@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the desk is made of, by itself.
+// The parts of NodeDesk, each tested alone.
 #include "tests/capture/test_node.h"
 
 #include "kinalign/capture/nodes/node_desk.h"
@@ -87,7 +87,7 @@ TEST_CASE("a counter of 32 bits is widened only where its node counts in 32 bits
   constexpr std::int64_t turn = std::int64_t{1} << 32;
   counter.take(turn - 1'000'000, host_s(0));
   CHECK(counter.widened(500, host_s(1)) == turn + 500);
-  CHECK(counter.widened(500, host_s(100)) == 500);  // it began anew
+  CHECK(counter.widened(500, host_s(100)) == 500);  // the number began anew
   CHECK(counter.widened(turn + 500, host_s(100)) == turn + 500);
   CHECK(counter.widened_before(turn - 200, turn + 500) == turn - 200);
   CHECK(counter.widened_before(400, turn + 500) == turn + 400);
@@ -104,7 +104,7 @@ TEST_CASE("64 nodes are kept, a 65th waits until one was silent for a minute") {
   host.events();
   CHECK(host.exchange(nodes[64], from(64), 1.0).verdict == NodeVerdict::no_room);
   CHECK(host.exchange(nodes[64], from(64), 1.1).verdict == NodeVerdict::no_room);
-  CHECK(host.events() == std::vector{NodeEvent::Kind::too_many});  // told once in a while
+  CHECK(host.events() == std::vector{NodeEvent::Kind::too_many});  // reported only once in a while
   for (std::uint32_t i = 1; i < 64; ++i) host.exchange(nodes[i], from(i), 61.0);
   CHECK(host.exchange(nodes[64], from(64), 62.0).verdict == NodeVerdict::accepted);
 }

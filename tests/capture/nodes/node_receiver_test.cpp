@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes' port on loopback: real sockets, the kernel's filter, a clock a node.
+// The nodes' port on loopback: real sockets, the kernel's filter, and one clock for each node.
 #include "kinalign/capture/nodes/node_receiver.h"
 
 #include "tests/capture/loopback.h"
@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 
 const LabKey lab{7};
 
-/// Its counter is then a thousand seconds ahead of the raw clock.
+/// A node whose counter is a thousand seconds ahead of the raw clock.
 TestNode node_ahead(std::uint32_t id = 7) {
   TestNode node(id, 1, lab);
   node.drift = 0.0;
@@ -38,7 +38,7 @@ NodeReceiver open_receiver(ClockReader& clocks, const std::string& address) {
   return std::move(*opened);
 }
 
-/// A receiver, a node and the socket that it sends from.
+/// A receiver, a node, and the socket from which the node sends.
 template <class Clocks = SystemClocks>
 struct Bench {
   explicit Bench(const std::string& address = "127.0.0.1")
@@ -47,7 +47,7 @@ struct Bench {
         client(to == "::1" ? AF_INET6 : AF_INET) {}
 
   std::uint16_t port() const { return receiver.sockets()[0].port(); }
-  /// Waits until something has come, two seconds at most; whether it has.
+  /// Waits until a datagram has come, at most two seconds; gives whether one came.
   bool serve() {
     pollfd waiting{receiver.fd(), POLLIN, 0};
     const bool came = ::poll(&waiting, 1, 2000) > 0;
@@ -74,7 +74,7 @@ struct Bench {
   Client client;
 };
 
-/// The system's clocks, but that the host may have slept, or an hour passed.
+/// The system's clocks, with an added sleep of the host or an added time.
 class OddClocks : public SystemClocks {
  public:
   HostTime raw() override { return SystemClocks::raw() + later; }
@@ -82,7 +82,7 @@ class OddClocks : public SystemClocks {
   Duration later{0}, slept{0};
 };
 
-/// Both go on by `reading` between the wall clock's reading and the raw clock's.
+/// Clocks that move on by `reading` between the readings of the wall clock and of the raw clock.
 class SlowClocks : public SystemClocks {
  public:
   HostTime raw() override { return SystemClocks::raw() + later_; }
@@ -97,7 +97,7 @@ class SlowClocks : public SystemClocks {
   Duration later_{0};
 };
 
-/// Each node whose clock has something to tell.
+/// The node of each clock event that the receiver reports.
 std::vector<std::uint32_t> tellers(NodeReceiver& receiver) {
   std::vector<std::uint32_t> ids;
   for (const auto& told : receiver.take_clock_events()) {
@@ -118,7 +118,7 @@ TEST_CASE("a node's clock is certified after a few frames, and its stamps hold t
     const auto stamp = clock->host_from_node(news.exchange->boot, news.exchange->n_tx);
     if (!stamp || stamp->certainty != Certainty::certified) return;
     ++certified;
-    // the truth of TestNode::counter_us, which cuts to whole microseconds
+    // The truth of TestNode::counter_us, which is cut to whole microseconds.
     const HostTime truth{news.exchange->n_tx.time_since_epoch() - std::chrono::seconds(1000)};
     holds = holds && *stamp->earliest <= truth + std::chrono::microseconds(1) &&
             truth <= *stamp->latest;
@@ -232,8 +232,9 @@ TEST_CASE("fault 19 host_suspend: clocks begin anew, and what the earlier ones t
   bench.clocks.slept = std::chrono::hours(1);
   bench.clocks.later = std::chrono::hours(1);
   bench.receiver.tick();
-  CHECK_FALSE(bench.receiver.status()[0].stamp);  // of the clock from before; looking ends it not
-  talk_as(100);                                   // takes the stream of the first
+  // The stamp was of the clock before the sleep; a look at it does not end the stream.
+  CHECK_FALSE(bench.receiver.status()[0].stamp);
+  talk_as(100);  // takes the stream of the first node
   const auto ids = tellers(bench.receiver);
   CHECK(std::count(ids.begin(), ids.end(), 1) == 1);
   CHECK(std::count(ids.begin(), ids.end(), 64) == 1);
@@ -249,16 +250,16 @@ TEST_CASE("events and pairs that nobody takes are counted, whichever list has no
   for (int i = 0; i < 66; ++i) {
     bench.clocks.later += 1s;
     bench.receiver.tick();
-    bench.receiver.take_host_events();  // that the wall clock seems to be stepped
+    bench.receiver.take_host_events();  // the events that the wall clock seems to have stepped
   }
-  std::uint64_t missed = 66 - 64;  // pairs
+  std::uint64_t missed = 66 - 64;  // pairs of clock readings
   CHECK(bench.receiver.missed_events() == missed);
   for (std::uint32_t boot = 1; boot <= 68; ++boot) {
     if (boot > 1) bench.node.reboot(boot, bench.clocks.raw());
     bench.talk(2);
   }
-  missed += 68 - 64;  // of the node, that it started, ...
-  missed += 68 - 64;  // ... and of its clock
+  missed += 68 - 64;  // the node's own events that it started, ...
+  missed += 68 - 64;  // ... and its clock's
   CHECK(bench.receiver.missed_events() == missed);
   bench.receiver.take_pairs();
   bench.receiver.take_node_events();
@@ -296,7 +297,7 @@ TEST_CASE("nodes are listed by their ids, in whatever order they joined") {
 TEST_CASE("fault 40 ipv6_only: the same over IPv6") {
   if (!has_ipv6_loopback()) return;
   Bench bench("::1");
-  bench.send(Bytes(60));  // filtered there too
+  bench.send(Bytes(60));  // filtered on this port too
   bench.talk(5);
   CHECK(bench.receiver.dropped() == 1);
   CHECK(bench.receiver.counts().verdicts[NodeVerdict::accepted] == 4);

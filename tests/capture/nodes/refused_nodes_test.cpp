@@ -40,7 +40,7 @@ TEST_CASE("strangers do not make the table grow, nor the first ids leave it") {
   CHECK(refused.claims().front().node_id == 7);
   CHECK(refused.others(NodeRefusal::no_mac));
   CHECK_FALSE(refused.others(NodeRefusal::wrong_mac));
-  CHECK(told <= 4);  // one that has room, and of the rest one in ten minutes
+  CHECK(told <= 4);  // one node is new and has room, and of the rest one is reported in ten minutes
 }
 
 }  // namespace kinalign

@@ -16,13 +16,13 @@ namespace {
 
 constexpr HostTime start{1h};
 
-/// A chronyd that says stratum 2 and root delay 1 s.
+/// A chronyd that reports stratum 2 and a root delay of 1 s.
 class Chronyd {
  public:
   Chronyd() : socket_(*UdpSocket::open("127.0.0.1", 0)) {}
   std::uint16_t port() const { return socket_.port(); }
 
-  /// Answers the requests that wait; how many.
+  /// Answers the waiting requests and gives their number.
   std::size_t answer() {
     const std::size_t requests = batch_.receive(socket_.fd());
     for (std::size_t i = 0; i < requests; ++i) {
@@ -75,7 +75,7 @@ TEST_CASE("it is asked every two seconds, and an answer to an old question is no
   ChronyQuery query(chronyd.port());
   for (int i = 0; i < 9; ++i) CHECK(!query.latest(start + 250ms * i));
   CHECK(chronyd.answer() == 2);
-  CHECK(query.latest(start + 3s));  // the second one's; the first one's was passed over
+  CHECK(query.latest(start + 3s));  // the answer to the second request; the first one's was skipped
 }
 
 TEST_CASE("where there is no chronyd nothing waits and nothing comes") {

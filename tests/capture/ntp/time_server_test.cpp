@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server of its own thread, until the end of the case.
+/// A server on a thread of its own, until the end of the test case.
 class Running {
  public:
   explicit Running(TimeServerOptions options) {
@@ -28,7 +28,7 @@ class Running {
   ~Running() { stop(); }
 
   std::uint16_t port() const { return server_->sockets().front().port(); }
-  /// What it counted in the end.
+  /// Stops the server, and gives its counts.
   const NtpCounts& stop() {
     stop_ = true;
     if (thread_.joinable()) thread_.join();

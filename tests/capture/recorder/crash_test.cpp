@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a kill and a power cut leave of a recording: never less than all but the last second. In
+// A recording after a kill and after a power cut: at most the last second may be missing. In
 // virtual time, on files in memory that remember every call.
 #include "tests/capture/recorder/memory_files.h"
 #include "tests/mcap/mcap_files.h"
@@ -25,14 +25,15 @@ using namespace std::chrono_literals;
 constexpr Duration promised = 1s;
 const std::string path = "/take.mcap";
 
-/// Ten seconds of three devices, and when each change of a file was made.
+/// Ten seconds of three devices, and the time of each change of a file.
 struct Recorded {
   MemoryFiles files;
-  std::vector<HostTime> changed;  // as files.changes
+  std::vector<HostTime> changed;  // the time of each of files.changes
   struct Cut {
     HostTime at{};
-    std::size_t changes = 0;                     // so many were made
-    std::map<std::string, std::size_t> durable;  // of a file so many are on the disk for sure
+    std::size_t changes = 0;  // the number of changes that were made by then
+    // For each file the number of its changes that are certainly on the disk.
+    std::map<std::string, std::size_t> durable;
   };
   std::vector<Cut> moments;    // each 4 ms
   std::vector<HostTime> sent;  // message k
@@ -44,7 +45,7 @@ std::string payload(std::uint64_t k) {
   return "message " + std::to_string(k) + std::string(k % 97, 'x');
 }
 
-/// A sync takes 3 to 102 ms. `fails`: when one fails, once.
+/// A sync takes 3 to 102 ms. `fails`: the number of the sync that fails.
 class SlowSyncs {
  public:
   SlowSyncs(Recorded& run, RecordingDisk& disk, std::optional<Duration> fails)
@@ -82,7 +83,7 @@ std::vector<std::uint16_t> three_channels(Recorder& recorder) {
   return channels;
 }
 
-/// `sync_fails`: when a sync fails, once.
+/// `sync_fails`: the number of the sync that fails.
 void record_ten_seconds(Recorded& run, std::uint64_t seed, McapCompression compression,
                         std::optional<Duration> sync_fails = std::nullopt) {
   std::mt19937_64 random(seed);
@@ -115,7 +116,7 @@ void record_ten_seconds(Recorded& run, std::uint64_t seed, McapCompression compr
 
 using Contents = std::map<std::string, std::string>;  // by path
 
-/// Which of the messages a file holds: unaltered, and no others.
+/// Finds the messages that a file holds: they must be unaltered, and there must be no others.
 void find_messages(const Recorded& run, const std::string& content, std::vector<bool>& found) {
   const ReadMcap read = read_mcap(content);
   for (const OwnedMessage& m : read.messages) {
@@ -140,8 +141,9 @@ void check_state(const Recorded& run, const Contents& contents, HostTime cut) {
   }
 }
 
-/// What is on the disk for sure, and of the rest what chance leaves: each sector of each unsynced
-/// write reached the disk, or did not: then it reads as zeros if something behind it did.
+/// The files after a power cut. All that is certainly on the disk is there. Of the rest, chance
+/// decides for each sector of each unsynced write whether it reached the disk. A sector that did
+/// not reads as zeros if a later sector of the file did.
 Contents after_power_cut(const Recorded& run, const Recorded::Cut& cut, std::mt19937_64& random) {
   constexpr std::size_t sector = 512;
   Contents contents;
@@ -162,7 +164,7 @@ Contents after_power_cut(const Recorded& run, const Recorded::Cut& cut, std::mt1
   return contents;
 }
 
-/// How many states were looked at.
+/// Gives the number of states that were checked.
 std::size_t cut_power_all_along(const Recorded& run, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::size_t states = 0;
@@ -190,7 +192,7 @@ TEST_CASE("a kill at any system call costs at most the last second") {
       for (std::size_t k = 0; k < run.files.changes.size(); ++k) {
         CAPTURE(k);
         const auto& change = run.files.changes[k];
-        // between two calls, up to the moment of the next one …
+        // Between two calls, up to the moment of the next call …
         check_state(run, contents, run.changed[k]);
         // … and within it
         MemoryFiles::Change torn = change;

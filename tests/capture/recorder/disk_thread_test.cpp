@@ -37,13 +37,13 @@ void wait_until(const Holds& holds) {
   while (!holds()) std::this_thread::yield();  // CTest's own limit ends a test that hangs
 }
 
-/// Where who begins a file waits, as often as it tries, until it is let go.
+/// A gate at which every attempt to begin a file waits until the test opens it.
 struct Gate {
   std::promise<void> stands_still;
   std::shared_future<void> goes_on = stands_still.get_future().share();
 };
 
-/// Syncs that last until they are let go, or fail.
+/// Syncs that last until the test releases them, or fail.
 struct SlowSync : PosixFiles {
   std::atomic<bool> slow{false}, fails{false};
   std::atomic<int> waiting{0}, over{0};
@@ -129,7 +129,7 @@ TEST_CASE("who begins a recording asks nothing of the disk, and its name is sync
 TEST_CASE("what was pushed is synced within half a second, without anything that comes behind it") {
   struct CountedSyncs : PosixFiles {
     std::atomic<int> begun{0};
-    int sync(int) override {  // at once: it is the thread's time that is looked at
+    int sync(int) override {  // returns at once, because the thread's own delay is tested
       ++begun;
       return 0;
     }
@@ -142,14 +142,14 @@ TEST_CASE("what was pushed is synced within half a second, without anything that
   wait_until([&] { return files.begun == 2 && thread.status().waiting_bytes == 0; });
   int in_time = 0;
   for (std::uint32_t i = 0; i < 5; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // nothing is asked of it
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the thread has nothing to do
     const auto pushed = Clock::now();
     thread.push(chunk(10 * i, 10 * i + 10));
     wait_until([&] { return files.begun == 3 + static_cast<int>(i); });
     in_time += Clock::now() - pushed < std::chrono::milliseconds(500) ? 1 : 0;
   }
   CHECK(in_time >=
-        3);  // a busy machine may hold one up; who looks once a second is late five times
+        3);  // a busy machine may delay a look; five late looks are allowed for one a second
 }
 
 TEST_CASE("a file that can't be begun is begun as soon as it can, with all that came meanwhile") {
@@ -300,12 +300,12 @@ TEST_CASE("a disk that fails every sync is not asked again at once") {
     thread.push(chunk(10 * i, 10 * i + 10));
     wait_until([&] { return thread.status().bytes > 500 * i; });
   }
-  CHECK(files.failed < 10);  // a second lies between two; else each chunk's would be one
+  CHECK(files.failed < 10);  // a second lies between two syncs, or each chunk would have its own
   thread.finish();
   wait_until([&] { return thread.status().refused.has_value(); });
   thread.give_up();
   wait_until([&] { return thread.status().finished; });
-  CHECK(thread.status().dropped == 0);  // all was written, though nothing is sure
+  CHECK(thread.status().dropped == 0);  // everything was written, though no sync proves it
   CHECK(folder.names().size() == 2);
   CHECK(read_mcap(bytes_in(thread.status().paths.back())).messages.size() == 500);
 }

@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// A disk that opens and takes nothing while it is full.
+/// A disk that opens files but accepts no bytes while it is full.
 struct FullDisk : PosixFiles {
   std::atomic<bool> full{false};
 
@@ -26,7 +26,7 @@ struct FullDisk : PosixFiles {
   }
 };
 
-/// A disk that takes everything and brings nothing to its plates while its syncs fail.
+/// A disk that accepts all bytes, but whose syncs fail, so that nothing is certainly stored.
 struct FailingSyncs : PosixFiles {
   std::atomic<bool> fails{false};
   std::atomic<int> failed{0}, synced{0};

@@ -35,7 +35,8 @@ TEST_CASE("one sender's messages stay in order, and wait for no other sender's")
   HeldBack<int> held;
   held.hold(at(20), 1, 1);
   CHECK(held.must_hold(at(9), 1, at(10)));
-  CHECK_FALSE(held.must_hold(at(9), 2, at(10)));  // as of another socket, which is read later
+  // Sender 2 has another socket, which is read later.
+  CHECK_FALSE(held.must_hold(at(9), 2, at(10)));
   held.hold(at(9), 1, 2);
   held.hold(at(8), 2, 3);
   CHECK(released(held, at(10)) == std::vector{3});

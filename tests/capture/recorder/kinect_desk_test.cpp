@@ -21,7 +21,7 @@ HostAddress host(std::uint8_t last) {
 
 HostTime at(Duration t) { return HostTime{t}; }
 
-/// A sender whose ticks begin at 0 when the host's clock shows `begun`.
+/// A sender whose ticks began at 0 when the host's clock showed `begun`.
 struct Sender {
   std::uint32_t session = 0x5eedf00d;
   HostTime begun{100s};
@@ -120,7 +120,8 @@ TEST_CASE("a flood of pings is answered 30 times a second, and one of sessions h
     CHECK(desk.receive(stranger.ping(now), host(66), now).has_value() == (session <= 8));
     CHECK(desk.answer(now).has_value() == (session <= 8));
   }
-  CHECK(desk.receive(sender.ping(at(106s)), host(5), at(106s)));  // who is known goes on
+  // A known sender is still accepted.
+  CHECK(desk.receive(sender.ping(at(106s)), host(5), at(106s)));
 }
 
 TEST_CASE("32 sessions are kept, a further one takes the place of one that was silent a minute") {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files in memory that remember every write and every sync: what a kill or a power cut would have
-// left at any moment can be put together from that.
+// Files in memory that remember every write and every sync. From that a test can build the state
+// after a kill or a power cut at any moment.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -24,17 +24,17 @@ class MemoryFiles final : public FileSystem {
   struct Change {
     std::string path;
     enum class Kind { create, write, truncate } kind{};
-    std::uint64_t at = 0;  // of a truncation the size
+    std::uint64_t at = 0;  // offset of a write; for a truncation the new size
     std::string bytes;
   };
-  /// In the order in which they were made.
+  /// The changes in the order in which they were made.
   std::vector<Change> changes;
-  /// By path: so many of the changes are on the disk for sure.
+  /// By path: the number of its changes that are certainly on the disk.
   std::map<std::string, std::size_t> synced;
-  /// A sync covers what was there when it began: how many changes that were. Reset by each.
+  /// The number of changes when the last sync began: a sync covers those. Each sync resets it.
   std::size_t sync_began = SIZE_MAX;
-  /// The next sync fails. What it was to cover the kernel may forget: no later sync of that file
-  /// proves it.
+  /// The next sync fails. The kernel may forget the changes that this sync was to write, so no
+  /// later sync of the file proves that they are on the disk.
   bool next_sync_fails = false;
 
   int open(const char* path, int flags, mode_t) override {
@@ -112,7 +112,7 @@ class MemoryFiles final : public FileSystem {
 
   std::vector<Open> open_;
   std::map<std::string, std::string> contents_;
-  std::set<std::string> doubtful_;  // of which a sync failed
+  std::set<std::string> doubtful_;  // the files of which a sync failed
 };
 
 }  // namespace kinalign

@@ -11,5 +11,5 @@ TEST_CASE("a take's counts begin with what had come before its first chunk") {
   for (std::uint64_t k = 10; k <= 20; ++k) past.remember(k, k - 5, static_cast<int>(100 * k));
   CHECK(past.before(15) == 1500);
   CHECK(past.before(20) == 2000);
-  CHECK(past.before(14) == 0);  // forgotten: no take begins there any more
+  CHECK(past.before(14) == 0);  // forgotten, because no take can begin there any more
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the recorder answers on its devices' ports, over loopback, and what then stands in the file.
+// The recorder's answers on its devices' ports, over loopback, and the contents of the file
+// afterwards.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
 
@@ -119,7 +120,7 @@ TEST_CASE("a SlimeVR tracker's handshake is answered, it is pinged, and all it s
   CHECK(answer->bytes.size() <= handshake.size());
   CHECK(std::string(answer->bytes.begin() + 1, answer->bytes.begin() + 13) == "Hey OVR =D 5");
   for (const std::uint8_t number :
-       std::array<std::uint8_t, 3>{1, 3, 2}) {  // heartbeats; one overtaken
+       std::array<std::uint8_t, 3>{1, 3, 2}) {  // heartbeats; one of them was overtaken
     tracker.send("127.0.0.1", live.port(), {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, number});
   }
   live.serve_until([&] { return live.pieces() == 4; });
@@ -164,14 +165,15 @@ TEST_CASE(
   for (std::uint64_t i = 0; i < 25; ++i) {
     other.send("127.0.0.1", live.port(), bytes_of("KNCT frames that are not a tracker's"));
     another.send("127.0.0.1", live.port(), bytes_of("short"));
-    std::vector<std::uint8_t> heartbeat(12);  // of one whose handshake went elsewhere
+    // A heartbeat of a tracker whose handshake went elsewhere.
+    std::vector<std::uint8_t> heartbeat(12);
     heartbeat[11] = static_cast<std::uint8_t>(i);
     tracker.send("127.0.0.1", live.port(), heartbeat);
     live.serve_until([&] { return live.pieces() == 3 * (i + 1); });
   }
   live.finish();
   const Findings findings = live.session().take_findings();
-  REQUIRE(findings.size() == 1);  // of the host
+  REQUIRE(findings.size() == 1);  // one finding for the host
   CHECK(findings[0].severity == Severity::warning);
   CHECK(findings[0].what.expected == "frames of slimevr");
   CHECK(findings[0].what.found == "25 messages, none of them one");
@@ -310,7 +312,7 @@ TEST_CASE("what a port for marks refuses is told by its cause, the first of each
   const auto came = caller.receive();
   REQUIRE(came);
   CHECK(std::string(came->bytes.begin(), came->bytes.end()) == R"({"mark":"7","is":"wrong_kind"})");
-  CHECK(refused(call, pause).empty());  // told already
+  CHECK(refused(call, pause).empty());  // already reported
   CHECK(caller.receive());              // and answered again
   CHECK(
       refused(call, "no mark").starts_with("port of marks: expected a JSON object, found no mark"));
@@ -383,7 +385,8 @@ TEST_CASE(
     live.serve_until([&] { return live.pieces() == sent; });
   };
   const Bytes early = node.frame(clocks.raw());
-  for (int k = 0; k < 3; ++k) send(node.frame(clocks.raw()));  // held: no echo yet
+  // The frame is held, because it has no echo yet.
+  for (int k = 0; k < 3; ++k) send(node.frame(clocks.raw()));
   for (int k = 0; k < 3; ++k) {
     const auto reply = radio.receive();
     REQUIRE(reply);
@@ -399,7 +402,9 @@ TEST_CASE(
   send(node.frame(clocks.raw()));
   const auto payloads = live.finish();
   const auto& raw = payloads.at("/imu/7/raw");
-  CHECK(raw.size() == 7);  // three held, one taken, again, late, and the last: not what is forged
+  // Three held, one accepted, then a duplicate, a late one and the last: the forged ones do not
+  // count.
+  CHECK(raw.size() == 7);
   CHECK(raw[5] == std::string(early.begin(), early.end()));
   CHECK(payloads.at("/imu/7/exchange").size() == 3);
   const auto streams = live.session().streams();
@@ -411,6 +416,6 @@ TEST_CASE(
   CHECK(streams[0].counts.frames == 3);
   CHECK(streams[0].counts.order.duplicates == 1);
   CHECK(streams[0].counts.order.late == 1);
-  CHECK(streams[0].counts.order.lost == 1);  // the forged one's number
+  CHECK(streams[0].counts.order.lost == 1);  // the number that the forged frame skipped
   CHECK(payloads.at("/counts").back().find(R"("node":"7")") != std::string::npos);
 }

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 HostTime at_ms(int ms) { return HostTime{milliseconds(ms)}; }
 
-/// The messages of the chunks that a take got, in their order.
+/// The messages of the chunks that a take received, in their order.
 struct Taken {
   std::vector<McapChunkContent> chunks;
 
@@ -52,7 +52,8 @@ TEST_CASE("a message keeps its arrival in UTC, its device's time and its number"
   CHECK(read.messages[0].message.log_time == 1'000'001'000'000);
   CHECK(read.messages[0].message.publish_time == 77);
   CHECK(read.messages[0].message.sequence == 0);
-  CHECK(read.messages[1].message.publish_time == 1'000'002'000'000);  // no clock: its arrival
+  // The device has no clock, so the stamp is the arrival.
+  CHECK(read.messages[1].message.publish_time == 1'000'002'000'000);
   CHECK(read.messages[1].message.sequence == 1);
   CHECK(recorder.messages(channel) == 2);
 }
@@ -67,7 +68,7 @@ TEST_CASE("a chunk is closed after a quarter of a second, or when it is full") {
   CHECK(taken.chunks.empty());
   recorder.tick(at_ms(260));
   CHECK(taken.chunks.size() == 1);
-  recorder.tick(at_ms(900));  // nothing has come: nothing is closed
+  recorder.tick(at_ms(900));  // no message has come, so no chunk is closed
   CHECK(taken.chunks.size() == 1);
   recorder.record(channel, at_ms(901), std::string(1000, 'b'));
   CHECK(taken.chunks.size() == 2);
@@ -170,7 +171,7 @@ TEST_CASE("what came while nobody ticked is in the pre-roll as far as it reaches
   Taken taken;
   const auto channel = recorder.add_channel({0, 0, "/imu/raw", "x", {}});
   for (int s = 0; s <= 20; ++s) recorder.record(channel, at_ms(1000 * s), std::to_string(s));
-  recorder.tick(at_ms(20'001));  // the machine had stood still
+  recorder.tick(at_ms(20'001));  // the machine stood still
   recorder.tick(at_ms(20'300));
   recorder.start(at_ms(20'300), taken.take());
   recorder.stop();

@@ -28,7 +28,7 @@ McapStoredChunk chunk(std::uint32_t from, std::uint32_t to) {
   return store(content, McapCompression::none);
 }
 
-/// Numbers of the messages in the files, and whether all but the last file may be torn.
+/// The numbers of the messages in the files; all but the last file may be torn.
 struct Found {
   std::set<std::uint32_t> sequences;
   std::vector<bool> closed;
@@ -47,7 +47,8 @@ Found found_in(const std::vector<std::string>& paths) {
   return found;
 }
 
-/// Writes chunks of ten messages each, a sync behind each; how many messages were taken.
+/// Writes chunks of ten messages each with a sync after each; gives the number of messages that
+/// were accepted.
 struct Written {
   std::uint32_t messages = 0;
   bool finished = false;
@@ -134,7 +135,7 @@ TEST_CASE("where every sync fails there are two files, the second with all that 
   files.fails = false;
   const int before = files.synced;
   CHECK(disk->finish(to_metadata(RecordingEnd{})));
-  CHECK(files.synced > before);  // what failed before proves nothing
+  CHECK(files.synced > before);  // the syncs that failed do not count: the file is synced again
   CHECK(disk->unwritten() == 0);
   CHECK(folder.names().size() == 2);
   CHECK(found_in({disk->paths()[1]}).sequences.size() == 200);
@@ -181,10 +182,10 @@ TEST_CASE("whichever call fails, nothing is lost and every file is in order") {
         const Found found = found_in(written.paths);
         CHECK(found.sequences.size() == 50);
         CHECK(found.closed.back());
-        // Only the first call may fail before anything is said: then there is no recording.
+        // Only the first call may fail before anything is reported: then there is no recording.
         CHECK((written.paths.size() == 1) == written.failures.empty());
       } else {
-        CHECK(folder.empty());  // nothing half begun is left
+        CHECK(folder.empty());  // no unfinished file is left
       }
       if (!files.failed()) break;
     }
@@ -201,7 +202,7 @@ TEST_CASE("a disk that refuses everything for a while loses nothing") {
   CHECK(!disk->write(chunk(10, 20)));
   CHECK(!disk->write(chunk(20, 30)));
   CHECK(!disk->write(chunk(30, 35)));
-  const auto told = disk->take_failures();  // once, however often it is tried
+  const auto told = disk->take_failures();  // reported once, however often it is tried
   REQUIRE(told.size() == 1);
   CHECK(told[0].next.empty());
   files.full = false;

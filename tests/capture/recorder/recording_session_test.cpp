@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole recordings over loopback: what devices send stands in the file.
+// Whole recordings over loopback: the data that devices send are in the file.
 #include "kinalign/capture/recorder/recording_session.h"
 
 #include "tests/capture/recorder/sessions.h"
@@ -139,7 +139,8 @@ TEST_CASE("a name that another recorder takes first is left to it") {
   auto session = RecordingSession::open(std::move(options), machine.parts());
   REQUIRE(session);
   folder.write("a.mcap", "another's");
-  std::vector<std::string> names{"b.mcap", "a.mcap"};  // as they seem to be free, the last first
+  // Names that seemed free when they were chosen; the last is tried first.
+  std::vector<std::string> names{"b.mcap", "a.mcap"};
   (*session)->start({[&] {
     const std::string name = names.back();
     if (names.size() > 1) names.pop_back();
@@ -185,7 +186,7 @@ TEST_CASE("after a take that began by a mark no start begins another one unless 
     session.mark({Mark{kind, "", std::nullopt, ""}, "keyboard", ""}, session.now());
   };
   mark(Mark::Kind::stop);
-  CHECK(session.recording());  // that one was not begun by a mark
+  CHECK(session.recording());  // the recording was not begun by a mark, so a mark does not end it
   live.finish();
   session.obey_marks({[] { return std::string("/none/a.mcap"); }}, RecordingSession::Starts::next);
   mark(Mark::Kind::start);
@@ -201,7 +202,8 @@ TEST_CASE("what had reached the machine when a take is ended stands in the file"
   options.marks_port = 0;
   LiveSession live({"mocap=noitom:udp:127.0.0.1:0"}, options);
   const Client one;
-  constexpr int sent = 1000;  // several turns' worth; what the kernel has no room for it counts
+  // More than one turn reads; the session counts what the kernel has no room for.
+  constexpr int sent = 1000;
   for (int i = 0; i < sent; ++i) one.send("127.0.0.1", live.port(), bytes_of(std::to_string(i)));
   one.send("127.0.0.1", live.session().ports().back().second,
            bytes_of(encode_mark_call({Mark::Kind::stop, "", std::nullopt, "1"})));
@@ -335,5 +337,5 @@ TEST_CASE("what a sender's own numbers miss is counted while recording, and in t
   REQUIRE(!payloads.at("/counts").empty());
   CHECK(payloads.at("/counts").back().find(R"("lost":1,"late":1,"duplicates":1)") !=
         std::string::npos);
-  CHECK(payloads.at("/mocap/raw").size() == 6);  // all that came, whatever was thought of it
+  CHECK(payloads.at("/mocap/raw").size() == 6);  // all datagrams that came, accepted or not
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sessions of given devices, what a suit sends them, and a disk that lets them wait.
+// Sessions with given devices, frames of a suit, and a disk that makes them wait.
 #pragma once
 
 #include "tests/capture/recorded.h"
@@ -23,7 +23,7 @@ void serve_until(RecordingSession& session, const Holds& holds) {
     session.turn(std::chrono::milliseconds(10));  // CTest's own limit ends a test that hangs
 }
 
-/// A disk that begins no file for some seconds, or until it is let go.
+/// A disk on which beginning a file waits for some seconds, or until the test releases it.
 struct StandsStill : PosixFiles {
   std::atomic<bool> still{true};
   int open(const char* path, int flags, mode_t mode) override {

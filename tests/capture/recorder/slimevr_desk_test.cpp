@@ -26,7 +26,7 @@ NodeAddress address(std::uint8_t last, std::uint16_t port = 6969) {
 
 SlimeMac mac(std::uint8_t last) { return {2, 0, 0, 0, 0, last}; }
 
-/// A desk, and the hour.
+/// A desk for trackers, and the time.
 class Lab {
  public:
   SlimeNews hear(const NodeAddress& from, const Bytes& bytes) {
@@ -116,7 +116,7 @@ TEST_CASE("a tracker that starts again counts anew, and what was on its way bloc
   lab.now += 3s;
   CHECK(lab.shake(address(7), mac(1)).device == device);
   CHECK(lab.hear(address(7), rotation(1)).verdict == Verdict::accepted);
-  lab.hear(address(7), rotation(50'001));  // of before
+  lab.hear(address(7), rotation(50'001));  // a late datagram of the life before
   CHECK(lab.hear(address(7), rotation(2)).verdict == Verdict::accepted);
   CHECK(lab.hear(address(7), rotation(3)).verdict == Verdict::accepted);
   CHECK(lab.desk.device(device).numbers.counts().received == 4);
@@ -134,7 +134,8 @@ TEST_CASE("a device is its MAC, and moves with it once its old address is silent
   CHECK(moved.device == device);
   CHECK(lab.hear(address(7), rotation(2)).verdict == Verdict::stranger);
   CHECK(lab.hear(address(8), rotation(3)).verdict == Verdict::accepted);
-  CHECK(lab.desk.device(device).numbers.counts().received == 1);  // the old address's stay there
+  // The messages of the old address stay counted there.
+  CHECK(lab.desk.device(device).numbers.counts().received == 1);
 }
 
 TEST_CASE("without a MAC the address is the name, port and all") {
@@ -207,7 +208,7 @@ TEST_CASE("what an old address sent pays nothing for a new one") {
   lab.shake(address(8), mac(1));
   lab.sent();
   lab.now += 500ms;
-  lab.desk.tick(lab.now);  // of 67 bytes 64 are gone
+  lab.desk.tick(lab.now);  // 64 of the 67 bytes that it may be sent are used up
   CHECK(lab.sent().empty());
 }
 
@@ -279,7 +280,7 @@ TEST_CASE("sixty-four devices and no more, until one was silent for a minute") {
   lab.now += 59s;
   lab.hear(address(0), rotation(1));
   lab.now += 500ms;
-  CHECK(lab.shake(address(202), mac(202)).verdict == Verdict::accepted);  // of number 1
+  CHECK(lab.shake(address(202), mac(202)).verdict == Verdict::accepted);  // the place of tracker 1
   CHECK(lab.hear(address(1), rotation(1)).verdict == Verdict::stranger);
   CHECK(lab.hear(address(0), rotation(2)).verdict == Verdict::accepted);
 }

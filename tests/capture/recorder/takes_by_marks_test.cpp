@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes that marks begin and end: each message and each mark stands in the take that it belongs to.
+// Takes that marks begin and end: each message and each mark is in the take to which it belongs.
 #include "tests/capture/recorder/sessions.h"
 
 #include "kinalign/protocols/marks/mark_call.h"
@@ -20,7 +20,7 @@ std::string call(Mark::Kind kind, int id) {
   return encode_mark_call({kind, "", std::nullopt, std::to_string(id)});
 }
 
-/// Of the marks in a file, "start 1".
+/// The marks in a file, each as kind and number: "start 1".
 std::vector<std::string> marks_in(const std::map<std::string, std::vector<std::string>>& payloads) {
   std::vector<std::string> found;
   const auto marks = payloads.find("/marks");
@@ -32,7 +32,7 @@ std::vector<std::string> marks_in(const std::map<std::string, std::vector<std::s
   return found;
 }
 
-/// The newest that a file's counts say of the suit's port.
+/// The newest count of pieces for the suit's port in a file.
 std::uint64_t pieces_in(const std::map<std::string, std::vector<std::string>>& payloads) {
   std::uint64_t pieces = 0;
   for (const std::string& text : payloads.at("/counts/ports")) {
@@ -42,7 +42,8 @@ std::uint64_t pieces_in(const std::map<std::string, std::vector<std::string>>& p
   return pieces;
 }
 
-/// Takes by marks on one port and a suit on another; files a0.mcap, a1.mcap, ...
+/// A session with a port for marks and a port for a suit; its takes are the files a0.mcap, a1.mcap,
+/// ...
 class ByMarks {
  public:
   explicit ByMarks(FileSystem& files) {
@@ -71,7 +72,7 @@ class ByMarks {
   void trigger(const std::string& text) {
     client_.send("127.0.0.1", session_->ports().at(3).second, bytes_of(text));
   }
-  /// Frames that nobody waits for.
+  /// Sends frames without waiting until they are recorded.
   void flood(std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = from; i < to; ++i) {
       client_.send("127.0.0.1", session_->ports().front().second, noitom_frame(i));
@@ -80,15 +81,15 @@ class ByMarks {
   void say_other(std::uint32_t index) {
     client_.send("127.0.0.1", session_->ports().at(1).second, noitom_frame(index));
   }
-  /// Surely earlier and later than all else.
+  /// Sends with a pause before and after, so that the time surely differs from all other times.
   template <class Send>
   static void apart(Send send) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     send();
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  /// Once, as soon as the session has asked for the time so often: before it waits for something to
-  /// come, behind that, and when it has read the first device's port.
+  /// Calls `send` once, when the session has asked for the time that many times: before it waits
+  /// for datagrams, after that, and when it has read the first device's port.
   void when_asked(int times, std::function<void()> send) {
     ports_clock_.when_asked = std::move(send);
     ports_clock_.still = times;
@@ -98,7 +99,7 @@ class ByMarks {
     serve_until(*session_, [&] { return !session_->take_marks().empty(); });
   }
   using Payloads = std::map<std::string, std::vector<std::string>>;
-  /// Of the next take, in their order.
+  /// The messages of the next take, in their order; nothing if there is no further take.
   std::optional<Payloads> next() {
     const auto take = session_->next_take();
     if (!take) return std::nullopt;
@@ -197,7 +198,7 @@ TEST_CASE("what had reached the machine when a mark ends a take stands in its fi
   PosixFiles files;
   ByMarks lab(files);
   lab.mark(Mark::Kind::start, 1);
-  constexpr std::uint32_t sent = 150;  // more than a turn reads
+  constexpr std::uint32_t sent = 150;  // more than one turn of the loop reads
   lab.flood(0, sent);
   lab.mark(Mark::Kind::stop, 2);
   const auto payloads = lab.payloads();

@@ -13,7 +13,8 @@ using namespace kinalign;
 
 namespace {
 
-/// A function that bends as much as it may, to and fro, on a grid of a second.
+/// A function with the largest curvature that is allowed, in random directions, on a grid of one
+/// second.
 class Wanderer {
  public:
   Wanderer(const Assumptions& limits, std::mt19937_64& random) {

@@ -30,13 +30,14 @@ struct Talk {
     bounds.push_back({seconds(t + stepped), seconds(up - stepped), Side::above});
     return piece.push({Side::above, node(t + stepped), host(t + up), host(t + up)});
   }
-  /// With the frame that tells of it, ten milliseconds later.
+  /// Pushes a reply; its bound arrives ten milliseconds later, in the frame that echoes it.
   Verdict reply(Duration t) {
-    // A reading n stands for up to n + 1 us, when the reply had come.
+    // A reading n of the counter, in whole microseconds, stands for times up to n + 1 us at which
+    // the reply came.
     bounds.push_back({seconds(t + stepped), seconds(-down - stepped) - 1e-6, Side::below});
     return piece.push({Side::below, node(t + stepped), host(t - down), host(t + 10ms)});
   }
-  /// The last verdict, or the first that is not `taken`.
+  /// Gives the last verdict, or the first one that is not `taken`.
   Verdict run(Duration from, Duration until, Duration step) {
     for (Duration t = from; t < until; t += step) {
       if (const Verdict v = frame(t); v != Verdict::taken) return v;
@@ -45,10 +46,10 @@ struct Talk {
     }
     return Verdict::taken;
   }
-  Duration at{0};  // of the last exchange that was taken
+  Duration at{0};  // time of the last exchange that was taken
 };
 
-/// The same with delays above both floors that are a hundredth of a millisecond in the mean.
+/// The same with random delays above both floors, 0.01 ms on average.
 struct Jittery : Talk {
   std::mt19937_64 random{1};
   std::exponential_distribution<double> above{1e5};
@@ -64,8 +65,8 @@ struct Jittery : Talk {
   }
 };
 
-/// The witness: what each slope up to 100 ppm leaves of x(t), one by one, under bounds that may be
-/// off by 0.05 ppm a second.
+/// An independent slow way: the interval of x(t) that all slopes up to 100 ppm leave, tried one by
+/// one, under bounds that may be off by 0.05 ppm a second.
 struct Left {
   double low = 1e9, high = -1e9;
 };
@@ -110,7 +111,7 @@ TEST_CASE("a stamp's interval is what all crossings leave, with the microsecond 
       REQUIRE(stamp);
       CHECK(stamp->certainty == Certainty::certified);
       const Left left = left_by(bounds, seconds(t));
-      // Slopes 0.01 ppm apart over at most ten seconds leave 0.1 us between them.
+      // The slopes that are tried are 0.01 ppm apart, which is 0.1 us over ten seconds.
       CHECK(std::abs(seconds(*stamp->earliest - host(t)) - left.low) < 0.1e-6);
       CHECK(std::abs(seconds(*stamp->latest - host(t)) - 1e-6 - left.high) < 0.1e-6);
     }
@@ -135,7 +136,7 @@ TEST_CASE("a crossing is against the certificate by more than five microseconds"
       talk.run(0s, 30s, 100ms);
       const auto stamp = talk.piece.at(node(30s));
       const HostTime h =
-          side == Side::above ? *stamp->earliest - by : *stamp->latest + by;  // + 1 us each way
+          side == Side::above ? *stamp->earliest - by : *stamp->latest + by;  // plus 1 us each way
       CHECK(talk.piece.push({side, node(30s), h, host(30s)}) ==
             (by > 5us ? Verdict::violator : Verdict::taken));
       CHECK(*talk.piece.amount() == about(seconds(by), 1e-3));
@@ -158,19 +159,19 @@ TEST_CASE("the third violator ends a piece; the next begins with the first of th
   const ClockPiece next = talk.piece.next_piece();
   CHECK(next.origin().node == node(31s));
   CHECK(next.origin().host == host(30s + 1ms));
-  CHECK(next.assumptions() == Assumptions{});  // no crystal bends like that
+  CHECK(next.assumptions() == Assumptions{});  // no crystal drifts that fast
   CHECK(next.estimate().slope().deviation >= believed + 1.9e-6);
 }
 
 TEST_CASE("what came since the last crossing that speaks for the old counter is in doubt") {
   Talk talk;
   talk.run(0s, 200s, 100ms);
-  talk.down = talk.up = 20ms;  // slow: they speak for neither
+  talk.down = talk.up = 20ms;  // slow packets, which support neither counter
   talk.run(200s, 210s, 100ms);
   talk.stepped = 4ms;
   talk.up = 1ms;
   for (int i = 0; i < 3; ++i) talk.frame(210s + 100ms * i);
-  // The last fast reply was sent so early: it went at 199.905 s less its way of a millisecond.
+  // The last fast reply left at 199.905 s minus its delay of a millisecond.
   CHECK(seconds(talk.piece.doubtful_since() - host(199s + 905ms - 1ms)) ==
         doctest::Approx(0.0).epsilon(2e-6));
 }
@@ -180,7 +181,7 @@ TEST_CASE("a crystal is believed to run as before a step, to two millionths") {
   talk.run(0s, 30s, 100ms);
   talk.stepped = 2500us;
   CHECK(talk.frame(31s) == Verdict::violator);
-  talk.up = talk.down = 11ms;  // nothing speaks against it for five seconds
+  talk.up = talk.down = 11ms;  // for five seconds no packet contradicts it
   CHECK(talk.run(31s + 100ms, 40s, 100ms) == Verdict::broken);
   CHECK(talk.at > 35s);
   CHECK(talk.at < 37s);
@@ -195,25 +196,25 @@ TEST_CASE("bounds that leave no way between them end a piece, which is in doubt 
   Talk talk;
   talk.up = talk.down = 0ms;
   talk.run(0s, 10s, 100ms);
-  talk.stepped = 4us;  // less than is tolerated, more than is left
+  talk.stepped = 4us;  // less than the tolerance, but more than the interval's width
   CHECK(talk.run(10s, 20s, 100ms) == Verdict::broken);
   CHECK(talk.at < 11s);
-  CHECK(!talk.piece.amount());  // which of them is wrong is not known
+  CHECK(!talk.piece.amount());  // it is not known which of them is wrong
   CHECK(talk.piece.doubtful_since() == host(0s));
   CHECK(talk.piece.next_begins() >= host(10s));
 }
 
 TEST_CASE("an interval narrower than packets take, a minute ago, ends a piece") {
-  // Two exchanges a second: a piece remembers 255 corners each way, and here each is one. Nearly
-  // nothing is heard for fifty seconds, in whose middle the counter steps by half of both
-  // delays: the way leads from one corner to the other, and is narrow there alone.
+  // Two exchanges a second: a piece remembers 255 corners each way, and here each bound is a
+  // corner. Almost no packet comes for fifty seconds, and in their middle the counter steps by half
+  // of both delays. The allowed band leads from one corner to the other, and is narrow only there.
   Talk talk;
   CHECK(talk.run(0s, 50s, 500ms) == Verdict::taken);
   CHECK(talk.run(50s, 75s, 5s) == Verdict::taken);
   talk.stepped = 1ms;
   CHECK(talk.run(75s, 100s, 5s) == Verdict::taken);
   CHECK(talk.run(100s, 140s, 500ms) == Verdict::slipped);
-  CHECK(talk.at > 109s);  // once a whole window has told what packets take
+  CHECK(talk.at > 109s);  // once a whole window has shown how long packets take
   CHECK(talk.at < 121s);
   double narrowest = 1.0;
   for (int window = 0; window < 12; ++window) {
@@ -222,9 +223,9 @@ TEST_CASE("an interval narrower than packets take, a minute ago, ends a piece") 
   }
   CHECK(narrowest < 1.3e-3);
   const double least = talk.piece.floors().least_width();
-  CHECK(least == about(0.8 * 2e-3, 0.02));  // of what packets take a fifth is allowed for
+  CHECK(least == about(0.8 * 2e-3, 0.02));  // the packets take 2 ms both ways; a fifth is allowed
   CHECK(*talk.piece.amount() == about(least - narrowest, 0.01));
-  CHECK(talk.piece.doubtful_since() == host(0s));  // since when is not known
+  CHECK(talk.piece.doubtful_since() == host(0s));  // it is not known since when
   CHECK(talk.piece.next_begins() == host(talk.at + 500ms + 1ms));
 }
 
@@ -236,9 +237,9 @@ TEST_CASE("a step that leaves the truth inside is a warning, a greater one ends 
     CHECK(talk.run(0s, 100s) == Verdict::taken);
     talk.stepped = by;
     const Verdict verdict = talk.run(100s, 130s);
-    if (std::chrono::abs(by) == 1ms) {  // of a round trip of 6 ms
+    if (std::chrono::abs(by) == 1ms) {  // a small step: the round trip is 6 ms
       CHECK(verdict == Verdict::uneasy);
-      CHECK(*talk.piece.amount() == about(-seconds(by), 0.05));  // the offset's
+      CHECK(*talk.piece.amount() == about(-seconds(by), 0.05));  // the step of the offset
       CHECK(talk.piece.at(node(talk.at))->certainty == Certainty::certified);
     } else {
       CHECK(verdict == Verdict::slipped);
@@ -253,11 +254,11 @@ TEST_CASE("where both floors are seen to move, what came five seconds before is 
   CHECK(talk.run(0s, 101s) == Verdict::taken);
   talk.stepped = 3ms;
   CHECK(talk.run(101s, 130s) == Verdict::slipped);
-  CHECK(talk.at < 113s);  // a second to see it, eight to know the new floors
+  CHECK(talk.at < 113s);  // one second to notice it, eight to know the new floors
   CHECK(*talk.piece.amount() == about(-3e-3, 0.05));
   CHECK(std::chrono::abs(talk.piece.doubtful_since() - host(96s)) < 200ms);
   CHECK(talk.piece.next_begins() >= host(talk.at));
-  // The next piece knows where it is, and certifies nothing by what came before.
+  // The next piece knows its offset, but certifies nothing from earlier packets.
   ClockPiece next = talk.piece.next_piece();
   const auto stamp = next.at(node(talk.at + talk.stepped));
   REQUIRE(stamp);

@@ -37,7 +37,7 @@ Bounds random_bounds(std::mt19937_64& random) {
   return bounds;
 }
 
-/// The witness: a linear programme of two variables by trying each of its corners.
+/// An independent way: solves a linear programme of two variables by trying each of its corners.
 struct Programme {
   std::vector<double> tau_above, above, tau_below, below;
 

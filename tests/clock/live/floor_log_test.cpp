@@ -12,7 +12,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Ten packets a second each way, 1 ms and what is drawn on top; the offset steps at 100 s.
+/// Ten packets a second each way that take 1 ms and a random delay; the offset steps at 100 s.
 struct Told {
   FloorLog log;
   std::optional<double> step;  // the first
@@ -56,7 +56,8 @@ TEST_CASE("an interval may be as narrow as a route that was left, once two windo
   struct Case {
     double left_at, second_ms, least_ms;
   };
-  // Three windows agree on 6 ms; one before saw 2 ms, or two that don't agree, or two that do.
+  // Three windows agree on 6 ms. Before them one window saw 2 ms, or two windows that do not agree,
+  // or two that do.
   for (const auto& [left_at, second_ms, least_ms] :
        {Case{10.0, 4.0, 6.0}, Case{20.0, 1.0, 6.0}, Case{20.0, 0.0, 2.0}}) {
     CAPTURE(left_at);
@@ -90,14 +91,15 @@ TEST_CASE("an interval can't be narrower than the least that three round trips a
   };
   const auto trip = [](double s, double gap) { return FloorWindow{0.0, 0.0, s, gap}; };
   CHECK(least_of({trip(10e-3, 0.0), trip(10e-3, 0.0)}) == 0.0);
-  // Less a fifth of it, …
+  // The width is the round trip minus a fifth, …
   CHECK(least_of({trip(10e-3, 0.0), trip(10e-3, 0.0), trip(10e-3, 0.0)}) == about(8e-3));
-  // … or what schedulers make of floors, 20 us, …
+  // … or minus 20 us, the error that schedulers cause, …
   CHECK(least_of({trip(50e-6, 0.0), trip(50e-6, 0.0), trip(50e-6, 0.0)}) == about(30e-6));
-  // … or twice what the floors may be off, and thrice by how much the three differ.
+  // … or minus twice the floors' error and three times the difference of the three.
   CHECK(least_of({trip(10e-3, 0.5e-3), trip(11e-3, 0.2e-3), trip(10.5e-3, 0.1e-3)}) ==
         about(10e-3 - 2 * 0.5e-3 - 3 * 1e-3));
-  // Three agree within a twentieth, and thrice what floors may be off; two may be too short.
+  // Three must agree within a twentieth plus three times the floors' error. One or two shorter ones
+  // are ignored.
   CHECK(least_of({trip(10e-3, 0.0), trip(10.4e-3, 0.0), trip(10.6e-3, 0.0)}) == 0.0);
   CHECK(least_of({trip(2e-3, 0.0), trip(3e-3, 0.0), trip(10e-3, 0.0), trip(10e-3, 0.0),
                   trip(10e-3, 0.0)}) == about(8e-3));
@@ -105,8 +107,9 @@ TEST_CASE("an interval can't be narrower than the least that three round trips a
                   trip(10e-3, 0.0), trip(10e-3, 0.0)}) == 0.0);
 }
 
-/// The same from 0 to 60 s, and for as long behind a silence; the slope is so much from what is
-/// expected, and 2 s behind the silence, or not, the offset steps.
+/// The step that is found if packets come from 0 to 60 s, and again for 60 s after a silence. The
+/// slope differs by `slope` from the expected one, and the offset steps by `step` 2 s after the
+/// silence.
 std::optional<double> step_over_silence(double silent_s, double slope, double step) {
   std::mt19937_64 random(4);
   std::exponential_distribution<double> delay(1e5);

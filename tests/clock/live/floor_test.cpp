@@ -18,7 +18,7 @@ namespace {
 constexpr double us = 1e-6;
 constexpr FloorLine level{};  // at 0
 
-/// The witness: those that lie at least so far above, one by one.
+/// An independent way: counts the delays that are at least that far above the floor.
 std::uint64_t above(const std::vector<double>& all, double excess) {
   return static_cast<std::uint64_t>(
       std::count_if(all.begin(), all.end(), [excess](double e) { return e >= excess; }));
@@ -50,13 +50,14 @@ TEST_CASE("a density is told by the seven nearest, and not from fewer than two")
   CHECK(density_above(one) == 0.0);
   std::vector<double> ten{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 60 * us, 1.0, 1.0, 1.0};
   CHECK(density_above(ten) == about(6.0 / (60 * us)));
-  // Nearer than a counter can tell: as if the seventh lay a quarter of a microsecond above.
+  // The seven nearest are closer than a counter can resolve, so the seventh counts as a quarter of
+  // a microsecond above.
   std::vector<double> all_there(12, 0.0);
   CHECK(density_above(all_there) == about(6.0 / (0.25 * us)));
 }
 
 TEST_CASE("of random delays the density is right on the average") {
-  // The seventh of a Poisson process of density r lies at a Gamma(7, r), of which 6 / x has the
+  // The seventh point of a Poisson process of density r follows Gamma(7, r). For that 6 / x has the
   // mean r and the deviation r / sqrt(5): 0.0032 r over 20,000.
   const auto seed = fresh_seeds(1).front();
   CAPTURE(seed);
@@ -99,7 +100,7 @@ TEST_CASE("law: counts say of delays above a level, and of their median, within 
 TEST_CASE("half of the delays lie below the median, rounded up to a whole class") {
   ExcessCounts counts;
   for (const double excess : {0.5 * us, 3 * us, 3 * us, 70 * us}) counts.add(excess);
-  CHECK(counts.median() == 4 * us);  // of 2 to 4
+  CHECK(counts.median() == 4 * us);  // upper end of the class from 2 to 4 us
   counts.add(70 * us);
   counts.add(70 * us);
   CHECK(counts.median() == 4 * us);

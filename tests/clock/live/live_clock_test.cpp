@@ -56,7 +56,7 @@ TEST_CASE("nothing is said of a node that was not heard, or of which no reply ca
   clock.push_down(7, node(50ms), host(49ms));
   const auto stamp = clock.host_from_node(7, node(0s));
   REQUIRE(stamp);
-  CHECK(stamp->certainty == Certainty::one_sided);  // one frame is no claim
+  CHECK(stamp->certainty == Certainty::one_sided);  // one frame alone is not believed
 }
 
 TEST_CASE("a new life begins a piece; frames of earlier ones are counted and change nothing") {
@@ -78,13 +78,14 @@ TEST_CASE("one crossing that cannot be is left out, three are a step") {
   clock.push_up(7, node(30s), host(29s));  // a second before it was sent
   auto events = clock.take_events();
   CHECK(count(events, ClockEvent::Kind::violator) == 0);
-  CHECK(count(events, ClockEvent::Kind::host_backwards) == 1);  // which it can't have arrived at
+  CHECK(count(events, ClockEvent::Kind::host_backwards) == 1);  // the frame can't have arrived then
   LiveClock other;
   run(other, 7, 0s, 30s);
   other.push_up(7, node(31s), host(30s + 500ms));
   events = other.take_events();
   CHECK(count(events, ClockEvent::Kind::violator) == 1);
-  REQUIRE(count(events, ClockEvent::Kind::withdrawn) == 1);  // it may have stepped, and step back
+  // The host's clock may have stepped, and may step back.
+  REQUIRE(count(events, ClockEvent::Kind::withdrawn) == 1);
   CHECK(events.back().begin == host(25s + 500ms));
   CHECK(events.back().end == host(30s + 500ms));
   CHECK(other.host_from_node(7, node(31s))->time == before->time);
@@ -139,8 +140,8 @@ TEST_CASE("a clock holds no more than 64 KiB, whatever a node says") {
   const auto held = [] { return ::mallinfo2().uordblks; };
   const auto before = held();
   const auto clock = std::make_unique<LiveClock>();
-  // Delays that fall and rise: each bound is a corner of the hulls, more of them in a moment of the
-  // counter's time than they remember.
+  // Delays that fall and rise, so that each bound is a corner of the hulls, and in a short time of
+  // the counter there are more corners than the hulls remember.
   std::size_t most = 0;
   for (int i = 0; i < 20'000; ++i) {
     const Duration s = 400us * i, delay{(i - 10'000LL) * (i - 10'000LL) / 10};
@@ -224,7 +225,7 @@ TEST_CASE("after a contradiction that a crystal could be the cause of, the next 
   CHECK(stamp->certainty == Certainty::certified);
   CHECK(stamp->assumptions.curvature == most_curvature);
 
-  LiveClock other;  // no crystal is the cause of a second
+  LiveClock other;  // no crystal drifts by a second
   run(other, 7, 0s, 30s);
   for (Duration t = 30s; t < 34s; t += 100ms) other.push_up(7, node(t + 1s), host(t + 1ms));
   const auto events = other.take_events();
@@ -306,7 +307,7 @@ TEST_CASE("without any delay the truth lies at the interval's ends, and never ou
     CHECK(*stamp->latest >= host(t));
     narrowest = std::min(narrowest, *stamp->latest - *stamp->earliest);
   }
-  CHECK(narrowest < 3us);  // so that a microsecond too few would show
+  CHECK(narrowest < 3us);  // small enough that an error of a microsecond would show
   const auto offline = fit_offline_clock(exchanges);
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
     const auto stamp = host_from_node(offline.model, 7, exchanges[i].n_tx, exchanges[i].h_rx);
@@ -319,7 +320,7 @@ TEST_CASE("without any delay the truth lies at the interval's ends, and never ou
 
 TEST_CASE("the first packet that takes no time, of a clock at the greatest rate, is no violator") {
   for (const int ppm : {95, -95}) {
-    for (const bool up : {true, false}) {  // the way on which all packets before took ten
+    for (const bool up : {true, false}) {  // the direction in which all earlier packets took ten
       CAPTURE(ppm);
       CAPTURE(up);
       const auto counted = [ppm](Duration h) {
@@ -360,7 +361,8 @@ TEST_CASE("fault 20 host_backwards: nothing is left of a step, nor certified bef
   clock.push_up(7, node(31s), host(30s + 500ms));  // half a second before it was sent
   clock.push_up(7, node(1s), host(-500s));
   const auto events = clock.take_events();
-  CHECK(count(events, ClockEvent::Kind::withdrawn) == 2);  // the violator's, and up to then
+  // The violator's interval and the time up to then.
+  CHECK(count(events, ClockEvent::Kind::withdrawn) == 2);
   CHECK(count(events, ClockEvent::Kind::host_backwards) == 1);
 
   LiveClock other;

@@ -13,7 +13,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A link of 15 packets a second each way; the floors are alike until they are changed.
+/// A link of 15 packets a second each way; both floors are equal until a test changes them.
 struct Packets {
   explicit Packets(std::uint64_t seed) : random(seed) {}
 
@@ -49,7 +49,7 @@ TEST_CASE("offset and slope are found to what the fastest packets allow") {
     OffsetEstimate estimate;
     packets.run(estimate, 60.0);
     const auto middle = estimate.at(packets.now);
-    // 900 packets each way, 0.25 ms above the floor on average: floors to 0.3 us each.
+    // 900 packets each way, on average 0.25 ms above the floor, give the floors to 0.3 us each.
     CHECK(std::abs(middle->value - packets.x(packets.now)) < 10e-6);
     CHECK(std::abs(middle->slope - 12e-6) < 1e-6);
     CHECK(middle->round_trip == about(2e-3, 0.02));
@@ -66,7 +66,7 @@ TEST_CASE("the offset is carried over a longer and a shorter route, of either wa
     packets.up = 4e-3;
     packets.run(estimate, 60.0);
     CHECK(estimate.changes() == 1);
-    CHECK(std::abs(estimate.last_change()->s - 30.0) < 3.0);  // by a look at three seconds
+    CHECK(std::abs(estimate.last_change()->s - 30.0) < 3.0);  // a look each three seconds finds it
     CHECK(!estimate.last_change()->step);
     CHECK(std::abs(estimate.at(packets.now)->value - packets.x(packets.now)) < 30e-6);
     packets.up = 2e-3;
@@ -78,7 +78,8 @@ TEST_CASE("the offset is carried over a longer and a shorter route, of either wa
 }
 
 TEST_CASE("a step of the counter is told from a route, and followed") {
-  // Of 5000 seeds one was taken for a route, and of five the step was told more than 5 % wrong.
+  // In 5000 seeds one step was taken for a change of route, and five steps were estimated more than
+  // 5 % wrong.
   const auto seeds = fresh_seeds(20);
   int missed = 0;
   for (const auto seed : seeds) {

@@ -20,7 +20,8 @@ namespace {
 constexpr double ms = 1e-3;
 constexpr FloorLine level{};  // the old floor, at 0
 
-/// So many delays of half a millisecond above the old floor, and `later` of its new one.
+/// Counts of `delays` delays half a millisecond above the old floor, and of `later` ones at `least`
+/// above it.
 ExcessCounts counts_of(int delays, int later, double least) {
   ExcessCounts counts;
   for (int i = 0; i < delays; ++i) counts.add(0.5 * ms);
@@ -28,7 +29,7 @@ ExcessCounts counts_of(int delays, int later, double least) {
   return counts;
 }
 
-/// What came, and when a floor was said to have moved.
+/// The bounds that came, when the floor was found to have moved, and when that was noticed, s.
 struct Watched {
   RecentBounds bounds;
   ExcessCounts counts = counts_of(1000, 0, 0.0);
@@ -53,7 +54,7 @@ TEST_CASE("a floor that rose is seen once a second is over, between its bounds a
   REQUIRE(watched.moved);
   CHECK(*watched.moved == about(10.05));
   CHECK(*watched.seen_at >= 11.1);
-  CHECK(*watched.seen_at <= 11.4);  // it looks at each third bound
+  CHECK(*watched.seen_at <= 11.4);  // it looks only at each third bound
 }
 
 TEST_CASE("a floor that fell is seen by the bounds that were held") {
@@ -77,7 +78,7 @@ TEST_CASE("a busy radio, whose delays spread by more than their least one rose, 
 TEST_CASE("half of the first second's delays lie nearer than half of what the least one rose") {
   const auto seen_behind = [](double second_ms) {
     Watched watched;
-    watched.counts = counts_of(0, 1000, 7 * ms);  // of delays that spread by as much
+    watched.counts = counts_of(0, 1000, 7 * ms);  // earlier delays that spread as widely
     for (int i = 0; i < 100; ++i) {
       const std::array excess{10 * ms, second_ms * ms, 17 * ms};
       watched.add(0.05 * i, excess[static_cast<std::size_t>(i) % 3], Standing::above);
@@ -85,7 +86,8 @@ TEST_CASE("half of the first second's delays lie nearer than half of what the le
     return watched.seen_at.value_or(0.0);
   };
   CHECK(seen_behind(14.0) == about(1.0, 0.15));
-  CHECK(seen_behind(16.0) == about(3.0, 0.05));  // than all of it
+  // More than half of it: the next look is at three seconds.
+  CHECK(seen_behind(16.0) == about(3.0, 0.05));
 }
 
 TEST_CASE("one bound near the old floor begins the seconds anew") {
@@ -107,8 +109,9 @@ TEST_CASE("where delays were often as long before it takes three seconds, or nin
     }
     return watched.seen_at.value_or(0.0);
   };
-  // n delays that lie as high as f of a thousand did: as likely as ((f + 1) / 1002)^n. At e^-25
-  // that are 4 (f = 0), 37 (500) and 154 (850); of these 20 come in a second.
+  // n delays as high as a share f of a thousand earlier ones have the likelihood ((f + 1) /
+  // 1002)^n. That is e^-25 for 4 delays (f = 0), 37 (f = 500) and 154 (f = 850); 20 of them come in
+  // a second.
   CHECK(seen_behind(1000, 0) == about(1.0, 0.15));
   CHECK(seen_behind(500, 500) == about(3.0, 0.05));
   CHECK(seen_behind(150, 850) == about(9.0, 0.02));
@@ -120,7 +123,7 @@ TEST_CASE("who is heard seldom is watched for three seconds or nine, and for six
     for (int i = 1; i <= 30; ++i) watched.add(step * i, 5 * ms, Standing::above);
     return watched.seen_at ? std::llround(*watched.seen_at / step) : 0;
   };
-  // The eleventh is a second behind the first; each third is looked at.
+  // The eleventh bound comes a second after the first, and each third bound is looked at.
   CHECK(bounds_until_seen(0.1) == 12);
   CHECK(bounds_until_seen(0.4) == 9);
   CHECK(bounds_until_seen(1.0) == 12);
@@ -129,18 +132,21 @@ TEST_CASE("who is heard seldom is watched for three seconds or nine, and for six
 
 TEST_CASE("a floor is said to have moved where the old one has such delays once in e^25") {
   const auto moves = [](int points, const ExcessCounts& counts) {
-    RecentBounds bounds;  // so many in the last second, and some before: each third is looked at
+    // `points` bounds in the last second, and some before: each third is looked at.
+    RecentBounds bounds;
     for (int i = 0; i < 6 - points % 3; ++i) bounds.add({0.03 * i, 5 * ms}, Standing::above);
     for (int i = 1; i <= points; ++i) bounds.add({0.2 + 1.0 / points * i, 5 * ms}, Standing::above);
     return bounds.moved(level, counts).has_value();
   };
-  // Six that lie above all n of before: as likely as 1 / (n + 2)^6, which is e^-25 at n = 62.5.
+  // Six bounds above all n earlier ones have the likelihood 1 / (n + 2)^6, which is e^-25 at n =
+  // 62.5.
   CHECK(!moves(6, counts_of(62, 6, 5 * ms)));
   CHECK(moves(6, counts_of(63, 6, 5 * ms)));
-  CHECK(!moves(5, counts_of(1000, 5, 5 * ms)));  // six it takes
-  CHECK(!moves(12, counts_of(19, 12, 5 * ms)));  // of so few nothing is known
+  CHECK(!moves(5, counts_of(1000, 5, 5 * ms)));  // six bounds are needed
+  CHECK(!moves(12, counts_of(19, 12, 5 * ms)));  // 20 earlier delays are needed
   CHECK(moves(12, counts_of(20, 12, 5 * ms)));
-  // n, where 100 of 1000 before lay as high: as likely as (101 / 1002)^n, e^-25 at n = 10.9.
+  // n bounds, where 100 of 1000 earlier ones lay as high: likelihood (101 / 1002)^n, e^-25 at n =
+  // 10.9.
   for (const auto& [points, sure] : {std::pair{9, false}, {12, true}}) {
     CAPTURE(points);
     ExcessCounts counts = counts_of(900, points, 5 * ms);
@@ -189,7 +195,7 @@ TEST_CASE("it is silent around a moment where bounds are two and a half usual st
     CHECK(bounds.silent_around(5.05) == (gap > 2.5));
     CHECK(!bounds.silent_around(4.95));
     CHECK(!bounds.silent_around(6.0));
-    CHECK(bounds.silent_around(-1.0));  // before the first nothing is known
+    CHECK(bounds.silent_around(-1.0));  // nothing is known before the first bound
   }
 }
 

@@ -19,12 +19,12 @@ constexpr double ms = 1e-3, ppm = 1e-6;
 
 /// Packets of a clock that runs 12 ppm off, over floors of 1 and 2 ms.
 struct Packets {
-  std::vector<OffsetBound> above, below;  // those from below mirrored
+  std::vector<OffsetBound> above, below;  // bounds from below are mirrored
 
   static double x(double s) { return 0.25 + 12 * ppm * s; }
 };
 
-/// So many each way, a second and above their floors.
+/// Packets each way: how many a second, and their density above the floors, 1/s.
 struct Density {
   double per_s, per_delay_s;
 };
@@ -51,7 +51,7 @@ Route route_of(const Packets& packets, const Middle& middle, SlopeBelief prior) 
   return route;
 }
 
-/// The witness: the least of all bounds on x(t), one by one, under the usual curvature.
+/// An independent way: the least of all bounds on x(t), one by one, under the usual curvature.
 double least(const std::vector<OffsetBound>& bounds, double t, double slope) {
   double bound = 1e9;
   for (const OffsetBound& b : bounds) {
@@ -61,8 +61,8 @@ double least(const std::vector<OffsetBound>& bounds, double t, double slope) {
   return bound;
 }
 
-/// The witness: every slope within eight deviations of the prior's mean and 100 ppm, weighed by
-/// exp(density * gap) and by how likely it was before.
+/// An independent way: every slope within eight deviations of the prior's mean and within 100 ppm,
+/// weighed by exp(density * gap) and by its prior likelihood.
 struct Weighed {
   double value = 0.0, slope = 0.0, gap = 0.0, value_deviation = 0.0, slope_deviation = 0.0;
 };
@@ -103,7 +103,7 @@ Weighed weighed(const Packets& packets, double t, double density, SlopeBelief pr
   return w;
 }
 
-/// How far off the witness, in its deviations: of each seed.
+/// The differences from the independent results, in deviations, for each seed.
 struct Misses {
   std::vector<double> slope, slope_deviation, value, deviation, round_trip, elsewhere;
 };
@@ -122,7 +122,8 @@ void compare(Misses& misses, std::uint64_t seed) {
   const double down = 1.0 / route.floor(Side::below).density(guess.floor(Side::below));
   CHECK(middle.above_density == about(1.0 / up));
   CHECK(middle.below_density == about(1.0 / down));
-  const double density = 2.0 / (up + down);  // of the mean height below the lowest points
+  // 1 / the mean height of up and down above the lowest points.
+  const double density = 2.0 / (up + down);
   const Weighed witness = weighed(packets, end, density, prior);
   const double deviation = std::hypot(witness.value_deviation, std::hypot(up, down) / 2.0);
   const double round_trip = witness.gap - up - down;
@@ -184,7 +185,8 @@ TEST_CASE("between two floors that are alike the middle lies in the middle, by s
 }
 
 TEST_CASE("law: value, slope and round trip are the mean over all slopes by how likely they are") {
-  // It looks at 24 slopes: of 6000 seeds half were within 0.02 deviations, one 0.7 off.
+  // Route tries 24 slopes. In 6000 seeds half of the results were within 0.02 deviations, and one
+  // was 0.7 off.
   const auto seeds = fresh_seeds(41);
   Misses misses;
   for (const auto seed : seeds) {
@@ -199,9 +201,9 @@ TEST_CASE("law: value, slope and round trip are the mean over all slopes by how 
 }
 
 TEST_CASE("of random delays the round trip between the floors is right on the average") {
-  // The lowest of a hundred, of density 4000, lie 5 us above both floors together; that is taken
-  // off, and a sixth more (1 / (6 / x) of floor_test.cpp). Over 400 seeds the mean is known to
-  // 0.15.
+  // The lowest of a hundred packets, of density 4000, lie 5 us above both floors together. Route
+  // subtracts that and a sixth more (see 6 / x in floor_test.cpp). Over 400 seeds the mean is known
+  // to 0.15 us.
   const auto seeds = fresh_seeds(400);
   double off = 0.0;
   for (const auto seed : seeds) {
@@ -210,7 +212,7 @@ TEST_CASE("of random delays the round trip between the floors is right on the av
     const double end = packets.below.back().s;
     const Middle guess{
         .t = end, .value = Packets::x(end) - 0.5 * ms, .slope = 12 * ppm, .round_trip = 3 * ms};
-    Route route = route_of(packets, guess, {12 * ppm, 0.01 * ppm});  // a rate that is known
+    Route route = route_of(packets, guess, {12 * ppm, 0.01 * ppm});  // the rate is known
     off += (route.middle(end, guess).round_trip - 3 * ms) / static_cast<double>(seeds.size());
   }
   CHECK(std::abs(off) < (seeds.size() > 1 ? 2.5e-6 : 50e-6));
@@ -226,7 +228,8 @@ TEST_CASE("where floors are not known a slope is as likely as it was before") {
   CHECK(middle.value == about(2 * ms));
   CHECK(middle.round_trip == about(2 * ms));
   CHECK(middle.slope == about(20 * ppm));
-  // A normal law up to two deviations, exp(2 - 2 |off|) beyond: of 1.09 deviations up to five.
+  // A normal law up to two deviations, exp(2 - 2 |off|) beyond. Its deviation is 1.09 if it is cut
+  // at five.
   double sum = 0.0, squares = 0.0;
   for (double off = -5.0; off <= 5.0; off += 1e-4) {
     const double far = std::abs(off);

@@ -12,7 +12,7 @@ constexpr double rate = 100e-6;
 
 constexpr HostTime host(Duration d) { return HostTime{1000s + d}; }
 
-/// A frame that came a millisecond before it can have been sent.
+/// A frame that arrives a millisecond before it can have been sent.
 Violator early(Duration heard, std::uint64_t number = 0) {
   return {{Side::above, NodeTime{heard}, host(heard), host(heard)},
           {seconds(heard), -1e-3, Side::above},
@@ -26,17 +26,19 @@ TEST_CASE("two bounds contradict each other where not even the greatest rate lea
   const Bound above{10.0, 0.0, Side::above};
   CHECK(contradict(above, {10.0, 6e-6, Side::below}, rate));
   CHECK(contradict({10.0, 6e-6, Side::below}, above, rate));
-  CHECK(!contradict(above, {10.0, 4e-6, Side::below}, rate));  // within what is tolerated
+  CHECK(!contradict(above, {10.0, 4e-6, Side::below}, rate));  // within the tolerance
   CHECK(contradict(above, {12.0, 2.1e-4, Side::below}, rate));
   CHECK(!contradict(above, {12.0, 1.9e-4, Side::below}, rate));
   CHECK(!contradict(above, {8.0, 1.9e-4, Side::below}, rate));
-  CHECK(!contradict(above, {10.0, 1.0, Side::above}, rate));  // of one side nothing is said
+  // Two bounds of one side never contradict each other.
+  CHECK(!contradict(above, {10.0, 1.0, Side::above}, rate));
 }
 
 TEST_CASE("a violator is dropped when a later crossing excludes it, and by no other") {
   Violators violators;
   violators.add(early(10s));
-  violators.drop_excluded_by({10.9, 0.0, Side::below}, rate);  // may have been sent before
+  // The frame may have been sent before.
+  violators.drop_excluded_by({10.9, 0.0, Side::below}, rate);
   violators.drop_excluded_by({12.0, -2e-3, Side::below}, rate);
   violators.drop_excluded_by({12.0, 0.0, Side::above}, rate);
   CHECK(violators.pending().size() == 1);
@@ -50,7 +52,7 @@ TEST_CASE("a violator that nothing speaks against for five seconds is overdue") 
   violators.add(early(10s, 100));
   CHECK(!violators.overdue(host(15s), 1000));
   CHECK(violators.overdue(host(15s + 1ns), 1000));
-  CHECK(!violators.overdue(host(60s), 108));  // the node says little
+  CHECK(!violators.overdue(host(60s), 108));  // the node seldom sends
   CHECK(violators.overdue(host(60s), 109));
 }
 

@@ -49,7 +49,7 @@ TEST_CASE("over the frame's number only the earliest arrivals count, lost frames
   REQUIRE(stamps);
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
     const double sent = 1.00001 / 15.0 * static_cast<double>(exchanges[i].frame);
-    if (exchanges[i].frame > 290) continue;  // behind the last early one
+    if (exchanges[i].frame > 290) continue;  // after the last early frame
     CHECK(std::abs(seconds((*stamps)[i] - at(0s)) - sent) < 20e-6);
   }
 }

@@ -90,7 +90,8 @@ TEST_CASE("behind a restart stamps go on rising, by as long as the host counted,
     CHECK(std::abs(told[i].error.count()) <= told[i].half_width->count());
   }
   CHECK(clock.moved.front() == 0s);
-  // A sample half a second older than the first frame of the second life is told by that life.
+  // A sample half a second older than the first frame of the second life gets its stamp from that
+  // life's clock.
   const std::size_t begin = first_of(node, 2);
   const Exchange& first = node.exchanges[begin];
   const auto older = stamp_of(clock, 2, first.n_tx - 500ms, first.h_rx);
@@ -105,7 +106,7 @@ TEST_CASE("a life that was never answered is told by its arrivals, and claims no
   const auto told = tell(device_clock(node.exchanges, utc_minus_host), node);
   for (std::size_t i = first_of(node, 2); i < told.size(); ++i) {
     CHECK(!told[i].half_width);
-    CHECK(told[i].error > 1ms);  // late by the fastest way, 1.5 ms
+    CHECK(told[i].error > 1ms);  // late by the fastest delay, 1.5 ms
     CHECK(told[i].error < 2ms);
   }
   REQUIRE(told.front().half_width);
@@ -116,7 +117,8 @@ TEST_CASE("of lives that were never heard there are no stamps, and of nothing no
   node.live(1, HostTime{50s}, 10s, 12s, true);
   const DeviceClock clock = device_clock(node.exchanges, utc_minus_host);
   CHECK(!stamp_of(clock, 2, NodeTime{1s}, HostTime{61s}));
-  CHECK(stamp_of(clock, 1, NodeTime{9s}, HostTime{59s}) == Time{9s});  // held until it was let in
+  // Held until the node was accepted.
+  CHECK(stamp_of(clock, 1, NodeTime{9s}, HostTime{59s}) == Time{9s});
   const DeviceClock none = device_clock({}, utc_minus_host);
   CHECK(!stamp_of(none, 1, NodeTime{1s}, HostTime{61s}));
   CHECK(take_time(none.time, Time{5s}) == Time{5s});

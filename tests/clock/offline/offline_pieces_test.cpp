@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which exchange belongs to which piece of a recording, and what of it.
+// How the exchanges of a recording are divided into pieces.
 #include "kinalign/clock/offline/offline_clock.h"
 #include "kinalign/clock/offline/offline_walk.h"
 
@@ -60,10 +60,12 @@ TEST_CASE("what the first frame behind a step echoes is of before it") {
     talk.offset -= by;
     talk.run(1030s, 1060s);
     const OfflineClock offline = fit_offline_clock(talk.exchanges);
-    REQUIRE(offline.model.pieces.size() == 3);  // before, while it settles, and from then on
+    // Before the step, while the clock settles, and after that.
+    REQUIRE(offline.model.pieces.size() == 3);
     for (const ClockPieceModel& piece : offline.model.pieces) {
       CAPTURE(piece.first.time_since_epoch().count());
-      const bool settles = piece.last - piece.first < 2s;  // it is in doubt, and likely
+      // The stamp is in doubt, but a likeliest one is given.
+      const bool settles = piece.last - piece.first < 2s;
       CHECK(piece.certified != settles);
       const Duration truth = piece.first < HostTime{1030s} ? 995s : 995s - by;
       for (const ClockKnot& knot : piece.knots) {
@@ -95,7 +97,7 @@ TEST_CASE("five seconds before and behind a crossing that can't be are in doubt,
 TEST_CASE("a step that the end cuts short is in doubt since the last that speaks for the counter") {
   Talk talk;
   talk.run(1000s, 1200s);
-  talk.delay = 20ms;  // slow: they speak for neither
+  talk.delay = 20ms;  // slow packets, which support neither piece
   talk.run(1200s, 1210s);
   talk.delay = 1ms;
   talk.offset -= 4ms;
@@ -114,7 +116,7 @@ TEST_CASE("a piece that never settles is in doubt, be it for a reboot or the end
     Talk talk;
     talk.delay = 0ms;
     talk.run(1000s, 1010s);
-    talk.offset -= 4us;  // less than makes a violator, and nothing is left
+    talk.offset -= 4us;  // less than a violation, but no interval is left
     talk.run(1010s, 1010s + 800ms);
     const HostTime last = talk.exchanges.back().h_rx;
     if (reboots) {
@@ -166,7 +168,8 @@ TEST_CASE("fault 20 host_backwards: offline the moments that were twice are in d
       CHECK(*stamp->latest >= e.h_rx - 1ms);
     }
     const int twice = back == 3600s ? 0 : 2 * static_cast<int>(back / 100ms);
-    CHECK(certified > 1100 - twice);  // the second piece settles, too: its first echo is of before
+    // The second piece settles, too: its first echo is of before the step.
+    CHECK(certified > 1100 - twice);
   }
 }
 
@@ -180,5 +183,6 @@ TEST_CASE("offline, too, a reading of before a step is not certified behind it")
     return host_from_node(offline.model, 1, n, host(1040s + 1ms))->certainty;
   };
   CHECK(certainty(NodeTime{1040s - talk.offset}) == Certainty::certified);
-  CHECK(certainty(NodeTime{1028s - 995s}) == Certainty::doubtful);  // of then, sent now
+  // A counter value of the first piece, sent in the second.
+  CHECK(certainty(NodeTime{1028s - 995s}) == Certainty::doubtful);
 }

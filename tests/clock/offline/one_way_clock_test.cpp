@@ -35,7 +35,7 @@ NodeTime counter(Duration since_start) {
   return NodeTime{7s + Duration{std::llround(1.00004 * static_cast<double>(since_start.count()))}};
 }
 
-/// How far a stamp is behind the truth, at its worst and at its best.
+/// Smallest and largest lateness of the stamps against the truth.
 struct Lateness {
   Duration least = 1h, most = -1h;
 };

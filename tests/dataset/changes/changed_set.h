@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A data set of three takes with raw files, whose takes are bytes that nobody reads, and files that
-// stop after some calls, as a killed program does.
+// A data set of three takes with raw files. The takes are arbitrary bytes that are never read. The
+// files stop after some calls, like those of a killed program.
 #pragma once
 
 #include "tests/folder.h"
@@ -16,7 +16,7 @@
 
 namespace kinalign {
 
-/// After `last` calls that change something none changes anything any more.
+/// After `last` changing calls every further one fails to change anything.
 class StoppingFiles final : public PosixFiles {
  public:
   explicit StoppingFiles(int last) : left_(last) {}
@@ -72,7 +72,7 @@ class ChangedSet {
     return out;
   }
 
-  /// Another process would have other names for unfinished files (OutputFile).
+  /// A later process would use other names for unfinished files (OutputFile), so these are removed.
   void drop_unfinished_files() const {
     for (const auto& [path, bytes] : contents()) {
       if (path.ends_with(".part")) std::filesystem::remove(folder / path);

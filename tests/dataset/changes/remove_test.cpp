@@ -117,7 +117,8 @@ namespace {
 
 const std::string unpacked = "sourcedata/s05-0c951d0c/";
 
-/// A set whose takes of 01 are made of an unpacked corpus; one file belongs to both.
+/// A data set whose takes of person 01 are made from an unpacked corpus; one file belongs to both
+/// takes.
 void put_unpacked(const ChangedSet& set) {
   for (const char* file : {"Vicon/a.bvh", "Vicon/b.bvh", "both.bvh", "readme.txt"}) {
     set.folder.write(unpacked + file, "raw");
@@ -153,7 +154,7 @@ TEST_CASE("raw files of an unpacked corpus go with the last take that is made of
   REQUIRE(removed(files, set.folder.path(), {"sub-01"}, true));
   CHECK(!std::filesystem::exists(set.folder / (unpacked + "Vicon")));
   CHECK(!set.contents().contains(unpacked + "both.bvh"));
-  CHECK(set.contents().contains(unpacked + "readme.txt"));  // no take is made of it
+  CHECK(set.contents().contains(unpacked + "readme.txt"));  // no take is made from it
 }
 
 TEST_CASE("folders of raw files go once they are empty") {

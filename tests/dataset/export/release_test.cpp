@@ -81,7 +81,7 @@ TEST_CASE("release: free text about a person is a warning, a height of one's own
   Catalogue one = plain();
   one.subjects[0].consent = "released, form 12";
   one.subjects[1].height_cm = 203.0;
-  // Then each of the two heights is one person's.
+  // Then each of the two heights belongs to one person.
   CHECK(severities(one) ==
         std::vector<Severity>{Severity::warning, Severity::note, Severity::note});
 }

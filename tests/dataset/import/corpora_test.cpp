@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The corpora that are known, by the files that they are known by.
+// The known corpora, recognised by their files.
 #include "kinalign/dataset/import/corpora.h"
 
 #include <doctest/doctest.h>
@@ -8,7 +8,7 @@ using namespace kinalign;
 
 namespace {
 
-/// The kind that files of these names are of, or the error.
+/// The kind of corpus that has files of these names, or the error.
 std::string kind_of(const std::vector<std::string>& names, const std::string& from = "") {
   std::vector<SourceFile> sources;
   for (const std::string& name : names) sources.push_back({"/nowhere/" + name, name});

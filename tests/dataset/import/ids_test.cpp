@@ -21,7 +21,8 @@ TEST_CASE("two words never get one id, and a word always gets the same one") {
   Ids ids({});
   CHECK(ids.of("slow walk") == "slowWalk");
   CHECK(ids.of("slow_walk") == "slowWalkx2");
-  CHECK(ids.of("SLOWWALK") == "SLOWWALKx3");  // some file systems know no small letters
+  // Some file systems do not tell capital from small letters.
+  CHECK(ids.of("SLOWWALK") == "SLOWWALKx3");
   CHECK(ids.of("slow walk") == "slowWalk");
   CHECK(ids.changed().size() == 3);
 }

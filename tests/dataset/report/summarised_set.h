@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A data set whose takes are there as summaries alone: what lists and pages need of them.
+// A data set in which only the takes' summaries exist: lists and pages need no more.
 #pragma once
 
 #include "tests/folder.h"

@@ -19,7 +19,7 @@ class PagedSet : public SummarisedSet {
     for (const std::string& name : three) put(*parse_take_name(name), summary(0, 0, 0.01));
   }
 
-  /// Makes pages of a few bytes; `faulty` fails.
+  /// Makes pages of a few bytes; making the page of the take `faulty` fails.
   Result<PagesMade> make(const std::string& software = "kinalign 1",
                          const std::string& faulty = "") {
     made.clear();

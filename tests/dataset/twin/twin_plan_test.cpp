@@ -32,7 +32,7 @@ TEST_CASE("the cells of the paper add up to its tables 6 and 7, and to all its f
   for (std::size_t i = 0; i < paper_classes.size(); ++i) {
     CHECK(counts.classes[i] == paper_classes[i].frames);
   }
-  // The paper's sums below both tables.
+  // The sums that the paper prints below both tables.
   CHECK(counts.sum() == ModalityFrames{2'961'581, 2'931'805, 1'078'182});
   CHECK(counts.choices[1] == ModalityFrames{29'776, 0, 29'776});
   CHECK(counts.choices[0].imu == 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of a window against the take's. The file itself is read by NumPy in
+// Rows of a window compared with those of the take. NumPy reads the file itself in
 // tests/apps/dataset_windows_check.py.
 #include "tests/folder.h"
 #include "tests/formats/take/take_samples.h"
@@ -13,8 +13,8 @@ using namespace kinalign;
 
 namespace {
 
-/// A take on the disk whose rotations are of length 1 and whose kinect's cells that are not valid
-/// hold zeros.
+/// A take on the disk. Its rotations have length 1, and cells of the Kinect that are not valid hold
+/// zeros.
 struct Stored {
   explicit Stored(std::size_t frames) : take(sample_take(frames)) {
     for (std::size_t i = 0; i < frames; ++i) {
@@ -126,7 +126,7 @@ TEST_CASE("a take's reader gives any window, and refuses one that reaches beyond
   CHECK(reader.read(50, 0, slab));
   CHECK(to_string(reader.read(31, 20, slab).error()) ==
         stored.path + ": expected rows 31 to 51, found 50 rows");
-  // next() goes on where it was.
+  // next() continues where it was.
   REQUIRE(*reader.next(slab));
   CHECK(slab.first == 0);
 }

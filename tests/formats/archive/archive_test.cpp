@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names that an archive may have. What real archives with hostile names do:
-// dataset_import_check.py.
+// Names that an archive may have. dataset_import_check.py tests real archives with malicious names.
 #include "kinalign/formats/archive/archive.h"
 
 #include "kinalign/formats/tar/tar_write.h"

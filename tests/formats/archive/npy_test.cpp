@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers as numpy writes them; arrays of numpy itself: tests/data/fuzz/npy_fuzz.
+// Headers as NumPy writes them; arrays of NumPy itself: tests/data/fuzz/npy_fuzz.
 #include "kinalign/formats/archive/npy.h"
 
 #include "tests/folder.h"

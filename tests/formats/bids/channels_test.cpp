@@ -9,7 +9,8 @@ using namespace kinalign;
 
 namespace {
 
-/// Where ours puts what the file says points up, and whether the hand changes.
+/// The direction in our axes of the axis that points up in the file, and the handedness of the
+/// file's axes: 1 right-handed, -1 left-handed.
 struct Turned {
   Vec3 up;
   int hand = 0;

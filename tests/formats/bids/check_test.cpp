@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies of a good data set, each broken in one place, and what is said of them.
+// Copies of a good data set, each broken in one place, and the findings about them.
 #include "tests/formats/bids/data_set.h"
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"
@@ -34,7 +34,7 @@ const std::string suit = bids_path(bids_system("suit"), ""),
                   imu = bids_path(bids_system("imu"), ""), scans = bids_scans_path(bids_system(""));
 std::string of_suit(const char* ending) { return bids_path(bids_system("suit"), ending); }
 
-/// What is found, without what is found in good data: severity and text.
+/// The findings in a broken data set, without those in the good one: severity and text.
 std::vector<std::string> found_when(const std::function<void(DataSet&)>& broken) {
   DataSet set = good_set();
   broken(set);
@@ -47,7 +47,7 @@ std::vector<std::string> found_when(const std::function<void(DataSet&)>& broken)
 
 using Texts = std::vector<std::string>;
 
-/// The first `from` in a file becomes `to`.
+/// Replaces the first `from` in a file by `to`.
 void put(DataSet& set, const std::string& path, const std::string& from, const std::string& to) {
   std::string& text = set.at(path);
   const auto at = text.find(from);
@@ -319,7 +319,8 @@ TEST_CASE("a published data set without signals has the findings that it should 
   for (const Finding& finding : check_set(set)) {
     if (finding.severity == Severity::error) errors.push_back(text_of(finding));
   }
-  // scans.tsv names EEG files and participants that are not in the copy; rows are a line end alone
+  // scans.tsv names EEG files and participants that are not in the copy, and rows of samples are
+  // empty lines there.
   std::size_t missing = 0, empty = 0;
   for (const std::string& error : errors) {
     missing += error.find("expected a file that is there") != std::string::npos ? 1 : 0;

@@ -17,7 +17,7 @@
 
 namespace kinalign {
 
-/// path -> text
+/// path -> text of the file
 using DataSet = std::map<std::string, std::string>;
 
 constexpr std::int64_t bids_start_ns = 1'790'000'000'000'000'123;
@@ -68,7 +68,7 @@ inline ImuStream bids_nodes(const ImuContent& content, std::size_t samples,
   return out;
 }
 
-/// Puts the four files of a system into the set; the onset for scans.tsv.
+/// Puts the four files of a tracking system into the set; gives the onset for scans.tsv.
 template <class Frames>
 Time put_system(const BidsEntities& entities, const BidsSource& source, const Frames& frames,
                 double rate_hz, DataSet& set) {
@@ -106,7 +106,7 @@ inline BidsEntities bids_system(const std::string& system) {
   return {"03", "", "Walk", system, "", ""};
 }
 
-/// Without findings.
+/// A data set without findings.
 inline DataSet bids_data_set(const BidsStreams& streams) {
   DataSet set;
   const Time suit =

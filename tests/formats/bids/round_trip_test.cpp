@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was written as BIDS-Motion is read again, and npm's bids-validator takes it.
+// BIDS-Motion files that were written are read again, and npm's bids-validator accepts them.
 #include "tests/formats/bids/data_set.h"
 #include "tests/formats/reading.h"
 #include "tests/seeds.h"
@@ -57,8 +57,8 @@ double largest_angle(const std::vector<double>& a, const std::vector<double>& b,
   return most;
 }
 
-/// Of a node_modules folder with bids-validator 1.15.0, which is too large (700 MB) for ./dev test
-/// to install: npm install --prefix build/npm bids-validator@1.15.0 --ignore-scripts
+/// The path of a node_modules folder with bids-validator 1.15.0, which is too large (700 MB)
+/// for ./dev test to install: npm install --prefix build/npm bids-validator@1.15.0 --ignore-scripts
 std::string node_modules() {
   const char* given = std::getenv("KINALIGN_NODE_MODULES");
   return given != nullptr ? given : KINALIGN_SOURCE_DIR "/build/npm/node_modules";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BVH files of random skeletons, written in all the ways that writers have, and what they mean by
-// a plain computation of its own.
+// BVH files of random skeletons, written in all the ways that real writers use, and their meaning
+// by an independent plain computation.
 #pragma once
 
 #include "kinalign/formats/bvh/bvh.h"
@@ -18,7 +18,7 @@ struct AnyBvh {
   BvhHierarchy hierarchy;
   std::vector<double> values;  // [T,C]
   std::size_t frames = 0;
-  std::string text;  // of these
+  std::string text;  // the file's text, made of the fields above
 };
 
 namespace any_bvh {
@@ -29,17 +29,17 @@ inline std::string number(double value, int decimals) {
   return {room.data(), static_cast<std::size_t>(size)};
 }
 
-/// A number of `decimals` digits behind the point, as it will be read.
+/// A random number with `decimals` digits after the point, exactly as it will be read.
 inline double any_number(double most, int decimals, std::mt19937_64& random) {
   std::uniform_real_distribution<double> range(-most, most);
   return std::strtod(number(range(random), decimals).c_str(), nullptr);
 }
 
-/// Two to nine joints, too few to be judged as a person; each has any channels in any order, the
-/// first at least one.
+/// Two to nine joints, too few to be judged as a person. Each has random channels in random order,
+/// the first joint at least one.
 inline BvhHierarchy any_hierarchy(std::mt19937_64& random) {
   BvhHierarchy out;
-  std::vector<int> open;  // the innermost joints, which a next one may hang on
+  std::vector<int> open;  // the innermost joints, to which a next joint may be attached
   const std::size_t joints = 2 + random() % 8;
   for (std::size_t j = 0; j < joints; ++j) {
     while (!open.empty() && random() % 3 == 0) open.pop_back();
@@ -62,7 +62,7 @@ inline BvhHierarchy any_hierarchy(std::mt19937_64& random) {
   return out;
 }
 
-/// A word as this writer or that has it.
+/// A word in the letter case that some writer uses.
 inline std::string any_case(std::string word, std::mt19937_64& random) {
   if (random() % 4 != 0) return word;
   for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -126,7 +126,7 @@ class Writer {
     }
   }
 
-  /// A frame a line, or a few values a line from the first line on.
+  /// Writes one frame a line, or a few values a line.
   void rows(int decimals) {
     const std::size_t size = bvh_.hierarchy.row_size();
     const std::size_t wrapped = random_() % 2 == 0 || size == 1 ? size : 1 + random_() % (size - 1);
@@ -158,7 +158,7 @@ inline AnyBvh make_any_bvh(std::mt19937_64& random) {
   return out;
 }
 
-/// Where every joint is in frame `t`, m, by matrices joint after joint, [J].
+/// Positions of all joints in frame `t`, m, [J]: computed with one matrix for each joint.
 inline std::vector<Vec3> places_of(const AnyBvh& bvh, std::size_t t) {
   const BvhHierarchy& h = bvh.hierarchy;
   std::vector<Vec3> places;

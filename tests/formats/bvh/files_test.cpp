@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every BVH of ../shared/data against positions computed in NumPy, there and here.
+// Every BVH of ../shared/data, compared with positions that NumPy computed, stored there or
+// computed here.
 #include "tests/shared_data.h"
 #include "tests/witness.h"
 
@@ -40,7 +41,7 @@ std::map<std::string, std::vector<Place>> reference(const std::string& path) {
   return places;
 }
 
-/// How many files there were to compare.
+/// Compares the files, and gives their number.
 std::size_t compare(const std::string& folder, const std::string& reference_file) {
   std::size_t files = 0;
   for (const auto& [name, places] : reference(reference_file)) {
@@ -59,7 +60,7 @@ std::size_t compare(const std::string& folder, const std::string& reference_file
       const Vec3 at = vec3(std::span<const double>(global), place.frame * joints + place.joint);
       worst = std::max(worst, (at - Vec3(place.x, place.y, place.z)).norm());
     }
-    // The reference has 6 decimals of the file's unit; the bar is 1e-5 m, 1e-3 of a centimetre.
+    // The reference has 6 decimals of the file's unit; the limit is 1e-5 m, 1e-3 of a centimetre.
     CHECK(worst < 2e-6);
     CHECK(places.size() >= joints);
     ++files;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything above the rows: what is refused and where, and the head as a recording keeps it.
+// The part of a BVH above the rows: where errors are found, and the head as a recording keeps it.
 #include "kinalign/formats/bvh/head.h"
 
 #include "tests/folder.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of BVH over random skeletons: any channels of any joint, several roots, wrapped rows, any
-// letters and blanks.
+// Rules for BVH files of random skeletons: any channels of any joint, several roots, wrapped rows,
+// any letter case and blanks.
 #include "tests/folder.h"
 #include "tests/formats/bvh/any_bvh.h"
 #include "tests/formats/bvh/bvh_text.h"
@@ -29,7 +29,7 @@ std::vector<std::string> texts_of(const Findings& findings) {
   return out;
 }
 
-/// What reading all of a file says of it: an error or findings, and its frames.
+/// The outcome of reading a whole file: an error or findings, and the number of frames.
 struct Said {
   std::vector<std::string> words;
   std::uint64_t frames = 0;

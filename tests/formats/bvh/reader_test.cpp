@@ -41,7 +41,8 @@ TEST_CASE("an incomplete last frame is dropped with a finding") {
   REQUIRE(file);
   CHECK(file->clip.frames.size() == 1);
   REQUIRE(file->findings.size() == 3);
-  CHECK(file->findings[0].severity == Severity::note);  // the 0 may have been 0.5
+  // The 0 may have been 0.5 before the file was cut.
+  CHECK(file->findings[0].severity == Severity::note);
   CHECK(to_string(file->findings[0].what) ==
         "walk.bvh:15: expected a line end behind the last value, found the end of the file");
   CHECK(to_string(file->findings[1].what) ==
@@ -291,7 +292,7 @@ TEST_CASE("a clip made elsewhere gets channels that give it back") {
   }
   const BvhFile made = bvh_from_clip(clip, 0.01);
   CHECK(made.hierarchy.channels[1].size() == 3);
-  CHECK(made.hierarchy.channels[2].size() == 6);  // it moves
+  CHECK(made.hierarchy.channels[2].size() == 6);  // the joint moves
   const auto back = read(written(made));
   REQUIRE(back);
   CHECK(back->values == made.values);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nobody finds in a BVH: its unit and its up axis.
+// The unit and the up axis, which a BVH does not state.
 #include "tests/folder.h"
 
 #include "kinalign/formats/bvh/bvh.h"
@@ -12,8 +12,8 @@ using namespace kinalign;
 
 namespace {
 
-/// A person in the file's unit whose hips stand `hip` above the feet along `up` ("y" or "z"): 11
-/// joints, the trunk 0.7 of a hip height.
+/// A person in the file's unit whose hips are `hip` above the feet along `up` ("y" or "z"): 11
+/// joints, the trunk has 0.7 of the hips' height.
 std::string person(double hip, const std::string& up) {
   const auto offset = [&](double across, double along) {
     return up == "y" ? fmt::format("OFFSET {} {} 0\n", across, along)
@@ -76,7 +76,8 @@ TEST_CASE("hips that are not 0.6 to 1.3 m high are a finding that proposes the u
 
 TEST_CASE("a rest pose that lies is a finding that proposes the other axis, either way") {
   const Findings z_as_y = judged(person(90, "z"), 0.01, false);
-  REQUIRE(z_as_y.size() == 1);  // and no unit: it is judged along the axis the person stands on
+  // And no unit: the unit is judged along the axis on which the person stands.
+  REQUIRE(z_as_y.size() == 1);
   CHECK(to_string(z_as_y[0].what) ==
         "p.bvh: expected a rest pose that stands along y, found one that lies along z");
   CHECK(z_as_y[0].repair == "--up z (up = \"z\" in a manifest) if the person stood");
@@ -103,7 +104,7 @@ struct Opened {
   Findings findings;
 };
 
-/// A person of 90 units, at (1, 2, 3) in the only frame, 10 ms; as `options` say.
+/// A file of a person of 90 units, at (1, 2, 3) in its only frame of 10 ms, opened with `options`.
 Opened opened(StreamOptions options, const std::string& up = "y") {
   const FreshFolder folder;
   options.name = "mocap";
@@ -165,7 +166,7 @@ TEST_CASE("two clicks that are not as far apart as the frames say are a finding"
     return opened(clicked).findings;
   };
   CHECK(findings_of(10'000'000).empty());  // one frame of 10 ms
-  CHECK(findings_of(29'000'000).empty());  // less than two steps off: within a click's doubt
+  CHECK(findings_of(29'000'000).empty());  // less than two steps off: within the error of a click
   CHECK(findings_of(-10'000'000).empty());
   const Findings late = findings_of(1'010'000'000);
   REQUIRE(late.size() == 1);
@@ -173,7 +174,8 @@ TEST_CASE("two clicks that are not as far apart as the frames say are a finding"
   CHECK(late[0].what.expected == "1.010 s between the clicks");
   CHECK(late[0].what.found == "1 frames of 0.01 s, 0.010 s");
   CHECK(findings_of(-20'000'000).size() == 1);
-  clicked.click_latency_ms = 500.0;  // of both clicks: the time between them stays
+  // The latency of both clicks, so the time between them stays the same.
+  clicked.click_latency_ms = 500.0;
   CHECK(findings_of(10'000'000).empty());
 }
 

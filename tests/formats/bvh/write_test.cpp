@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written, block by block, from clips and from file to file.
+// The text that is written, block by block, from clips and from file to file.
 #include "tests/folder.h"
 
 #include "kinalign/formats/bvh/bvh.h"
@@ -20,7 +20,7 @@ const std::string head =
 struct Copied {
   std::string text, error;
   Findings findings;
-  std::size_t largest = 0;  // piece
+  std::size_t largest = 0;  // size of a block
 };
 
 Copied copied(const std::string& path) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// C3D files of the writer in tests/witness/c3d_files.py, which knows nothing of ours; and damaged
-// ones.
+// C3D files of the independent writer in tests/witness/c3d_files.py; and damaged ones.
 #include "tests/folder.h"
 #include "tests/formats/any_points.h"
 #include "tests/formats/reading.h"
@@ -23,7 +22,7 @@ Read<PointReader> read_c3d(std::string_view bytes, const StreamOptions& options 
   return read_all(make_c3d_reader(options, "walk.c3d"), bytes);
 }
 
-/// The witness' files.
+/// The files that the script c3d_files.py writes.
 struct Files {
   FreshFolder folder;
   Files() { REQUIRE(run_witness("c3d_files.py", folder.path()) == 0); }
@@ -42,7 +41,7 @@ struct Files {
   }
 };
 
-/// A small whole file of ours: two points, three frames at 100 Hz.
+/// A small whole file that our writer made: two points, three frames at 100 Hz.
 std::string small_file() {
   std::string bytes;
   auto writer =
@@ -62,12 +61,13 @@ std::string small_file() {
   return bytes;
 }
 
-/// `bytes` in the place of others at `at`.
+/// The file with its bytes from `at` on replaced by `bytes`.
 std::string patched(std::string file, std::size_t at, std::string_view bytes) {
   return file.replace(at, bytes.size(), bytes);
 }
 
-/// Where the values of a parameter with `dimensions` of them begin.
+/// The offset in the file at which the values of a parameter begin. `dimensions`: the number of
+/// its dimensions.
 std::size_t values_of(const std::string& file, const std::string& name,
                       std::size_t dimensions = 0) {
   const std::size_t at = file.find(name);
@@ -171,7 +171,7 @@ TEST_CASE("what Y_SCREEN names points up") {
     CHECK(read.findings.size() == (std::string(up) == "-Q" ? 1 : 0));
     return std::vector<double>(read.rows.positions.begin() + 9, read.rows.positions.begin() + 12);
   };
-  // the file holds (4, -6, 5)
+  // The file holds (4, -6, 5).
   CHECK(first("+Z") == std::vector<double>{4, 5, 6});
   CHECK(first("+Y") == std::vector<double>{4, -6, 5});
   CHECK(first("+X") == std::vector<double>{6, 4, 5});

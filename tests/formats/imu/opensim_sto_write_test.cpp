@@ -68,7 +68,7 @@ TEST_CASE("a .sto is written with rate and type, z up, four nan where a sample i
   ImuStream stream{{"pelvis_imu", "torso_imu"}, {.orientation = true}, {}};
   stream.samples.stamps = {utc_time(1'000'000'000), utc_time(1'025'000'000)};
   const double half = std::sqrt(0.5);
-  // y up: a sensor whose z points up; then one that lies as our space does
+  // Space y up: a sensor whose z points up, then one that lies as our space does.
   stream.samples.orientation = {half, -half, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, half, -half, 0, 0};
   stream.samples.valid = {1, 1, 0, 1};
   CHECK(sto_of(stream, 40.0, utc_time(1'000'000'000)).value() ==

@@ -21,7 +21,7 @@ Read<ImuReader> read_xsens(std::string_view text, const StreamOptions& options =
 
 const std::string rate = "// Update Rate: 100.0Hz\n";
 
-/// A file whose rows have these counters.
+/// A file whose rows have these packet counters.
 Read<ImuReader> counters(const std::vector<std::uint64_t>& values) {
   std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z\n";
   for (const std::uint64_t value : values) text += std::to_string(value) + ",1,2,3\n";
@@ -30,14 +30,14 @@ Read<ImuReader> counters(const std::vector<std::uint64_t>& values) {
 
 using Packets = std::vector<std::int64_t>;
 
-/// Which packet's stamp each row has.
+/// The packet from which each row has its stamp.
 Packets packets(const Read<ImuReader>& read) {
   Packets out;
   for (const Time stamp : read.rows.stamps) out.push_back(to_ns(stamp) / 10'000'000);
   return out;
 }
 
-/// Where the sensor's axes point in our world.
+/// The direction of a sensor's axis in our world.
 Vec3 turned_axis(const Read<ImuReader>& read, const Vec3& axis) {
   return quat(read.rows.orientation, 0) * axis;
 }
@@ -165,7 +165,7 @@ TEST_CASE("the node is the user's name, else the device's id, else the file's na
 TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets are gaps") {
   CHECK(packets(counters({65535, 0, 1})) == Packets{65535, 65536, 65537});
   CHECK(packets(counters({65530, 3, 64000})) == Packets{65530, 65539, 64000 + 65536});
-  CHECK(packets(counters({70000, 70002})) == Packets{70000, 70002});  // of 32 bits
+  CHECK(packets(counters({70000, 70002})) == Packets{70000, 70002});  // packet counters of 32 bits
   const auto lost = counters({10, 11, 15, 16, 20});
   CHECK(packets(lost) == Packets{10, 11, 15, 16, 20});
   REQUIRE(lost.findings.size() == 1);
@@ -178,9 +178,10 @@ TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets
 TEST_CASE("a packet that was overtaken steps back, and nothing behind it moves") {
   const auto overtaken = counters({10, 11, 13, 12, 14});
   CHECK(packets(overtaken) == Packets{10, 11, 13, 12, 14});
-  CHECK(overtaken.findings.empty());  // none was lost
+  CHECK(overtaken.findings.empty());  // no packet was lost
   CHECK(packets(counters({65534, 0, 65535, 1})) == Packets{65534, 65536, 65535, 65537});
-  CHECK(packets(counters({2, 3, 0, 1})) == Packets{2, 3, 0, 1});  // began anew: says so as it falls
+  // The counter began anew, and the finding says so.
+  CHECK(packets(counters({2, 3, 0, 1})) == Packets{2, 3, 0, 1});
   const auto anew = counters({40000, 40001, 0, 1});
   CHECK(packets(anew) == Packets{40000, 40001, 65536, 65537});
   REQUIRE(anew.findings.size() == 2);
@@ -211,7 +212,8 @@ TEST_CASE("a first counter that is wild moves nothing behind it") {
 
 TEST_CASE("a packet is overtaken by up to a thousand, and a loss is believed that goes on") {
   CHECK(packets(counters({4999, 5000, 4000, 5001}))[2] == 4000);
-  CHECK(packets(counters({4999, 5000, 3999, 4000}))[2] == 3999 + 65536);  // fell: began anew
+  // The counter fell, so it began anew.
+  CHECK(packets(counters({4999, 5000, 3999, 4000}))[2] == 3999 + 65536);
 }
 
 TEST_CASE("a counter of 32 bits that falls began anew, whatever its lower 16 bits say") {
@@ -249,7 +251,7 @@ TEST_CASE("of several orientations the quaternion is taken, then the matrix, the
   const std::string angles = "0,0,90", matrix = "-1,0,0,0,-1,0,0,0,1", none3 = ",,",
                     none9 = ",,,,,,,,", none4 = ",,,";
   StreamOptions options;
-  options.up = "y";  // leaves the world as it stands
+  options.up = "y";  // the option leaves the world's axes unchanged
   const auto x_goes = [&](const std::string& cells) {
     const auto read = read_xsens(rate + names + "1," + cells + "\n", options);
     REQUIRE(read.error == "");

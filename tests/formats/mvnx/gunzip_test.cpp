@@ -62,7 +62,8 @@ TEST_CASE("a cut archive is not complete, a damaged one is an error") {
   CHECK(cut.error == "");
   CHECK(!cut.complete);
   std::string damaged = packed;
-  damaged[damaged.size() - 6] = static_cast<char>(damaged[damaged.size() - 6] + 1);  // checksum
+  // The checksum is damaged.
+  damaged[damaged.size() - 6] = static_cast<char>(damaged[damaged.size() - 6] + 1);
   CHECK(unpacked(damaged, 10).error == "expected a whole gzip archive, found damaged bytes");
   CHECK(unpacked(packed + "rest", 1000).error ==
         "expected a whole gzip archive, found damaged bytes");

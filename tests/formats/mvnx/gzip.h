@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A text packed by zlib, for tests of what unpacks it.
+// Packs a text by zlib, for tests of the unpacking.
 #pragma once
 
 #include <zlib.h>

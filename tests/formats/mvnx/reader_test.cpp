@@ -53,7 +53,7 @@ TEST_CASE("segments become joints: y up, offsets by the joints' points, tips as 
 }
 
 TEST_CASE("a segment that turns about the file's z turns about our y, its child with it") {
-  // 90 degrees about z: x becomes y
+  // 90 degrees about z: x becomes y.
   const auto read = read_mvnx(
       mvnx_of(frame("index=\"0\" type=\"normal\"",
                     element("orientation", "0.70710678 0 0 0.70710678 0.70710678 0 0 0.70710678") +
@@ -217,7 +217,7 @@ TEST_CASE("a second subject is told and not read") {
 }
 
 TEST_CASE("sensors become nodes: free acceleration is turned into the sensor's space") {
-  // the second sensor is turned by 90 degrees about z: x of the space is its -y
+  // The second sensor is turned by 90 degrees about z: x of the space is its -y.
   const std::string sensors = element("sensorOrientation", "1 0 0 0 0.70710678 0 0 0.70710678") +
                               element("sensorFreeAcceleration", "1 2 3 1 0 0");
   const auto read = read_sensors(mvnx_of(frame("index=\"0\" type=\"normal\"", sensors) +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One motion that MVN exported twice: the MVNX holds global positions, the BVH angles and bones.
+// Each is checked by the other.
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"
 
@@ -17,7 +18,7 @@ using namespace kinalign;
 
 namespace {
 
-/// MVN's segment of each joint of its BVH.
+/// MVN's segment for each joint of its BVH.
 const std::map<std::string, std::string> segment_of{{"Hips", "Pelvis"},
                                                     {"Chest", "L5"},
                                                     {"Chest2", "L3"},
@@ -78,7 +79,7 @@ TEST_CASE("MVNX and BVH of one motion agree: trunk, head and legs to 0.1 mm, arm
       const Vec3 a = vec3(global, 23 * t + k) - vec3(global, 23 * t);
       const Vec3 b =
           vec3(global_bvh, theirs.joints() * t + j) - vec3(global_bvh, theirs.joints() * t);
-      // The BVH looks along z, the MVNX along x.
+      // The BVH faces along z, the MVNX along x.
       const double off = (a - Vec3(b.z(), b.y(), -b.x())).norm();
       (is_arm(segment) ? arms : body) = std::max(is_arm(segment) ? arms : body, off);
     }
@@ -102,7 +103,7 @@ TEST_CASE("the rest pose of a real MVNX is its identity pose, and the person sta
     return places[static_cast<std::size_t>(
         std::find(s.joint_names.begin(), s.joint_names.end(), name) - s.joint_names.begin())];
   };
-  // the file's frame of type identity: x, y, z become x, z, -y
+  // The file's frame of type identity: x, y, z become x, z, -y.
   CHECK((at("Pelvis") - Vec3(0, 0.865664, 0)).norm() < 2e-6);
   CHECK((at("L5") - Vec3(-0.000220, 0.980624, 0)).norm() < 2e-6);
   CHECK((at("Head") - Vec3(0.000488, 1.449109, 0)).norm() < 2e-6);

@@ -91,7 +91,7 @@ TEST_CASE("a real TRC is written again with the same values" * doctest::skip(!sh
   const PointStream stream{first.header.joint_names, first.rows};
   const auto again = read_again(
       trc_of(stream, {stream.joint_names, 250.0, first.rows.size(), "again", {}}).value());
-  REQUIRE(again.findings.size() == 1);  // its times are not those of its DataRate
+  REQUIRE(again.findings.size() == 1);  // the file's times do not fit its DataRate
   CHECK(text_of(again.findings[0]) ==
         "written.trc:3: expected times of DataRate 250, found 25.04 a second");
   CHECK(again.rows.stamps == first.rows.stamps);

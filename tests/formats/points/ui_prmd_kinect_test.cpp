@@ -15,7 +15,7 @@ using namespace kinalign;
 
 namespace {
 
-/// 66 numbers: `first` three, the rest as they come.
+/// A row of 66 numbers: `first` holds three of them, all others are `rest`.
 std::string row(const std::string& first, const std::string& rest) {
   std::string text = first;
   for (int i = 3; i < 66; ++i) text += "," + rest;
@@ -39,8 +39,8 @@ Read<PointReader> read_pair(const std::string& offsets, std::string angles) {
 }  // namespace
 
 TEST_CASE("offsets and angles become places") {
-  // The root turned by 90 degrees about z: every offset (1, 1, 1) cm becomes (-1, 1, 1). Then all
-  // is turned by half a turn about y: the files' z points to the camera.
+  // The root is turned by 90 degrees about z, so every offset (1, 1, 1) cm becomes (-1, 1, 1). Then
+  // all is turned by half a turn about y, because the files' z points to the camera.
   const auto read = read_pair(row("10,20,-300", "1"), row("0,0,90", "0"));
   CHECK(read.error == "");
   REQUIRE(read.rows.size() == 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each layout that the program carries, told by a file that has just its columns.
+// Each built-in layout is recognised by a file that has exactly its columns.
 #include "tests/formats/reading.h"
 
 #include "kinalign/formats/table/table_reader.h"
@@ -25,7 +25,7 @@ std::string named(std::string pattern, const std::string& member) {
   return pattern;
 }
 
-/// The layout's columns by name; of one without names as many empty ones.
+/// The names of the layout's columns; for a layout without names the same number of empty ones.
 std::vector<std::string> columns_of(const TableLayout& layout) {
   if (!layout.header) return std::vector<std::string>(layout.columns);
   std::vector<std::string> out;
@@ -38,7 +38,8 @@ std::vector<std::string> columns_of(const TableLayout& layout) {
   return out;
 }
 
-/// A file of `rows` rows of ones, which stand for any number and state; stamps lie after 1970.
+/// A file of `rows` rows of ones, which are valid for any number and state; its stamps are after
+/// 1970.
 std::string file_of(const TableLayout& layout, int rows) {
   std::string text;
   for (std::size_t i = 0; i < layout.skip_lines; ++i) text += "a line of the recorder's\n";
@@ -99,7 +100,7 @@ TEST_CASE("every format and layout can be asked for by its name, and nothing els
   for (const std::string_view name : format_names()) {
     CAPTURE(name);
     if (name == "ui_prmd_kinect" || name == "bids")
-      continue;  // by its file's name: formats_test.cpp
+      continue;  // recognised by the file's name: see formats_test.cpp
     CHECK(found("", std::string(name)).name == name);
   }
   const std::string message = found("", "kinekt").error;
@@ -122,6 +123,6 @@ TEST_CASE("every layout's joints have names that differ, and all states") {
     for (const auto& values : {layout.state.missing, layout.state.inferred, layout.state.tracked}) {
       CHECK(!values.empty());
     }
-    CHECK((layout.time.has_value() || layout.rate_hz > 0.0));  // rows can be placed in time
+    CHECK((layout.time.has_value() || layout.rate_hz > 0.0));  // each row has a time
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The declared layouts on the recordings that they are for; numbers are those of the recordings'
-// own description.
+// The built-in layouts on the recordings for which they were made; the expected numbers are those
+// of the recordings' own description.
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"
 
@@ -65,7 +65,7 @@ TEST_CASE("the Laban recorder's Kinect files are read" * doctest::skip(!shared_d
     CHECK(read.header.joint_names.size() == 25);
     CHECK(std::abs(share(read.rows, Tracking::inferred) - expected.inferred) < 0.0005);
     CHECK(std::abs(static_cast<double>(survey(read.rows.stamps).median_step_ns) - 33.0e6) <
-          0.33e6);  // the survey knows it to 1 percent
+          0.33e6);  // the survey knows the rate to 1 percent
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a layout can't say, key by key; and which columns a file must have for one.
+// Values that a layout may not have, key by key; and the columns that a file must have for a
+// layout.
 #include "tests/formats/reading.h"
 
 #include "kinalign/formats/table/table_reader.h"
@@ -21,7 +22,7 @@ std::string fault_of(const std::string& toml) {
 
 const std::string joints = "[joints]\nnames = ['A']\nfields = ['x', 'y', 'z']\n";
 
-/// Lines of keys in front of a sound layout of points; the keys begin on line 2.
+/// Checks keys in front of a sound layout of points; the keys begin on line 2.
 void check_keys(const Refused& refused) {
   for (const auto& [keys, message] : refused) {
     CAPTURE(keys);

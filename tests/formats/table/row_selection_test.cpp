@@ -87,5 +87,5 @@ TEST_CASE("two bodies in one stream are a finding that proposes a selection") {
   StreamOptions options;
   options.select = {{"id", "2"}};
   CHECK(read_point(layout, text, options).findings.empty());
-  CHECK(read_point(layout, "x,y,z\n1,0,0\n", {}).findings.empty());  // no such column
+  CHECK(read_point(layout, "x,y,z\n1,0,0\n", {}).findings.empty());  // there is no such column
 }

@@ -121,7 +121,7 @@ TEST_CASE("an incomplete last line is dropped with a finding") {
   CHECK(read.findings[0].meaning == "the last line is incomplete and was dropped");
   const auto unended = read_point(one_point, "1,2,3\n4,5,6");
   CHECK(unended.rows.size() == 2);
-  REQUIRE(unended.findings.size() == 1);  // the 6 may have been 6.5
+  REQUIRE(unended.findings.size() == 1);  // the 6 may have been 6.5 before the file was cut
   CHECK(unended.findings[0].severity == Severity::note);
   CHECK(text_of(unended.findings[0]) ==
         "p.csv:2: expected a line end behind the last value, found the end of the file");
@@ -235,7 +235,7 @@ fields = { qw="w", qx="x", qy="y", qz="z", ax="ax", ay="ay", az="az", gx="gx", g
   REQUIRE(read.rows.size() == 2);
   CHECK(read.rows.valid == std::vector<std::uint8_t>{1, 0});
   const Quat q = quat(read.rows.orientation, 0);
-  CHECK((q * Vec3(0, 0, 1) - Vec3(0, 1, 0)).norm() < 1e-15);  // the file's up is ours
+  CHECK((q * Vec3(0, 0, 1) - Vec3(0, 1, 0)).norm() < 1e-15);  // the file's up axis is ours
   CHECK(read.rows.acceleration == std::vector<double>{0, 0, 9.80665, 0, 0, 0});
   CHECK(read.rows.angular_velocity[0] == doctest::Approx(std::numbers::pi));
   CHECK(read.rows.orientation[4] == 0.0);
@@ -318,10 +318,11 @@ TEST_CASE("a column that a user's own layout names and the file lacks is noted")
   CHECK(noted(make_point_table_reader(points, own, "k.csv")) ==
         "k.csv: expected a column a_status, as layout mine says, found none of that name; every "
         "joint that has a place counts as tracked");
-  const std::string theirs = "t,a_x,a_y,a_z\n1,1,2,3\n2,1,2,3\n";  // a built-in one: states or none
+  // Names of a built-in layout, with or without states.
+  const std::string theirs = "t,a_x,a_y,a_z\n1,1,2,3\n2,1,2,3\n";
   CHECK(read_all(make_point_table_reader(points, {}, "k.csv"), theirs).findings.empty());
   const auto built_in = read_all(make_point_table_reader(points, {}, "k.csv"), text).findings;
-  REQUIRE(built_in.size() == 1);  // unless under another name
+  REQUIRE(built_in.size() == 1);  // unless it has another name
   CHECK(built_in[0].repair == "call it so, if it is one of the 3 columns that are not read");
   const TableLayout nodes = layout_of(
       "name = \"mine\"\nkind = \"imu\"\n[time]\ncolumn = \"t\"\n[nodes]\nnames = [\"w\"]\n"

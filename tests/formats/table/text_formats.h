@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small sound file of every text format, for laws that hold for all of them.
+// A small sound file of every text format, for rules that hold for all of them.
 #pragma once
 
 #include "tests/formats/reading.h"
@@ -25,7 +25,7 @@ namespace kinalign {
 /// Sizes of the pieces that a text is fed in, one after the other.
 using PieceSize = std::function<std::size_t()>;
 
-/// What reading gave, in words and bytes that can be compared.
+/// The result of reading a file, in words and bytes that can be compared.
 struct Outcome {
   std::string error;                  // empty: none
   std::vector<std::string> findings;  // their texts
@@ -34,14 +34,14 @@ struct Outcome {
 };
 
 struct TextFormat {
-  std::string file;  // how its names in messages begin
+  std::string file;  // the beginning of the file's names in messages
   std::string text;
   std::function<Outcome(std::string_view text, const PieceSize& piece)> read;
 };
 
 namespace text_formats {
 
-/// Rows of arrays that share their stamps, and whether they are what a reader promises.
+/// Collects the arrays of rows, and checks that they have the properties that readers promise.
 class Rows {
  public:
   explicit Rows(const std::vector<Time>& stamps) : bytes_(stamps.size()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for every reader of text: where a file is cut into pieces changes nothing, and what is
-// broken is read or refused, with the file's name, never worse.
+// Rules for every reader of text: cutting a file into pieces changes nothing, and a broken file is
+// read or refused with the file's name, never with a crash.
 #include "tests/formats/table/text_formats.h"
 #include "tests/seeds.h"
 
@@ -13,7 +13,8 @@ using namespace kinalign;
 
 namespace {
 
-/// An error names a file of the format's; rows are what a reader promises.
+/// Checks that an error names a file of the format, and that rows have the properties that readers
+/// promise.
 void check_ordinary(const TextFormat& format, const Outcome& read) {
   CHECK(read.sound);
   if (!read.error.empty()) CHECK(read.error.starts_with(format.file));
@@ -92,7 +93,7 @@ TEST_CASE("cut short at any byte a file keeps its whole rows and says what is mi
       const Outcome cut = read_whole(format, std::string_view(format.text).substr(0, size));
       check_ordinary(format, cut);
       if (!cut.error.empty()) continue;
-      // Of the last row the last number may be only the beginning of the true one.
+      // The last number of the last row may be only the beginning of the true one.
       REQUIRE(cut.rows.size() <= whole.rows.size());
       const std::size_t sure = cut.rows.empty() ? 0 : cut.rows.size() - 1;
       CHECK(std::equal(cut.rows.begin(), cut.rows.begin() + static_cast<std::ptrdiff_t>(sure),

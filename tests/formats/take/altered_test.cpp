@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take that another program has touched: what was altered is said in one line, before anything of
-// it is taken for true.
+// A take that another program has changed: the reader names the change in one line before it uses
+// any of the data.
 #include "tests/folder.h"
 #include "tests/formats/take/take_samples.h"
 #include "tests/witness.h"
@@ -16,8 +16,8 @@ using namespace kinalign;
 namespace {
 
 struct Altered {
-  std::string name;     // of tests/witness/take_altered.py
-  std::string message;  // behind the file's name
+  std::string name;     // name of a change in tests/witness/take_altered.py
+  std::string message;  // the message after the file's name
 };
 
 const std::string one_piece =

@@ -20,7 +20,7 @@ const Error blame{"take.h5", 0, "a take that HDF5 can read", ""};
 
 std::string outcome(const GuardLimits& limits, const std::function<Result<std::string>()>& work) {
   const auto result = run_guarded(limits, blame, work);
-  // No child is left behind, dead or alive.
+  // No child process is left, running or dead.
   CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);
   return result ? *result : to_string(result.error());
 }
@@ -104,7 +104,8 @@ TEST_CASE("a child that wants too much memory is an error" * doctest::skip(sanit
 
 TEST_CASE("a child that sends what no child of ours sends is ended, though it would go on") {
   const std::function<Result<std::string>()> babble = []() -> Result<std::string> {
-    for (int pipe = 3; pipe < 1024; ++pipe) {  // ours is a pipe that no other program inherits
+    // The pipe to us is one that no other program inherits.
+    for (int pipe = 3; pipe < 1024; ++pipe) {
       struct stat facts {};
       if (::fstat(pipe, &facts) != 0 || !S_ISFIFO(facts.st_mode)) continue;
       if ((::fcntl(pipe, F_GETFD) & FD_CLOEXEC) == 0) continue;

@@ -47,7 +47,7 @@ std::string contents(const TakeSlab& slab) {
   return out;
 }
 
-/// Reads everything; an error or nothing.
+/// Reads everything, and gives an error if there is one.
 Result<std::string> read_through(const std::string& path) {
   PosixFiles files;
   const Take take = KA_TRY(read_take(files, path));
@@ -149,7 +149,7 @@ TEST_CASE("a take can be written in slabs of any size") {
 TEST_CASE("the same take gives the same bytes, also a second later") {
   const FreshFolder folder;
   write_or_fail(folder / "a.h5", sample_take(50));
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 counts seconds
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 stores times in seconds
   write_or_fail(folder / "b.h5", sample_take(50));
   CHECK(folder.read("a.h5") == folder.read("b.h5"));
 }
@@ -181,7 +181,8 @@ TEST_CASE("whichever file call fails, no take is left and the error names it") {
     const auto done = write(files, folder / "take.h5", take);
     went_through = !files.failed();
     if (done) {
-      // What may fail: only the sync of the folder, after the take has its name.
+      // The only call that may fail without an error here is the sync of the folder, after the take
+      // has its name.
       CHECK(read_through(folder / "take.h5"));
       continue;
     }
@@ -262,7 +263,7 @@ TEST_CASE("a take whose skeleton is not finite is refused") {
 
 namespace {
 
-/// Reads each damaged copy in a child; whatever comes back is a take or an error.
+/// Reads each damaged copy in a child; the result must be a take or an error.
 void read_damaged(const FreshFolder& folder, const std::vector<std::string>& copies) {
   int errors = 0;
   int crashes = 0;

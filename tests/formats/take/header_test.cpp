@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a take's streams may be called, and what each holds, for every file that carries one.
+// Allowed names of a take's streams, and their arrays, for every file format that holds takes.
 #include "kinalign/formats/take/take_layout.h"
 
 #include <doctest/doctest.h>

@@ -28,7 +28,7 @@ Converted converted(const std::string& path) {
   return out;
 }
 
-/// Two joints; the second moves. Row i is valid where `valid[i]`; steps of `steps` ns.
+/// Two joints, of which the second moves. Row i is valid if `valid[i]` is set; steps of `steps` ns.
 Take take_of(const std::vector<std::uint8_t>& valid, const std::vector<std::int64_t>& steps) {
   Take take;
   take.header.frames = valid.size();

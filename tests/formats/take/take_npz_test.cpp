@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// NPZ of takes, and of any arrays in any pieces, as numpy reads them.
+// NPZ files of takes, and of random arrays written in random pieces, as NumPy reads them.
 #include "kinalign/formats/take/take_npz.h"
 
 #include "tests/faulty_files.h"
@@ -25,7 +25,8 @@ Result<void> write(FileSystem& files, const std::string& path, const Take& take,
   return writer.finish();
 }
 
-/// Leaves holes for pieces of 64 KiB, which are zeros here: gigabytes without a disk.
+/// Leaves holes in place of pieces of 64 KiB, which are all zeros here: gigabytes without disk
+/// space.
 class SparseFiles final : public PosixFiles {
  public:
   ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
@@ -38,7 +39,7 @@ class SparseFiles final : public PosixFiles {
   int sync(int) override { return 0; }
 };
 
-/// The first stream alone, as `convert` writes a BVH.
+/// Only the first stream, as `convert` writes a BVH.
 Take clip_alone(std::size_t frames) {
   Take take = sample_take(frames);
   take.header.groups.resize(1);
@@ -71,7 +72,8 @@ Given any_arrays(std::mt19937_64& random) {
   return out;
 }
 
-/// Writes them a piece of any array at a time, and lists them for the witness.
+/// Writes one piece of a random array at a time, and lists the arrays for the script of
+/// tests/witness.
 void write_arrays(const Given& given, const FreshFolder& folder, const std::string& name,
                   std::mt19937_64& random) {
   PosixFiles files;
@@ -114,7 +116,7 @@ TEST_CASE("numpy opens a take and a clip alone") {
 TEST_CASE("an NPZ beyond 4 GB opens too") {
   const FreshFolder folder;
   SparseFiles files;
-  const std::uint64_t rows = 65'537;  // of 64 KiB
+  const std::uint64_t rows = 65'537;  // rows of 64 KiB each
   auto writer = NpzWriter::create(
       files, folder / "large.npz", Overwrite::no,
       {npz_numbers("a", Stored::uint8, {rows, 65'536}), npz_numbers("b", Stored::int64, {2})});

@@ -20,8 +20,8 @@ std::string refusal(ShardWriter& shard, std::string_view key,
 
 }  // namespace
 
-// That WebDataset's own grouping finds the samples is in tar_write_test.cpp:
-// tests/witness/tar_read.py.
+// tar_write_test.cpp with tests/witness/tar_read.py tests that WebDataset's own grouping finds the
+// samples.
 
 TEST_CASE("the same samples give the same bytes") { CHECK(twenty_samples() == twenty_samples()); }
 

@@ -24,7 +24,7 @@ inline unsigned long checksum(std::string_view bytes) {
   return crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
 }
 
-/// What tests/witness/tar_read.py expects in shard.tar.
+/// The samples that tests/witness/tar_read.py expects in shard.tar.
 inline std::string twenty_samples() {
   std::string bytes;
   ShardWriter shard(into(bytes));

@@ -13,7 +13,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Every 5 s from `first` on: offset + slope * time.
+/// Clock offsets every 5 s from `first` on: offset + slope * time.
 std::vector<XdfClockOffset> line(double first, std::size_t count, double offset, double slope) {
   std::vector<XdfClockOffset> offsets;
   for (std::size_t k = 0; k < count; ++k) {
@@ -50,7 +50,7 @@ TEST_CASE("xdf clock: no offset moves nothing, one moves all alike") {
 TEST_CASE("xdf clock: outliers do not bend the line, and its residual tells of them") {
   auto offsets = line(0.0, 60, 0.5, 10e-6);
   offsets[10].offset += 0.3;
-  offsets[40].offset -= 5.0;  // out and back again: no reset
+  offsets[40].offset -= 5.0;  // the offset leaves and comes back: no reset
   const auto lines = fit_xdf_clock(offsets);
   REQUIRE(lines.size() == 1);
   CHECK(corrected_xdf_stamp(lines, 150.0) == doctest::Approx(150.5 + 10e-6 * 150.0).epsilon(1e-6));
@@ -59,13 +59,13 @@ TEST_CASE("xdf clock: outliers do not bend the line, and its residual tells of t
 }
 
 TEST_CASE("xdf clock: a reset begins a line of its own") {
-  // The sender restarts: its clock begins at 0 and the offset leaps by what it had shown.
+  // The sender restarts: its clock begins at 0, and the offset leaps by the clock's earlier value.
   const auto restarted = joined(line(1000.0, 20, 1.0, 0.0), line(0.0, 20, 1101.0, 0.0));
   auto lines = fit_xdf_clock(restarted);
   REQUIRE(lines.size() == 2);
   CHECK(corrected_xdf_stamp(lines, 1050.0) == doctest::Approx(1051.0));
   CHECK(corrected_xdf_stamp(lines, 50.0) == doctest::Approx(1151.0));
-  CHECK(corrected_xdf_stamp(lines, 400.0) == doctest::Approx(1501.0));  // nearer to the second
+  CHECK(corrected_xdf_stamp(lines, 400.0) == doctest::Approx(1501.0));  // nearer to the second line
   // The clock was set ahead by 60 s.
   lines = fit_xdf_clock(joined(line(0.0, 20, 1.0, 0.0), line(160.0, 20, -59.0, 0.0)));
   REQUIRE(lines.size() == 2);
@@ -107,7 +107,8 @@ TEST_CASE("xdf clock: the line is SciPy's by the Huber loss above 0.1 ms") {
     REQUIRE(lines.size() == 1);
     for (const double stamp : {50'000.0, 50'200.0, 50'400.0}) {
       const double theirs = found.at("line").at(0) + found.at("line").at(1) * (stamp - 50'000.0);
-      // SciPy stops at 1e-12 of its own loss, which is flat: a microsecond is far below 0.1 ms.
+      // SciPy stops at a change of 1e-12 of its own loss, which is flat there: a microsecond is far
+      // below the limit of 0.1 ms.
       CHECK(std::abs(corrected_xdf_stamp(lines, stamp) - stamp - theirs) < 1e-6);
     }
   }

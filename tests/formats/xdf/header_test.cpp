@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The XML of stream headers; xdf_test.cpp has what the headers say.
+// Parsing the XML of stream headers; xdf_test.cpp tests the contents of headers.
 #include "kinalign/formats/xdf/header.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// XDF files as libxdf reads them: an independent reader, which keeps floats.
+// XDF files compared with libxdf, an independent reader, which keeps floats.
 #include "tests/folder.h"
 #include "tests/formats/xdf/xdf_cases.h"
 #include "tests/seeds.h"
@@ -22,7 +22,7 @@ constexpr const char* libxdf = "";
 
 bool has_libxdf() { return *libxdf != '\0'; }
 
-/// Of each stream the rows: stamp, values.
+/// The rows that libxdf reads, [stream][row]: a stamp, then the values.
 std::vector<std::vector<std::vector<double>>> by_libxdf(const std::string& bytes) {
   const FreshFolder folder;
   const std::string path = folder.write("file.xdf", bytes);
@@ -40,7 +40,7 @@ std::vector<std::vector<std::vector<double>>> by_libxdf(const std::string& bytes
     std::vector<double> row;
     for (const char* at = line.c_str(); *at != '\0'; at = end) {
       row.push_back(std::strtod(at, &end));
-      if (end == at) break;  // a line of its own words
+      if (end == at) break;  // a line of words
     }
     if (!streams.empty() && row.size() > 1) streams.back().push_back(row);
   }

@@ -66,7 +66,7 @@ TEST_CASE("of an XDF's stream it is counted what is no number, no time or goes b
 TEST_CASE("an XDF's clock offsets go to their stream, a line for each run of its clock") {
   std::string bytes = xdf_begin + xdf_header(1, "int16", 1) + xdf_header(2, "int16", 1);
   for (int k = 0; k < 20; ++k) bytes += xdf_offset(1, 5.0 * k, 0.25);
-  for (int k = 0; k < 20; ++k) bytes += xdf_offset(1, 5.0 * k, 40.0);  // it began anew
+  for (int k = 0; k < 20; ++k) bytes += xdf_offset(1, 5.0 * k, 40.0);  // the clock began anew
   const XdfSurvey survey = surveyed(bytes);
   CHECK(survey.streams.at(0).clock_offsets == 40);
   REQUIRE(survey.streams[0].clock.size() == 2);

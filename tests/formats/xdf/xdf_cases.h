@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// XDF files for tests, written as docs/formats/xdf.md says.
+// XDF files for tests, written by the description in docs/formats/xdf.md.
 #pragma once
 
 #include "kinalign/formats/xdf/xdf.h"
@@ -22,7 +22,7 @@ inline std::string little_text(double value) {
   return little_text(std::bit_cast<std::uint64_t>(value));
 }
 
-/// A length in `width` bytes.
+/// An XDF length in `width` bytes.
 inline std::string xdf_length(std::uint64_t length, unsigned width) {
   return static_cast<char>(width) + little_text(length).substr(0, width);
 }
@@ -63,7 +63,7 @@ inline std::string xdf_offset(std::uint32_t id, double time, double offset) {
 
 struct XdfRead {
   std::vector<XdfStream> streams;
-  std::map<std::uint32_t, XdfSamples> samples;  // all chunks of a stream joined
+  std::map<std::uint32_t, XdfSamples> samples;  // all chunks of a stream together
   std::vector<XdfClockOffset> offsets;
   std::vector<std::string> findings;
   std::string error;

@@ -42,7 +42,7 @@ TEST_CASE("xdf: the page's file is what is read") {
   CHECK(read.offsets == std::vector{XdfClockOffset{7, 6.0, -0.125}});
 }
 
-// The values stand in the README of xdf-modules/example-files @ 76a6be7.
+// The values are those in the README of xdf-modules/example-files @ 76a6be7.
 TEST_CASE("xdf: minimal.xdf holds what its README lists" * doctest::skip(!shared_data())) {
   const auto read = read_xdf(shared_text("xdf/minimal.xdf"));
   CHECK(read.error.empty());
@@ -66,7 +66,7 @@ TEST_CASE("xdf: minimal.xdf holds what its README lists" * doctest::skip(!shared
   CHECK(texts.size() == 9);
   CHECK(texts[0].starts_with("<?xml"));
   CHECK(Texts(texts.begin() + 1, texts.begin() + 5) == Texts{"Hello", "World", "from", "LSL"});
-  // The chunks say -0.1 both times; the footers, which are passed over, -0.01 and -0.02.
+  // The chunks hold -0.1 both times; the footers, which are skipped, hold -0.01 and -0.02.
   CHECK(read.offsets == std::vector{XdfClockOffset{0, 6.1, -0.1}, XdfClockOffset{0, 7.1, -0.1}});
   CHECK(read.findings.empty());
 }
@@ -81,7 +81,7 @@ TEST_CASE("xdf: streams without samples are streams" * doctest::skip(!shared_dat
   CHECK(!read.samples.contains(3));
   CHECK(integers(read, 4) == Integers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
   CHECK(std::get<Texts>(read.samples.at(1).values) == Texts{"{\"state\": 2}"});
-  CHECK(read.offsets.size() == 28);  // chunks of kind 4, counted by a walk in Python
+  CHECK(read.offsets.size() == 28);  // chunks of kind 4, counted by a Python script
 }
 
 TEST_CASE("xdf: every format keeps its values exactly") {
@@ -91,7 +91,8 @@ TEST_CASE("xdf: every format keeps its values exactly") {
           xdf_samples(2, 1, xdf_sample(1.0, little_text(std::uint16_t{0x8000})));
   file += xdf_header(3, "int32", 1) +
           xdf_samples(3, 1, xdf_sample(1.0, little_text(std::uint32_t{0x80000000})));
-  const auto large = static_cast<std::int64_t>(9'007'199'254'740'993);  // 2^53 + 1: no double
+  // 2^53 + 1, which no double can hold.
+  const auto large = static_cast<std::int64_t>(9'007'199'254'740'993);
   file += xdf_header(4, "int64", 1) +
           xdf_samples(4, 1, xdf_sample(1.0, little_text(static_cast<std::uint64_t>(large))));
   file += xdf_header(5, "float32", 1) +
@@ -170,7 +171,7 @@ TEST_CASE("xdf: where the file is cut into pieces changes nothing, damaged or no
     const auto whole = read_xdf(file);
     for (const std::size_t most : {1, 7, 100}) {
       const auto cut = read_xdf(file, most, seed);
-      // NaN is unequal to itself: what is compared has none where stamps are sane.
+      // NaN is unequal to itself, but rows with sane stamps have none, so they can be compared.
       CHECK(cut.findings == whole.findings);
       CHECK(cut.samples.size() == whole.samples.size());
       for (const auto& [id, samples] : whole.samples) {
@@ -251,7 +252,8 @@ TEST_CASE("xdf: samples that are fewer or more than stated are those that are wh
   read = read_xdf(begin + xdf_samples(1, 1, xdf_sample(1.0, "abcd") + "xyz"));
   CHECK(read.samples.at(1).size() == 1);
   CHECK(read.findings[0].find("found 3 bytes") != std::string::npos);
-  read = read_xdf(begin + xdf_samples(1, 1, "\x05" + std::string(12, 'x')));  // 0 or 8
+  // The length of a stamp may be 0 or 8.
+  read = read_xdf(begin + xdf_samples(1, 1, "\x05" + std::string(12, 'x')));
   CHECK(read.samples.empty());
 }
 

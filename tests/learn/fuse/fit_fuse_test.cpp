@@ -75,7 +75,7 @@ TEST_CASE("the truth of a batch is the pose in the space of each frame") {
                     .lost_part = 0.0};
   const FuseTask task(layout, training, data, torch::kCPU);
   const auto batch = task.draw(1, 0);
-  // Clean nodes: the space is the root's own, and the root's rotation in it the identity.
+  // With clean nodes the space is the root's own, and the root's rotation in it is the identity.
   const auto turns = turns_of(batch.rotations);
   const std::size_t bones = layout.nodes.bones.size();
   for (std::size_t t = 0; t < 64; ++t) {
@@ -85,7 +85,7 @@ TEST_CASE("the truth of a batch is the pose in the space of each frame") {
             1e-5F);
     }
   }
-  // The way from the Kinect's SpineBase leads to the root.
+  // The offset from the Kinect's SpineBase leads to the root.
   const auto way = values_of(batch.way);
   for (std::size_t t = 0; t < 64; ++t) {
     if (data.learnt[0][0].seen[t * layout.joints.size()] == 0) continue;

@@ -9,7 +9,8 @@ using namespace kinalign;
 
 namespace {
 
-/// The median distance of tracked joints from their true places, m; and their share.
+/// The tracked joints' median distance from their true positions, m, and the share of joints that
+/// are tracked.
 struct Seen {
   double median = 0.0, tracked = 0.0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person who swings before a Kinect, to learn fusion from.
+// A person who swings before a Kinect, as training data for fusion.
 #pragma once
 
 #include "tests/learn/pose/swinging.h"

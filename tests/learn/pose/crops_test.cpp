@@ -17,7 +17,7 @@ constexpr double rate_hz = 30.0;
 
 Sides sides_of(const PoseData& data) { return {data.body, data.nodes, {"KneeLeft", "KneeRight"}}; }
 
-/// A body that sways and turns about one axis. Its waist's node says so by closed formulas.
+/// A body that sways and turns about one axis. Its waist's node follows from closed formulas.
 PoseSequence swaying(std::size_t frames) {
   PoseSequence out = swinging(frames, 4);
   const Eigen::Vector3f axis = Eigen::Vector3f(0.3F, 0.8F, -0.5F).normalized();
@@ -83,7 +83,8 @@ TEST_CASE("a mirrored crop is the person in a mirror") {
   const std::vector<float> found = positions_of(mirrored, data.body);
   REQUIRE(found.size() == expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) CHECK(std::abs(found[i] - expected[i]) < 1e-5F);
-  // The node of the left wrist shows the left forearm again, which was the right one.
+  // The node of the left wrist is on the left forearm again, which was the right one before the
+  // mirroring.
   const std::size_t forearm = 11;
   for (std::size_t t = 0; t < 24; ++t) {
     const auto node = orientation_at(mirrored.nodes, t, 0);
@@ -105,7 +106,8 @@ TEST_CASE("rates and accelerations of a varied crop are those of its orientation
       const Vec3 bend =
           (one.places[t - 1] - 2.0 * one.places[t] + one.places[t + 1]) * rate_hz * rate_hz;
       const auto acceleration = waist_vector(one.nodes.acceleration, one.nodes, t);
-      CHECK((bend - acceleration).norm() < 0.5);  // of up to 2.3; places are interpolated
+      // Up to 2.3 m/s2 is true; positions are interpolated.
+      CHECK((bend - acceleration).norm() < 0.5);
       const auto before = orientation_at(one.nodes, t - 1, 4),
                  after = orientation_at(one.nodes, t + 1, 4);
       REQUIRE(before);

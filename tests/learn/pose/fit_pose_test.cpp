@@ -13,7 +13,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A method that sees one window again and again.
+/// A method that trains on one window only.
 PoseMethod one_window(PoseMethod method) {
   method.training.errors = no_node_errors();
   method.training.variety = no_variety;
@@ -97,7 +97,7 @@ TEST_CASE("what is learnt is what runs: every method's network to 1e-5") {
 }
 
 TEST_CASE("one window is learnt by heart") {
-  torch::globalContext().setFlushDenormal(true);  // as kinalign-learn has it
+  torch::globalContext().setFlushDenormal(true);  // kinalign-learn sets it too
   for (const PoseMethod& method : {inertial_method(), dip_method()}) {
     CAPTURE(method.name);
     PoseMethod alone = one_window(method);

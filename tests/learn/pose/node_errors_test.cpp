@@ -57,7 +57,7 @@ TEST_CASE("the same stream gives the same errors, another one others") {
 }
 
 TEST_CASE("errors are as large as they say") {
-  // Over 4,000 draws a root mean square is true to about 1.5 %.
+  // Over 4,000 draws a root mean square is accurate to about 1.5 %.
   NodeErrors one = no_node_errors();
   one.mount_deg = 5.0;
   CHECK(rms_turn(one) == doctest::Approx(5.0 * std::sqrt(3.0)).epsilon(0.05));

@@ -63,11 +63,11 @@ TEST_CASE("nodes on a turning person show the turn and its centripetal accelerat
   REQUIRE(data->learnt.size() == 1);
   const PoseSequence& one = data->learnt[0];
   CHECK(one.subject == "07");
-  CHECK(one.frames() == 56);  // 120 rows without four at each end, every second
+  CHECK(one.frames() == 56);  // 120 rows without four at each end, every second one
   for (const Turn& turn : one.rotations) CHECK((turn - Turn::Identity()).norm() < 1e-5F);
-  // Wrist nodes sit 0.67 m off the axis: clavicle, arm, forearm and 0.6 of its lower part.
+  // Wrist nodes are 0.67 m off the axis: clavicle, arm, forearm and 0.6 of its lower part.
   const double radius = 0.02 + 0.16 + 0.28 + 0.13 + 0.6 * 0.13;
-  // Second differences over 8/60 s pass sin^2(x)/x^2 of the motion, x = turn_rate 2/60.
+  // Second differences over 8/60 s keep sin^2(x)/x^2 of the motion, x = turn_rate 2/60.
   const double x = turn_rate * 2.0 / 60.0, passed = std::pow(std::sin(x) / x, 2);
   const double expected = turn_rate * turn_rate * radius * passed;
   for (std::size_t t = 0; t < one.frames(); ++t) {

@@ -19,7 +19,7 @@ std::size_t joint(std::string_view name) {
   return static_cast<std::size_t>(at - pose_joints.begin());
 }
 
-/// The built-in person as a file of windows would hold it, at 60 Hz.
+/// The motion of the built-in person as a file of windows holds it, at 60 Hz.
 Windows built_in_windows(double seconds) {
   const auto motion = built_in_motion({.length_s = seconds, .seed = 3});
   REQUIRE(motion);

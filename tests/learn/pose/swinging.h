@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person who swings, to learn from.
+// A person who swings, as training data.
 #pragma once
 
 #include "tests/models/pose/pose_people.h"
@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// A person whose bones swing, with nodes that show it.
+/// A person whose bones swing, and the samples of its nodes.
 inline PoseSequence swinging(std::size_t frames, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);

@@ -62,8 +62,8 @@ TEST_CASE("another zero leaves every joint where it was") {
     for (std::size_t j = 0; j < after.size(); ++j) after[j] = before[j] * turns[j];
     const auto here = positions_of(body, body.skeleton.rest_offsets, before);
     const auto there = positions_of(body, offsets, after);
-    // Eight products on both sides, each exact to 2e-16 for a body of 2 m. Rotations that differ much
-    // have a mean that is less exact.
+    // Eight products on both sides, each exact to 2e-16 for a body of 2 m. Rotations that differ
+    // much have a mean that is less exact.
     for (std::size_t j = 0; j < here.size(); ++j) CHECK((here[j] - there[j]).norm() < 1e-12);
   }
 }

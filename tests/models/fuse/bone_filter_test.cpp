@@ -11,7 +11,8 @@ using namespace kinalign;
 
 namespace {
 
-/// Mean distance of joints about the root, cm, in the world, of frames from `begin` on.
+/// Mean distance of joints from the truth about the root, cm, in the world, for frames from `begin`
+/// on.
 double error_cm(const FusePerson& person, const FusedPose& answer, std::string_view joint,
                 std::size_t begin, std::size_t end) {
   const PoseBody body = pose_body(test_offsets());

@@ -18,7 +18,7 @@ float worst_difference(const std::vector<float>& a, const std::vector<float>& b)
   return out;
 }
 
-/// Both devices in a world that is turned about the vertical and moved.
+/// Both devices in a world that is turned about the vertical and shifted.
 FuseInput turned_world(FuseInput input, double degrees) {
   for (std::size_t n = 0; n < input.nodes.nodes; ++n) turn_heading(input.nodes, n, degrees);
   const Eigen::AngleAxisf yaw(static_cast<float>(degrees * 0.017453292519943295),

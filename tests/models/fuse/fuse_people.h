@@ -62,7 +62,7 @@ inline FusePerson fuse_person(std::size_t frames) {
   return out;
 }
 
-/// Node `n` with its world turned about the vertical, degrees.
+/// Turns the world of node `n` about the vertical, degrees.
 inline void turn_heading(NodeFrames& nodes, std::size_t n, double degrees) {
   const Eigen::Quaternionf yaw(Eigen::AngleAxisf(static_cast<float>(degrees * 0.017453292519943295),
                                                  Eigen::Vector3f::UnitY()));
@@ -78,7 +78,7 @@ inline void turn_heading(NodeFrames& nodes, std::size_t n, double degrees) {
   }
 }
 
-/// One convolution of three taps and random weights.
+/// A model of one convolution with three taps and random weights.
 inline FuseModel random_fuse_model(std::uint64_t seed, bool causal = true) {
   std::mt19937_64 random(seed);
   FuseModel out;

@@ -12,7 +12,7 @@ namespace {
 const std::vector<std::string> joints{"SpineBase", "SpineShoulder", "ShoulderLeft", "ElbowLeft",
                                       "HipLeft",   "KneeLeft",      "AnkleLeft"};
 
-/// The mean person of UI-PRMD, `factor` times as large, on one line: the left side alone.
+/// The mean person of UI-PRMD, enlarged by `factor`, with all joints of the left side on one line.
 JointFrames on_a_line(double factor, std::size_t frames) {
   JointFrames out{joints.size(), {}, {}};
   for (std::size_t t = 0; t < frames; ++t) {

@@ -16,7 +16,8 @@ constexpr std::size_t at_frame = 12;
 struct TurnedPose {
   FusePerson person = fuse_person(20);
   std::vector<SeenBone> bones = seen_bones(pose_body(test_offsets()), fuse_joint_names());
-  std::vector<Turn> turns;  // of one frame, each bone turned away from the truth across its axis
+  // For one frame; each bone is turned away from the truth about an axis across it.
+  std::vector<Turn> turns;
 
   explicit TurnedPose(float degrees) {
     const auto first =
@@ -33,7 +34,7 @@ struct TurnedPose {
     turn_to_seen(bones, person.input.kinect, at_frame, person.truth.root[at_frame], turns);
   }
 
-  /// Degrees from the truth's direction.
+  /// The bone's angle from its true direction, degrees.
   float off(const SeenBone& bone) const {
     const Turn& truth = person.truth.rotations[at_frame * pose_bones.size() + bone.bone];
     const float cosine = (turns[bone.bone] * bone.axis).dot(truth * bone.axis);
@@ -41,7 +42,8 @@ struct TurnedPose {
   }
 };
 
-/// Of the trunk and the neck the way that is seen is not one bone's alone.
+/// Whether a bone's direction is seen by itself. The seen directions of the trunk and the neck
+/// are those of several bones together.
 bool is_limb(const SeenBone& bone) {
   const std::string_view name = pose_bones[bone.bone];
   return name != "lowerback" && name != "thorax" && name != "upperneck";

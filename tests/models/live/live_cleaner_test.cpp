@@ -12,7 +12,8 @@ TEST_CASE("a frame that waits for all that it depends on is cleaned as in the wh
   for (auto& [name, tensor] : random_tensors(model.architecture, 1)) {
     model.tensors["net." + name] = tensor;
   }
-  model.steadying.bones = false;  // the whole sequence has other lengths than its last ten seconds
+  // The whole sequence has other bone lengths than its last ten seconds.
+  model.steadying.bones = false;
   Denoiser denoiser = denoiser_of(model);
   JointFrames body = moving_legs(120, 1);
   for (std::size_t t = 40; t < 48; ++t) {  // a knee is lost
@@ -29,8 +30,8 @@ TEST_CASE("a frame that waits for all that it depends on is cleaned as in the wh
                    {body.positions.begin() + 15 * at, body.positions.begin() + 15 * at + 15},
                    {body.seen.begin() + 5 * at, body.seen.begin() + 5 * at + 5}});
     REQUIRE(found.has_value() == (newest >= 11));
-    if (newest < 11 + 5) continue;              // smoothing takes more later frames at the begin
-    if (newest >= 40 && newest < 48) continue;  // nothing tells where the knee is
+    if (newest < 11 + 5) continue;              // at the begin smoothing needs more later frames
+    if (newest >= 40 && newest < 48) continue;  // the knee's position is not known
     const float* expected = &whole[15 * (newest - 11)];
     for (std::size_t i = 0; i < 15; ++i) {
       CAPTURE(newest);

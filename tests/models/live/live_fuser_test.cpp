@@ -39,7 +39,7 @@ TEST_CASE("a live answer is that of the whole sequence with the headings as they
   auto fuser = Fuser::make(std::move(model));
   REQUIRE(fuser);
   LiveFuser live(*fuser, 100);
-  CHECK(live.look_ahead() == 1 + 4);  // the network, and smoothing of the root's place
+  CHECK(live.look_ahead() == 1 + 4);  // the network, and smoothing of the root's position
   std::vector<FusedFramePose> found;
   std::vector<std::vector<HeadingState>> headings;
   for (std::size_t t = 0; t < frames; ++t) {
@@ -53,7 +53,7 @@ TEST_CASE("a live answer is that of the whole sequence with the headings as they
   for (std::size_t end = 1; !yaw; ++end)
     yaw = shared_heading(layout, rows_of(person.input, 0, end));
   const std::size_t bones = layout.nodes.bones.size();
-  for (std::size_t t = 45; t < found.size(); ++t) {  // earlier ones were answered at once
+  for (std::size_t t = 45; t < found.size(); ++t) {  // earlier frames were answered at once
     CAPTURE(t);
     std::vector<HeadingState> all;
     for (std::size_t row = 0; row < t + 6; ++row) {

@@ -36,7 +36,7 @@ TEST_CASE("rows that come one by one lie on the grid as the rows of a file do") 
   Time stamp = utc_time(1'790'000'000'000'000'000);
   for (int i = 0; i < 100; ++i) {
     stamp += 30ms + Duration{static_cast<std::int64_t>(random() % 7'000'000)};
-    if (i % 17 == 5) stamp += 100ms;  // a frame or three that were lost
+    if (i % 17 == 5) stamp += 100ms;  // one frame or three were lost
     rows.push_back(row_at(stamp, 0.1 * i));
     all.stamps.push_back(stamp);
     all.positions.insert(all.positions.end(), rows.back().positions.begin(),
@@ -69,7 +69,7 @@ TEST_CASE("rows that come one by one lie on the grid as the rows of a file do") 
 TEST_CASE("a frame waits for the Kinect's next row, but not for one that is silent") {
   LiveJoints live(wanted, 30.0);
   const Time begin = utc_time(1'790'000'000'000'000'000);
-  CHECK(live.is_ready(begin, begin));  // no Kinect has come
+  CHECK(live.is_ready(begin, begin));  // no Kinect frame has come
   live.add(row_at(begin, 0.0), begin);
   CHECK(!live.is_ready(begin + 33ms, begin + 40ms));
   CHECK(live.is_ready(begin + 33ms, begin + 33ms + LiveJoints::patience));

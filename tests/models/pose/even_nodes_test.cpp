@@ -15,7 +15,7 @@ Time at_s(double s) { return utc_time(1'000'000'000 + std::llround(s * 1e9)); }
 
 Vec3 push(double t) { return {std::sin(3.0 * t), 0.4, std::cos(2.0 * t)}; }  // m/s2, in the world
 
-/// A node that turns about a fixed axis and is pushed, sampled at `rate_hz` for 2 s.
+/// A node that turns about a fixed axis and is accelerated, sampled at `rate_hz` for 2 s.
 NodeTrack turning_node(double rate_hz, bool gravity = true) {
   const Vec3 axis = Vec3(1, 2, -1).normalized();
   NodeTrack out;
@@ -53,7 +53,8 @@ TEST_CASE("nodes of other rates stand on the model's grid, without gravity, in t
       CHECK(even->worn.valid[at] == 1);
       const float* q = &even->worn.orientation[4 * at];
       CHECK(Quat(q[0], q[1], q[2], q[3]).angularDistance(rotation(2.0 * s * axis)) < 1e-5);
-      // The mean over 67 ms takes (67 ms)^2 / 12 of the second derivative, at most 9 m/s4.
+      // The mean over 67 ms is off by (67 ms)^2 / 12 of the second derivative, which is at most 9
+      // m/s4.
       CHECK((acceleration_of(*even, at).cast<double>() - push(s)).norm() < 0.006);
       CHECK(even->worn.angular_velocity[3 * at] == doctest::Approx(2.0 * axis.x()));
     }

@@ -63,7 +63,7 @@ TEST_CASE("frames are those of the whole tracks, also where samples overtake eac
     if (!live.begin()) continue;
     for (; t < whole->worn.frames(); ++t) {
       const Time time = begin + Duration{std::llround(static_cast<double>(t) * 1e9 / 30.0)};
-      // With 50 ms more than a frame needs nothing that overtook it is missing.
+      // If it waits 50 ms longer than a frame needs, no sample that was overtaken is missing.
       if (!live.is_ready(time + 50ms, one.stamp)) break;
       const WornFrames frame = live.frame(time);
       CAPTURE(t);
@@ -89,25 +89,25 @@ TEST_CASE("a frame waits for a node that is behind, not for one that is dead or 
   REQUIRE(live.begin() == begin);
   const auto root_until = [&](Duration d) { live.add(2, reading_at(begin + d)); };
   root_until(100ms);
-  CHECK(live.is_ready(begin, begin + 100ms));  // the others have never come
+  CHECK(live.is_ready(begin, begin + 100ms));  // no sample of the others has come
   live.add(0, reading_at(begin));
   CHECK(!live.is_ready(begin, begin + 100ms));
   CHECK(live.is_ready(begin, begin + LiveNodes::reach + LiveNodes::patience));
   root_until(3s);
   CHECK(live.is_ready(begin + 2900ms, begin + 3s));   // node 0 has been silent for three seconds
-  CHECK(!live.is_ready(begin + 2990ms, begin + 3s));  // samples after it have still to come
+  CHECK(!live.is_ready(begin + 2990ms, begin + 3s));  // samples after it are still to come
 }
 
 TEST_CASE("samples that can't be used are left out and counted") {
   LiveNodes live(3, 30.0);
   NodeReadings one = reading_at(begin);
   live.add(0, one);
-  live.add(0, one);  // twice
+  live.add(0, one);  // came twice
   one.stamp += 10ms;
   one.acceleration.reset();
   live.add(0, one);
   one = reading_at(begin + 20ms);
-  one.orientation.reset();  // which the first one had
+  one.orientation.reset();  // the first sample had an orientation
   live.add(0, one);
   CHECK(live.left_out() == 3);
 }

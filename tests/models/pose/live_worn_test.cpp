@@ -14,17 +14,18 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr std::size_t ankle = 2;  // of test_layout()
+constexpr std::size_t ankle = 2;  // index in test_layout()
 const Time started = utc_time(1'790'000'000'000'000'000);
 
-/// What a node does at a time of a person who stands in a T-pose; absent: it is silent.
+/// The movement of a node at one time, on a person who stands in a T-pose; absent: the node
+/// sends nothing.
 struct Doing {
-  Quat slip = Quat::Identity();  // of the node on its limb
+  Quat slip = Quat::Identity();  // turn of the node against its limb
   Vec3 rate = Vec3::Zero();      // rad/s
 };
 using Play = std::function<std::optional<Doing>(std::size_t node, double s)>;
 
-/// Ten seconds at 60 Hz of nodes that are worn as docs/pose.md says; a T-pose is marked at 6 s.
+/// Ten seconds at 60 Hz of nodes worn as in docs/pose.md; a T-pose is marked at 6 s.
 struct LiveRun {
   PoseLayout layout = test_layout();
   Skeleton body = pose_body(test_offsets()).skeleton;
@@ -48,7 +49,7 @@ struct LiveRun {
     }
   }
 
-  /// How far the left shank is turned from where it is in a T-pose, at a frame, rad.
+  /// The angle of the left shank from its T-pose in a frame, rad.
   double shank_off(std::size_t frame) const {
     const std::vector<float>& all = frames.at(frame).nodes.orientation;
     const float* q = &all[4 * ankle];

@@ -19,14 +19,14 @@ constexpr double pi = std::numbers::pi;
 
 Quat turned(double x, double y, double z) { return rotation(Vec3(x, y, z)); }
 
-/// How nodes are worn and what their worlds are.
+/// The nodes' mountings and their worlds.
 struct Worn {
   std::vector<Quat> heading, node_from_bone;  // [N] Y and M
 };
 
-/// What is true of a person who holds a T-pose for 2 s, lets the arms down, and turns.
+/// The truth of a person who holds a T-pose for 2 s, lets the arms down, and turns.
 struct Person {
-  NodeFrames bones;  // as a model shall see them
+  NodeFrames bones;  // the samples that a model must see
   std::vector<Quat> t_pose;
 };
 
@@ -53,7 +53,7 @@ Person person() {
   return out;
 }
 
-/// What the nodes say.
+/// The samples that the nodes send.
 WornFrames said(const Person& person, const Worn& worn) {
   WornFrames out;
   out.nodes = worn_count;
@@ -71,7 +71,7 @@ WornFrames said(const Person& person, const Worn& worn) {
   return out;
 }
 
-/// The largest difference between two arrays; q and -q are one.
+/// The largest difference between two arrays; q and -q count as equal.
 double apart(const NodeFrames& a, const NodeFrames& b) {
   double most = 0.0;
   for (std::size_t at = 0; at < a.valid.size(); ++at) {
@@ -94,7 +94,7 @@ NodeCalibration calibrated(const WornFrames& worn, std::optional<Headings> how =
 
 Quat any_rotation(std::mt19937_64& random) { return random_turn(random).cast<double>(); }
 
-/// Any headings, worn as docs/pose.md says but for a turn of each node.
+/// Nodes with random headings, worn as in docs/pose.md, each with an additional turn.
 Worn worn_as_told(const Person& person, std::mt19937_64& random, double turn) {
   std::uniform_real_distribution<double> angle(-pi, pi), small(-turn, turn);
   Worn out;
@@ -119,7 +119,8 @@ TEST_CASE("nodes worn anyhow that share a heading are found by arms that come do
     Worn worn{std::vector<Quat>(worn_count, heading), {}};
     for (std::size_t n = 0; n < worn_count; ++n)
       worn.node_from_bone.push_back(any_rotation(random));
-    worn.node_from_bone[2] = Quat(turned(pi, 0.0, 0.0));  // this one is surely not worn as told
+    // This one is surely not worn as in docs/pose.md.
+    worn.node_from_bone[2] = Quat(turned(pi, 0.0, 0.0));
     const WornFrames frames_said = said(truth, worn);
     const NodeCalibration found = calibrated(frames_said);
     CHECK(found.headings == Headings::shared);
@@ -135,7 +136,7 @@ TEST_CASE("nodes worn as told have a heading each, which their mounting shows") 
     std::mt19937_64 random(seed);
     const Person truth = person();
     Worn worn = worn_as_told(truth, random, 0.0);
-    worn.heading[0] = turned(0.0, 3.0, 0.0);  // these are surely not one heading
+    worn.heading[0] = turned(0.0, 3.0, 0.0);  // these surely differ in heading
     worn.heading[1] = turned(0.0, 0.0, 0.0);
     worn.heading[4] = turned(0.0, -1.5, 0.0);
     const WornFrames frames_said = said(truth, worn);
@@ -158,7 +159,8 @@ TEST_CASE("nodes worn as told in one world share a heading, and errors of wearin
     const NodeCalibration found = calibrated(frames_said);
     CHECK(found.headings == Headings::shared);
     CHECK(found.facing == Facing::mounting);
-    // At most the 0.15 rad and what their tilt adds. In the T-pose itself all bones are exact.
+    // At most the 0.15 rad and the part that their tilt adds. In the T-pose itself all bones are
+    // exact.
     CHECK(found.nodes[0]->heading.angularDistance(worn.heading[0]) < 0.25);
     const NodeFrames bones = on_bones(found, frames_said);
     for (std::size_t n = 0; n < worn_count; ++n) {

@@ -11,7 +11,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A body of another person than the suits of these tests.
+/// The body of a person who differs from those of these tests' suits.
 Skeleton other_body() { return pose_body(test_offsets()).skeleton; }
 
 }  // namespace

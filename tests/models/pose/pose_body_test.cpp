@@ -21,7 +21,7 @@ TEST_CASE("six numbers of a rotation give the rotation, at any length of its col
     std::array<float, 6> six{};
     for (std::size_t k = 0; k < 6; ++k) six[k] = turn.data()[k] * (k < 3 ? 0.7F : 3.0F);
     for (std::size_t k = 0; k < 3; ++k) six[3 + k] += 0.4F * six[k];
-    // turn_of_six divides by lengths and 1e-6.
+    // turn_of_six adds 1e-6 to the lengths by which it divides.
     CHECK((turn_of_six(six.data()) - turn).norm() < 1e-5F);
   }
 }

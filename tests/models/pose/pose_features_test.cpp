@@ -13,7 +13,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Nodes of a person who stands still in the pose that the calibration calls zero.
+/// Nodes of a person who stands still in the calibration's zero pose.
 NodeFrames still_nodes(std::size_t count) {
   NodeFrames out;
   out.nodes = count;
@@ -66,7 +66,7 @@ TEST_CASE("accelerations and angular velocities have their places and units") {
   nodes.angular_velocity[3 * 4 + 2] = 6.0F;
   const auto input = pose_features(test_layout(), nodes).input;
   CHECK(input[24] == 2.0F);
-  CHECK(input[25] == -0.5F);  // against the root's
+  CHECK(input[25] == -0.5F);  // against the root's axes
   CHECK(input[36 + 3 + 1] == 0.5F);
   CHECK(input[42 + 12 + 2] == 2.0F);
 }
@@ -86,7 +86,7 @@ TEST_CASE("features do not depend on the direction in which a person looks") {
       Eigen::Map<Eigen::Vector3f> a(&turned.acceleration[3 * i]);
       a = (yaw * Eigen::Vector3f(a)).eval();
     }
-    // A dozen roundings of numbers up to 2.
+    // The limit is a dozen roundings of numbers up to 2.
     CHECK(farthest(pose_features(test_layout(), nodes).input,
                    pose_features(test_layout(), turned).input) < 5e-6);
   }

@@ -17,7 +17,7 @@ struct Standing {
   std::vector<Turn> truth = std::vector<Turn>(6 * pose_bones.size(), Turn::Identity());
   std::vector<Turn> answer = truth;
 
-  /// Turns a bone of the answer about z in all frames.
+  /// Turns a bone of the predicted pose about z in all frames.
   void turn(std::string_view bone, double degrees) {
     const auto b = static_cast<std::size_t>(std::find(pose_bones.begin(), pose_bones.end(), bone) -
                                             pose_bones.begin());
@@ -52,7 +52,7 @@ TEST_CASE("a thigh counts for SIP and angle, a head for itself alone") {
   CHECK(person.errors().sip_deg == doctest::Approx(10.0 / 4).epsilon(1e-5));
   CHECK(person.errors().angle_deg == doctest::Approx(10.0 / 13).epsilon(1e-5));
   CHECK(person.errors().head_deg == 0.0);
-  // Knee and ankle move along a chord of 40 cm, two of 16 joints.
+  // Knee and ankle, two of 16 joints, move along a chord of 40 cm.
   const double chord = 2.0 * std::sin(5.0 * std::numbers::pi / 180.0) * 40.0;
   CHECK(person.errors().position_cm == doctest::Approx(2.0 * chord / 16).epsilon(1e-5));
   Standing other;

@@ -15,7 +15,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A causal network of random weights.
+/// A causal network with random weights.
 PoseModel random_model(std::mt19937_64& random) {
   PoseModel out;
   out.facts = {"pose", "test", "", "", ""};

@@ -30,7 +30,7 @@ Clip swing(double rate_hz, double length_s) {
       clip.frames.local_positions.push_back(x);
     }
     clip.frames.local_rotations.resize(4 * clip.frames.stamps.size());
-    // Every other one with the other sign: the same rotation.
+    // Every second quaternion has the other sign, which is the same rotation.
     const Quat q = rotation(Vec3(std::sin(5.0 * t), 0.3, 0.8 * std::cos(2.0 * t)));
     put_quat(clip.frames.local_rotations, static_cast<std::size_t>(i),
              i % 2 == 0 ? q : Quat(-q.coeffs()));
@@ -90,10 +90,10 @@ TEST_CASE("between frames it is the natural spline and the rotation spline of th
 TEST_CASE("rates and accelerations do not jump at a frame") {
   const auto motion = motion_of(swing(20.0, 3.0), exact);
   REQUIRE(motion);
-  // A jump of the second derivative would make third differences grow as the step shrinks.
+  // If the second derivative jumped, third differences would grow as the step shrinks.
   const auto roughest = [&](double h) {
     double worst = 0.0;
-    for (int i = 8; i < 50; ++i) {  // about each frame
+    for (int i = 8; i < 50; ++i) {  // around each frame
       const double t = i / 20.0;
       std::array<Pose, 4> p;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -126,7 +126,7 @@ TEST_CASE("smoothing takes the noise of a suit and leaves the movement") {
   const auto rough = motion_of(clip, exact), smooth = motion_of(clip, {.smooth_s = 0.015});
   REQUIRE(rough);
   REQUIRE(smooth);
-  const auto misses = [&](const Motion& motion) {  // worst away from both ends
+  const auto misses = [&](const Motion& motion) {  // the largest error away from both ends
     Pose pose;
     std::pair<double, double> worst{0.0, 0.0};
     for (std::size_t i = 10; i + 10 < clean.frames.size(); ++i) {
@@ -138,8 +138,9 @@ TEST_CASE("smoothing takes the noise of a suit and leaves the movement") {
     }
     return worst;
   };
-  // 0.001 of noise an axis is up to 0.0038 off in 460 frames; behind the mean of about 6 frames 0.4
-  // of that, and of the movement itself (at most 16 /s2 of bend) 0.015^2 / 2 * 16 = 0.0018.
+  // Noise of 0.001 on each axis is up to 0.0038 off in 460 frames. After the mean over about 6
+  // frames 0.4 of that is left. The mean also changes the movement itself (at most 16 /s2 of
+  // curvature) by 0.015^2 / 2 * 16 = 0.0018.
   CHECK(misses(*rough).first > 0.003);
   CHECK(misses(*smooth).first < 0.003);
   CHECK(misses(*smooth).second < 0.006);

@@ -15,7 +15,7 @@ namespace kinalign {
 
 using Values = std::vector<double>;
 
-/// Times [T], knots [T,4], places [N] to rotations [N,4].
+/// Slerp of the knots [T,4] at times [T] to rotations [N,4] at the given places [N].
 inline Values slerp(const Values& times, const Values& knots, const Values& at) {
   Values out(4 * at.size(), -7.0);
   slerp_at(times, knots, at, out);
@@ -36,7 +36,7 @@ inline Values random_values(std::size_t n, std::mt19937_64& random) {
   return values;
 }
 
-/// No number where one of them is none or sizes differ, so that no limit holds.
+/// NaN if a value is NaN or sizes differ, so that any limit fails.
 inline double worst_difference(const Values& a, const Values& b) {
   double worst = 0.0;
   for (std::size_t i = 0; i < a.size() && a.size() == b.size(); ++i) {
@@ -46,7 +46,7 @@ inline double worst_difference(const Values& a, const Values& b) {
   return a.size() == b.size() ? worst : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Each of them changed.
+/// The values with a change made to each.
 template <class Change>
 Values each(Values values, Change&& change) {
   for (double& v : values) v = change(v);

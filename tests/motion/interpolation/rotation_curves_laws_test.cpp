@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of both curves through rotations, slerp and spline, on any stamps.
+// Rules for both curves through rotations, slerp and spline, on any stamps.
 #include "tests/motion/interpolation/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
@@ -20,7 +20,7 @@ using Curve = Values (*)(const Values& times, const Values& knots, const Values&
 
 constexpr std::array<Curve, 2> curves{slerp, rotation_spline};
 
-/// Knots up to a radian apart, some lying still.
+/// Rotations up to a radian apart, some of them equal to the one before.
 struct Case {
   Values times, knots, at;
 
@@ -39,8 +39,8 @@ Values turned(const Values& rotations, Change&& change) {
   return out;
 }
 
-/// Slopes at the knots of the cubic spline through angles whose ends have the slopes of the first
-/// and the last interval, by a dense system of equations.
+/// The knots' slopes of the cubic spline through angles, whose end slopes are those of the first
+/// and the last interval; from a dense system of equations.
 Eigen::VectorXd end_slopes_spline(const Values& t, const Values& angle) {
   const auto n = static_cast<Eigen::Index>(t.size());
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
@@ -60,7 +60,7 @@ Eigen::VectorXd end_slopes_spline(const Values& t, const Values& angle) {
   return m.partialPivLu().solve(right);
 }
 
-/// Hermite's cubic of an interval, at the part s of it.
+/// Hermite's cubic in an interval, at the fraction s of it.
 double cubic(double a, double b, double slope_a, double slope_b, double s) {
   return a + s * (slope_a + s * (3.0 * (b - a) - 2.0 * slope_a - slope_b +
                                  s * (slope_a + slope_b - 2.0 * (b - a))));
@@ -172,7 +172,7 @@ TEST_CASE("a knot put in where the slerp runs anyway changes nothing") {
     std::mt19937_64 random(seed);
     const Case c(random);
     const Values found = slerp(c.times, c.knots, c.at);
-    // All places are knots now.
+    // Now all places are knots.
     CHECK(worst_angle(slerp(c.at, found, c.at), found) <= 1e-15);
     Values times = c.times, knots = c.knots;
     if (times.size() < 2) continue;

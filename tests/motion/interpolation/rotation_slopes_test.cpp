@@ -27,7 +27,7 @@ RotationSlopes room(const RotationIntervals& intervals) {
   return slopes;
 }
 
-/// rad in an interval.
+/// Largest difference, rad per interval.
 double worst_difference(const RotationIntervals& in, const Columns& a, const Columns& b) {
   double worst = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -43,7 +43,7 @@ void check_both_ways(const std::vector<double>& times, const std::vector<double>
   RotationSlopes lanes = room(in), blocks = room(in);
   REQUIRE(slopes_in_lanes(in, lanes));
   slopes_by_blocks(in, blocks);
-  // Either stops where 1e-13 is left, by an estimate.
+  // Either stops when its estimate of the error is 1e-13.
   CHECK(worst_difference(in, lanes.begin, blocks.begin) <= 1e-12);
   CHECK(worst_difference(in, lanes.end, blocks.end) <= 1e-12);
 }
@@ -89,7 +89,7 @@ TEST_CASE("the parts of a turn are what they are made from") {
     const Vec3 half = parts.half_r * v;
     const Quat turned(parts.half_w, half.x(), half.y(), half.z());
     CHECK(angle_between(turned, rotation(0.5 * v)) <= 1e-15);
-    // What is along the vector stays as it is.
+    // A component along the vector is not changed.
     CHECK(parts.across + parts.along * v.squaredNorm() == doctest::Approx(1.0).epsilon(1e-15));
     CHECK(parts.square + parts.product * v.squaredNorm() ==
           doctest::Approx(parts.mixed).epsilon(1e-14));

@@ -16,7 +16,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Angular rate in the body's space by a central difference.
+/// Angular rate in the body's axes from a central difference.
 Vec3 rate_at(const std::vector<double>& t, const std::vector<double>& knots, double at) {
   constexpr double h = 1e-5;
   const auto q = rotation_spline(t, knots, {at - h, at + h});
@@ -30,7 +30,8 @@ void check_against_scipy(const std::vector<double>& t, const std::vector<double>
   CHECK(worst_angle(rotation_spline(t, knots, at), theirs.at("spline")) <= 1e-7);
 }
 
-/// The rotations at places in the middle third, from knots no further than the reach from them.
+/// Checks the rotations at places in the middle third, from only the knots within the reach of
+/// them.
 void check_window(const std::vector<double>& t, const std::vector<double>& knots) {
   const std::size_t begin = t.size() / 3, end = 2 * t.size() / 3;
   std::vector<double> at;
@@ -77,7 +78,7 @@ TEST_CASE("a rotation spline goes through every knot") {
     std::mt19937_64 random(seed);
     const auto t = irregular_stamps(1 + random() % 60, random);
     const auto knots = rotation_walk(t.size(), 3.0, random);
-    // with cubics of up to a thousand radians that cancel at the knots, where they are 3 rad apart
+    // The cubics have up to a thousand radians, and cancel at the knots, which are 3 rad apart.
     CHECK(worst_angle(rotation_spline(t, knots, t), knots) <= 1e-12);
   }
 }
@@ -89,8 +90,8 @@ TEST_CASE("angular rate and acceleration do not jump at the knots") {
     const auto t = jittery_stamps(12, random);
     const auto knots = rotation_walk(t.size(), 0.5, random);
     for (std::size_t k = 1; k + 1 < t.size(); ++k) {
-      // Differences over 1e-5 s are good to 1e-9 rad/s; the acceleration itself is up to 5e3 rad/s2
-      // and changes by 1e6 rad/s3: 50 rad/s2 in the 2.5e-5 s between the places compared.
+      // Differences over 1e-5 s are accurate to 1e-9 rad/s. The acceleration is up to 5e3 rad/s2
+      // and changes by 1e6 rad/s3, which is 50 rad/s2 in the 2.5e-5 s between the compared places.
       const Vec3 before = rate_at(t, knots, t[k] - 2e-5), after = rate_at(t, knots, t[k] + 2e-5);
       const Vec3 bend_before = (before - rate_at(t, knots, t[k] - 4e-5)) / 2e-5;
       const Vec3 bend_after = (rate_at(t, knots, t[k] + 4e-5) - after) / 2e-5;

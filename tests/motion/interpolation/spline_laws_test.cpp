@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of natural cubic splines through any values at any stamps.
+// Rules for natural cubic splines through any values at any stamps.
 #include "tests/motion/interpolation/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
@@ -16,7 +16,7 @@ using namespace kinalign;
 namespace {
 
 struct Spline {
-  Values times, values, bends;  // of one channel
+  Values times, values, bends;  // one channel
 
   Spline(Values t, Values y) : times(std::move(t)), values(std::move(y)), bends(times.size()) {
     natural_spline({times, values, 1}, bends);
@@ -41,7 +41,7 @@ TEST_CASE("slope and bend do not jump at a knot, and nothing bends at the ends")
     CHECK(s.bends.front() == 0.0);
     CHECK(s.bends.back() == 0.0);
     for (std::size_t i = 1; i + 1 < t.size(); ++i) {
-      // The slopes of the two cubics that meet here, from their values and bends.
+      // The slopes here of the two cubics that meet, from their values and second derivatives.
       const double h = t[i] - t[i - 1], k = t[i + 1] - t[i];
       const double before =
           (s.values[i] - s.values[i - 1]) / h + h * (s.bends[i - 1] + 2.0 * s.bends[i]) / 6.0;
@@ -60,7 +60,8 @@ TEST_CASE("between knots a spline is the cubic of its values and bends") {
     const Spline s(t, random_values(t.size(), random));
     for (std::size_t i = 0; i + 1 < t.size(); ++i) {
       const double h = t[i + 1] - t[i];
-      // Half way, a cubic is its ends' mean less an eighth of h^2 times their mean bend.
+      // Half way, a cubic is the mean of its ends minus an eighth of h^2 times their mean second
+      // derivative.
       const double middle =
           (s.values[i] + s.values[i + 1]) / 2.0 - h * h * (s.bends[i] + s.bends[i + 1]) / 16.0;
       CHECK(std::abs(s({t[i] + h / 2.0})[0] - middle) <= 1e-12);
@@ -90,7 +91,7 @@ TEST_CASE("a knot put in where the spline runs anyway changes nothing") {
     std::mt19937_64 random(seed);
     const auto t = irregular_stamps(2 + random() % 60, random);
     const Spline s(t, random_values(t.size(), random));
-    // Not so near to a knot that the slope between the two has no digits.
+    // Not so near to a knot that the slope between them loses its digits.
     const std::size_t i = random() % (t.size() - 1);
     const double part = 0.1 + 0.008 * static_cast<double>(random() % 100);
     const double place = t[i] + part * (t[i + 1] - t[i]);
@@ -145,8 +146,9 @@ TEST_CASE("no curve through the knots bends less") {
     std::mt19937_64 random(seed);
     const auto t = irregular_stamps(4 + random() % 40, random);
     const Spline s(t, random_values(t.size(), random));
-    // Energy of the spline, and of one through the same knots with one more that is off the curve:
-    // the integral of the squared bend, which is a straight line between knots.
+    // The energy of the spline, and of one through the same knots and one more that is off the
+    // curve. The energy is the integral of the squared second derivative, which is a straight line
+    // between knots.
     const auto energy = [](const Spline& one) {
       double sum = 0.0;
       for (std::size_t i = 0; i + 1 < one.times.size(); ++i) {

@@ -79,7 +79,7 @@ TEST_CASE("a natural spline agrees with SciPy") {
       const auto y = random_values(5 * n, random);
       const auto at = places_within(t, 2 * n, random);
       const auto theirs = run_python("cubic.py", {{"times", t}, {"values", y}, {"at", at}});
-      // 1e-12 of the channels' largest magnitude, which lies between 1 and 5 here
+      // 1e-12 of the channels' largest value, which is between 1 and 5 here.
       CHECK(worst_difference(spline(t, y, at), theirs.at("spline")) <= 1e-12);
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joint centres of made-up markers; real ones against the protocol's own script stand in
-// tests/apps/dataset_import_check.py.
+// Joint centres from invented markers. tests/apps/dataset_import_check.py compares real ones with
+// the protocol's own script.
 #include "kinalign/motion/pairs/plug_in_gait.h"
 
 #include "kinalign/motion/arrays.h"
@@ -63,7 +63,7 @@ Markers standing(std::size_t frames, std::uint64_t seed) {
 
 constexpr FunctionalShifts some_shifts{{0.02, 0.03, -0.01}, {0.01, 0.04, 0.02}};
 
-/// Places in shared_joints that are not valid in frame 0.
+/// The shared_joints that are not valid in frame 0 without some marker.
 std::vector<std::string> lost_without(const std::string& name) {
   Markers markers = standing(3, 1);
   markers.seen[marker(name)] = 0;
@@ -90,7 +90,7 @@ TEST_CASE("turned and moved markers give turned and moved joints") {
   const JointCentres b = joint_centres(moved.frames(), some_shifts);
   for (std::size_t i = 0; i < a.valid.size(); ++i) {
     const Vec3 wanted = turn * Vec3(vec3(a.positions, i)) + move;
-    CHECK((vec3(b.positions, i) - wanted).norm() < 1e-12);  // rounding
+    CHECK((vec3(b.positions, i) - wanted).norm() < 1e-12);  // only rounding
   }
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("a joint without one of its markers is not valid, and the others are")
 }
 
 TEST_CASE("the elbow goes where the forearm keeps its length") {
-  // The true elbow lies 3 cm from its marker to the shoulder; the forearm is 25 cm long.
+  // The true elbow is 3 cm from its marker towards the shoulder; the forearm is 25 cm long.
   Markers markers = standing(200, 4);
   const JointCentres before = joint_centres(markers.frames(), {});
   for (std::size_t t = 0; t < 200; ++t) {

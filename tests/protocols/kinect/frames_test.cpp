@@ -101,8 +101,8 @@ TEST_CASE("parts that are doubled or of another frame are counted and change not
   CHECK(ids_of(joined.frames[0].frame) == std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6});
   CHECK(joined.counts.parts_doubled == 1);
   CHECK(joined.counts.contradicting == 2);
-  CHECK(joined.counts.parts_late == 1);  // the last one: its frame was whole
-  KinectFrame behind_last = parts[0];    // a part behind the one that said it is the last
+  CHECK(joined.counts.parts_late == 1);  // the last part: its frame was whole
+  KinectFrame behind_last = parts[0];    // a part after the one that said it is the last
   behind_last.part = 3;
   const Joined behind = join({third, behind_last});
   CHECK(behind.counts.contradicting == 1);
@@ -179,7 +179,7 @@ TEST_CASE("frames that are sent again are duplicates, whoever brings them, and n
   const Joined joined = join(messages);
   CHECK(joined.frames.size() == 300);
   CHECK(joined.counts.frames == SequenceCounts{350, 0, 0, 50, 0, 0});
-  KinectFrameJoiner other;  // a further sender's, behind the first one's last frame
+  KinectFrameJoiner other;  // a message of a second sender, after the first one's last frame
   other.follow(moment_of(messages[299]));
   std::vector<JoinedKinectFrame> frames;
   for (std::uint32_t i = 0; i < 50; ++i) other.take(frame_of(i, {1}), frames);
@@ -289,7 +289,7 @@ TEST_CASE("a row holds the body that was chosen, stamped by the device's ticks")
   CHECK(rows.positions[3 * 2] == 0.0);
   CHECK(rows.state[3] == Tracking::inferred);
   CHECK(rows.positions[3 * 3] == 8.0);
-  CHECK(rows.state[4] == Tracking::missing);  // it was not finite
+  CHECK(rows.state[4] == Tracking::missing);  // the joint was not finite
   CHECK(rows.positions[3 * 4 + 1] == 0.0);
   CHECK(std::all_of(rows.state.begin() + 25, rows.state.end(),
                     [](Tracking state) { return state == Tracking::missing; }));

@@ -15,7 +15,7 @@ inline std::int64_t any_ticks(std::mt19937_64& random) {
   return random() % 2 == 0 ? ticks : -ticks;
 }
 
-/// Any pattern of bits but those of NaN.
+/// A float of random bits that are not NaN.
 inline float any_finite(std::mt19937_64& random) {
   for (;;) {
     const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));

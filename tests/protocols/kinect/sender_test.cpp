@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Windows sender's C# (tools/kinect_sender) against our side: its numbers in every run, its
-// bytes where Mono can compile it.
+// The Windows sender's C# (tools/kinect_sender) compared with our code: its constants in every run,
+// its bytes if Mono is there to compile it.
 #include "tests/folder.h"
 #include "tests/protocols/kinect/kinect_messages.h"
 
@@ -101,7 +101,7 @@ KinectFrame made(std::size_t bodies, bool more) {
 std::string base64(const std::vector<std::uint8_t>& bytes) {
   constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
-  for (std::size_t at = 0; at + 2 < bytes.size(); at += 3) {  // of a multiple of 3
+  for (std::size_t at = 0; at + 2 < bytes.size(); at += 3) {  // the size is a multiple of 3
     const unsigned three = bytes[at] * 65'536U + bytes[at + 1] * 256U + bytes[at + 2];
     for (int shift = 18; shift >= 0; shift -= 6) out += digits[three >> shift & 63];
   }
@@ -141,7 +141,7 @@ TEST_CASE("the sender's numbers are the layout's") {
   }
   CHECK(flags == encode_kinect_binary(frame)[20]);
   CHECK(constant("EchoFlag") == encode_kinect_binary(KinectPing{{}, 0, KinectEcho{}})[20]);
-  // 12 + Joints + 12 * Joints, 16 * Joints: as the source computes them
+  // 12 + Joints + 12 * Joints, 16 * Joints: the sizes that the source computes.
   CHECK(kinect_frame_size(1, false) - kinect_frame_size(0, false) == 12 + 25 + 12 * 25);
   CHECK(kinect_frame_size(1, true) - kinect_frame_size(1, false) == 16 * 25);
 }

@@ -23,7 +23,7 @@ constexpr KinectOrigin page_origin{2, 0x5eedf00d, 42};
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// With the CRC that its bytes ask for.
+/// The bytes with the right CRC at their end.
 Bytes sealed(Bytes bytes) {
   const std::uint32_t crc = crc32(std::span(bytes).first(bytes.size() - 4));
   for (std::size_t i = 0; i < 4; ++i) {
@@ -35,7 +35,7 @@ Bytes sealed(Bytes bytes) {
 Refusal refusal_of(const Bytes& datagram) {
   KinectMessage message;
   const Refusal refusal = decode_kinect_datagram(datagram, message);
-  if (refusal != Refusal::none) CHECK(message.index() == 0);  // as new
+  if (refusal != Refusal::none) CHECK(message.index() == 0);  // the message is unchanged
   return refusal;
 }
 Refusal refusal_of(const std::string& line) { return refusal_of(bytes_of(line)); }
@@ -297,7 +297,7 @@ TEST_CASE("each fault of a line has its name") {
   CHECK(with("\"id\":\"1\"", "\"id\":1") == Refusal::wrong_fields);
   CHECK(with("\"id\":\"1\"", "\"id\":\"1x\"") == Refusal::wrong_fields);
   CHECK(with("\"id\":\"1\"", "\"id\":\"18446744073709551616\"") == Refusal::wrong_fields);
-  CHECK(with(",\"hands\":[0,0,0]", "") == Refusal::wrong_fields);  // of one body alone
+  CHECK(with(",\"hands\":[0,0,0]", "") == Refusal::wrong_fields);  // one body alone has no hands
   frame.has_orientations = true;
   const std::string turned = encode_kinect_line(frame);
   const auto from = turned.find(",\"orientations\""), to = turned.find("]]", from);
@@ -338,7 +338,8 @@ TEST_CASE("a byte that is gone or too many costs two binary messages at most, or
     Stream stream = random_stream(random, 12, lines);
     const auto at = static_cast<std::ptrdiff_t>(random() % stream.bytes.size());
     if (random() % 2 == 0) {
-      if (lines && stream.bytes[static_cast<std::size_t>(at)] == '\n') continue;  // joins two
+      // Without it two lines are joined.
+      if (lines && stream.bytes[static_cast<std::size_t>(at)] == '\n') continue;
       stream.bytes.erase(stream.bytes.begin() + at);
     } else {
       stream.bytes.insert(stream.bytes.begin() + at,
@@ -417,7 +418,7 @@ TEST_CASE("a line without end is dropped once, and its memory with it") {
                                 pong.substr(0, pong.size() - 1));
   const Heard heard = hear(stream, [] { return 1000U; });
   CHECK(heard == hear(stream));
-  CHECK(heard.counts.messages == 3);  // the last one has no end
+  CHECK(heard.counts.messages == 3);  // the last message has no end
   CHECK(refused(heard, Refusal::too_long) == 1);
   CHECK(heard.counts.skipped_bytes == 300'000);
 }

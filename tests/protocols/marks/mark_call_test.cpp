@@ -25,7 +25,7 @@ Refusal refusal_of(const std::string& call) {
   return refusal;
 }
 
-/// A call of which all but `rest` is right.
+/// A call that is right but for `rest`.
 std::string call(const std::string& rest) {
   return R"({"schema":"kinalign.mark/1","kind":"start","id":"7")" + rest + '}';
 }
@@ -89,7 +89,7 @@ TEST_CASE("what is no call of ours has no answer: two ports would answer each ot
     CHECK(answer(text).empty());
   }
   CHECK(answer(std::string(1201, ' ')).empty());
-  CHECK(answer(call("")).empty());  // nothing is refused
+  CHECK(answer(call("")).empty());  // no call is refused
 }
 
 TEST_CASE("a call may say little, and more than we know") {

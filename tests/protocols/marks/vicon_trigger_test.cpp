@@ -29,7 +29,7 @@ std::string start_of(const std::string& elements) {
   return "<CaptureStart>" + elements + "</CaptureStart>";
 }
 
-/// The n-th document in the page, which is Vicon's manual's.
+/// The n-th document in the page, which is from Vicon's manual.
 std::string of_page(int n) {
   const std::string page = bytes_in(KINALIGN_SOURCE_DIR "/docs/formats/marks.md");
   std::size_t at = 0;
@@ -57,7 +57,7 @@ TEST_CASE("what we send is read again, whatever stands in it") {
   const std::string sent = encode_vicon_trigger(trigger);
   CHECK(read(sent) == trigger);
   CHECK(read(sent + '\0') == trigger);
-  CHECK(sent.find_first_of("\t\r\n") == std::string::npos);  // else XML takes them for blanks
+  CHECK(sent.find_first_of("\t\r\n") == std::string::npos);  // otherwise XML takes them for blanks
 }
 
 TEST_CASE("entities are characters") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Datagrams of the BVH broadcast: lost, overtaken, doubled and cut short.
+// Datagrams of the BVH broadcast that are lost, overtaken, doubled or cut short.
 #include "kinalign/protocols/noitom/receiver.h"
 
 #include "tests/protocols/noitom/noitom_cases.h"
@@ -20,7 +20,7 @@ struct Datagram {
 };
 using Datagrams = std::vector<Datagram>;
 
-/// No other frame has one of its values.
+/// A frame whose values occur in no other frame.
 NoitomFrame sent_frame(NoitomForm form, std::uint32_t index) {
   NoitomFrame frame = noitom_frame(form, true, false, index);
   for (std::size_t k = 0; k < frame.values.size(); ++k) {
@@ -57,7 +57,7 @@ Datagram tail(std::uint32_t frame) { return half(frame, 1); }
 struct Heard {
   std::vector<NoitomArrival> arrivals;
   NoitomCounts counts;
-  std::uint64_t lost = 0;  // by the numbers
+  std::uint64_t lost = 0;  // found by the numbers
   Findings findings;
 
   std::vector<std::uint32_t> indices() const {
@@ -86,7 +86,7 @@ Heard hear(const Datagrams& datagrams, Arrivals arrivals = Arrivals::known) {
   return heard;
 }
 
-/// What was given of frames that nobody sent.
+/// The number of received frames that nobody sent.
 std::size_t never_sent(const Heard& heard) {
   std::size_t strange = 0;
   for (const NoitomArrival& one : heard.arrivals) {
@@ -96,8 +96,8 @@ std::size_t never_sent(const Heard& heard) {
   return strange;
 }
 
-/// The datagrams without so many of a hundred, and those of the first frame: where a stream begins
-/// nothing is known of what came before.
+/// The datagrams without a random share of `in_a_hundred` percent. Those of the first frame stay,
+/// because at a stream's start nothing is known of earlier ones.
 Datagrams without(const Datagrams& all, unsigned in_a_hundred, std::mt19937_64& random) {
   Datagrams left;
   for (const Datagram& one : all) {
@@ -106,8 +106,8 @@ Datagrams without(const Datagrams& all, unsigned in_a_hundred, std::mt19937_64& 
   return left;
 }
 
-/// So many of a hundred are overtaken by the next one and arrive just behind it. That this happens
-/// more than twice running, piece behind piece, is said on the page not to be seen.
+/// Lets `in_a_hundred` percent of the datagrams be overtaken by the next one and arrive just after
+/// it. At most two in a row: the page says that more are not noticed.
 void overtake(Datagrams& all, unsigned in_a_hundred, std::mt19937_64& random) {
   int running = 0;
   for (std::size_t i = 3; i < all.size(); ++i) {
@@ -156,7 +156,8 @@ TEST_CASE(
     std::mt19937_64 random(seed);
     const auto check = [&](NoitomForm form, unsigned lost, unsigned overtaken, std::size_t mixed) {
       Datagrams heard = without(sent(form, 600, 2), lost, random);
-      // The first loss may be one of three things at once that look like a number left out.
+      // The loss of this piece is left out: the first loss can be one of three things at once that
+      // look like a number that was left out.
       std::erase_if(heard, [](const Datagram& one) { return one.at_us == tail(2).at_us; });
       const std::size_t whole = count_whole(heard);
       overtake(heard, overtaken, random);
@@ -170,7 +171,8 @@ TEST_CASE(
       check(form, 5, 0, 0);
       check(form, 0, 2, 0);
     }
-    // Both at once mix a frame in one of 200 runs. Without numbers they mix more, as the page says.
+    // Losses and overtaking together mix a frame in one of 200 runs. Frames without numbers are
+    // mixed more often, as the page says.
     check(NoitomForm::new_header, 5, 2, 1);
   }
 }
@@ -215,10 +217,11 @@ TEST_CASE("noitom datagrams: halves of two frames are none, by their arrivals or
   const Datagrams lost{head(0), tail(0), head(1), tail(1), head(2), tail(3),
                        head(4), tail(4), head(5), tail(5), head(6)};
   CHECK(hear(lost).indices() == std::vector<std::uint32_t>{0, 1, 5});
-  // Who doesn't know the arrivals has the numbers: 3 is missing between 2 and 4.
+  // A receiver that does not know the arrivals has the frames' numbers: 3 is missing between 2 and
+  // 4.
   const Heard by_numbers = hear(lost, Arrivals::unknown);
   CHECK(by_numbers.indices() == std::vector<std::uint32_t>{0, 1, 5});
-  CHECK(by_numbers.counts[NoitomRefusal::torn] == 2);  // 2, and 4 behind it
+  CHECK(by_numbers.counts[NoitomRefusal::torn] == 2);  // frame 2, and frame 4 after it
   Datagrams old;
   for (const auto& [frame, piece] : {std::pair{0U, 0U}, {0U, 1U}, {1U, 0U}, {2U, 1U}}) {
     old.push_back(half(frame, piece, NoitomForm::old_header));
@@ -233,7 +236,7 @@ TEST_CASE("noitom datagrams: a piece that another frame's header overtook ends n
   const Heard heard = hear(all);
   CHECK(never_sent(heard) == 0);
   CHECK(heard.indices() == std::vector<std::uint32_t>{0, 4, 5});
-  // The same twice running.
+  // The same twice in a row.
   Datagrams twice{head(0), tail(0), head(1), head(2), tail(1), head(3), tail(2), tail(3), head(4)};
   twice[4].at_us = twice[3].at_us + 50;
   twice[6].at_us = twice[5].at_us + 50;
@@ -275,7 +278,7 @@ TEST_CASE("noitom datagrams: what comes twice is there once, a whole datagram as
   CHECK(pieced.counts.bytes_skipped == 0);
   const Datagram whole{sent_bytes(0), 0};
   CHECK(hear({whole, whole}).arrivals.back().order == Order::duplicate);
-  // Pieces of a frame that are alike are no doubles.
+  // Equal pieces of one frame do not count as doubled datagrams.
   NoitomFrame still = sent_frame(NoitomForm::new_header, 0);
   std::fill(still.values.begin(), still.values.end(), 0.0F);
   const Bytes bytes = bytes_of(still);
@@ -311,8 +314,8 @@ TEST_CASE("noitom datagrams: avatars in turn and numbers left out are no losses"
 
 namespace {
 
-/// Frames of these numbers, one each `period_us`, the second of their two pieces later by what
-/// `gap_us` says.
+/// Frames of these numbers, one each `period_us`, each in two pieces, the second of which comes
+/// `gap_us()` later.
 Datagrams paced(const std::vector<std::uint32_t>& numbers, std::int64_t period_us,
                 const std::function<std::int64_t()>& gap_us,
                 NoitomForm form = NoitomForm::new_header) {
@@ -329,7 +332,7 @@ Datagrams paced(const std::vector<std::uint32_t>& numbers, std::int64_t period_u
   return all;
 }
 
-/// From 0 on, each one of `steps` further than the one before, in turn.
+/// Numbers from 0 on that grow by the `steps` in turn.
 std::vector<std::uint32_t> numbers_by(const std::vector<std::uint32_t>& steps, std::size_t count) {
   std::vector<std::uint32_t> numbers{0};
   while (numbers.size() < count) {
@@ -339,7 +342,7 @@ std::vector<std::uint32_t> numbers_by(const std::vector<std::uint32_t>& steps, s
 }
 
 std::vector<std::vector<std::uint32_t>> steps_of_senders() {
-  // Each one; each other one; 80 and 100 of 120.
+  // Every frame; every second one; 80 and 100 of 120.
   return {{1}, {2}, {1, 2}, {1, 1, 1, 1, 2}};
 }
 
@@ -357,7 +360,7 @@ TEST_CASE("noitom datagrams: where nothing is lost all are given, whatever numbe
       }
     }
   }
-  // Now and then one or two, at random.
+  // One or two are left out now and then, at random.
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -394,7 +397,7 @@ TEST_CASE("noitom datagrams: where nothing is lost pieces may come a whole perio
 
 namespace {
 
-/// As a network hands them on that waits for so long.
+/// The datagrams as a network delivers them that collects them for `bunch_us`.
 Datagrams bunched(Datagrams all, std::int64_t bunch_us) {
   std::int64_t last = 0;
   for (Datagram& one : all) {
@@ -451,7 +454,8 @@ TEST_CASE("noitom datagrams: bunches that lose two pieces running mix next to no
         left.push_back(one);
       }
       const Heard heard = hear(bunched(left, bunch));
-      CHECK(never_sent(heard) <= 4);  // where a step of two has become a habit; 3 in 4,000 seeds
+      // Frames may be mixed where the sender's usual step is learnt as two; 3 of 4,000 seeds.
+      CHECK(never_sent(heard) <= 4);
       CHECK(heard.arrivals.size() > 200);
     }
   }
@@ -555,6 +559,6 @@ TEST_CASE("noitom datagrams: of rubbish little is kept") {
       if (random() % 10 == 0) one.bytes.resize(random() % one.bytes.size());
     }
     std::shuffle(all.begin(), all.end(), random);
-    hear(all);  // looks at what waits
+    hear(all);  // it looks at the datagrams that wait
   }
 }

@@ -33,7 +33,7 @@ Bytes sent_again(const std::vector<NoitomFrame>& frames) {
   return bytes;
 }
 
-/// 64 bytes between the tokens of Noitom's other streams.
+/// A header of 64 bytes with the tokens of Noitom's other streams.
 Bytes other_header(std::uint8_t first, std::uint8_t last) {
   Bytes bytes(64, 0);
   bytes[0] = bytes[62] = 0xff;
@@ -85,7 +85,7 @@ TEST_CASE("noitom: every variant is read as it was sent") {
 
 namespace {
 
-/// A dozen frames, some of them damaged, with rubbish between.
+/// A dozen frames, some of them damaged, with random bytes between them.
 Bytes damaged_frames(std::mt19937_64& random) {
   Bytes bytes;
   const auto variants = every_variant();
@@ -112,7 +112,8 @@ TEST_CASE("noitom: where bytes are cut changes nothing") {
     const auto whole = read_noitom(bytes);
     for (const std::size_t most : {1, 7, 100, 2000}) {
       const auto cut = read_noitom(bytes, most, seed);
-      CHECK(sent_again(cut.frames) == sent_again(whole.frames));  // as bytes: NaN is one of them
+      // Compared as bytes, because NaN is one of the values.
+      CHECK(sent_again(cut.frames) == sent_again(whole.frames));
       CHECK(cut.counts == whole.counts);
     }
   }
@@ -154,8 +155,8 @@ TEST_CASE("noitom: a version that says nothing leaves it to count and flags") {
 
 TEST_CASE("noitom: a version that speaks is believed") {
   Bytes bytes = bytes_of(noitom_frame(NoitomForm::old_header, false, false));
-  bytes[4] = 1;  // 1.1: the old layout under the new one's version
-  bytes[8] = 1;  // no count of the new one's
+  bytes[4] = 1;  // 1.1: the old layout under the new header's version
+  bytes[8] = 1;  // not a count of the new header
   bytes += Bytes(bytes);
   CHECK(read_noitom(bytes).counts[NoitomRefusal::wrong_count] == 1);
   CHECK(read_noitom(bytes).frames.empty());
@@ -188,7 +189,7 @@ TEST_CASE("noitom: FF DD among the floats begins no frame") {
   frame.values[17] = std::bit_cast<float>(0x4040ddffU);  // bytes ff dd 40 40
   frame.values[100] = std::bit_cast<float>(0x40ddff40U);
   Bytes bytes = bytes_of(frame);
-  // The receiver comes in the middle: what follows FF DD is no header.
+  // The receiver begins in the middle of a frame: the bytes after FF DD are no header.
   Bytes late(bytes.begin() + 70, bytes.end());
   late += bytes;
   CHECK(read_noitom(late).frames == std::vector{frame});
@@ -205,9 +206,9 @@ TEST_CASE("noitom: a wrong count swallows nothing behind it") {
     const auto read = read_noitom(bytes);
     CHECK(read.frames == std::vector{frame});
     CHECK(read.counts[NoitomRefusal::wrong_count] == 0);
-    CHECK(read.counts[NoitomRefusal::garbage] == 1);  // where it ends no other one begins
+    CHECK(read.counts[NoitomRefusal::garbage] == 1);  // no other frame begins at its end
   }
-  Bytes bytes = bytes_of(frame);  // a count that its flag confirms, above fewer values
+  Bytes bytes = bytes_of(frame);  // a count that its flag confirms, with fewer values
   bytes[6] = 354 & 0xff;
   bytes[7] = 354 >> 8;
   bytes[8] = 1;
@@ -220,7 +221,8 @@ TEST_CASE("noitom: a wrong count swallows nothing behind it") {
 
 TEST_CASE("noitom: a refused header swallows no header that begins within it") {
   auto frame = noitom_frame(NoitomForm::new_header, false, false);
-  frame.name = "12345678\xff\xee";  // ends, by chance, the header of 40 bytes in front
+  // Its end is, by chance, that of the header of 40 bytes before it.
+  frame.name = "12345678\xff\xee";
   Bytes bytes(40, 1);
   bytes[0] = 0xff;
   bytes[1] = 0xdd;
@@ -235,7 +237,7 @@ TEST_CASE("noitom: frames of another skeleton are of a wrong count, with what to
     for (const auto form : {NoitomForm::old_header, NoitomForm::new_header}) {
       CAPTURE(values);
       Bytes frame = bytes_of(noitom_frame(form, false, false));
-      frame.resize(64 + 4 * values, 0x7c);  // the floats are of bytes that end a text
+      frame.resize(64 + 4 * values, 0x7c);  // the floats consist of bytes that end a text
       frame[6] = static_cast<std::uint8_t>(values);
       frame[7] = static_cast<std::uint8_t>(values >> 8);
       Bytes bytes;
@@ -263,7 +265,7 @@ TEST_CASE("noitom: in rubbish no frame has a wrong count") {
     Bytes bytes;
     for (int k = 0; k < 100'000; ++k) bytes.push_back(static_cast<std::uint8_t>(random()));
     for (std::size_t at = 100; at < bytes.size() - 64;
-         at += 1001) {  // tokens, never behind whole floats
+         at += 1001) {  // tokens, but never after whole floats
       bytes[at] = bytes[at + 62] = 0xff;
       bytes[at + 1] = 0xdd;
       bytes[at + 63] = 0xee;
@@ -303,7 +305,8 @@ TEST_CASE("noitom: a lost piece costs its own frame alone, wherever it was") {
   for (std::size_t lost = 1; lost < one.size(); ++lost) {
     Bytes bytes(one.begin(), one.end() - static_cast<std::ptrdiff_t>(lost));
     for (int k = 0; k < 3; ++k) bytes += one;
-    // Of a header that ends the torn frame's room ten bytes have to be seen.
+    // The next frame's header ends the torn frame if at least ten of its bytes lie in the torn
+    // frame's room.
     const std::size_t fewest = lost < 10 ? 2 : 3;
     CAPTURE(lost);
     CHECK(read_noitom(bytes).frames.size() >= fewest);

@@ -41,7 +41,8 @@ Bytes bytes_of(const SlimeAnswer& answer) {
   return {answer.datagram().begin(), answer.datagram().end()};
 }
 
-/// Where ./dev test puts npm's packages; empty where @slimevr/firmware-protocol is not there.
+/// The folder into which ./dev test installs npm's packages; empty if @slimevr/firmware-protocol is
+/// not there.
 std::string node_modules() {
   const char* given = std::getenv("KINALIGN_NODE_MODULES");
   const std::string folder =
@@ -172,7 +173,7 @@ TEST_CASE("every packet of the table is read, and one byte less is too short") {
     Bytes bytes = slime_datagram(row.type, 5, row.body);
     CHECK(decoded(bytes).packets.size() == 1);
     CHECK(decoded(bytes).number == 5);
-    bytes.push_back(0);  // a longer body than it has to be
+    bytes.push_back(0);  // a body that is longer than necessary
     CHECK(decoded(bytes).packets.size() == 1);
     if (row.least == 0) continue;
     bytes.resize(12 + row.least - 1);
@@ -242,11 +243,11 @@ TEST_CASE("what is wrong in a bundle is counted, and the rest of it counts") {
   CHECK(compact({1, 0, 2, 13, 1, 3, 13, 1, 1}).too_short == 1);
   CHECK(compact({3, 99, 0, 0, 1, 0}).unknown_type == 1);
   CHECK(compact({3, 101, 1, 0, 2, 100, 0}).nested == 2);
-  CHECK(compact({200, 13, 1, 1}).packets.size() == 1);  // cut to what there is
+  CHECK(compact({200, 13, 1, 1}).packets.size() == 1);  // cut to the bytes that are there
   const auto wide = [](const Bytes& body) { return decoded(slime_datagram(100, 1, body)); };
   CHECK(wide({0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0}).packets.size() == 1);
   CHECK(wide({0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0}).too_short == 1);
-  CHECK(wide({0, 4, 0, 0, 0, 0, 7}).too_short == 1);  // half a length
+  CHECK(wide({0, 4, 0, 0, 0, 0, 7}).too_short == 1);  // half of a length field
 }
 
 TEST_CASE("fewer than 12 bytes are no datagram of a tracker") {
@@ -261,7 +262,8 @@ TEST_CASE("a serial whose length is beyond its bytes is too short, and takes no 
 }
 
 TEST_CASE("their z up is our y up") {
-  // A sensor that lies as their world does: its z is up, and in ours (0, 0, 1) turns to (0, 1, 0).
+  // A sensor that lies like their world: its z points up, and in our world (0, 0, 1) turns to (0,
+  // 1, 0).
   const double c = std::sqrt(0.5);
   const auto level = slime_orientation({0.0F, 0.0F, 0.0F, 1.0F});
   REQUIRE(level);
@@ -270,7 +272,8 @@ TEST_CASE("their z up is our y up") {
   CHECK((*level)[2] == 0.0);
   CHECK((*level)[3] == 0.0);
   // A turn about their z is one about our y: (c, 0, c, 0) (c, -c, 0, 0) = (½, -½, ½, ½).
-  const auto turned = slime_orientation({0.0F, 0.0F, 2.0F, 2.0F});  // of any length
+  // Quaternions of any length are accepted.
+  const auto turned = slime_orientation({0.0F, 0.0F, 2.0F, 2.0F});
   REQUIRE(turned);
   CHECK((*turned)[0] == about(0.5));
   CHECK((*turned)[1] == about(-0.5));
@@ -279,7 +282,7 @@ TEST_CASE("their z up is our y up") {
 }
 
 TEST_CASE("any rotation is turned as a product of rotations says") {
-  // -90 degrees about x from the left; Eigen's product
+  // -90 degrees about x, multiplied from the left; by Eigen's product.
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
   for (const auto seed : fresh_seeds(50)) {
     CAPTURE(seed);
@@ -325,7 +328,7 @@ TEST_CASE("acceleration before protocol 22 is turned by -90 degrees about z") {
 TEST_CASE("the project's own package reads what we send, and we what it sends" *
           doctest::description("needs the npm package @slimevr/firmware-protocol in build/npm") *
           doctest::skip(node_modules().empty())) {
-  // npm @slimevr/firmware-protocol 0.6.6
+  // Compared with npm's @slimevr/firmware-protocol 0.6.6.
   const FreshFolder folder;
   folder.write("given", hex(bytes_of(slime_handshake_answer(64))) + '\n' +
                             hex(bytes_of(slime_heartbeat())) + '\n' +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Datagrams of SlimeVR's trackers, put together by hand from docs/formats/slimevr.md.
+// Datagrams of SlimeVR's trackers, composed by hand from docs/formats/slimevr.md.
 #pragma once
 
 #include "kinalign/protocols/slimevr/packet.h"

@@ -53,7 +53,7 @@ TEST_CASE("xsens stream: every kind is read as it was sent, old programs' too") 
     CHECK(read.counts.bytes_skipped == 0);
     CHECK(read.findings.empty());
   }
-  CHECK(bytes_of(xsens_pose()).size() == 760);  // as two projects saw it
+  CHECK(bytes_of(xsens_pose()).size() == 760);  // the size that two other projects found
 }
 
 TEST_CASE("xsens stream: where bytes are cut changes nothing") {
@@ -180,7 +180,8 @@ TEST_CASE("xsens stream: a lost piece costs its own sample alone") {
     Bytes bytes(one.begin(), one.end() - static_cast<std::ptrdiff_t>(lost));
     bytes += one;
     bytes += one;
-    // Of a datagram that ends the torn one's room six bytes have to be seen.
+    // The next datagram's header ends the torn datagram if at least six of its bytes lie in the
+    // torn one's room.
     CHECK(read_xsens(bytes).samples.size() >= (lost < 6 ? 1U : 2U));
   }
 }

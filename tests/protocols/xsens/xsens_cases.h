@@ -21,7 +21,8 @@ inline XsensSample xsens_sample(std::uint32_t counter = 1000) {
   return sample;
 }
 
-/// Segment k at 0.0625 k, 0, 0.9375, the left foot on the floor; none turned.
+/// A pose with segment k at (0.0625 k, 0, 0.9375), the left foot on the floor, and no segment
+/// turned.
 inline XsensSample xsens_pose(std::size_t segments = 23, std::uint32_t counter = 1000) {
   XsensSample sample = xsens_sample(counter);
   XsensPose pose;

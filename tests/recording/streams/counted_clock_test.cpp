@@ -11,8 +11,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A source of 125 frames a second, each a millisecond and more on its way, that sends nothing, and
-/// counts nothing, for a while.
+/// A source of 125 frames a second, each of which takes a millisecond and more. For a while it
+/// sends and counts nothing.
 struct Source {
   std::vector<CountedFrame> frames;
   std::vector<HostTime> sent;
@@ -29,7 +29,7 @@ struct Source {
     }
   }
 
-  /// The worst stamp, by the clock that is told of it.
+  /// The largest error of a stamp.
   Duration worst(const CountedClock& counted) const {
     Duration worst{0};
     for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which device of a recording is read, and what is said of the file.
+// Which device of a recording is read, and the findings about the file.
 #include "tests/recording/streams/recorded_streams.h"
 
 #include "kinalign/documents/manifest_toml.h"
@@ -58,7 +58,7 @@ TEST_CASE("whatever byte of a recording's summary is damaged, its streams are th
     return node_errors(opened(files, stream_named("imu", path))).samples;
   };
   const std::size_t all = samples(whole);
-  const std::size_t summary = whole.rfind("/imu/12/raw");  // the last: the summary's
+  const std::size_t summary = whole.rfind("/imu/12/raw");  // the last occurrence is in the summary
   for (std::size_t at = summary - 20; at < summary + 200; ++at) {
     CAPTURE(at);
     std::string damaged = whole;
@@ -112,7 +112,8 @@ TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as 
   CHECK(manifest->streams[1].name == "kinect");
   CHECK(manifest->streams[2].name == "imu");
   REQUIRE(manifest->streams[2].files.size() == 2);
-  CHECK(manifest->streams[2].files[0].node == "waist");  // where the lab says that
+  // The lab names this node; the other one it does not name.
+  CHECK(manifest->streams[2].files[0].node == "waist");
   CHECK(manifest->streams[2].files[1].node == "13");
   REQUIRE(manifest->spaces.size() == 1);
   CHECK(manifest->spaces.at("kinect").method == "fit");
@@ -180,7 +181,7 @@ TEST_CASE("a stranger who says more than the device is found to be none") {
 
 namespace {
 
-/// Of sensor 2, as a sender at that address has it.
+/// Adds a frame of Kinect sensor 2, received from that sender's address at `at` s.
 void add_kinect_frame(RecordedLab& lab, const std::string& sender, std::uint32_t session,
                       std::uint32_t sequence, double at) {
   KinectFrame frame;
@@ -401,7 +402,7 @@ TEST_CASE("each sensor of a tracker that has several is a node") {
   }
   CHECK(std::get<ImuInput>(streams->streams[1].data).node_names ==
         std::vector<std::string>{"10.0.0.21/1"});
-  // Whoever asks for the tracker alone is told of the others.
+  // A reader who asks for one tracker only gets a finding about the others.
   const RecordedStream first = opened(files, stream_named("slime", path, "10.0.0.21"));
   REQUIRE(warnings(first).size() == 1);
   CHECK(warnings(first).front() ==
@@ -489,7 +490,7 @@ TEST_CASE("mocap that was recorded without a skeleton gets the one that the mani
   CHECK(without.error().expected.find("or now in the manifest") != std::string::npos);
   options.skeleton = folder.write("suit.bvh", noitom_chain("Spine3", false));
   const RecordedStream stream = opened(files, options);
-  CHECK(stream.files.size() == 2);  // hashed, too
+  CHECK(stream.files.size() == 2);  // its hash is computed, too
   CHECK(std::get<ClipInput>(stream.data).skeleton.joints() == 59);
   CHECK(mocap_errors(stream).samples == 2500);
   options.name = "kinect";

@@ -59,7 +59,7 @@ TEST_CASE("a bystander does not become the person who is gone, however near they
   CHECK(person(frame_at(0.0, {{8, 0.0F}})) == 8);
   CHECK(person(frame_at(1.0, {{8, 0.0F}, {7, 0.8F}})) == 8);
   for (double t = 1.1; t < 60.0; t += 1.0) CHECK(person(frame_at(t, {{7, 0.1F}})) == nobody);
-  CHECK(person(frame_at(60.0, {{7, 0.1F}, {9, 0.4F}})) == 9);  // found again
+  CHECK(person(frame_at(60.0, {{7, 0.1F}, {9, 0.4F}})) == 9);  // the person is found again
   CHECK(told(person).find("the followed person, 59 frames with others alone") != std::string::npos);
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("joints that are missing or no numbers don't say where a body is") {
   CHECK(person(frame) == 8);
   frame = frame_at(0.1, {{8, 0.5F}});
   frame.bodies[0].states.fill(0);
-  CHECK(person(frame) == 8);  // its id says it
+  CHECK(person(frame) == 8);  // recognised by its id
 }
 
 TEST_CASE("an id that is asked for is taken alone") {

@@ -7,7 +7,7 @@ using namespace kinalign;
 
 namespace {
 
-/// Frames of three letters: a body, a digit of the number, and the end.
+/// Frames of three letters: a body, a digit of the number, and an end.
 struct Letters {
   struct Arrival {
     std::string frame;
@@ -39,7 +39,7 @@ TEST_CASE("two connections that speak in turn have a decoder and a count each") 
   const RawChannel raw{"mocap", "letters", "tcp", "10.0.0.3:7012", "", ""};
   NumberedFrames<Letters> frames(std::nullopt);
   std::vector<NumberedFrames<Letters>::Placed> out;
-  // Halves of frames; who speaks second counts from elsewhere.
+  // Halves of frames from two senders; the second counts from another number.
   for (const auto& [channel, text] :
        {std::pair{1, "a1"}, {2, "a5."}, {1, ".a2.a"}, {2, "a6"}, {1, "3."}, {2, "."}}) {
     frames.take({&raw, static_cast<std::uint16_t>(channel), HostTime{}, text}, out);
@@ -53,5 +53,5 @@ TEST_CASE("two connections that speak in turn have a decoder and a count each") 
   REQUIRE(lives.size() == 2);
   CHECK(lives.begin()->second == std::vector<std::int64_t>{1, 2, 3});
   CHECK(lives.rbegin()->second == std::vector<std::int64_t>{5, 6});
-  CHECK(frames.findings("take.mcap").size() == 1);  // alike in both
+  CHECK(frames.findings("take.mcap").size() == 1);  // the same finding for both senders
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams that are read from a recording of tests/recording/recorded_lab.h, and how far their
-// stamps are from the truth that their samples carry.
+// Streams that are read from a recording of tests/recording/recorded_lab.h, and the errors of their
+// stamps against the true times in their samples.
 #pragma once
 
 #include "tests/folder.h"
@@ -24,7 +24,7 @@ inline StreamOptions stream_named(const std::string& name, const std::string& pa
   return options;
 }
 
-/// One stream, read through once, with its late findings behind the others.
+/// One stream, read once from beginning to end, with its late findings at the end of the others.
 inline RecordedStream read_through_once(Recording recording) {
   REQUIRE(recording.streams.size() == 1);
   REQUIRE(read_through(recording));
@@ -48,7 +48,7 @@ inline SharedFile opened_file(FileSystem& files, const StreamOptions& options) {
   return std::move(recording->shared_files.front());
 }
 
-/// What it warns of, and what that means.
+/// The stream's warnings, each with its meaning.
 inline std::vector<std::string> warnings(const RecordedStream& stream) {
   std::vector<std::string> texts;
   for (const Finding& finding : stream.findings) {
@@ -58,7 +58,7 @@ inline std::vector<std::string> warnings(const RecordedStream& stream) {
   return texts;
 }
 
-/// Whether a note says that its stamps are arrivals.
+/// Whether a note says that the stream's stamps are arrivals.
 inline bool says_arrivals(const RecordedStream& stream) {
   return std::any_of(stream.findings.begin(), stream.findings.end(), [](const Finding& one) {
     return one.severity == Severity::note &&
@@ -66,9 +66,9 @@ inline bool says_arrivals(const RecordedStream& stream) {
   });
 }
 
-/// How far a stream's stamps are behind the truth that its samples carry, ms.
+/// The errors of a stream's stamps against the true times in its samples, ms.
 struct Errors {
-  double least = 1e9, most = -1e9, widest = 0.0;  // and the widest half-width
+  double least = 1e9, most = -1e9, widest = 0.0;  // largest half-width, ms
   std::size_t samples = 0, certified = 0, outside = 0;
 
   void add(const RecordedStream& stream, Time stamp, double truth) {
@@ -81,7 +81,7 @@ struct Errors {
     if (!half) return;
     ++certified;
     widest = std::max(widest, 1e-6 * static_cast<double>(half->count()));
-    // What single precision leaves of the truth is not the clock's fault.
+    // The truth is stored in single precision; an error of 4 us from that is not the clock's fault.
     outside += std::abs(error.count()) > half->count() + 4000 ? 1 : 0;
   }
 };

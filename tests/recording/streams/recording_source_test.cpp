@@ -58,7 +58,7 @@ TEST_CASE("a Kinect's stamps are its sensor's ticks, late by the least time to t
   CHECK(errors.certified == 0);
   CHECK(errors.least > 29.5);
   CHECK(errors.most < 31.5);
-  // A delay that is known is taken off.
+  // A known delay is subtracted.
   StreamOptions options = stream_named("kinect", path);
   options.offset_ms = -30.0;
   const Errors moved = kinect_errors(opened(files, options));
@@ -128,7 +128,7 @@ TEST_CASE("frames of mocap that were overtaken in the network stand where they b
     } else {
       lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
     }
-    lab.hold_back(9, xsens ? 0.04 : 0.03);  // up to four are quicker
+    lab.hold_back(9, xsens ? 0.04 : 0.03);  // up to four later ones overtake it
     const std::string path = folder.write("take.mcap", lab.file());
     const RecordedStream stream = opened(files, stream_named(xsens ? "xsens" : "mocap", path));
     CHECK(stream.survey.backward == 0);
@@ -144,7 +144,7 @@ TEST_CASE("frames of a Kinect that were overtaken in the network stand where the
   const FreshFolder folder;
   RecordedLab lab(20261123);
   lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 40.0);
-  lab.hold_back(9, 0.1);  // up to three are quicker
+  lab.hold_back(9, 0.1);  // up to three later ones overtake it
   PosixFiles files;
   const RecordedStream stream =
       opened(files, stream_named("kinect", folder.write("take.mcap", lab.file())));
@@ -292,7 +292,7 @@ TEST_CASE("a tracker goes on behind a datagram with a number that isn't its own"
   const std::string path = folder.write("take.mcap", lab.file());
   PosixFiles files;
   const RecordedStream stream = opened(files, stream_named("slime", path));
-  CHECK(node_errors(stream).samples == 2001);  // nothing tells the forged one's own sample
+  CHECK(node_errors(stream).samples == 2001);  // nothing gives away the forged packet's own sample
   CHECK(stream.findings.size() == 1);
   CHECK(says_arrivals(stream));
 }
@@ -326,7 +326,7 @@ std::string seven_devices(const FreshFolder& folder, double seconds) {
   return folder.write("take.mcap", lab.file());
 }
 
-/// The manifest of all of its devices.
+/// The manifest's streams for all devices of the recording.
 std::vector<StreamOptions> all_streams(FileSystem& files, const std::string& path) {
   return manifest_of(*survey_recording(files, path), path)->streams;
 }
@@ -357,11 +357,11 @@ TEST_CASE("a recording of seven devices is read once to open all of its streams"
   const auto recording = open_streams(files, streams);
   REQUIRE(recording);
   CHECK(recording->streams.size() == 7);
-  // Heads and first rows are read, too.
+  // The file's head and first rows are read, too.
   CHECK(static_cast<double>(files.bytes) < 1.1 * size);
   files.bytes = 0;
   REQUIRE(read_through(*recording));
-  CHECK(static_cast<double>(files.bytes) < 1.05 * size);  // once for all seven
+  CHECK(static_cast<double>(files.bytes) < 1.05 * size);  // the file is read once for all seven
 }
 
 TEST_CASE("the stamps that opening a recording foretells are those of its rows, in every pass") {

@@ -20,7 +20,7 @@ XsensTrackers trackers_of(const XsensSample& sample) {
   return std::get<XsensTrackers>(sample.body);
 }
 
-/// 90 degrees about the stream's up, z: from x to y.
+/// 90 degrees about the stream's up axis z: from x to y.
 constexpr std::array<float, 4> left_turn{0.70710678F, 0, 0, 0.70710678F};
 
 }  // namespace
@@ -186,7 +186,7 @@ TEST_CASE("xsens nodes: trackers that lack or hold no numbers are not valid, zer
   REQUIRE(nodes.append(trackers_of(xsens_trackers(true)), utc_time(0), samples));
   auto trackers = trackers_of(xsens_trackers(true));
   trackers.trackers[0].raw->angular_velocity[2] = INFINITY;
-  trackers.trackers[1].id = 20;  // was not in the first sample
+  trackers.trackers[1].id = 20;  // the first sample did not have it
   REQUIRE(nodes.append(trackers, utc_time(1), samples));
   CHECK(samples.valid == std::vector<std::uint8_t>{1, 1, 1, 0, 0, 1});
   CHECK(vec3(samples.acceleration, 3) == Vec3::Zero());

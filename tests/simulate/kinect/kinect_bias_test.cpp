@@ -17,7 +17,7 @@ namespace {
 
 using Offsets = std::array<Vec3, kinect_joint_count>;
 
-/// What is added to the joints of a body that faces that way.
+/// The offsets that the bias adds to the joints of a body with that heading, m.
 Offsets bias_of(const BodyHeading& heading, const KinectIds& ids) {
   const std::array<KinectTick, 1> tick{};
   KinectScene scene;
@@ -32,7 +32,7 @@ Offsets bias_of(const BodyHeading& heading, const KinectIds& ids) {
   return offsets;
 }
 
-/// What a body that is turned by `yaw` has beyond one that faces the camera.
+/// The offsets of a body turned by `yaw` (rad), minus those of one that faces the camera, m.
 Offsets turned_by(double yaw, bool left_is_far, const KinectIds& ids) {
   Offsets offsets = bias_of({.yaw = yaw, .left_is_far = left_is_far}, ids);
   const Offsets facing = bias_of({}, ids);
@@ -64,7 +64,7 @@ TEST_CASE("a joint's offset goes with that of the joint that it hangs on, as was
       const Offsets offsets = bias_of({}, {.person = person});
       together += (offsets[j] - noise.offset).dot(offsets[noise.source] - source.offset) / people;
     }
-    // 0.45 of the sd between takes is not a matter of their poses.
+    // 0.45 of the sd between takes does not depend on their poses.
     const double shared = noise.person * source.person + 0.45 * 0.45 * noise.take * source.take;
     CAPTURE(kinect_joints[j]);
     CHECK(noise.kinship > 0.3);
@@ -82,7 +82,7 @@ TEST_CASE(
       CHECK(turned[wrist_left].norm() == doctest::Approx(left_is_far ? 0.05 : 0.04));
       CHECK(turned[wrist_right].norm() == doctest::Approx(left_is_far ? 0.04 : 0.05));
       CHECK(turned[knee_left].norm() == doctest::Approx(left_is_far ? 0.05 : 0.04));
-      // Drawn along the optical axis at the least by half.
+      // At least half of it is along the optical axis.
       for (const Vec3& off : turned) CHECK(std::abs(off.z()) > 0.499 * off.norm());
     }
   }

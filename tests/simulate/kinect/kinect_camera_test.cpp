@@ -26,8 +26,8 @@ namespace {
 
 constexpr KinectParts nothing{false, false, false, false, false, false, false, false, false};
 
-/// A person of 1.7 m who stands at the origin, arms hanging, and faces +z turned by `yaw` to the
-/// left.
+/// The joints of a person of 1.7 m who stands at the origin with hanging arms, and faces +z turned
+/// by `yaw` to the left.
 void stand(double yaw, std::span<double> joints) {
   const Quat turn(Eigen::AngleAxisd(yaw, Vec3::UnitY()));
   const auto put = [&](KinectJoint j, double x, double y, double z) {
@@ -56,7 +56,7 @@ void stand(double yaw, std::span<double> joints) {
               hip_right, knee_right, ankle_right, foot_right});
 }
 
-/// Stands 1 m up and 2.7 m before the origin and looks at it.
+/// A camera 1 m up and 2.7 m in front of the origin that looks at it.
 KinectOptions in_front(const KinectParts& parts) {
   KinectOptions options;
   options.world_from_kinect = {Quat(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitY())),
@@ -173,7 +173,7 @@ TEST_CASE("steps of a frame are 33.33 ms long with an sd of 0.50, and 0.5 % are 
     CHECK(mean == doctest::Approx(33.33).epsilon(0.0003));
     CHECK(std::sqrt(square / count - mean * mean) == doctest::Approx(0.495).epsilon(0.02));
     const auto all = static_cast<double>(ticks.back().number + 1);
-    // 540 of 108000, each drawn: sd 24
+    // 540 of 108000 are dropped at random: sd 24.
     CHECK(std::abs(1.0 - static_cast<double>(ticks.size()) / all - 0.005) < 0.0013);
   }
 }
@@ -209,7 +209,8 @@ TEST_CASE("offsets of people have the measured sd and mean") {
     }
     const Vec3 mean = sum / people;
     const KinectJointNoise& noise = kinect_joint_noise()[j];
-    // A take of its own each; 0.45 of the sd between takes is not a matter of their poses.
+    // Each person has a take of their own; 0.45 of the sd between takes does not depend on their
+    // poses.
     const double sd = std::hypot(noise.person, 0.45 * noise.take);
     CHECK((mean - noise.offset).norm() < 5.0 * sd / std::sqrt(people));
     CHECK(std::abs(std::sqrt(square / people - mean.squaredNorm()) / sd - 1.0) < 0.06);
@@ -227,12 +228,12 @@ TEST_CASE("two cameras share most of what a take adds to a person's offsets") {
     const PointFrames b = simulated(standing(0.0), options, 0.05, {.take = take, .camera = 1});
     apart += (vec3(a.positions, elbow_left) - vec3(b.positions, elbow_left)).squaredNorm() / 500.0;
   }
-  // 15 % of the variance is each camera's own: sd 0.45 of 5.2 cm between takes.
+  // 15 % of the variance belongs to each camera alone: sd 0.45 of 5.2 cm between takes.
   CHECK(std::abs(std::sqrt(apart) / (0.45 * 0.052 * std::sqrt(2.0 * 0.15)) - 1.0) < 0.12);
 }
 
 TEST_CASE("the smooth part's autocorrelation is (1 + x + x^2 / 3) exp(-x), whatever the step") {
-  for (const double x : {0.02, 0.293, 0.55}) {  // the last: a foot at its quickest
+  for (const double x : {0.02, 0.293, 0.55}) {  // the last one is a foot at its quickest
     CAPTURE(x);
     const SmoothStep step(x);
     SmoothNoise noise;
@@ -243,7 +244,7 @@ TEST_CASE("the smooth part's autocorrelation is (1 + x + x^2 / 3) exp(-x), whate
       step.run(noise, first, second);
       values.push_back(noise.value());
     }
-    // The number of independent values goes by x; 4 / x steps are one, about.
+    // The number of independent values is proportional to x: about one each 4 / x steps.
     const double tolerance = 5.0 * std::sqrt(4.0 / x / 400'000.0);
     for (const std::size_t lag : {0UL, 1UL, 5UL, 15UL}) {
       double sum = 0.0;
@@ -351,7 +352,7 @@ TEST_CASE("a capsule hides what lies behind it and nothing beside it") {
   stand(std::numbers::pi, body);  // faces -z: the camera at the origin, 2.5 m away
   for (std::size_t j = 0; j < kinect_joint_count; ++j) vec3(body, j) += Vec3(0.0, -1.0, 2.5);
   CHECK(!hidden_behind(body, wrist_left, {}));
-  vec3(body, wrist_left) = Vec3(0.0, 0.1, 2.8);  // behind the trunk
+  vec3(body, wrist_left) = Vec3(0.0, 0.1, 2.8);  // the left wrist is farther away than the trunk
   const auto hider = hidden_behind(body, wrist_left, {});
   REQUIRE(hider);
   CHECK(hider->head<1>().norm() < 0.02);  // on the trunk's axis
@@ -433,9 +434,9 @@ TEST_CASE("left and right are exchanged where one hides the other, hardly from t
     return share / static_cast<double>(frames.size());
   };
   CHECK(exchanged(0.0, 1) < 0.01);  // legs stand 0.2 m apart: 0.5 % were measured
-  // Sideways legs are 7 % (whole body) and 16 % (legs), 0.4 of it while a body stands, both at once
-  // being neither: some 8 %; of that less than half, since sides are not quite one behind the other
-  // and that counts twice.
+  // Seen from the side, 7 % of frames are exchanged (whole body) and 16 % (legs), 0.4 of that while
+  // a body stands. Both at once are no exchange of the knees: together some 8 %. Less than half of
+  // that counts here, since the sides are not exactly behind each other and that counts twice.
   double share = 0.0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
     share += exchanged(std::numbers::pi / 2.0, seed) / 4.0;

@@ -48,13 +48,13 @@ Quat orientation_of(const NodeSample& sample) {
 
 Vec3 vec(const std::array<float, 3>& x) { return {x[0], x[1], x[2]}; }
 
-/// rad: of the estimated up against the true one.
+/// The angle between the estimated and the true up, rad.
 double tilt_error(const Quat& estimate, const Quat& truth) {
   const Vec3 seen = estimate.conjugate() * Vec3::UnitY(), is = truth.conjugate() * Vec3::UnitY();
   return std::atan2(seen.cross(is).norm(), seen.dot(is));
 }
 
-/// rad: how far a node's heading is off the world's, which is a constant but for drift.
+/// The angle between a node's heading and the world's, rad, which is constant but for drift.
 double heading_off(const SimulatedNode& node, std::size_t i) {
   const Quat estimate = orientation_of(node.samples[i].sample);
   return heading_of(estimate * node.truth.places[i].world_from_sensor.conjugate());
@@ -84,7 +84,7 @@ TEST_CASE("five nodes sit where the paper's people wear them, a little otherwise
     CHECK(nodes[4].offset.y() > -0.22);
     CHECK(nodes[4].offset.z() > 0.02);  // in front …
     CHECK(nodes[4].offset.x() < 0.0);   // … and outside
-    // z of the waist's sensor points backwards, up to 15 degrees off.
+    // z of the waist's sensor points backwards, to within 15 degrees.
     CHECK(std::acos((nodes[0].bone_from_sensor * Vec3::UnitZ()).dot(-Vec3::UnitZ())) < 0.27);
   }
   const auto one = five_nodes(skeleton, 1), two = five_nodes(skeleton, 2);
@@ -118,7 +118,7 @@ TEST_CASE("samples come at the node's rate, and their stamps name when they were
         CHECK(std::abs(step - 1'000'000 / static_cast<std::int64_t>(rate)) < 400);
       }
     }
-    // Each has a clock of its own.
+    // Each node has a clock of its own.
     CHECK(nodes[0].samples[5].counter_us != nodes[1].samples[5].counter_us);
   }
 }
@@ -145,7 +145,7 @@ TEST_CASE(
   const auto nodes = nodes_on(motion, {.rate_hz = 100, .sensor = perfect()});
   Pose pose;
   for (const SimulatedNode& node : nodes) {
-    // The mean delay at which the truth explains the rates best, by least squares over a grid.
+    // The mean delay with which the truth explains the rates best, by least squares over a grid.
     const auto miss = [&](double delay) {
       double sum = 0.0;
       for (std::size_t i = 20; i < node.samples.size(); ++i) {
@@ -162,7 +162,7 @@ TEST_CASE(
       }
       return std::sqrt(sum / static_cast<double>(node.samples.size() - 20));
     };
-    // 5.0 ms of the filter at 41 Hz and half a millisecond of the registers' age.
+    // 5.0 ms of the filter at 41 Hz, and half a millisecond for the age of the registers.
     CHECK(miss(0.0055) < 0.04);  // rad/s rms
     CHECK(miss(0.0055) < miss(0.0035));
     CHECK(miss(0.0055) < miss(0.0075));

@@ -13,7 +13,7 @@ using namespace kinalign;
 
 namespace {
 
-/// A chip without faults: what is not named is zero.
+/// A chip without faults: all settings that are not named are zero.
 InertialSensorModel perfect() {
   InertialSensorModel model;
   model.gyroscope_noise = model.gyroscope_walk = model.gyroscope_zero = model.gyroscope_scale = 0.0;
@@ -78,7 +78,7 @@ TEST_CASE("the low-pass lets steady values through, halves power at its bandwidt
   for (const double bandwidth : {41.0, 44.8}) {
     ChipLowPass steady(bandwidth);
     CHECK(steady.push(Vec3(1, 2, 3)) == Vec3(1, 2, 3));
-    const auto gain = [&](double hz) {  // and the delay, s, of a sine
+    const auto gain = [&](double hz) {  // also the delay, s, of a sine
       ChipLowPass filter(bandwidth);
       double in_phase = 0.0, quadrature = 0.0;
       constexpr int n = 20000;
@@ -110,9 +110,9 @@ TEST_CASE("noise at rest is the data sheet's density over the band of the filter
     rates.push_back(read.angular_velocity.x());
     forces.push_back(read.acceleration.y());
   }
-  // Two equal poles let through pi / 4 of the pole's frequency, bandwidth / sqrt(sqrt(2) - 1), and
-  // rounding adds a twelfth of a step, squared. At a thousand steps a second the poles end a little
-  // sooner: 5 %.
+  // Two equal poles let through pi / 4 of the pole's frequency, which is bandwidth / sqrt(sqrt(2) -
+  // 1). Rounding adds a twelfth of a squared step. At a thousand steps a second the poles are a
+  // little lower: 5 %.
   const auto predicted = [](double density, double bandwidth, double step) {
     const double band = std::numbers::pi / 4.0 * bandwidth / std::sqrt(std::numbers::sqrt2 - 1.0);
     return std::sqrt(density * density * band + step * step / 12.0);

@@ -28,7 +28,7 @@ TEST_CASE("a sensor at rest reads no rate, and gravity upwards, however it lies"
     const SensorPlace still{Vec3(1, 2, 3), rotation(r)};
     const InertialReading read = reading([&](double) { return still; }, 0.0);
     CHECK(read.angular_velocity.norm() < 1e-12);
-    // 2e-16 of 3 m over 1e-6 s2, thirty times over twelve.
+    // The limit is the rounding of 3 m, 2e-16 of it, over 1e-6 s2, times thirty over twelve.
     CHECK((read.acceleration - rotation(r).conjugate() * Vec3(0, 9.80665, 0)).norm() < 1e-8);
   }
 }

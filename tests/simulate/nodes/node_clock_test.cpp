@@ -43,6 +43,6 @@ TEST_CASE("drawn clocks keep to 20 ppm and what warming adds, and bend by less t
 TEST_CASE("a clock without temperature and of stated error and ramp runs as stated") {
   const SimulatedClock clock(3, 100.0,
                              {.frequency_error = 50e-6, .temperature = false, .ramp = 1e-7});
-  // 5 s + t + 50 ppm t + 1e-7 t^2 / 2, but for noise of some nanoseconds and the grid of 0.1 s.
+  // 5 s + t + 50 ppm t + 1e-7 t^2 / 2, except for noise of some nanoseconds and the grid of 0.1 s.
   CHECK(std::abs(clock.reading(100.0) - (105.0 + 5e-3 + 5e-4)) < 1e-6);
 }

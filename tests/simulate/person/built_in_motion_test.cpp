@@ -47,7 +47,7 @@ Quat local_at(const Motion& motion, double t, NeuronJoint joint) {
   return pose.local_rotations[index(joint)];
 }
 
-/// Of the body about +y, from facing +z.
+/// The angle of the body about +y, measured from facing +z, rad.
 double yaw_at(const Motion& motion, double t) {
   const Vec3 front = global_at(motion, t).rotations[0] * Vec3::UnitZ();
   return std::atan2(front.x(), front.z());
@@ -116,7 +116,7 @@ TEST_CASE("no acceleration jumps, nor does its slope, in any piece or between tw
   for (const Piece piece : all_pieces) {
     CAPTURE(to_string(piece));
     const Motion motion = motion_with(piece, 11);
-    // A jump in the third derivative would make fourth differences twice as large at half the step.
+    // If the third derivative jumped, fourth differences would be twice as large at half the step.
     CHECK(roughest(motion, 4, 0.003) < 1.3 * roughest(motion, 4, 0.006));
   }
 }
@@ -132,7 +132,7 @@ TEST_CASE("joints move as fast as people's do and no faster") {
   }
   const Extremes walk = extremes(motion_with(Piece::walk, 5));
   CHECK(walk.shank_rate > 3.5);  // 200 deg/s
-  CHECK(walk.speed > 2.0);       // of a foot that swings
+  CHECK(walk.speed > 2.0);       // speed of a swinging foot, m/s
 }
 
 TEST_CASE("a foot that is down does not slide, and none is below the floor") {
@@ -148,7 +148,7 @@ TEST_CASE("a foot that is down does not slide, and none is below the floor") {
           CHECK(toes.y() > -1e-9);
           const bool now = toes.y() < 1e-4;
           if (now && !down) stood = toes;
-          // What lifts by less than 0.1 mm may have moved by some millimetres already.
+          // A foot that is lifted by less than 0.1 mm may have moved by some millimetres already.
           if (now) CHECK((toes - stood).norm() < 0.01);
           down = now;
         }
@@ -176,7 +176,7 @@ TEST_CASE("while one walks, one foot or both are on the floor, and they take tur
 }
 
 TEST_CASE("a walker leans over the foot that stands, and swings the arm of the other side") {
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {  // left and right first
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {  // left and right foot first
     CAPTURE(seed);
     const Motion motion = motion_with(Piece::walk, seed);
     double over = 0.0, opposite = 0.0;
@@ -193,7 +193,7 @@ TEST_CASE("a walker leans over the foot that stands, and swings the arm of the o
       const Vec3 middle = 0.5 * (pose.positions[index(NeuronJoint::left_foot)] +
                                  pose.positions[index(NeuronJoint::right_foot)]);
       const Vec3 aside = pose.rotations[0].conjugate() * (pose.positions[0] - middle);
-      over += lifted * aside.x();  // to the right, which is below 0, while the left one is up
+      over += lifted * aside.x();  // to the right, so the yaw is below 0 while the left foot is up
     }
     CHECK(over < 0.0);
     CHECK(opposite < 0.0);
@@ -218,7 +218,7 @@ TEST_CASE("knees bend backwards and elbows forwards, as people's do") {
     for (double t = 0.0; t < motion.length_s; t += 0.02) {
       for (const auto knee : {NeuronJoint::left_leg, NeuronJoint::right_leg}) {
         const Vec3 bent = rotation_vector(local_at(motion, t, knee));
-        CHECK(bent.x() > 0.05);  // rad: never quite straight
+        CHECK(bent.x() > 0.05);  // rad: the knee is never quite straight
         CHECK(bent.x() < 2.3);   // 130 degrees
         CHECK(std::hypot(bent.y(), bent.z()) < 1e-9);
       }
@@ -296,7 +296,7 @@ TEST_CASE("slow pieces do what their names say") {
     for (double t = 2.5; t < 32.5; t += 0.05) {
       const GlobalPose pose = global_at(*motion, t);
       const auto at = [&](NeuronJoint joint) { return pose.positions[index(joint)]; };
-      // All the hands that are asked for reach it at once.
+      // All hands that are to reach it do so at the same time.
       double high = 9.0, wide = 9.0, ahead = 9.0;
       for (const NeuronJoint hand : hands) {
         high = std::min(high, at(hand).y());
@@ -322,7 +322,7 @@ TEST_CASE("slow pieces do what their names say") {
   CHECK(side.ahead < 0.2);
   CHECK(side.wide > 0.6);
   CHECK(reached(Piece::push_both, both).ahead > 0.4);
-  CHECK(reached(Piece::push, both).ahead < 0.2);  // one at a time
+  CHECK(reached(Piece::push, both).ahead < 0.2);  // one hand at a time
   for (const NeuronJoint hand : both) CHECK(reached(Piece::push, {hand}).ahead > 0.4);
   CHECK(reached(Piece::bend_side, both).low_head < stand.low_head - 0.05);
   for (const NeuronJoint hand : both) CHECK(reached(Piece::bend_side, {hand}).high > 1.5);

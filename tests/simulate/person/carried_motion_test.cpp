@@ -35,7 +35,7 @@ Vec3 bone(const GlobalPose& pose, NeuronJoint from, NeuronJoint to) {
   return (pose.positions[index(to)] - pose.positions[index(from)]).normalized();
 }
 
-/// CMU's own skeleton in its files' units: legs apart, other names and lengths.
+/// A skeleton like CMU's in the units of its files: legs apart, other names and lengths.
 Motion asf_like(double bend) {
   Skeleton s;
   const auto add = [&](const std::string& name, int parent, const Vec3& offset) {
@@ -144,7 +144,7 @@ TEST_CASE("a skeleton of other names is refused") {
 }
 
 TEST_CASE("there and back stays within the motion, never faster than it, without a jump") {
-  // The joint's place says which moment of the motion it is.
+  // The joint's position shows the moment of the motion.
   const Motion ticking{{{"root"}, {-1}, {Vec3::Zero()}, {}}, 20.0, [](double t, Pose& pose) {
                          pose.local_positions = {Vec3(t, 0, 0)};
                          pose.local_rotations = {Quat::Identity()};
@@ -166,7 +166,7 @@ TEST_CASE("there and back stays within the motion, never faster than it, without
     CHECK(at(t) >= 3.0);
     CHECK(at(t) <= 9.0);
     CHECK(std::abs(at(t) - at(t - h)) <= h + 1e-12);
-    // 35/16 a second from rest to the motion's own speed.
+    // The speed grows from rest to the motion's own by at most 35/16 a second.
     CHECK(std::abs(at(t + h) - 2.0 * at(t) + at(t - h)) / (h * h) < 2.2);
   }
   CHECK(there_and_back(ticking, 3.0, 4.0, 60.0));

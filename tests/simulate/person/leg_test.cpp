@@ -32,7 +32,7 @@ TEST_CASE("a knee bent at a right angle stands in front of the line from hip to 
   const double d = std::hypot(bones.thigh, bones.shank);
   const BentLeg leg = reach(bones, {0, 1, 0}, {0, 1 - d, 0}, Vec3::UnitZ());
   CHECK(leg.knee == about(std::numbers::pi / 2));
-  // The height of a right triangle on its longest side.
+  // The height of a right triangle above its longest side.
   CHECK(knee_of(leg, {0, 1, 0}).z() == about(bones.thigh * bones.shank / d));
   CHECK(std::abs(knee_of(leg, {0, 1, 0}).x()) < 1e-12);
 }
@@ -49,7 +49,7 @@ TEST_CASE("whatever the ankle within reach, the leg ends there, the knee bends a
     CHECK(leg.knee > 0.0);
     const Quat bent(Eigen::AngleAxisd(leg.knee, Vec3::UnitX()));
     CHECK(angle_between(leg.thigh.conjugate() * leg.shank, bent) < 1e-12);
-    // On the side that it is told to be on.
+    // The knee is on the side that was asked for.
     const Vec3 way = (ankle - hip).normalized();
     const Vec3 across = forward - forward.dot(way) * way;
     CHECK((knee_of(leg, hip) - hip).dot(across) > 0.0);

@@ -17,7 +17,7 @@ namespace {
 
 const Time zero = utc_time(1'790'000'000'000'000'000);
 
-/// A rehearsal of 4 s as a recording in memory, whose clocks are believed.
+/// A rehearsal of 4 s as a recording in memory; its clocks are used as they are.
 struct Rehearsed {
   Motion motion = *built_in_motion({.length_s = 4.0, .seed = 2});
   Rehearsal rehearsal = *rehearse(motion, {.seed = 2, .node_rate_hz = 100});
@@ -35,7 +35,7 @@ struct Rehearsed {
   }
 };
 
-/// Rows of the true points of a Kinect, 20 ms apart, each `off` beside the truth.
+/// Rows of the true points of a Kinect, 20 ms apart, each `off` away from the truth.
 Take true_points(const Rehearsed& all, const Vec3& off) {
   const KinectMap map = *kinect_map(all.motion.skeleton);
   Take take;

@@ -81,11 +81,11 @@ TEST_CASE("the camera stands before the person, about level, and sees them all t
     CHECK((camera.rotation * Vec3::UnitY()).y() > std::cos(0.08));
     CHECK(camera.translation.y() > 0.89);
     CHECK(camera.translation.y() < 1.21);
-    CHECK(camera.translation.z() > 2.0);  // who is built in faces +z at first
+    CHECK(camera.translation.z() > 2.0);  // the built-in person faces +z at first
     std::size_t tracked = 0;
     for (const Tracking state : done.kinect.state) tracked += state == Tracking::tracked ? 1 : 0;
     CHECK(tracked > done.kinect.state.size() / 2);
-    // Their left is at smaller x, as the SDK has it.
+    // The person's left is at smaller x, as in the SDK.
     CHECK(done.kinect.positions[3 * shoulder_left] < done.kinect.positions[3 * shoulder_right]);
   }
 }
@@ -139,7 +139,8 @@ TEST_CASE("samples stamped by their arrival are the node's, later by the radio's
     CHECK(samples.acceleration[3 * k] ==
           static_cast<double>(node.samples[i].sample.acceleration[0]));
   }
-  CHECK(sum / static_cast<double>(samples.size()) > 0.033);  // they queue: no less than alone
+  // They wait in a queue, so no less than for one alone.
+  CHECK(sum / static_cast<double>(samples.size()) > 0.033);
 }
 
 TEST_CASE("a motion that is too short, or of no body that we know, is refused") {

@@ -95,7 +95,7 @@ TEST_CASE("a pose is seen from the side from which it is widest, whichever way t
     CAPTURE(seed);
     const double turned = 1e-3 * static_cast<double>(seed % 6283);
     const std::string svg = skeleton_svg({cross(turned)});
-    const bool same = svg == skeleton_svg({cross()}) ||  // or its mirror image, from behind
+    const bool same = svg == skeleton_svg({cross()}) ||  // or its mirror image, seen from behind
                       svg.find("M60 154L60 82L6 89M60 82L114 89") != std::string::npos;
     CHECK(same);
   }

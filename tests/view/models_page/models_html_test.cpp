@@ -50,7 +50,7 @@ TEST_CASE("a figure that could not be made says why") {
 }
 
 TEST_CASE("an error of 4 cm stands at the top of an axis that ends at 4 cm") {
-  // Values stand in the middle of their half second: 0.25 s and 0.75 s of 1 s.
+  // Each value is drawn in the middle of its half second: at 0.25 s and 0.75 s of 1 s.
   CHECK(holds(models_html(small_models_page()),
               "<path class=\"c0\" d=\"M251.0 135.0L661.0 10.0\"/>"));
 }

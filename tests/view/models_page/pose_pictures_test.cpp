@@ -33,8 +33,8 @@ std::size_t count_of(const std::string& text, const std::string& word) {
 
 TEST_CASE("a picture shows a metre of height as 99 units, seen from 8 degrees above") {
   const std::string html = pictures_html(one_picture(bent_stick(FigureColour::truth)));
-  // cos 8 deg = 0.990; 0.5 m to the left seen from 25 degrees beside: 0.5 cos 25 deg = 0.453,
-  // and 0.5 sin 25 deg nearer, which lies 0.029 lower.
+  // cos 8 deg = 0.990. The 0.5 m to the left are seen from 25 degrees beside: 0.5 cos 25 deg =
+  // 0.453 wide, and 0.5 sin 25 deg nearer, which is drawn 0.029 lower.
   CHECK(html.find("<path class=\"mocap\" d=\"M0 99L0 0M0 0L45 3\"/>") != std::string::npos);
 }
 

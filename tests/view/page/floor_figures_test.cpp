@@ -25,7 +25,7 @@ PageFloor sideways() {
   return *floor;
 }
 
-/// `ahead` of that Kinect and `aside` of its middle.
+/// The point `ahead` of that Kinect and `aside` of its middle.
 Vec3 before_it(double ahead, double aside) { return {1.0 + ahead, 0.3, -2.0 + aside}; }
 
 }  // namespace

@@ -17,7 +17,7 @@ const Skeleton body{
 
 Quat turn(const Vec3& axis, double angle) { return Quat(Eigen::AngleAxisd(angle, axis)); }
 
-/// The hips stand; the forearm turns about two axes, which tells a node's mounting.
+/// The hips stand still. The forearm turns about two axes, so a node's mounting can be found.
 struct Arm {
   double rate = 2.0;  // rad/s
   Quat forearm(double t) const {
@@ -26,7 +26,7 @@ struct Arm {
   Vec3 hand(double t) const { return Vec3(0.2, 1.4, 0.0) + forearm(t) * Vec3(0.25, 0.0, 0.0); }
 };
 
-/// Derivatives by differences of a thousandth of a second: an independent way.
+/// Derivatives from differences over a thousandth of a second, as an independent way.
 Vec3 rate_of(const Arm& arm, double t) {
   const double h = 1e-3;
   const Quat step = arm.forearm(t - h).conjugate() * arm.forearm(t + h);
@@ -51,7 +51,7 @@ ClipRows clip_rows(const Arm& arm, const std::vector<double>& times) {
   return rows;
 }
 
-/// A node on the forearm: strapped on by `sensor`, its world turned by `world`.
+/// A node on the forearm: its mounting is `sensor`, and its world is turned by `world`.
 struct Worn {
   Quat sensor = turn(Vec3(1, 2, 3).normalized(), 0.7);  // bone_from_sensor
   Quat world = turn(Vec3::UnitY(), 1.1);
@@ -122,7 +122,7 @@ TEST_CASE("a bone that turns at a steady rate has that rate, and its end the cen
   }
   const BoneReading bone = bone_reading(pointers, 3, {0, 0});
   CHECK((bone.rate - Vec3(0, rate, 0)).norm() < 1e-12);
-  // A parabola through a circle over 50 ms: short by (rate * window)^2 / 14 of it, 0.04 %.
+  // A parabola through a circle over 50 ms is too small by (rate * window)^2 / 14, which is 0.04 %.
   CHECK((bone.acceleration - Vec3(-rate * rate * length, 0, 0)).norm() <
         1e-3 * rate * rate * length);
 }
@@ -132,7 +132,7 @@ TEST_CASE("a node that measures what its bone does has no residual, however it i
   CHECK(node.joint == "LeftForeArm");
   CHECK(node.joint_by_name);
   CHECK(node.rows == 600);
-  // The parabolas smooth 50 ms to each side: 0.5 % of what turns at 2 rad/s.
+  // The parabolas smooth over 50 ms to each side, which changes a motion at 2 rad/s by 0.5 %.
   CHECK(node.rate_rms < 0.02);
   CHECK(node.rate_correlation > 0.99);
   CHECK(node.acceleration_rms < 0.02);

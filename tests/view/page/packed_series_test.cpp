@@ -30,8 +30,8 @@ std::string bytes_of_base64(const std::string& text) {
   return out;
 }
 
-/// A reader of the format as the header describes it, bit by bit: the witness of the writer, and of
-/// assets/data.js, which tests/apps/report_check.py runs.
+/// A reader of the format by the header's description, bit by bit. It checks the writer here, and
+/// assets/data.js in tests/apps/report_check.py.
 class PlainReader {
  public:
   explicit PlainReader(std::string bytes) : bytes_(std::move(bytes)) {}

@@ -31,7 +31,7 @@ std::string html_of(const PageTake& take) {
   return *html;
 }
 
-/// A take in which every text that comes from files is an attack.
+/// A take in which every text that comes from a file tries to inject HTML.
 PageTake hostile_take() {
   const std::string attack = "</script><script>alert(1)</script><b a='\">&";
   PageTake take = walking_take(30);

@@ -55,7 +55,7 @@ TEST_CASE("bones of a Kinect have their mean, deviation and extremes, of tracked
   kinect.positions[9 * 3 + 6] += 1.0;
   kinect.state[3 * 3 + 2] = Tracking::inferred;
   const TakePage page = figures_of(take);
-  REQUIRE(page.bones.size() == 1);  // the elbow's own parent, the shoulder, is not there
+  REQUIRE(page.bones.size() == 1);  // the elbow's parent, the shoulder, is not in the stream
   const BoneLength& bone = page.bones[0];
   CHECK(bone.rows == 3);
   CHECK(bone.mean_m == doctest::Approx(0.25).epsilon(1e-9));
@@ -69,7 +69,7 @@ TEST_CASE("states are counted joint by joint: a valid joint of state 0 was not m
   PointRows& kinect = kinect_of(take);
   kinect.valid[0] = 0;
   kinect.state[0] = Tracking::missing;
-  kinect.state[3] = Tracking::missing;  // of the next row: between a missing and a tracked sample
+  kinect.state[3] = Tracking::missing;  // row 1, which lies between a missing and a tracked sample
   kinect.state[6] = Tracking::inferred;
   const TakePage page = figures_of(take);
   REQUIRE(page.joint_states.size() == 2);
@@ -100,7 +100,7 @@ TEST_CASE("a take with fewer rows than bins has no empty bins, even where stamps
   for (const auto seed : fresh_seeds(50)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    std::uniform_int_distribution<std::int64_t> jitter(-7'000'000, 7'000'000);  // of 16.7 ms
+    std::uniform_int_distribution<std::int64_t> jitter(-7'000'000, 7'000'000);  // a step is 16.7 ms
     PageTake take = walking_take(2 + random() % 600);
     for (Time& stamp : take.slab.stamps) stamp += Duration{jitter(random)};
     take.report.begin = take.slab.stamps.front();
@@ -178,7 +178,7 @@ TEST_CASE("raw samples are moved as alignment moved the stream") {
   const TakePage page = figures_of(take, options);
   const PageDetail& detail = page.details[0];
   CHECK(detail.has_raw);
-  REQUIRE(detail.raw_seconds.size() == 1);  // the other one came before the take
+  REQUIRE(detail.raw_seconds.size() == 1);  // the other gap was before the take
   CHECK(detail.raw_seconds[0] == doctest::Approx(0.005));
   CHECK((at(detail.raw_positions, 0) - Vec3(0.5, 1.4, -2.0)).norm() < 1e-6);
   CHECK(at(detail.raw_positions, 2).norm() == 0.0);
@@ -211,7 +211,7 @@ TEST_CASE("the longest gap is found across slabs") {
   for (const std::size_t t : {5, 6, 20, 21, 22, 23, 24}) {
     for (std::size_t j = 0; j < 3; ++j) kinect.valid[3 * t + j] = 0;
   }
-  kinect.valid[3 * 40] = 0;  // one joint alone is no gap
+  kinect.valid[3 * 40] = 0;  // one lost joint is no gap
   LongestGap gap;
   gap.add(take.slab);
   REQUIRE(gap.middle_s());

@@ -61,7 +61,7 @@ TEST_CASE("tasks of a step within an array divide the share of their job") {
                         {"SLURM_PROCID", "1"},
                         {"SLURM_STEP_NUM_TASKS", "2"}};
   check(job, 5, 8);
-  // mpirun's numbers win over those of the step that started it.
+  // mpirun's numbers take precedence over those of the SLURM step that started it.
   Environment within = job;
   within["OMPI_COMM_WORLD_RANK"] = "2";
   within["OMPI_COMM_WORLD_SIZE"] = "3";

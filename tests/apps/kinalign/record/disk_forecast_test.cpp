@@ -23,7 +23,7 @@ TEST_CASE("the minutes left are those until the reserve, at what comes") {
   for (int s = 0; s <= 10; ++s) forecast.look(at_s(s), s * mebibyte, 664 * mebibyte);
   REQUIRE(forecast.minutes_left());
   CHECK(*forecast.minutes_left() == doctest::Approx(10.0));  // 600 MiB at 1 MiB/s
-  // ten times as fast from here on
+  // From here on ten times as fast.
   for (int s = 11; s <= 45; ++s) {
     forecast.look(at_s(s), (10 + 10 * (s - 10)) * mebibyte, 664 * mebibyte);
   }
@@ -42,14 +42,15 @@ TEST_CASE(
     forecast.look(at_s(s), written, 664 * mebibyte);
     CAPTURE(s);
     REQUIRE(forecast.minutes_left());
-    const double share = std::min(1.0, (s - 28) / 5.0);  // of the five seconds
+    // The part of the last five seconds in which bytes were written.
+    const double share = std::min(1.0, (s - 28) / 5.0);
     CHECK(*forecast.minutes_left() == doctest::Approx(minutes_at(share / 8)));
   }
   for (int s = 61; s <= 100; ++s) {
     written += mebibyte / 80;
     forecast.look(at_s(s), written, 664 * mebibyte);
     CAPTURE(s);
-    const bool held = s <= 90;  // half a minute after the last second of the fast ones
+    const bool held = s <= 90;  // half a minute after the last fast second
     if (held) CHECK(*forecast.minutes_left() == doctest::Approx(minutes_at(1.0 / 8)));
     if (s >= 95)
       CHECK(*forecast.minutes_left() == doctest::Approx(minutes_at(1.0 / 80)).epsilon(1e-4));
@@ -76,7 +77,7 @@ TEST_CASE("what a narrow terminal cuts off the disk's line is the path first") {
     forecast = {};
     forecast.look(at_s(0), 0, free);
     forecast.look(at_s(5), bytes_in_5_s, free);
-    return line().substr(0, 39);  // of 40 columns
+    return line().substr(0, 39);  // the first 39 of 40 columns
   };
   CHECK(at_rate(10'000'000) == "disk  16.7 h left at this rate, 120.5 G");
   CHECK(at_rate(100'000'000) == "disk  100 min left at this rate, 120.5 ");

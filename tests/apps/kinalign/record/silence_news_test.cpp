@@ -39,7 +39,7 @@ TEST_CASE("the silence of strangers who found a device's port is not told") {
   for (int i = 0; i < 1000; ++i) {
     scene.status.streams.push_back(stranger(scene.status.streams[1], i));
   }
-  CHECK(news.changes(scene.status).size() == 1);  // the Kinect's own
+  CHECK(news.changes(scene.status).size() == 1);  // the news about the Kinect itself
 }
 
 TEST_CASE(
@@ -48,10 +48,10 @@ TEST_CASE(
   Scene scene;
   SilenceNews news;
   news.changes(scene.status);
-  scene.status.streams[0].counts.messages = 3;  // of the next take
+  scene.status.streams[0].counts.messages = 3;  // 3 messages of the next take
   scene.status.streams[0].heard = scene.status.now - 3s;
   scene.status.streams[2] = stranger(scene.status.streams[0], 1);
-  scene.status.streams[2].counts.messages = 4;  // another mocap, which says as little
+  scene.status.streams[2].counts.messages = 4;  // another mocap device, as silent as the first
   const auto changes = news.changes(scene.status);
   REQUIRE(changes.size() == 2);
   CHECK(changes[0].stream.sender == "192.168.7.5:51234");

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 3> datagram{1, 2, 3};
 
-/// A port of loopback that somebody listens on while this is there.
+/// A loopback port on which a server listens as long as this exists.
 class Listener {
  public:
   Listener() : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -31,7 +31,7 @@ class Listener {
   ~Listener() { ::close(fd_); }
 
   std::uint16_t port() const { return port_; }
-  /// Sends back what comes.
+  /// Sends each datagram back.
   void answer() const {
     std::array<std::uint8_t, 16> room{};
     sockaddr_in from{};

@@ -8,7 +8,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Eight seconds that were all taken and answered, and recorded as recording.toml has it.
+/// A rehearsal of eight seconds, all sent, accepted and answered, and recorded as in
+/// recording.toml.
 SentRehearsal well_sent() {
   SentRehearsal sent{.folder = "r", .length_s = 8.0, .sent_s = 8.0, .recorded_there = true};
   sent.counts = {.mocap_frames = 400,
@@ -24,7 +25,7 @@ SentRehearsal well_sent() {
   return sent;
 }
 
-/// The same with nobody there.
+/// The same rehearsal without a receiver.
 SentRehearsal sent_to_nobody() {
   SentRehearsal sent = well_sent();
   LiveCounts& counts = sent.counts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is advised goes by an error's kind; its words may be any.
+// The advice depends on the kind of an error, never on its words.
 #include "apps/kinalign/text/advice.h"
 
 #include <doctest/doctest.h>
@@ -15,7 +15,8 @@ Error of(ErrorKind kind) { return {"lab.key", 0, "any words", "others", kind}; }
 }  // namespace
 
 TEST_CASE("a key that can't be read has advice by what stands in the way") {
-  CHECK(key_advice(of(ErrorKind::exposed_key)).empty());  // the error says chmod 600
+  // No advice: the error itself says chmod 600.
+  CHECK(key_advice(of(ErrorKind::exposed_key)).empty());
   CHECK(key_advice(of(ErrorKind::forbidden_key)) ==
         Lines{"run it as the file's owner, or let who runs it own the file (chown)"});
   CHECK(key_advice(of(ErrorKind::no_such_file)) ==

@@ -16,7 +16,7 @@ ClockEvent event(Kind kind, double begin, double end, double value = 0.0) {
   return {kind, 5, at(begin), at(end), value};
 }
 
-/// A step of node 7 with its withdrawal, as the live clock tells both.
+/// A step of node 7 and its withdrawal, as events of the live clock.
 void step(ClockNews& news, double s) {
   news.hear(0, 7, event(Kind::step, s, s, 0.5), at(s));
   news.hear(0, 7, event(Kind::withdrawn, s - 0.2, s), at(s));
@@ -39,7 +39,7 @@ TEST_CASE("a step is told before the stamps that it cost, and these once") {
     news.hear(0, 7, event(Kind::violator, s, s), at(s));
     news.hear(0, 7, event(Kind::withdrawn, s - 5, s), at(s));
   }
-  CHECK(news.lines(at(20.15)).empty());  // the cause may follow
+  CHECK(news.lines(at(20.15)).empty());  // no line yet: the cause may follow
   news.hear(0, 7, event(Kind::step, 20, 20.2, -0.5), at(20.4));
   news.hear(0, 7, event(Kind::withdrawn, 15, 20.2), at(20.4));
   CHECK(news.lines(at(20.4)) == Lines{stepped, withdrawn("5.2")});

@@ -25,7 +25,7 @@ std::string any_text(std::mt19937_64& random) {
   return text;
 }
 
-/// A report in which every member of every kind of part says something.
+/// A report in which every member of every part is set.
 AlignmentReport full_report(std::mt19937_64& random) {
   AlignmentReport report;
   report.frames = 3601;
@@ -57,7 +57,7 @@ AlignmentReport full_report(std::mt19937_64& random) {
   return report;
 }
 
-/// What `kinalign info take.h5 --json` prints of such a take.
+/// The JSON that `kinalign info take.h5 --json` prints for a take with this report.
 Json facts(const AlignmentReport& report) {
   Json out =
       Json::parse(R"({"file": "t.h5", "kind": "take", "software": "kinalign 1", "subject": "S",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What check says of a recording's survey.
+// The text of `kinalign check` about a recording's survey.
 #include "apps/kinalign/text/describe_file.h"
 
 #include <doctest/doctest.h>
@@ -42,7 +42,7 @@ std::string judged(const RecordingSurvey& survey) {
 
 TEST_CASE("what the recorder counted and the file lacks is found, at its ends too") {
   CHECK(judged(kinect_survey(1000, 1000, 0)).empty());
-  CHECK(judged(kinect_survey(1000, 1010, 0)).empty());  // ten came behind the last count
+  CHECK(judged(kinect_survey(1000, 1010, 0)).empty());  // ten messages came after the last count
   CHECK(judged(kinect_survey(1000, 993, 0)) ==
         "the 1,000 messages on /kinect/raw that were counted: 7 missing\n");
   CHECK(judged(kinect_survey(1000, 993, 7)) ==
@@ -63,7 +63,7 @@ TEST_CASE("a topic that has nothing at all is missed, several of one name are on
 
 TEST_CASE("losses are told of the frames where they are counted, else of the messages") {
   RecordingSurvey survey = kinect_survey(900, 900, 0);
-  survey.senders[0].counts.frames = 300;  // in three parts each
+  survey.senders[0].counts.frames = 300;  // each frame is three messages
   survey.senders[0].counts.order.lost = 3;
   CHECK(judged(survey) == "every frame that kinect sent: 3 lost of 303\n");
   survey.senders[0].counts.frames = 0;
@@ -115,7 +115,8 @@ TEST_CASE("what came to the nodes' port and is no node's is a warning, unless it
         "messages of imu 7: none: 419 datagrams came to its port, none a frame of nodes\n"
         "frames of nodes alone at the port of imu: 419 datagrams that are none\n");
   CHECK(judge_survey("a.mcap", survey).back().severity == Severity::warning);
-  survey.senders[0].stream = "imu";  // whose lost frames may be among what was thrown away
+  // The datagrams that were thrown away may be among its 400 lost frames.
+  survey.senders[0].stream = "imu";
   survey.senders[0].counts.order.lost = 400;
   CHECK(judge_survey("a.mcap", survey).back().what.found == "at least 19 datagrams that are none");
   survey.senders[0].counts.order.lost = 419;
@@ -125,7 +126,7 @@ TEST_CASE("what came to the nodes' port and is no node's is a warning, unless it
 TEST_CASE("of trackers' datagrams it is told where all were refused, older counts too") {
   RecordingSurvey survey = kinect_survey(79, 79, 0);
   survey.channels[0].channel.message_encoding = "slimevr";
-  CHECK(judged(survey).empty());  // by a version that counted no frames of trackers
+  CHECK(judged(survey).empty());  // written by a version that did not count the frames of trackers
   SenderCounts& counts = survey.senders[0].counts;
   counts.refused = 79;
   CHECK(judged(survey).starts_with("frames of slimevr in what kinect"));

@@ -7,7 +7,8 @@ namespace kinalign {
 
 using namespace std::chrono_literals;
 
-/// A lab a minute after its ports were opened: mocap at work, one of two nodes, a silent Kinect.
+/// A lab one minute after its ports were opened: a mocap that sends, one of two nodes, and a silent
+/// Kinect.
 struct Scene {
   Lab lab;
   LabStatus status;

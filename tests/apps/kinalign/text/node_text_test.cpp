@@ -71,7 +71,7 @@ TEST_CASE("a node without a certificate, a counter or a voice says so") {
   CHECK(status_text(bare, now) ==
         "node 3  silent since 2026-11-22T17:38:23Z, no counter: d 33.0 ms, old key");
   CHECK(nodes_text({bare}) == "1 node, 0 locked, 1 silent");
-  NodeStatus left = some_status();  // certified when it was heard last
+  NodeStatus left = some_status();  // certified at the last frame
   left.silent = true;
   CHECK(nodes_text({some_status(), left}) == "2 nodes, 1 locked, 1 silent");
   CHECK(nodes_text({}).empty());

@@ -113,7 +113,8 @@ TEST_CASE(
   const std::string came = "imu wrist: 1,181 datagrams came to port 5005, none a frame of nodes";
   CHECK(lines_of_unheard(scene.lab, scene.status, ports)[0] == came);
   CHECK(end_lines_of_unheard(scene.lab, scene.status, ports)[0] == came);
-  scene.status.ports[0].second.refused = 4;  // of frames: without a key, say
+  // Frames that were refused, for example because no key was given.
+  scene.status.ports[0].second.refused = 4;
   CHECK(lines_of_unheard(scene.lab, scene.status, ports)[1] ==
         "imu waist: 1,185 datagrams came to port 5005, none was let in");
 }

@@ -62,7 +62,7 @@ TEST_CASE(
   const FreshFolder folder;
   RecordedLab lab(20261123);
   lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 20.0);
-  lab.hold_back(200, 1.5);  // of frames two: some 45 are quicker
+  lab.hold_back(200, 1.5);  // two frames are delayed; some 45 later frames arrive before them
   const std::string path = folder.write("take.mcap", lab.file());
   const std::string said =
       "take.mcap: expected frames that at most 16 others overtake, found 2 that came later still";

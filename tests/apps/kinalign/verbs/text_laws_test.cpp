@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of any text that is laid out for people.
+// Rules for any text that is laid out for people.
 #include "apps/cli/console.h"
 #include "apps/cli/help.h"
 #include "apps/cli/terminal.h"
@@ -54,7 +54,7 @@ std::vector<std::string> lines_in(const std::string& text) {
   return lines;
 }
 
-/// What a terminal shows of it: no colours, a place for each character.
+/// The width of the text on a terminal: colours take no room, each character takes one place.
 std::size_t shown_width(std::string text) {
   for (auto at = text.find('\x1b'); at != std::string::npos; at = text.find('\x1b')) {
     text.erase(at, text.find('m', at) - at + 1);
@@ -64,7 +64,7 @@ std::size_t shown_width(std::string text) {
   }));
 }
 
-/// A verb whose texts have all that a shell or roff could take for its own.
+/// A verb whose texts contain all characters that are special in a shell or in roff.
 Verb odd_verb() {
   const std::string text = "it's a \"test\": \\(bu [x] $HOME `id` 50 % - a--b {} ~ #";
   const Page page{"odd", text, ".B " + text, {{"kinalign odd " + text, "'" + text}}, {"out"}};
@@ -91,7 +91,7 @@ TEST_CASE("lines broken for a terminal fit it, word for word, but for words that
       CHECK((shown_width(line) <= width || words_in(line).size() == 1));
     }
     if (shown_width(text) <= width) CHECK(found == text + "\n");
-    CHECK(broken(found, width) == found);  // what fits is left alone
+    CHECK(broken(found, width) == found);  // a text that already fits is not changed
   }
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("text wrapped for a page keeps its words, its width and its margin") {
       again += line.substr(std::min(indent, line.size())) + " ";
     }
     CHECK(words_in(again) == words_in(text));
-    // No word of a line would have fitted into the one before.
+    // The first word of a line would not have fitted into the line before.
     for (std::size_t i = 1; i < lines.size(); ++i) {
       const std::string first = words_in(lines[i]).front();
       CHECK(lines[i - 1].size() + 1 + first.size() > width);
