@@ -20,6 +20,8 @@ class WindowNetwork {
   explicit WindowNetwork(const Network& network);
   WindowNetwork(WindowNetwork&&) noexcept;
   WindowNetwork& operator=(WindowNetwork&&) noexcept;
+  WindowNetwork(const WindowNetwork&) = delete;
+  WindowNetwork& operator=(const WindowNetwork&) = delete;
   ~WindowNetwork();
 
   /// The first `count` frames have left the window.

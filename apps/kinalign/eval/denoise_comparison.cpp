@@ -220,13 +220,28 @@ std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
 
 std::string joint_key(std::size_t joint) { return std::string(shared_joints[joint]) + "_cm"; }
 
+/// Adds the means of the columns of the paper's table 9.
+void add_table_nine(const std::string& name, const Group& group, std::size_t which,
+                    MethodMarks& out) {
+  Mean position, bone, smooth;
+  for (const Marked* one : group) {
+    const TableNine& marks = one->marks[which].table_nine;
+    position.add(marks.position);
+    bone.add(marks.bone);
+    smooth.add(marks.smooth);
+  }
+  out.marks["table_9_position_cm2"][name].add(position.value_or(0.0));
+  out.marks["table_9_bone_cm"][name].add(bone.value_or(0.0));
+  out.marks["table_9_smooth_cm"][name].add(smooth.value_or(0.0));
+}
+
 /// Adds the means of a group. `which`: the index in Marked::marks. Skating is weighted by the
 /// frames in which feet stand.
 void add_group(const std::string& name, const Group& group, std::size_t which, MethodMarks& out) {
   std::vector<ProtocolMarks> marks;
   double skate = 0.0, contacts = 0.0;
   RadiusMarks radii;
-  Mean hands, lag, amplitude, position, bone, smooth;
+  Mean hands, lag, amplitude;
   std::array<Mean, shared_joint_count> joints{};
   for (const Marked* one : group) {
     const DenoiseMarks& m = one->marks[which];
@@ -242,9 +257,6 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
     add(m.hand_cm, hands);
     add(m.lag_ms, lag);
     add(m.amplitude, amplitude);
-    position.add(m.table_nine.position);
-    bone.add(m.table_nine.bone);
-    smooth.add(m.table_nine.smooth);
     for (std::size_t j = 0; j < joints.size(); ++j) add(m.joint_cm[j], joints[j]);
     const auto standing = static_cast<double>(m.feet.contacts);
     skate += 100.0 * m.feet.skate_m_s * standing;
@@ -267,9 +279,7 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   put("hand_cm", hands.value());
   put("lag_ms", lag.value());
   put("amplitude", amplitude.value());
-  put("table_9_position_cm2", position.value());
-  put("table_9_bone_cm", bone.value());
-  put("table_9_smooth_cm", smooth.value());
+  add_table_nine(name, group, which, out);
   for (std::size_t j = 0; j < joints.size(); ++j) put(joint_key(j), joints[j].value());
   if (contacts > 0.0) put("skate_cm_s", skate / contacts);
 }

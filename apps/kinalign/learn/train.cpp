@@ -334,10 +334,19 @@ Result<std::optional<FolderLock>> open_folder(const Train& o, const std::string&
   return out;
 }
 
+/// Writes the jobs. A shipped model to go on from is found by its name first.
+Result<std::vector<std::string>> jobs_of(Train& o, const std::string& windows, const Places& places,
+                                         Call& call) {
+  FileSystem& files = call.surroundings.files;
+  if (!o.from.empty()) o.from = KA_TRY(model_named(o.from, ""));
+  const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
+  const std::string hash = KA_TRY(hash_of(files, windows));
+  return write_jobs(job_of(o, windows, hash, from_hash, call), places, call);
+}
+
 /// Trains a model. Only the first of several processes prints the result and removes the windows it
 /// cut.
 Result<int> run_train(Train& o, Call& call) {
-  FileSystem& files = call.surroundings.files;
   const std::string& out = call.common.out;
   std::error_code fault;
   if (fs::exists(out, fault) && !call.common.force) {
@@ -347,10 +356,7 @@ Result<int> run_train(Train& o, Call& call) {
   const std::string folder = run_folder(out);
   const auto lock = KA_TRY(open_folder(o, folder, places, call));
   const std::string windows = KA_TRY(windows_of(o, folder));
-  if (!o.from.empty()) o.from = KA_TRY(model_named(o.from, ""));
-  const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
-  const auto jobs = KA_TRY(write_jobs(
-      job_of(o, windows, KA_TRY(hash_of(files, windows)), from_hash, call), places, call));
+  const auto jobs = KA_TRY(jobs_of(o, windows, places, call));
   if (o.prepare) {
     print_prepared(jobs, windows, call);
     return 0;
