@@ -201,6 +201,7 @@ bool are_bounded(const std::vector<Layer>& layers) {
 
 struct WindowNetwork::State {
   const Network* network = nullptr;
+  std::size_t frames = 0;           // of the previous run that are still in the window
   std::vector<LayerWindow> layers;  // empty: the network runs over the whole window each time
   Values scratch;
   Workspace workspace;
@@ -217,7 +218,10 @@ WindowNetwork::WindowNetwork(WindowNetwork&&) noexcept = default;
 WindowNetwork& WindowNetwork::operator=(WindowNetwork&&) noexcept = default;
 WindowNetwork::~WindowNetwork() = default;
 
-void WindowNetwork::forget(std::size_t count) { forget_rows(state_->layers, count); }
+void WindowNetwork::forget(std::size_t count) {
+  forget_rows(state_->layers, count);
+  state_->frames -= std::min(count, state_->frames);
+}
 
 std::span<const float> WindowNetwork::run(std::span<const float> in, std::size_t frames,
                                           std::size_t changed, std::size_t end) {
@@ -227,6 +231,8 @@ std::span<const float> WindowNetwork::run(std::span<const float> in, std::size_t
     network.run(in, frames, state_->workspace, state_->all);
     return std::span<const float>(state_->all).first(end * network.outputs());
   }
+  changed = std::min(changed, state_->frames);
+  state_->frames = frames;
   const FlushToZero flush;
   WindowRun run(*network.prepared_->kernels, frames, state_->scratch);
   const Rows out = run.list(state_->layers, {in.data(), network.inputs(), changed}, end);

@@ -28,10 +28,11 @@ class WindowNetwork {
   void forget(std::size_t count);
 
   /// Computes the results [end, outputs] of the window's frames before `end`, which must be at
-  /// least 1. `in` [frames, inputs] is the window. Rows from `changed` on are new or differ from
-  /// the previous run. If look_back() (shapes.h) is bounded and the window reaches as far back, the
-  /// results equal those of Network::run over all frames since the start, bit by bit. Otherwise
-  /// they equal those of Network::run over the window. Valid until the next call.
+  /// least 1. `in` [frames, inputs] is the window. Rows from `changed` on differ from the previous
+  /// run; rows that it did not have are new anyway. If look_back() (shapes.h) is bounded and the
+  /// window reaches as far back, the results equal those of Network::run over all frames since the
+  /// start, bit by bit. Otherwise they equal those of Network::run over the window. Valid until the
+  /// next call.
   std::span<const float> run(std::span<const float> in, std::size_t frames, std::size_t changed,
                              std::size_t end);
 

@@ -100,6 +100,13 @@ Denoised Denoiser::answer_of(const DenoiseFeatures& features, std::span<const fl
   return out;
 }
 
+void Denoiser::apply_second(Denoised& answer) {
+  if (!second_) return;
+  std::vector<float> out;
+  second_->run(answer.positions, answer.positions.size() / second_->inputs(), workspace_, out);
+  answer.positions = std::move(out);
+}
+
 Denoised Denoiser::answer(const JointFrames& body) {
   DenoiseFeatures features = denoise_features(model_.layout, body);
   standardise(features);
@@ -107,10 +114,7 @@ Denoised Denoiser::answer(const JointFrames& body) {
   std::vector<float> out;
   network_.run(features.input, frames, workspace_, out);
   Denoised answer = answer_of(features, out, 0, frames);
-  if (second_) {
-    second_->run(answer.positions, frames, workspace_, out);
-    answer.positions = out;
-  }
+  apply_second(answer);
   to_world(features.frames, answer.positions);
   return answer;
 }

@@ -89,10 +89,12 @@ class Denoiser {
   /// Scales the features as in training: subtracts the mean, divides by the scale.
   void standardise(DenoiseFeatures& features) const;
   /// Converts the network's output [T, outputs], rows `first` ... `end` - 1, to joints in the
-  /// body's frames (to_world() brings them to the world). The second network, if the model has one,
-  /// is not applied here.
+  /// body's frames (to_world() brings them to the world). apply_second() comes next.
   Denoised answer_of(const DenoiseFeatures& features, std::span<const float> answers,
                      std::size_t first, std::size_t end) const;
+  /// Replaces the joints, in the body's frames, by what the second network makes of them, if the
+  /// model has one.
+  void apply_second(Denoised& answer);
 
  private:
   Denoiser(DenoiseModel model, Network network, std::optional<Network> second);

@@ -45,14 +45,7 @@ std::vector<ScoredJoint> scored_joints(const FuseLayout& layout, const PoseBody&
   for (std::size_t j = 0; j < body.skeleton.joints(); ++j) {
     const std::string& name = body.skeleton.joint_names[j];
     if (!is_scored_joint(name)) continue;
-    ScoredJoint& one = out.emplace_back(ScoredJoint{j, std::nullopt, group_of(name)});
-    for (const FuseJoint& joint : fuse_joints) {
-      if (joint.body != name) continue;
-      const auto at = std::find(layout.joints.begin(), layout.joints.end(), joint.kinect);
-      if (at != layout.joints.end()) {
-        one.kinect = static_cast<std::size_t>(at - layout.joints.begin());
-      }
-    }
+    out.push_back({j, kinect_joint_at(layout.joints, name), group_of(name)});
   }
   return out;
 }

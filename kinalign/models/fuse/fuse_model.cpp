@@ -15,24 +15,6 @@ namespace {
 constexpr std::size_t smoothed_kinect_frames = 11;
 constexpr std::size_t least_tracked_joints = 8;  // of 21, that tell where a body stands
 
-/// A joint of the Kinect, and the body's joint that lies there.
-struct SameJoint {
-  std::size_t kinect = 0, body = 0;
-};
-
-std::vector<SameJoint> body_joints_of(const std::vector<std::string>& kinect,
-                                      const Skeleton& body) {
-  std::vector<SameJoint> out;
-  for (const FuseJoint& one : fuse_joints) {
-    const auto seen = std::find(kinect.begin(), kinect.end(), one.kinect);
-    const auto own = std::find(body.joint_names.begin(), body.joint_names.end(), one.body);
-    if (seen == kinect.end() || own == body.joint_names.end()) continue;
-    out.push_back({static_cast<std::size_t>(seen - kinect.begin()),
-                   static_cast<std::size_t>(own - body.joint_names.begin())});
-  }
-  return out;
-}
-
 /// True if the Kinect sees at least one joint in any frame.
 bool is_placed(const FuseInput& input) {
   return std::any_of(input.kinect.seen.begin(), input.kinect.seen.end(),
@@ -60,7 +42,13 @@ Result<Fuser> Fuser::make(FuseModel model) {
 }
 
 Fuser::Fuser(FuseModel model, Network network)
-    : model_(std::move(model)), network_(std::move(network)) {}
+    : model_(std::move(model)), network_(std::move(network)) {
+  const auto& names = model_.body.skeleton.joint_names;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const auto kinect = kinect_joint_at(model_.layout.joints, names[j]);
+    if (kinect) same_joints_.push_back({*kinect, j});
+  }
+}
 
 FusedPose Fuser::pose_of(const FuseAnswers& said) const {
   const std::size_t bones = model_.layout.nodes.bones.size(), width = model_.layout.answers();
@@ -134,13 +122,12 @@ FusedPose Fuser::measured_pose_of(const FuseAnswers& said, const FuseInput& inpu
 /// tracks. A network places the root as it has learnt it from other skeletons, whose hips lie
 /// elsewhere. A frame with few tracked joints keeps the network's place.
 void Fuser::place_at_seen(const FuseInput& input, std::size_t first, FusedPose& pose) const {
-  const auto pairs = body_joints_of(model_.layout.joints, model_.body.skeleton);
   const std::size_t joints = model_.body.skeleton.joints();
   const auto about_root =
       bone_positions(model_.body, model_.body.skeleton.rest_offsets, pose.rotations);
   for (std::size_t t = 0; t < pose.place.size(); ++t) {
     std::array<std::vector<float>, 3> ways;
-    for (const auto& [kinect, body] : pairs) {
+    for (const auto& [kinect, body] : same_joints_) {
       const std::size_t at = (first + t) * input.kinect.joints + kinect;
       if (input.kinect.seen[at] != 2) continue;
       const Eigen::Map<const Eigen::Vector3f> seen(&input.kinect.positions[3 * at]);

@@ -88,8 +88,14 @@ class Fuser {
   void turn_to_measured(const FuseInput& input, std::size_t first, FusedPose& pose) const;
   void place_at_seen(const FuseInput& input, std::size_t first, FusedPose& pose) const;
 
+  /// A joint of the Kinect, and the body's joint that lies there.
+  struct SameJoint {
+    std::size_t kinect = 0, body = 0;
+  };
+
   FuseModel model_;
   Network network_;
+  std::vector<SameJoint> same_joints_;
   Workspace workspace_;
 };
 

@@ -35,16 +35,6 @@ constexpr float far_turn = 0.25F * std::numbers::pi_v<float>;
 constexpr float least_length_m = 0.03F;
 constexpr float against = -0.5F;  // the cosine of 120 degrees
 
-std::optional<std::size_t> kinect_joint_at(const std::vector<std::string>& kinect,
-                                           std::string_view body_joint) {
-  const auto joint = std::find_if(fuse_joints.begin(), fuse_joints.end(),
-                                  [&](const FuseJoint& one) { return one.body == body_joint; });
-  if (joint == fuse_joints.end()) return std::nullopt;
-  const auto at = std::find(kinect.begin(), kinect.end(), joint->kinect);
-  if (at == kinect.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - kinect.begin());
-}
-
 /// The position of a joint at rest, with all rotations the identity, m; empty if there is no such
 /// joint.
 std::optional<Vec3> rest_place(const Skeleton& skeleton, std::string_view name) {
@@ -60,6 +50,16 @@ std::optional<Vec3> rest_place(const Skeleton& skeleton, std::string_view name) 
 }
 
 }  // namespace
+
+std::optional<std::size_t> kinect_joint_at(const std::vector<std::string>& kinect,
+                                           std::string_view body_joint) {
+  const auto joint = std::find_if(fuse_joints.begin(), fuse_joints.end(),
+                                  [&](const FuseJoint& one) { return one.body == body_joint; });
+  if (joint == fuse_joints.end()) return std::nullopt;
+  const auto at = std::find(kinect.begin(), kinect.end(), joint->kinect);
+  if (at == kinect.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - kinect.begin());
+}
 
 std::optional<SeenBone> seen_bone(const PoseBody& body, const std::vector<std::string>& kinect,
                                   std::string_view from, std::string_view to,

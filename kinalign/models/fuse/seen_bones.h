@@ -20,6 +20,10 @@ struct SeenBone {
   std::size_t bone = 0;
 };
 
+/// The index of the Kinect's joint that lies at a joint of pose_joints; empty if there is none.
+std::optional<std::size_t> kinect_joint_at(const std::vector<std::string>& kinect,
+                                           std::string_view body_joint);
+
 /// The bone between two joints of pose_joints. `bone`: the bone of PoseBody that turns it; "" is
 /// the root. Empty if the Kinect lacks a joint or both joints are at one place in the body.
 std::optional<SeenBone> seen_bone(const PoseBody& body, const std::vector<std::string>& kinect,

@@ -3,6 +3,7 @@
 
 #include "kinalign/infer/shapes.h"
 #include "kinalign/models/bones.h"
+#include "kinalign/models/live/window_rows.h"
 
 #include <algorithm>
 
@@ -35,11 +36,6 @@ std::size_t first_changed(std::span<const float> rows, std::span<const float> be
   };
   while (row > 0 && !is_same(row - 1)) --row;
   return row;
-}
-
-template <class T>
-void erase_first(std::vector<T>& all, std::size_t count) {
-  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace
@@ -78,27 +74,23 @@ std::vector<float> LiveCleaner::positions_of(Seen& seen, DenoiseFeatures feature
   const std::size_t channels = denoiser_->model().layout.channels();
   const std::size_t changed = first_changed(features.input, seen.rows, channels);
   const auto answers = seen.network.run(features.input, features.frames.size(), changed, end);
-  std::vector<float> out = denoiser_->answer_of(features, answers, first, end).positions;
+  Denoised out = denoiser_->answer_of(features, answers, first, end);
+  denoiser_->apply_second(out);
   seen.rows = std::move(features.input);
-  return out;
+  return std::move(out.positions);
 }
 
 /// The answer for `row`, post-processed as by Steadier but without constant bones.
 std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
   const DenoiseModel& model = denoiser_->model();
   const auto width = static_cast<std::ptrdiff_t>(model.layout.answers());
-  if (model.second) {
-    Steadying how = model.steadying;
-    how.bones = false;
-    const auto answer = [this](const JointFrames& body) { return denoiser_->answer(body); };
-    const Steadier steadier(how, model.layout);
-    const auto all = steadier.steadied(answer, window_, answer(window_)).positions;
-    const auto at = all.begin() + static_cast<std::ptrdiff_t>(row) * width;
-    return {at, at + width};
-  }
   const Smoothing& smoothing = model.steadying.smoothing;
-  const std::size_t first = row - std::min(row, smoothing.window);
-  const std::size_t end = std::min(row + half(smoothing) + 1, window_.frames());
+  std::size_t first = row - std::min(row, smoothing.window);
+  std::size_t end = std::min(row + half(smoothing) + 1, window_.frames());
+  if (model.second) {  // it uses all rows
+    first = 0;
+    end = window_.frames();
+  }
   const DenoiseFeatures features = denoise_features(model.layout, window_);
   std::vector<float> positions = positions_of(plain_, features, first, end);
   if (model.steadying.mirror) {

@@ -2,6 +2,7 @@
 #include "kinalign/models/live/live_fuser.h"
 
 #include "kinalign/infer/shapes.h"
+#include "kinalign/models/live/window_rows.h"
 
 #include <algorithm>
 #include <utility>
@@ -49,19 +50,14 @@ FuseInput frame_at(const FuseInput& all, std::size_t t) {
       {joints, row_of(all.kinect.positions, t, 3 * joints), row_of(all.kinect.seen, t, joints)}};
 }
 
-template <class T>
-void erase_begin(std::vector<T>& all, std::size_t count) {
-  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
-}
-
 void forget_first(FuseInput& all) {
   const std::size_t nodes = all.nodes.nodes, joints = all.kinect.joints;
-  erase_begin(all.nodes.orientation, 4 * nodes);
-  erase_begin(all.nodes.acceleration, 3 * nodes);
-  erase_begin(all.nodes.angular_velocity, 3 * nodes);
-  erase_begin(all.nodes.valid, nodes);
-  erase_begin(all.kinect.positions, 3 * joints);
-  erase_begin(all.kinect.seen, joints);
+  erase_first(all.nodes.orientation, 4 * nodes);
+  erase_first(all.nodes.acceleration, 3 * nodes);
+  erase_first(all.nodes.angular_velocity, 3 * nodes);
+  erase_first(all.nodes.valid, nodes);
+  erase_first(all.kinect.positions, 3 * joints);
+  erase_first(all.kinect.seen, joints);
 }
 
 }  // namespace
@@ -77,8 +73,8 @@ void LiveFuser::Seen::make(const FuseModel& model, const FuseInput& input, std::
 }
 
 void LiveFuser::Seen::forget_first() {
-  erase_begin(rows, rows.size() / spaces.size());
-  erase_begin(spaces, 1);
+  erase_first(rows, rows.size() / spaces.size());
+  erase_first(spaces, 1);
   network.forget(1);
 }
 
@@ -134,8 +130,7 @@ void LiveFuser::take(FuseInput input) {
 void LiveFuser::find_headings(std::size_t end) {
   const std::size_t bones = fuser_->model().layout.nodes.bones.size();
   const std::size_t nodes = states_.size(), frames = window_.frames();
-  const auto answers = kinect_.network.run(kinect_.rows, frames, kinect_run_, end);
-  kinect_run_ = frames;
+  const auto answers = kinect_.network.run(kinect_.rows, frames, frames, end);
   const FusedPose seen = fuser_->pose_of({kinect_.spaces, answers, next_, end});
   headings_.resize(next_ * nodes);
   for (std::size_t row = next_; row < end; ++row) {
@@ -185,8 +180,7 @@ void LiveFuser::answer_rows(std::size_t count, std::vector<FusedFramePose>& out)
     forget_first(window_);
     kinect_.forget_first();
     both_.forget_first();
-    erase_begin(headings_, states_.size());
-    --kinect_run_;
+    erase_first(headings_, states_.size());
   }
 }
 

@@ -80,9 +80,7 @@ class LiveFuser {
   std::optional<double> yaw_;  // rad, rotates the nodes' world to the Kinect's
   FuseInput waiting_;          // frames received before the yaw is known
   FuseInput window_;
-  Seen kinect_, both_;  // the state of both_.maker is that of row next_
-  /// Number of rows whose answer for the Kinect alone has been computed.
-  std::size_t kinect_run_ = 0;
+  Seen kinect_, both_;                  // the state of both_.maker is that of row next_
   std::vector<HeadingState> headings_;  // [window,N]
   std::size_t next_ = 0;                // the row of the window that is answered next
   std::size_t forgotten_ = 0;

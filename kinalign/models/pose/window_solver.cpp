@@ -55,8 +55,7 @@ std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
   const std::size_t frames = roots_.size();
   const std::size_t first = row - std::min(row, smoothed_beside);
   const std::size_t end = std::min(row + smoothed_beside + 1, frames);
-  const auto answers = network_.run(rows_, frames, run_, end);
-  run_ = frames;
+  const auto answers = network_.run(rows_, frames, frames, end);
   std::vector<Turn> turns;
   for (std::size_t at = first * bones; at < end * bones; ++at) {
     turns.push_back(turn_of_answer(&answers[6 * at]));
@@ -72,7 +71,6 @@ std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
     rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(channels));
     roots_.pop_front();
     network_.forget(1);
-    --run_;
     --next_;
   }
   return out;

@@ -47,7 +47,6 @@ class WindowSolver {
   std::deque<Eigen::Quaternionf> roots_;  // [window]
   std::size_t next_ = 0;                  // the row of the window that is answered next
   WindowNetwork network_;
-  std::size_t run_ = 0;  // number of rows of the window that the network has processed
 };
 
 }  // namespace kinalign

@@ -62,3 +62,37 @@ TEST_CASE("the fused skeleton has bones of one length, at the Kinect's place") {
     CHECK((root - person.truth.place[t].cast<double>()).norm() < 0.1);
   }
 }
+
+TEST_CASE("the body stands where the Kinect's joints lie; few joints leave the network's place") {
+  FusePerson person = fuse_person(20);
+  const std::size_t joints = person.input.kinect.joints;
+  for (std::size_t j = 7; j < joints; ++j) person.input.kinect.seen[10 * joints + j] = 0;
+  FuseModel model = random_fuse_model(3);
+  model.smoothing = false;
+  auto fuser = Fuser::make(model);
+  REQUIRE(fuser);
+  const std::vector<HeadingState> headings(20 * 5);
+  const FusedPose pose = fuser->solve(person.input, headings);
+  CHECK(pose.place[10] == fuser->answer(person.input).place[10]);
+  const auto about_root =
+      bone_positions(model.body, model.body.skeleton.rest_offsets, pose.rotations);
+  const auto& names = model.body.skeleton.joint_names;
+  for (std::size_t t = 0; t < 20; ++t) {
+    if (t == 10) continue;
+    CAPTURE(t);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      std::vector<float> ways;
+      for (std::size_t j = 0; j < joints; ++j) {
+        const auto own = static_cast<std::size_t>(
+            std::find(names.begin(), names.end(), fuse_joints[j].body) - names.begin());
+        const Eigen::Map<const Eigen::Vector3f> at(&about_root[3 * (t * names.size() + own)]);
+        const Eigen::Vector3f in_world = pose.place[t] + pose.root[t] * Eigen::Vector3f(at);
+        ways.push_back(
+            person.input.kinect.positions[3 * (t * joints + j) + static_cast<std::size_t>(k)] -
+            in_world[k]);
+      }
+      std::sort(ways.begin(), ways.end());
+      CHECK(std::abs(ways[joints / 2]) < 1e-5F);
+    }
+  }
+}
