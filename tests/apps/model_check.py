@@ -232,6 +232,8 @@ def train_takes_one_source_and_never_replaces_a_file_unasked(folder):
     wrong("train", "refine", "--data", "d", "--windows", "w", "-o", folder / "m.safetensors",
           says="--data: expected a data set (--data) or a file of windows (--windows), found both")
     wrong("train", "refine", "--data", "d", "-o", "m.onnx", says="-o: expected -o FILE.safetensors, found m.onnx")
+    wrong("train", "refine", "--data", "d", "-o", "m.safetensors", "--vary-size", "0.1",
+          says="--vary-size: expected a method for poses or for fusion, found refine")
     (folder / "m.safetensors").write_text("mine")
     refused("train", "refine", "--data", folder, "-o", folder / "m.safetensors", naming=folder / "m.safetensors")
     assert (folder / "m.safetensors").read_text() == "mine"

@@ -202,10 +202,7 @@ Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> 
   auto frames = even_frames(layout.inputs, kinect_names(named.joints), named.frames,
                             {layout.rate_hz, longest_gap_s});
   if (frames) {
-    std::vector<std::string> warnings = named.warnings;
-    for (std::string& one : warnings_of(*frames, named.left_out)) {
-      warnings.push_back(std::move(one));
-    }
+    std::vector<std::string> warnings = warnings_of(named, *frames);
     return SeenJoints{named.stream, *std::move(frames), std::move(warnings)};
   }
   Error error = frames.error();

@@ -53,10 +53,7 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
   EvenFrames seen =
       KA_TRY(even_frames(layout.joints, kinect_names(both.kinect.joints), both.kinect.frames,
                          {layout.nodes.rate_hz, longest_kinect_gap_s, span}));
-  out.warnings = std::move(both.kinect.warnings);
-  for (std::string& one : warnings_of(seen, both.kinect.left_out)) {
-    out.warnings.push_back(std::move(one));
-  }
+  out.warnings = warnings_of(both.kinect, seen);
   out.input.kinect = std::move(seen.body);
   const auto yaw = shared_heading(layout, out.input);
   if (!yaw) {

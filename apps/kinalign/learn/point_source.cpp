@@ -167,11 +167,11 @@ Result<NamedPoints> points_of_file(const std::string& path, const std::string& s
   return out;
 }
 
-std::vector<std::string> warnings_of(const EvenFrames& frames, std::size_t left_out) {
-  std::vector<std::string> out;
-  if (left_out > 0) {
-    out.push_back(
-        fmt::format("{} frames are left out: their stamps repeat or step back", grouped(left_out)));
+std::vector<std::string> warnings_of(const NamedPoints& points, const EvenFrames& frames) {
+  std::vector<std::string> out = points.warnings;
+  if (points.left_out > 0) {
+    out.push_back(fmt::format("{} frames are left out: their stamps repeat or step back",
+                              grouped(points.left_out)));
   }
   if (frames.far > 0) {
     out.push_back(fmt::format("{} joints lie more than 1.6 m from the root and count as missing",

@@ -27,7 +27,8 @@ Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
                                    const std::string& stream);
 Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call);
 
-/// Warnings about a Kinect's frames before a model gets them. `left_out`: of NamedPoints.
-std::vector<std::string> warnings_of(const EvenFrames& frames, std::size_t left_out);
+/// Warnings about a Kinect before a model gets its frames: the reader's, and those about `frames`,
+/// which `points` were brought to.
+std::vector<std::string> warnings_of(const NamedPoints& points, const EvenFrames& frames);
 
 }  // namespace kinalign

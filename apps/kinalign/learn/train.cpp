@@ -104,11 +104,6 @@ Usage describe_train(Train& o) {
        &o.prepare}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     KA_TRY(check_task_flags(method_of(o), given));
-    for (const char* flag : {"vary-speed", "vary-size"}) {
-      if (method_of(o).task != Learns::denoise || given.count(flag) == 0) continue;
-      return Failure(Error{std::string("--") + flag, 0, "a method for poses or for fusion",
-                           method_of(o).name});
-    }
     if (!common.out.ends_with(".safetensors")) {
       return Failure(
           Error{"-o", 0, "-o FILE.safetensors", common.out.empty() ? "none" : shown(common.out)});
@@ -251,10 +246,12 @@ void print_trained(const Train& o, const Json& last, Call& call) {
 }
 
 /// Prints the files that the other machine needs, and the command to run there.
-void print_prepared(const std::vector<std::string>& jobs, const std::string& windows, Call& call) {
+void print_prepared(const Train& o, const std::vector<std::string>& jobs,
+                    const std::string& windows, Call& call) {
   std::string text = harmless(windows) + ": windows\n";
+  if (!o.from.empty()) text += harmless(o.from) + ": the model that the training goes on from\n";
   for (const std::string& job : jobs) text += harmless(job) + ": a job\n";
-  text += "Bring both to the other machine, with the same names, and say there:\n";
+  text += "Bring these files to the other machine, with the same names, and run there:\n";
   for (const std::string& job : jobs) text += "  kinalign-learn " + harmless(job) + "\n";
   call.console.print(text);
   call.console.print_json(Json{{"windows", windows}, {"jobs", jobs}}.dump(1));
@@ -358,7 +355,7 @@ Result<int> run_train(Train& o, Call& call) {
   const std::string windows = KA_TRY(windows_of(o, folder));
   const auto jobs = KA_TRY(jobs_of(o, windows, places, call));
   if (o.prepare) {
-    print_prepared(jobs, windows, call);
+    print_prepared(o, jobs, windows, call);
     return 0;
   }
   const Json last = KA_TRY(run_jobs(jobs, call));

@@ -118,6 +118,11 @@ Result<void> check_task_flags(const TrainedMethod& method, const Sources& given)
   if (method.task == Learns::denoise && given.count("nodes") > 0) {
     return Failure(Error{"--nodes", 0, "a method for poses or for fusion", method.name});
   }
+  for (const char* flag : {"vary-speed", "vary-size"}) {
+    if (method.task != Learns::denoise || given.count(flag) == 0) continue;
+    return Failure(
+        Error{std::string("--") + flag, 0, "a method for poses or for fusion", method.name});
+  }
   if (method.task != Learns::denoise && given.count("hand-weight") > 0) {
     return Failure(Error{"--hand-weight", 0, "a method that cleans a Kinect", method.name});
   }

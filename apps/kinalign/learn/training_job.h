@@ -34,8 +34,8 @@ const TrainedMethod* find_trained(const std::string& name);
 Field input_field(std::string& input);
 Field truth_field(std::string& truth);
 Field nodes_field(std::string& nodes);
-/// Fails for --nodes, --hand-weight, --own-root, --input or --rate if a method of that task has no
-/// use for the flag.
+/// Fails for --nodes, --hand-weight, --own-root, --input, --rate, --vary-speed or --vary-size if a
+/// method of that task has no use for the flag.
 Result<void> check_task_flags(const TrainedMethod& method, const Sources& given);
 
 /// The windows to be cut from a data set.

@@ -299,19 +299,18 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
     options.worn.back() = nodes.worn[*choice[n]];
     KA_TRY(complete(tracks[n]));
   }
-  out.warnings = std::move(nodes.warnings);
-  for (std::string& one : sample_warnings(layout, tracks, !span)) {
-    out.warnings.push_back(std::move(one));
-  }
+  const auto warn = [&out](const std::vector<std::string>& more) {
+    out.warnings.insert(out.warnings.end(), more.begin(), more.end());
+  };
+  warn(nodes.warnings);
+  warn(sample_warnings(layout, tracks, !span));
   out.even = KA_TRY(even_nodes(tracks, layout.rate_hz, span));
   out.t_pose = KA_TRY(choose_t_pose(o.t_pose, out.even.worn, layout.rate_hz));
   options.t_pose = out.t_pose.frames;
   if (o.headings == "shared") options.headings = Headings::shared;
   if (o.headings == "mounting") options.headings = Headings::mounting;
   out.calibration = KA_TRY(calibrate(layout, body, out.even.worn, options));
-  for (std::string& one : warnings_of(layout, out.calibration, o.headings)) {
-    out.warnings.push_back(std::move(one));
-  }
+  warn(warnings_of(layout, out.calibration, o.headings));
   return out;
 }
 
