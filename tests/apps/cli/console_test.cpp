@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 
 #include <algorithm>
@@ -59,11 +60,19 @@ class Pty {
     const winsize size{24, columns, 0, 0};
     REQUIRE(::ioctl(master_, TIOCSWINSZ, &size) == 0);
   }
-  /// The text that was shown since the last call.
+  /// The text that was shown since the last call. The kernel carries it over in its own time, so a
+  /// mark is written behind it and waited for.
   std::string shown() const {
-    std::array<char, 4096> text{};
-    const ssize_t got = ::read(master_, text.data(), text.size());
-    return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))};
+    const char mark = '\x01';
+    REQUIRE(::write(slave_, &mark, 1) == 1);
+    std::string text;
+    for (char byte = 0; byte != mark;) {
+      pollfd readable{master_, POLLIN, 0};
+      REQUIRE(::poll(&readable, 1, 10'000) == 1);
+      REQUIRE(::read(master_, &byte, 1) == 1);
+      if (byte != mark) text += byte;
+    }
+    return text;
   }
 
  private:
