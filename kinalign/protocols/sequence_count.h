@@ -45,7 +45,8 @@ struct SequenceCounts {
 /// counts as a loss, not as a restart. A restart less than 1024 numbers back looks like duplicates
 /// for 16 packets. A restart ahead of the old count can't be told from a loss.
 /// If the caller knows that the sender did not restart, a number 1024 or more away changes nothing.
-/// Behind the newest it is a duplicate, ahead of it a stray, and nothing is lost before it.
+/// A number behind the newest is then a duplicate, one ahead of it a stray, and no packet counts as
+/// lost before it.
 class SequenceCount {
  public:
   explicit SequenceCount(unsigned bits = 32);

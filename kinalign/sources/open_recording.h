@@ -25,7 +25,7 @@ struct OpenWith {
 
 /// Opens streams: one for each, or one for each file of nodes. Paths are relative to the current
 /// folder. `files` must outlive the streams. A recording is read once, however many streams it has.
-/// Of several failures the first in the order of the files is returned.
+/// If several files fail, the first failure in the order of the files is returned.
 Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOptions>& streams,
                                const OpenWith& with = {});
 

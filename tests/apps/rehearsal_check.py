@@ -108,8 +108,8 @@ def of_a_live_recording_whose_end_is_missing_all_before_the_break_is_aligned(fol
         out, _ = done_with(1, "align", torn, "-o", folder / f"{cut}.h5", "--json")
         report = json.loads(out)["report"]
         assert any("breaks off" in one["found"] for one in report["findings"]), out
-        # Of whole chunks; a frame behind the last sample of another device, up to 0.1 s, has no row, and of the chunk
-        # that broke off there are those before the break.
+        # Only whole chunks count. A frame behind the last sample of another device, up to 0.1 s, has no row. The chunk
+        # that broke off has the rows before the break.
         frames = sum(topic == "/mocap/raw" for topic, *_ in Walk(torn).messages)
         assert min(frames - 6, whole["frames"]) <= report["frames"] <= frames + 0.3 * 60, (cut, frames, report)
         assert abs(report["begin_ns"] - whole["begin_ns"]) < 5e6, (cut, report["begin_ns"], whole["begin_ns"])

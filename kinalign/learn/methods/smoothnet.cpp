@@ -2,7 +2,7 @@
 // SmoothNet: Zeng, Yang, Ju, Li, Wang, Xu, «SmoothNet: a plug-and-play network for refining human
 // poses in videos», ECCV 2022, in the size of its released 3DPW configuration. The same weights
 // smooth every coordinate of every joint, so the network can't learn the mean offset of a joint.
-// That offset is added afterwards, as by the method `offset`.
+// The mean offset is added afterwards, as the method `offset` does it.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
