@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every node is built from, whatever the board, from the repository's root.
+# Sources of every node, whatever the board, from the repository's root.
 set(KINALIGN_NODE_SOURCES
   firmware/node/answer_gate.cpp firmware/node/clockless_node.cpp firmware/node/frame_pace.cpp
   firmware/node/lights.cpp firmware/node/link_policy.cpp firmware/node/node.cpp

@@ -45,6 +45,7 @@ tidy() {
 check format format
 check licence licence
 check includes /usr/bin/python3 tools/check_includes.py
+check comments /usr/bin/python3 tools/check_comments.py
 check docs /usr/bin/python3 tools/check_docs.py build/dev/apps/kinalign/kinalign
 check clang-tidy tidy "$@"
 exit "$failed"

@@ -251,4 +251,19 @@ def every_fault_of_docs_faults_has_tests_by_its_number_and_name(folder):
         assert tested.get(number) == names, (number, names ^ tested.get(number, set()))
 
 
+@case
+def a_comment_may_not_begin_with_what_it_is_not_about(folder):
+    put(folder, "kinalign/a.cpp", '// Of nodes only the first.\nint a = 1;  // As in b.h\n'
+                                  '// The sum, of all.\n// What follows belongs to it.\nauto b = "// Who";\n')
+    put(folder, "tools/b.py", "# SPDX-License-Identifier: Apache-2.0\n# Where it lies\n")
+    put(folder, "kinalign/CMakeLists.txt", "# In which room\n")
+    code, text = run(sys.executable, ROOT / "tools/check_comments.py", folder)
+    says = "expected a comment that begins with its subject, found"
+    assert code == 1
+    assert text == (f"kinalign/CMakeLists.txt:1: {says} «In which room»\n"
+                    f"kinalign/a.cpp:1: {says} «Of nodes only the first.»\n"
+                    f"kinalign/a.cpp:2: {says} «As in b.h»\n"
+                    f"tools/b.py:2: {says} «Where it lies»\n"), text
+
+
 sys.exit(run_cases("kinalign tools "))

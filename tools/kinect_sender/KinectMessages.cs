@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is sent to kinalign and how it lies in bytes: docs/formats/kinect_stream.md. Knows neither
+// The messages that are sent to kinalign, and their bytes: docs/formats/kinect_stream.md. Knows neither
 // the SDK nor sockets. C# 5, so that the compiler of .NET Framework 4 builds it.
 using System;
 using System.Collections.Generic;

@@ -274,7 +274,7 @@ namespace Kinalign
                 }
                 catch (SocketException)
                 {
-                    // Of UDP: nobody has the port yet. A broken connection is the sending thread's.
+                    // UDP: no program has opened the port yet. The sending thread handles a broken TCP connection.
                     if (options.Tcp) return;
                     Thread.Sleep(50);
                     continue;

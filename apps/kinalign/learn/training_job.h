@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What train and eval hand to kinalign-learn: methods by name, windows of a data set, a job.
+// The job of kinalign-learn, from train and eval: methods by name, windows of a data set.
 #pragma once
 
 #include "apps/cli/verb.h"
