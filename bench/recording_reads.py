@@ -3,7 +3,7 @@
 
 Usage: recording_reads.py KINALIGN RECORDING.mcap [MANIFEST.toml]
 e.g.   bench/recording_reads.py build/release/apps/kinalign/kinalign demo/live/take_01.mcap demo/live/recording.toml
-Prints a row for each verb. The limits of docs/performance.md: align 3.2, the others 2.2; exit code 1 above them.
+Prints a row for each verb. The limits of docs/performance_recording.md: align 3.2, the others 2.2; exit code 1 above them.
 """
 import os
 import re

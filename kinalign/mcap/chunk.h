@@ -58,7 +58,7 @@ struct McapStoredChunk {
   McapDefinitions definitions;
 };
 /// Packs a chunk. zstd uses level 1: higher levels are slower and gain nothing on motion data
-/// (performance.md, recording).
+/// (docs/performance_recording.md).
 McapStoredChunk store(const McapChunkContent& content, McapCompression compression);
 
 /// Unpacks the records of a chunk. `most`: limit on their bytes. Fails if the chunk is incomplete,

@@ -37,7 +37,7 @@ double last_round_trip(const SimulatedExchanges& simulated, double until) {
 }  // namespace
 
 // The bars themselves are judged by kinalign_clock_table --bars, on seeds that stay the same:
-// twenty of any miss one now and then (docs/performance.md).
+// twenty of any miss one now and then (docs/clock_bars.md).
 TEST_CASE("live errors stay within one and a half times the bars of each link, on any seeds") {
   struct Bar {
     Link link;

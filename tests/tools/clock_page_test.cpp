@@ -53,8 +53,8 @@ const PageFigures& short_page() {
 
 }  // namespace
 
-TEST_CASE("docs/performance.md has the rows that the clock table makes, between its two marks") {
-  const std::string page = text_of(KINALIGN_SOURCE_DIR "/docs/performance.md");
+TEST_CASE("docs/clock_figures.md has the rows that the clock table makes, between its two marks") {
+  const std::string page = text_of(KINALIGN_SOURCE_DIR "/docs/clock_figures.md");
   const auto begin = page.find("<!-- made by kinalign_clock_table --markdown --first ");
   const std::string mark = "<!-- end of what kinalign_clock_table made -->\n";
   const auto end = page.find(mark);

@@ -28,7 +28,7 @@ Usage describe(Wanted& o, Switches& switches) {
                  {"links", "by their letters", &o.links},
                  {"bursts", "half of all packets lost, 2 s at a time", &o.bursts},
                  {"bars", "hold the figures against the promises", &switches.bars},
-                 {"markdown", "the tables of docs/performance.md", &switches.markdown}};
+                 {"markdown", "the tables of docs/clock_figures.md", &switches.markdown}};
   return usage;
 }
 
@@ -47,7 +47,7 @@ Result<void> check_links(const std::string& text) {
   return {};
 }
 
-/// Fails if flags choose the sets: the tables of docs/performance.md always have the same sets.
+/// Fails if flags choose the sets: the tables of docs/clock_figures.md always have the same sets.
 Result<void> check_markdown(const Sources& given) {
   for (const auto& [name, source] : given) {
     if (name != "markdown" && name != "first") {
@@ -112,7 +112,7 @@ Every method on every simulated link, on the same traces, held against the truth
                    G thin floor (ABCDEFG)
   --bursts         half of all packets lost, 2 s at a time
   --bars           hold the figures against the promises of that length: 1, 10 or 60 minutes
-  --markdown       the measured tables of docs/performance.md, from four sets of its own
+  --markdown       the measured tables of docs/clock_figures.md, from four sets of its own
 
   kinalign_clock_table --minutes 10 --links CF
   kinalign_clock_table --bars --seeds 60 --first 71000

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of docs/performance.md, section "Clocks", and the bars for them; see --help.
+// The tables of docs/clock_figures.md, and the bars for them; see --help.
 #include "tools/clock_table/arguments.h"
 #include "tools/clock_table/markdown.h"
 #include "tools/clock_table/print.h"

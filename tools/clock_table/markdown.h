@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The measured tables of docs/performance.md, section "Clocks": RMS, p99, worst stamp,
+// The measured tables of docs/clock_figures.md: RMS, p99, worst stamp,
 // certificates, widths, gains and starts. They stand between the page's two comments.
 #pragma once
 
