@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The recipe "One's own samples" of docs/time_server.md: when samples were taken, by the log of
+"""The steps of docs/how-to-stamp-own-samples.md: when samples were taken, by the log of
 kinalign time-server --json.
 
 own_samples.py LOG reads lines of four whole numbers, stream, boot_id, lives and the node's counter
@@ -99,7 +99,7 @@ def parsed(log):
 
 def main():
     if len(sys.argv) != 2:
-        sys.exit("usage: own_samples.py LOG <ROWS    (docs/time_server.md, One's own samples)")
+        sys.exit("usage: own_samples.py LOG <ROWS    (docs/how-to-stamp-own-samples.md)")
     try:
         with open(sys.argv[1], encoding="utf-8") as log:
             stamper = Stamper(parsed(log))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The recipe "One's own samples" of docs/time_server.md, as examples/own_samples.py does it, on what
+"""The steps of docs/how-to-stamp-own-samples.md, as examples/own_samples.py does it, on what
 nodes really sent and the real server printed; host_node tells the truth of each sample.
 own_samples_check.py BUILD_FOLDER [CASE...]"""
 import json

@@ -271,7 +271,7 @@ Verb time_server_verb() {
            "happens. Members in _ns are on CLOCK_MONOTONIC_RAW, but utc_ns and the node's own "
            "counter_ns: "
            R"({"schema": "kinalign.time-server/1", "event": "pair", "raw_ns": 4521080113, )"
-           R"("utc_ns": 1790000000000000000}. docs/time_server.md has every member.)",
+           R"("utc_ns": 1790000000000000000}. docs/time_server_json.md has every member.)",
        .examples = {{"kinalign time-server --local-stratum 10",
                      "a lab without another clock; port 123 needs root"},
                     {"kinalign time-server --port 12300 --listen 127.0.0.1",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/time_server.md has every member of every line of JSON, in the table of its event.
+"""docs/time_server_json.md has every member of every line of JSON, in the table of its event.
 time_server_page_check.py BUILD_FOLDER [CASE...]"""
 import pathlib
 import re
@@ -13,7 +13,7 @@ from node_runs import Keys, Server, ended, start_node
 from served import CLIENT, client
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-PAGE = (ROOT / "docs/time_server.md").read_text()
+PAGE = (ROOT / "docs/time_server_json.md").read_text()
 BARE = {"key_replaced", "key_unreadable"}  # whose event says it all
 RARE = {"host_event": {"kind", "at_ns", "by_ms"}, "missed": {"lines"}, "clock": set()}  # not brought about here
 LATER = {"other_id", "version", "round_trip_ms", "curvature_ppm_per_s"}  # of other kinds of events, and of longer runs

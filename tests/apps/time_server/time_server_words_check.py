@@ -166,7 +166,7 @@ def on_a_terminal_json_stands_alone(_):
 
 @case
 def the_help_and_the_page_name_every_kind_of_line(_):
-    page = (pathlib.Path(__file__).parents[3] / "docs/time_server.md").read_text()
+    page = (pathlib.Path(__file__).parents[3] / "docs/time_server_json.md").read_text()
     table = page.split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
     listed = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1])}
     assert len(listed) >= 12, listed
