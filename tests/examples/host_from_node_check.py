@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The example of docs/clock.md on input that is wrong: host_from_node_check.py EXAMPLE"""
+"""The example of docs/how-to-time-own-device.md on input that is wrong: host_from_node_check.py EXAMPLE"""
 import pathlib
 import subprocess
 import sys

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Steps of a counter that no certificate sees, and whether anything could have told.
 
-Makes the tables of docs/clock.md. A recording that keeps a wrong certified stamp is held against a
+Makes the tables of docs/clock_assumptions.md. A recording that keeps a wrong certified stamp is held against a
 linear program over all that the host saw in it: is there a clock without a step, within H1 to H4,
 that explains every exchange? If so, no method that certifies recordings without a step can refuse
 this one.

@@ -103,8 +103,8 @@ Usage describe_simulate(Simulate& o) {
       {"marks_port", "live: the host's port for marks: the clicks on the suit's program",
        &o.marks_port, 1.0, 65535.0},
       {.name = "link",
-       .meaning =
-           "live: the nodes' radio (docs/clock.md: A wired, B quiet Wi-Fi, C the paper's ...)",
+       .meaning = "live: the nodes' radio (docs/simulated_links.md: A wired, B quiet Wi-Fi, C the "
+                  "paper's ...)",
        .value = &o.link,
        .choices = {"A", "B", "C", "D", "E", "F", "G"}},
       {"begin_in", "live: time to start the recorder in, s", &o.begin_in, 0.1, 3600.0},

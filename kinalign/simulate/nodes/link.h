@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Links between a node and the host: seven kinds, with the delays, losses, duplicates and
-// reorderings that docs/clock.md describes. Times are in seconds; the same seed gives the same
-// link.
+// reorderings that docs/simulated_links.md describes. Times are in seconds; the same seed gives the
+// same link.
 #pragma once
 
 #include <cstdint>
