@@ -31,7 +31,7 @@ struct SpacePlan {
 Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manifest& manifest,
                                            std::size_t reference_group);
 
-/// The pairs used if the manifest names none; docs/align.md lists them.
+/// The pairs used if the manifest names none; docs/align_space.md lists them.
 std::vector<std::pair<std::string_view, std::string_view>> usual_pairs();
 
 /// Adds the pairs of a slab in which both joints are valid and tracked.
