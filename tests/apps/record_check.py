@@ -300,7 +300,7 @@ def who_falls_silent_and_comes_back_is_told_once(folder):
 
 @case
 def a_node_that_is_not_heard_is_told_with_its_reason(folder):
-    page = (pathlib.Path(__file__).parents[2] / "docs/formats/imu_node.md").read_text()
+    page = (pathlib.Path(__file__).parents[2] / "docs/formats/imu_node_example.md").read_text()
     rows = re.findall(r"^00[0-9a-f]{2}  ((?:[0-9a-f]{2} )*[0-9a-f]{2})", page.split("version 1, a frame")[0].rsplit("```text", 1)[1]
                       + page.split("version 1, a frame")[1].split("```")[0], re.M)
     frame = bytes.fromhex("".join(rows))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The example of docs/formats/imu_node.md, read from the page: its bytes must be those that we
-// send.
+// The example of docs/formats/imu_node_example.md, read from the page: its bytes must be those that
+// we send.
 #include "tests/page_bytes.h"
 #include "tests/wire/node_cases.h"
 
@@ -10,7 +10,7 @@ using namespace kinalign;
 
 namespace {
 
-constexpr const char* page = "imu_node.md";
+constexpr const char* page = "imu_node_example.md";
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated Kinect beside the real one: docs/kinect_noise.md has its table.
+// The simulated Kinect beside the real one: docs/kinect_noise_figures.md has its table.
 #include "tools/kinect_table/rows.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ PAIRS: what tools/kinect_table/export_ui_prmd.py wrote of UI-PRMD, e.g.
 
   --seeds N    seeds 1 to N (20)
   --bars       exit with 1 where a band is missed
-  --markdown   the table of docs/kinect_noise.md
+  --markdown   the table of docs/kinect_noise_figures.md
 )";
 
 struct Wanted {

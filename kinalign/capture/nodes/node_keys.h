@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lab key, the node keys derived from it, and the key files. docs/formats/imu_node.md, "Keys".
+// The lab key, the node keys derived from it, and the key files. docs/formats/imu_node_example.md,
+// "Keys".
 #pragma once
 
 #include "kinalign/core/files.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulated Kinect v2: the output of the body-tracking SDK for a body whose true joints are known
-// at any time. Model, measurements and the comparison with real recordings: docs/kinect_noise.md.
+// at any time. Model, measurements and the comparison with real recordings: docs/kinect_noise*.md.
 // Time is virtual; the same seed and ids give the same bytes.
 #pragma once
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Size of the error of each joint of a Kinect v2. The figures were measured on UI-PRMD against
 // Vicon (620 repetitions of seven people) and on the two-Kinect recordings of KinectMultiTrack.
-// docs/kinect_noise.md explains each figure that was changed so that the model's statistics equal
-// the measured ones.
+// docs/kinect_noise_fit.md explains each figure that was changed so that the model's statistics
+// equal the measured ones.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
