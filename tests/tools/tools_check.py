@@ -266,4 +266,21 @@ def a_comment_may_not_begin_with_what_it_is_not_about(folder):
                     f"tools/b.py:2: {says} «Where it lies»\n"), text
 
 
+@case
+def a_page_is_short_and_indexed_and_its_links_lead_to_headings(folder):
+    verbs = put(folder, "kinalign", "#!/bin/sh\necho; echo verbs; echo '  align   makes a take'; echo\n")
+    put(folder, "dev", "#!/bin/sh\necho usage; echo; echo '  test   tests'; echo\n").chmod(0o755)
+    verbs.chmod(0o755)
+    put(folder, "CONTRIBUTING.md", "`./dev test`\n")
+    put(folder, "docs/README.md", "[a](a.md) [gone](gone.md)\n")
+    put(folder, "docs/a.md", "# A page\n`kinalign align`\n## Limits, and `why`\n[here](#limits-and-why) [no](#reasons)\n")
+    put(folder, "docs/b.md", "line\n" * 151)
+    code, text = run(sys.executable, ROOT / "tools/check_docs.py", verbs, folder)
+    assert code == 1
+    assert text == ("docs/README.md: the link gone.md leads nowhere\n"
+                    "docs/a.md: the link #reasons leads to a page without that heading\n"
+                    "docs/b.md: expected at most 150 lines, found 151: split it by the reader's question\n"
+                    "docs/README.md: expected a link to b.md\n"), text
+
+
 sys.exit(run_cases("kinalign tools "))
