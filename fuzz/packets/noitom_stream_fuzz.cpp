@@ -40,7 +40,7 @@ void read_datagrams(std::span<const std::uint8_t> bytes) {
     receiver.feed_datagram(part, now, arrivals);
     now += std::chrono::milliseconds(part.back() % 8);
     bytes = bytes.subspan(part.size());
-    if (receiver.waiting() > 24'576) std::abort();
+    if (receiver.waiting() > 20'480) std::abort();
   }
   receiver.finish(arrivals);
   const NoitomCounts& counts = receiver.counts();

@@ -25,9 +25,9 @@ constexpr std::array<Advice, 8> advice{{
     {NoitomRefusal::garbage, "frames of the BVH broadcast",
      "bytes that have a frame's marks and are none were dropped",
      "see that nothing but the BVH broadcast is sent to this port"},
-    {NoitomRefusal::torn, "whole frames",
-     "frames that lacked a piece, or whose piece may be another frame's, were dropped",
-     "prefer TCP, or a wired network: a UDP frame with displacement is sent in two pieces"},
+    {NoitomRefusal::incomplete, "whole frames",
+     "frames were dropped that lack a part, or whose parts may be of two frames",
+     "use TCP: a UDP frame of more than 1,472 bytes is sent in several datagrams"},
     {NoitomRefusal::too_long, "text whose frames end in ||", "it was dropped", ""},
     {NoitomRefusal::too_many_avatars, "at most 64 avatars", "frames of further ones were dropped",
      ""},
@@ -36,7 +36,7 @@ constexpr std::array<Advice, 8> advice{{
 }  // namespace
 
 std::string_view to_string(NoitomRefusal refusal) {
-  constexpr std::array<std::string_view, 8> names{"wrong_count", "garbage",         "torn",
+  constexpr std::array<std::string_view, 8> names{"wrong_count", "garbage",         "incomplete",
                                                   "compressed",  "calculation",     "command",
                                                   "too_long",    "too_many_avatars"};
   return names[static_cast<std::size_t>(refusal)];
@@ -47,9 +47,9 @@ Findings NoitomDecoder::findings(const std::string& name) const {
   for (const Advice& a : advice) {
     const std::uint64_t times = counts_[a.refusal];
     if (times == 0) continue;
-    // On a wireless network a frame that lacks a piece is an ordinary loss, not a fault of the
+    // On a wireless network an incomplete frame is an ordinary loss, not a fault of the
     // set-up.
-    const bool is_loss = a.refusal == NoitomRefusal::torn;
+    const bool is_loss = a.refusal == NoitomRefusal::incomplete;
     findings.push_back({is_loss ? Severity::note : Severity::warning,
                         Error{name, 0, std::string(a.expected),
                               fmt::format("{} ({})", to_string(a.refusal),

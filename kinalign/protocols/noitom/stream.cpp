@@ -70,7 +70,7 @@ void NoitomDecoder::take_all(std::vector<NoitomArrival>& out) {
 
 void NoitomDecoder::give_up(std::vector<NoitomArrival>& out) {
   while (waiting() > 0) {
-    if (begins_noitom_header(ahead())) tear();
+    if (begins_noitom_header(ahead())) count_incomplete();
     skip(header_within(ahead(), 1, waiting(), begins_noitom_header));
     take_all(out);
   }
@@ -78,19 +78,13 @@ void NoitomDecoder::give_up(std::vector<NoitomArrival>& out) {
   at_ = 0;
 }
 
-void NoitomDecoder::take_back(const NoitomFrame& frame) {
-  --counts_.frames;
-  --avatars_[frame.avatar].frames;
-  refuse(NoitomRefusal::torn);
-}
-
 std::optional<NoitomBeginning> NoitomDecoder::beginning() const {
   const auto bytes = ahead();
   if (bytes.size() < noitom_header_size || !has_noitom_tokens(bytes)) return std::nullopt;
   const auto header = parse_noitom_header(bytes);
   if (!header || header->compressed) return std::nullopt;
-  return NoitomBeginning{bytes.size(), noitom_header_size + 4 * header->values,
-                         header->frame.avatar, header->frame.frame_index};
+  return NoitomBeginning{noitom_header_size + 4 * header->values, header->frame.avatar,
+                         header->frame.frame_index};
 }
 
 bool NoitomDecoder::waits_within_header() const {
@@ -153,7 +147,7 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   const std::size_t next =
       header_within(bytes.first(size), noitom_header_size, size, begins_noitom_header);
   if (next < size) {
-    tear();
+    count_incomplete();
     skip(next);
     return Step::go_on;
   }
@@ -163,10 +157,10 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   return Step::go_on;
 }
 
-// Counts the frame at the front as torn. Its number has arrived with its header, so it does not
-// count as lost. Only known avatars are counted, because the bytes may be no header.
-void NoitomDecoder::tear() {
-  refuse(NoitomRefusal::torn);
+// Counts the frame at the front as incomplete. Its number has arrived with its header, so it does
+// not count as lost. Only known avatars are counted, because the bytes may be no header.
+void NoitomDecoder::count_incomplete() {
+  refuse(NoitomRefusal::incomplete);
   const auto head = beginning();
   if (!head || !head->index) return;
   const auto avatar = avatars_.find(head->avatar);

@@ -17,7 +17,7 @@ namespace kinalign {
 enum class NoitomRefusal : std::uint8_t {
   wrong_count,       // a frame by its header and length, but with another number of values
   garbage,           // the tokens of a header, but no frame
-  torn,              // another frame begins before this one is complete
+  incomplete,        // another frame begins before this one is complete
   compressed,        // Axis Studio's compressed port, or the old header's compressed mode
   calculation,       // the calculation stream
   command,           // a packet of the command channel
@@ -49,12 +49,12 @@ struct NoitomAvatar {
   std::uint32_t index = 0;
   std::string name;  // in its latest frame
   std::uint64_t frames = 0;
-  SequenceCount by_index;  // counts torn frames too; empty if the source sends no frame index
+  SequenceCount by_index;  // counts incomplete frames too; empty if the source sends no frame index
 };
 
-/// The beginning of a binary frame, at least its header.
+/// A binary frame whose header has arrived.
 struct NoitomBeginning {
-  std::size_t held = 0, size = 0;  // bytes: received so far, and in the whole frame
+  std::size_t size = 0;  // bytes of the whole frame, with its header
   std::uint32_t avatar = 0;
   std::optional<std::uint32_t> index{};  // the source's frame index
 };
@@ -74,11 +74,9 @@ class NoitomDecoder {
   /// late ones. The frames don't depend on the cuts.
   void feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out);
 
-  /// Gives up the incomplete data: a frame's beginning counts as torn and other bytes are skipped,
-  /// except for frames that begin among them.
+  /// Gives up the incomplete data: a frame's beginning counts as incomplete and other bytes are
+  /// skipped, except for frames that begin among them.
   void give_up(std::vector<NoitomArrival>& out);
-  /// Counts a frame as torn that was output but is doubtful.
-  void take_back(const NoitomFrame& frame);
   /// Counts bytes that belong to no frame, without looking at them.
   void pass_over(std::size_t bytes) { counts_.bytes_skipped += bytes; }
   /// The incomplete frame whose rest is expected next.
@@ -101,7 +99,7 @@ class NoitomDecoder {
   Step step(std::vector<NoitomArrival>& out);
   Step marked(std::vector<NoitomArrival>& out);
   Step binary(std::vector<NoitomArrival>& out);
-  void tear();
+  void count_incomplete();
   Step misfit();
   Step other_header(std::uint8_t last_byte, NoitomRefusal meaning);
   Step zipped();

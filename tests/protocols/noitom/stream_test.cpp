@@ -216,7 +216,7 @@ TEST_CASE("noitom: a wrong count swallows nothing behind it") {
   bytes += bytes_of(frame);
   const auto read = read_noitom(bytes);
   CHECK(read.frames == std::vector{frame, frame});
-  CHECK(read.counts[NoitomRefusal::torn] == 1);
+  CHECK(read.counts[NoitomRefusal::incomplete] == 1);
 }
 
 TEST_CASE("noitom: a refused header swallows no header that begins within it") {
@@ -305,7 +305,7 @@ TEST_CASE("noitom: a lost piece costs its own frame alone, wherever it was") {
   for (std::size_t lost = 1; lost < one.size(); ++lost) {
     Bytes bytes(one.begin(), one.end() - static_cast<std::ptrdiff_t>(lost));
     for (int k = 0; k < 3; ++k) bytes += one;
-    // The next frame's header ends the torn frame if at least ten of its bytes lie in the torn
+    // The next frame's header ends the incomplete frame if at least ten of its bytes lie in the torn
     // frame's room.
     const std::size_t fewest = lost < 10 ? 2 : 3;
     CAPTURE(lost);
