@@ -28,7 +28,7 @@ struct DeviceChoice {
   std::string stream;
   std::string node;  // inertial nodes: an id, or a place if the lab named it; empty: the only node
   std::string sender;  // address, with or without port; empty: the sender with the most messages
-  std::set<std::string> passed_over{};  // senders at that address that are left out
+  std::set<std::string> left_out{};  // senders at that address that are not read
 
   bool operator==(const DeviceChoice&) const = default;
 };

@@ -176,7 +176,7 @@ class Scan {
 
   void hear(DeviceChannel& from, const McapMessage& message) {
     const HostTime arrival = arrival_of(message.log_time, state_.utc_minus_host());
-    if (from.sender) state_.senders[from.raw.stream].hear(*from.sender, arrival);
+    if (from.sender) state_.senders[from.raw.stream].count(*from.sender, arrival);
     const std::uint32_t step = message.sequence - from.last_number.value_or(message.sequence - 1);
     from.last_number = message.sequence;
     if (step > 1 && step < 1U << 31U) from.missing += step - 1;

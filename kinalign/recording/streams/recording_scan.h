@@ -92,7 +92,7 @@ using DeviceKey = std::tuple<std::string, std::string, std::string, ListenVarian
 struct DeviceChannel {
   RawChannel raw;
   std::uint16_t id = 0;
-  std::optional<std::size_t> sender{};  // number in the stream's SenderRoll
+  std::optional<std::size_t> sender{};  // number in the stream's SenderTable
   std::optional<std::uint32_t> last_number{};
   std::uint64_t missing = 0;  // messages missing between others
   std::vector<Listening*> listening{};
@@ -110,7 +110,7 @@ struct ScannedRecording {
   std::optional<RecordingFacts> facts;
   std::map<std::uint16_t, DeviceChannel> channels;
   std::vector<const DeviceChannel*> in_order;      // in the order of definition
-  std::map<std::string, SenderRoll> senders;       // by stream; nodes are not included
+  std::map<std::string, SenderTable> senders;       // by stream; nodes are not included
   std::map<std::string, std::string> attachments;  // BVH headers, by name
   std::map<DeviceKey, Listening> listening;
   std::vector<JsonChannel> json;

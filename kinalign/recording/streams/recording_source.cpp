@@ -79,7 +79,7 @@ bool is_wanted(const RawChannel& raw, Chosen& chosen) {
   }
   const std::string host = host_of(raw.sender);
   if (choice.sender.empty()) choice.sender = host;
-  if (choice.passed_over.contains(raw.sender)) return false;
+  if (choice.left_out.contains(raw.sender)) return false;
   return host == choice.sender || raw.sender == choice.sender;
 }
 
@@ -327,26 +327,17 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
                          "an MCAP file of another program"});
   }
   const bool any_sender = wish.choice.sender.empty();
-  KA_TRY(choose(*state_, wish).map_error([&](Error error) {
+  const SenderTable& senders = state_->senders[wish.choice.stream];
+  senders.complete(wish.choice);
+  const Chosen chosen = KA_TRY(choose(*state_, wish).map_error([&](Error error) {
     return with_nodes(wish, survey(), std::move(error));
   }));
-  const auto roll = state_->senders.find(wish.choice.stream);
-  const SenderRoll senders = roll == state_->senders.end() ? SenderRoll() : roll->second;
-  std::optional<Error> why;  // the reason why the sender with the most messages gave no rows
-  for (const DeviceChoice& choice : choices(wish.choice, senders)) {
-    wish.choice = choice;
-    const Chosen chosen = KA_TRY(choose(*state_, wish));
-    auto heard = hear(*state_, chosen, wish, progress);
-    if (!heard) {
-      if (is_interruption(heard.error())) return Failure(heard.error());
-      if (!why) why = with_senders(heard.error(), choice.sender, senders);
-      continue;
-    }
-    DeviceStream out = KA_TRY(stream_of(*state_, chosen, wish, *std::move(heard), progress));
-    append(out.findings, judge_senders(wish, any_sender, senders));
-    return out;
-  }
-  return Failure(*why);
+  Heard heard = KA_TRY(hear(*state_, chosen, wish, progress).map_error([&](Error error) {
+    return with_senders(std::move(error), wish.choice.sender, senders);
+  }));
+  DeviceStream out = KA_TRY(stream_of(*state_, chosen, wish, std::move(heard), progress));
+  append(out.findings, judge_senders(wish, any_sender, senders));
+  return out;
 }
 
 }  // namespace kinalign

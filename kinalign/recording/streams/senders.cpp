@@ -8,14 +8,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 namespace kinalign {
 
 namespace {
 
-// A choice: a sender that is silent for longer is considered gone. The slowest devices send twice a
-// second.
-constexpr Duration still_there = std::chrono::seconds(1);
+// Chosen: while a device reconnects, messages of both connections may arrive for a moment.
+constexpr Duration longest_reconnect = std::chrono::seconds(1);
 
 constexpr std::size_t most_named = 8;  // senders named in one message
 
@@ -32,102 +32,75 @@ std::string host_of(std::string_view sender) {
   return std::string(sender.substr(0, sender.rfind(':')));
 }
 
-std::size_t SenderRoll::add(const std::string& sender) {
-  const auto [at, fresh] = numbers_.try_emplace(sender, senders_.size());
-  if (fresh) senders_.push_back({sender, host_of(sender)});
-  return at->second;
+std::size_t SenderTable::add(const std::string& sender) {
+  const auto same = std::find_if(senders_.begin(), senders_.end(),
+                                 [&](const Sender& one) { return one.name == sender; });
+  if (same == senders_.end()) {
+    senders_.push_back({sender});
+    return senders_.size() - 1;
+  }
+  return static_cast<std::size_t>(same - senders_.begin());
 }
 
-void SenderRoll::hear(std::size_t number, HostTime at) {
+void SenderTable::count(std::size_t number, HostTime at) {
   Sender& sender = senders_[number];
-  const auto [last, fresh] = speaking_.try_emplace(sender.host, number);
-  if (!fresh && last->second != number) {
-    if (sender.messages > 0 && at - sender.last < still_there) ++sender.between[last->second];
-    last->second = number;
-  }
-  ++sender.messages;
+  if (sender.messages++ == 0) sender.first = at;
   sender.last = at;
 }
 
-std::vector<std::string> SenderRoll::hosts() const {
+std::vector<std::string> SenderTable::hosts() const {
   std::map<std::string, std::uint64_t> messages;
-  for (const Sender& sender : senders_) {
-    if (sender.messages > 0) messages[sender.host] += sender.messages;
-  }
+  for (const Sender& sender : senders_) messages[host_of(sender.name)] += sender.messages;
   std::vector<std::string> hosts;
-  hosts.reserve(messages.size());
-  for (const auto& [host, count] : messages) hosts.push_back(host);
+  for (const auto& [host, count] : messages) {
+    if (count > 0) hosts.push_back(host);
+  }
   std::stable_sort(hosts.begin(), hosts.end(), [&](const std::string& a, const std::string& b) {
     return messages[a] > messages[b];
   });
   return hosts;
 }
 
-std::vector<std::size_t> SenderRoll::of_host(std::string_view host) const {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < senders_.size(); ++i) {
-    if (senders_[i].host == host && senders_[i].messages > 0) found.push_back(i);
-  }
-  std::stable_sort(found.begin(), found.end(), [this](std::size_t a, std::size_t b) {
-    return senders_[a].messages > senders_[b].messages;
-  });
-  return found;
+bool SenderTable::overlap(const Sender& a, const Sender& b) {
+  const bool is_within = a.first <= b.first && b.last <= a.last;
+  return is_within || std::min(a.last, b.last) - std::max(a.first, b.first) > longest_reconnect;
 }
 
-/// Returns whether two senders sent at the same time. They did if more than a tenth of the messages
-/// of the less active one alternate with those of the other. The limit is a choice: while a device
-/// reconnects, a few messages arrive from both connections.
-bool SenderRoll::is_beside(std::size_t a, std::size_t b) const {
-  const auto between = [this](std::size_t one, std::size_t other) {
-    const auto found = senders_[one].between.find(other);
-    return found == senders_[one].between.end() ? 0 : found->second;
-  };
-  const std::uint64_t less = std::min(senders_[a].messages, senders_[b].messages);
-  return 10 * (between(a, b) + between(b, a)) > less;
-}
-
-// The senders of the address are taken in the order of their message counts.
-std::set<std::string> SenderRoll::beside(std::string_view host) const {
-  std::vector<std::size_t> taken;
-  std::set<std::string> others;
-  for (const std::size_t one : of_host(host)) {
-    const bool in_turn = std::any_of(taken.begin(), taken.end(),
-                                     [&](std::size_t busier) { return is_beside(busier, one); });
-    if (in_turn) {
-      others.insert(senders_[one].name);
+void SenderTable::complete(DeviceChoice& choice) const {
+  const auto all = hosts();
+  if (choice.sender.empty() && !all.empty()) choice.sender = all.front();
+  std::vector<Sender> busiest_first = senders_, taken;
+  std::stable_sort(busiest_first.begin(), busiest_first.end(),
+                   [](const Sender& a, const Sender& b) { return a.messages > b.messages; });
+  for (const Sender& one : busiest_first) {
+    if (host_of(one.name) != choice.sender || one.messages == 0) continue;
+    if (std::any_of(taken.begin(), taken.end(),
+                    [&](const Sender& busier) { return overlap(busier, one); })) {
+      choice.left_out.insert(one.name);
     } else {
       taken.push_back(one);
     }
   }
-  return others;
 }
 
-std::vector<std::string> SenderRoll::senders(std::string_view host) const {
-  std::vector<std::string> names;
-  for (const std::size_t one : of_host(host)) names.push_back(senders_[one].name);
-  return names;
-}
-
-std::vector<DeviceChoice> choices(const DeviceChoice& wished, const SenderRoll& senders) {
-  constexpr std::size_t most_choices = 8;  // each needs a pass over the file
-  std::vector<std::string> hosts{wished.sender};
-  if (wished.sender.empty()) hosts = senders.hosts();
-  if (hosts.empty()) return {wished};  // nodes have no sender to choose
-  hosts.resize(std::min(hosts.size(), most_choices));
-  std::vector<DeviceChoice> all;
-  for (const std::string& host : hosts) {
-    all.push_back(wished);
-    all.back().sender = host;
-    all.back().passed_over = senders.beside(host);
-  }
-  return all;
-}
-
-Error with_senders(Error error, const std::string& chosen, const SenderRoll& senders) {
-  if (senders.hosts().size() < 2) return error;
+Error with_senders(Error error, const std::string& chosen, const SenderTable& senders) {
+  if (error.kind != ErrorKind::no_rows_in_recording || senders.hosts().size() < 2) return error;
   error.found +=
-      fmt::format(" from {}; heard were {}: select.sender", chosen, some_of(senders.hosts()));
+      fmt::format(" from {}; sender = \"...\" chooses one of {}", chosen, some_of(senders.hosts()));
   return error;
+}
+
+Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderTable& senders) {
+  const DeviceChoice& choice = wish.choice;
+  std::vector<std::string> others(choice.left_out.begin(), choice.left_out.end());
+  for (const std::string& host : any_sender ? senders.hosts() : std::vector<std::string>()) {
+    if (host != choice.sender) others.push_back(host);
+  }
+  if (others.empty()) return {};
+  return {{Severity::warning,
+           Error{wish.file.path, 0, "one sender of " + choice.stream, "also " + some_of(others)},
+           "only the busiest, " + choice.sender + ", was read",
+           "sender = \"...\" in select chooses another, an address or an address with its port"}};
 }
 
 Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error) {
@@ -145,26 +118,6 @@ Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error er
                      "; or all of them, in place of file: " + files_toml(stream.files);
   }
   return error;
-}
-
-Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderRoll& senders) {
-  const DeviceChoice& choice = wish.choice;
-  Findings findings;
-  const auto tell = [&](const std::string& one, const std::vector<std::string>& heard,
-                        const std::string& meaning, const char* repair) {
-    findings.push_back(
-        {Severity::warning, Error{wish.file.path, 0, one, some_of(heard)}, meaning, repair});
-  };
-  if (any_sender && senders.hosts().size() > 1) {
-    tell("one sender of " + choice.stream, senders.hosts(), "only " + choice.sender + " was read",
-         "select.sender names another");
-  }
-  if (!choice.passed_over.empty()) {
-    tell("one sender of " + choice.stream + " at " + choice.sender, senders.senders(choice.sender),
-         "of those that speak in turn only the one that said most was read",
-         "select.sender names another, with its port");
-  }
-  return findings;
 }
 
 }  // namespace kinalign
