@@ -23,16 +23,16 @@ void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
     if (frame == nullptr) continue;
     const Sensor sensor{way->second.raw.stream, frame->origin.sensor};
     if (sensors_.size() == most_sensors && !sensors_.contains(sensor)) continue;
-    sensors_[sensor].hear(moment_of(*frame), way->second.raw.sender);
+    sensors_[sensor].take(moment_of(*frame), way->second.raw.sender);
   }
 }
 
 Findings KinectSurvey::findings(const std::string& path) const {
   Findings findings;
   for (const auto& [sensor, sessions] : sensors_) {
-    if (!sessions.twins()) continue;
-    findings.push_back(two_senders(path, *sessions.twins(),
-                                   "alignment takes one of them for " + shown(sensor.first)));
+    if (!sessions.overlap()) continue;
+    findings.push_back(overlap_finding(path, *sessions.overlap(),
+                                       "alignment takes one of them for " + shown(sensor.first)));
   }
   return findings;
 }

@@ -242,7 +242,7 @@ void RecordedPort::look_at(Source& source) const {
 void RecordedPort::find_faults(const Source& source) {
   const SenderCounts& counts = source.recorded.status.counts;
   const bool none = !source.exchanges && speaks_another_protocol(protocol_->recorded_name, counts);
-  if (counts.refused == 0 && !none && !source.watch.has_twins()) return;
+  if (counts.refused == 0 && !none && !source.watch.has_overlap()) return;
   const std::string host = to_string(source.address.host);
   const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);
   Findings findings = source.watch.findings(name);

@@ -78,48 +78,31 @@ void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& n
   }
 }
 
-/// A new state for a sensor. If another sender brought the session before, its count continues.
-/// Otherwise the sensor has started again since the newest session.
-StreamWatch::KinectSensor StreamWatch::sensor_behind(const KinectSessions& sessions,
-                                                     std::uint32_t session) {
-  KinectSensor sensor;
-  const KinectMoment* last = sessions.stand(session);
-  if (last == nullptr) last = sessions.newest();
-  if (last == nullptr) return sensor;
-  sensor.joiner.follow(*last);
-  if (last->origin.session != session) sensor.restarted = last->origin.session;
-  return sensor;
-}
-
-/// Counts one frame. A sender that sends at the same time as the newest session's sender gets its
-/// own count.
+/// Counts one frame of the newest session. If a Kinect returns through another sender, its count
+/// continues.
 void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest) {
-  const KinectOrigin origin = frame.origin;
-  const bool is_heard = kinect.sensors.contains(origin.sensor);
-  if (!is_heard && kinect.sensors.size() == most_sensors) {
+  const std::uint32_t id = frame.origin.sensor;
+  const bool is_known = kinect.joiners.contains(id);
+  if (!is_known && kinect.joiners.size() == most_sensors) {
     ++kinect.further_sensors;
     return;
   }
   KinectSessions alone;  // used if the port's table is full
-  const bool has_room = newest.contains(origin.sensor) || newest.size() < most_of_a_port;
-  KinectSessions& sessions = has_room ? newest[origin.sensor] : alone;
-  if (!is_heard) {
-    kinect.sensors.emplace(origin.sensor, sensor_behind(sessions, origin.session));
-  }
-  KinectSensor& sensor = kinect.sensors.at(origin.sensor);
-  const bool had_twins = sessions.twins().has_value();
-  const auto turn = sessions.hear(moment_of(frame), kinect.sender);
-  if (sessions.twins() && !had_twins) kinect.twins.push_back(*sessions.twins());
-  if (turn == KinectSessions::Turn::over) {
+  const bool has_room = newest.contains(id) || newest.size() < most_of_a_port;
+  KinectSessions& sessions = has_room ? newest[id] : alone;
+  const auto before =
+      sessions.newest() != nullptr ? std::optional(*sessions.newest()) : std::nullopt;
+  const bool had_overlap = sessions.overlap().has_value();
+  const bool is_newest = sessions.take(moment_of(frame), kinect.sender);
+  if (sessions.overlap() && !had_overlap) kinect.overlaps.push_back(*sessions.overlap());
+  if (!is_newest) {
     ++kinect.late;
     return;
   }
-  if (sensor.restarted && sessions.is_beside(*sensor.restarted)) {
-    sensor.joiner.begin_beside();
-    sensor.restarted.reset();
-  }
+  KinectFrameJoiner& joiner = kinect.joiners[id];
+  if (!is_known && before) joiner.follow(*before);
   kinect.frames.clear();
-  sensor.joiner.take(std::move(frame), kinect.frames, kinect.sender);
+  joiner.take(std::move(frame), kinect.frames, kinect.sender);
   kinect.whole += static_cast<std::uint64_t>(
       std::count_if(kinect.frames.begin(), kinect.frames.end(),
                     [](const JoinedKinectFrame& one) { return one.whole; }));
@@ -147,9 +130,9 @@ bool StreamWatch::speaks_lines() const {
   return kinect != nullptr && kinect->decoder.speaks_lines();
 }
 
-bool StreamWatch::has_twins() const {
+bool StreamWatch::has_overlap() const {
   const auto* kinect = std::get_if<Kinect>(&decoder_);
-  return kinect != nullptr && !kinect->twins.empty();
+  return kinect != nullptr && !kinect->overlaps.empty();
 }
 
 SenderCounts StreamWatch::counts(const Noitom& noitom) {
@@ -172,8 +155,8 @@ SenderCounts StreamWatch::counts(const Xsens& xsens) {
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
   SenderCounts out{0, 0, kinect.whole, {}, kinect.further_sensors};
   out.order.late = kinect.late;
-  for (const auto& [id, sensor] : kinect.sensors) {
-    const KinectFrameCounts joined = sensor.joiner.counts();
+  for (const auto& [id, joiner] : kinect.joiners) {
+    const KinectFrameCounts joined = joiner.counts();
     out.order += joined.frames;
     out.order.late += joined.stale;
     out.refused += joined.contradicting;
@@ -200,11 +183,9 @@ Findings StreamWatch::findings(const std::string& name) const {
   if (const auto* xsens = std::get_if<Xsens>(&decoder_)) return xsens->decoder.findings(name);
   Findings findings;
   if (const auto* kinect = std::get_if<Kinect>(&decoder_)) {
-    for (const KinectTwins& twins : kinect->twins) {
+    for (const KinectOverlap& overlap : kinect->overlaps) {
       findings.push_back(
-          two_senders(name, twins,
-                      "all is recorded, each sender's by itself; alignment takes one "
-                      "of them"));
+          overlap_finding(name, overlap, "all is recorded; alignment takes one of them"));
     }
   }
   return findings;

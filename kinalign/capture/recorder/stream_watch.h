@@ -37,7 +37,7 @@ class StreamWatch {
   /// Whether the sender uses lines; pongs must use the same form.
   bool speaks_lines() const;
   /// Returns whether another sender uses the same sensor id at the same time.
-  bool has_twins() const;
+  bool has_overlap() const;
   /// Counts of frames. The caller counts messages and bytes.
   SenderCounts counts() const;
   /// Findings about this sender. `name` appears in the messages.
@@ -53,19 +53,15 @@ class StreamWatch {
     XsensDecoder decoder;
     std::vector<XsensArrival> samples{};
   };
-  struct KinectSensor {
-    KinectFrameJoiner joiner{};
-    std::optional<std::uint32_t> restarted{};  // the session before this sender's first session
-  };
   struct Kinect {
     KinectStreamDecoder decoder;
     std::vector<KinectMessage> messages{};
-    std::map<std::uint32_t, KinectSensor> sensors{};  // most_sensors at most
+    std::map<std::uint32_t, KinectFrameJoiner> joiners{};  // by sensor id; most_sensors at most
     std::vector<JoinedKinectFrame> frames{};
     // whole frames; messages of sensors beyond most_sensors
     std::uint64_t whole = 0, further_sensors = 0;
-    std::uint64_t late = 0;  // frames of a session that another sender's session has ended
-    std::vector<KinectTwins> twins{};  // found by frames of this sender
+    std::uint64_t late = 0;                 // frames of a session that a newer one has ended
+    std::vector<KinectOverlap> overlaps{};  // found by frames of this sender
     std::vector<KinectPing> pings{};
     bool datagrams = false;
     std::string sender{};
@@ -78,7 +74,6 @@ class StreamWatch {
   static void feed(Xsens& xsens, const Piece& piece, NewestKinectFrames& newest);
   static void feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& newest);
   static void count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest);
-  static KinectSensor sensor_behind(const KinectSessions& sessions, std::uint32_t session);
   static SenderCounts counts(const Noitom& noitom);
   static SenderCounts counts(const Xsens& xsens);
   static SenderCounts counts(const Kinect& kinect);

@@ -44,17 +44,15 @@ void KinectFrameJoiner::begin_session(std::uint32_t session) {
 
 void KinectFrameJoiner::follow(const KinectMoment& last) {
   begin_session(last.origin.session);
-  sessions_.hear(last);
+  sessions_.take(last);
   newest_ = last;
   sequence_.push(last.origin.sequence);
 }
 
 void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>& out,
                              std::string_view sender) {
-  using Turn = KinectSessions::Turn;
   const KinectOrigin origin = message.origin;
-  const Turn turn = sessions_.hear(moment_of(message), sender);
-  if (turn == Turn::beside || turn == Turn::over) {
+  if (!sessions_.take(moment_of(message), sender)) {
     ++counts_.stale;
     return;
   }
@@ -133,8 +131,7 @@ void KinectFrameJoiner::finish(std::vector<JoinedKinectFrame>& out) { close(out)
 KinectFrameCounts KinectFrameJoiner::counts() const {
   KinectFrameCounts counts = counts_;
   counts.frames += sequence_.counts();
-  const std::uint64_t no_restarts = 1 + sessions_.beside() + begun_beside_;
-  if (counts.sessions > no_restarts) counts.frames.restarts += counts.sessions - no_restarts;
+  if (counts.sessions > 1) counts.frames.restarts += counts.sessions - 1;
   return counts;
 }
 

@@ -19,8 +19,7 @@ struct JoinedKinectFrame {
 };
 
 struct KinectFrameCounts {
-  SequenceCounts frames;  // all sessions; each session but the first counts as a restart, unless
-                          // the session before it continues
+  SequenceCounts frames;  // all sessions; each session but the first counts as a restart
   std::uint64_t sessions = 0;
   std::uint64_t stale = 0;       // messages of an ended session, or with a number of one
   std::uint64_t parts_lost = 0;  // frames that were not complete
@@ -40,17 +39,15 @@ class KinectFrameJoiner {
   /// Call before the first frame if the sensor's last frame came over another connection. Numbers
   /// missing after it are lost; a frame of another session is a restart.
   void follow(const KinectMoment& last);
-  /// The session of the other connection continues: this sender's session is then no restart of it.
-  void begin_beside() { ++begun_beside_; }
   /// Adds a message. Appends finished frames to `out`: complete ones, and the previous one if it
-  /// can't be completed any more. `sender`: its address, for twins().
+  /// can't be completed any more. `sender`: its address, for overlap().
   void take(KinectFrame message, std::vector<JoinedKinectFrame>& out, std::string_view sender = {});
   /// Call at the end: appends the frame whose parts are not complete.
   void finish(std::vector<JoinedKinectFrame>& out);
 
   KinectFrameCounts counts() const;
-  /// Two senders that sent in turns; only frames of the later session are joined.
-  const std::optional<KinectTwins>& twins() const { return sessions_.twins(); }
+  /// Two sessions at the same time; only frames of the newest one are joined.
+  const std::optional<KinectOverlap>& overlap() const { return sessions_.overlap(); }
 
  private:
   void begin_session(std::uint32_t session);
@@ -65,7 +62,6 @@ class KinectFrameJoiner {
   KinectSessions sessions_;
   std::optional<std::uint32_t> session_;
   std::optional<KinectMoment> newest_;  // newest frame of the session that was joined
-  std::uint64_t begun_beside_ = 0;
   SequenceCount sequence_{32};
   KinectFrameCounts counts_;
 };

@@ -42,7 +42,7 @@ class KinectFrames {
   }
   void finish(std::vector<JoinedKinectFrame>& out) { joiner_.finish(out); }
   KinectFrameCounts counts() const { return joiner_.counts(); }
-  const std::optional<KinectTwins>& twins() const { return joiner_.twins(); }
+  const std::optional<KinectOverlap>& overlap() const { return joiner_.overlap(); }
 
   /// Frames of other sensors, which were left out. The first frame selects the sensor.
   std::uint64_t of_other_sensors = 0;

@@ -156,9 +156,9 @@ class KinectRows final : public DeviceRows<PointFrames> {
     tell(counts.frames.lost, "each frame's number", "that never came",
          "they were lost on their way");
     tell_too_late(waiting_, "frames");
-    if (frames_.twins()) {
-      findings.push_back(two_senders(
-          file(), *frames_.twins(),
+    if (frames_.overlap()) {
+      findings.push_back(overlap_finding(
+          file(), *frames_.overlap(),
           fmt::format("the newest session's were read; {} frames of others were left out",
                       counts.stale)));
     } else {

@@ -222,7 +222,7 @@ TEST_CASE("who begins anew on another way with its old session is known by newer
 }
 
 TEST_CASE(
-    "two sessions by turns are two senders: the later one's frames are joined, and it is told") {
+    "of two sessions at the same time the newest one's frames are joined, and both are reported") {
   KinectFrameJoiner joiner;
   std::vector<JoinedKinectFrame> frames;
   for (std::uint32_t i = 0; i < 100; ++i) {
@@ -232,19 +232,9 @@ TEST_CASE(
   joiner.finish(frames);
   CHECK(frames.size() == 101);
   CHECK(joiner.counts().stale == 99);
-  CHECK(joiner.counts().frames.restarts == 0);
-  REQUIRE(joiner.twins());
-  CHECK(joiner.twins()->sessions == std::array<std::uint32_t, 2>{111, 222});
-}
-
-TEST_CASE("who began beside the session that was followed is no restart of it") {
-  KinectFrameJoiner joiner;
-  std::vector<JoinedKinectFrame> frames;
-  joiner.follow(moment_of(of_session(111, 5)));
-  joiner.take(of_session(222, 0), frames);
   CHECK(joiner.counts().frames.restarts == 1);
-  joiner.begin_beside();
-  CHECK(joiner.counts().frames.restarts == 0);
+  REQUIRE(joiner.overlap());
+  CHECK(joiner.overlap()->sessions == std::array<std::uint32_t, 2>{111, 222});
 }
 
 TEST_CASE("wild numbers with older ticks make nothing lost, and are dropped") {
