@@ -46,7 +46,7 @@ RecordedPort::RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pi
     : device_(std::move(device)), protocol_(&protocol), pieces_(std::move(pieces)) {
   switch (protocol.answers) {
     case Answers::kinect_pings:
-      kinects_ = std::make_unique<KinectDesk>(secret);
+      kinect_responder_ = std::make_unique<KinectResponder>(secret);
       break;
     case Answers::tracker_handshakes:
       slimes_ = std::make_unique<SlimeDesk>(secret);
@@ -89,7 +89,7 @@ void RecordedPort::take(const Piece& piece, const Senders::Sender& sender, HostA
                         Recorder& recorder) {
   Source& source = source_of(sender, piece.sender, recorder);
   source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
-  if (kinects_) answer_pings(source, piece, axis, recorder);
+  if (kinect_responder_) answer_pings(source, piece, axis, recorder);
   if (slimes_) answer_trackers(source, piece);
   source.recorded.record(recorder, piece.arrival, piece.bytes);
 }
@@ -137,12 +137,12 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
   // bytes; keeps the port from being used for amplification with forged addresses
   std::size_t may_send = piece.bytes.size();
   for (const KinectPing& ping : source.watch.pings()) {
-    const auto exchange = kinects_->receive(ping, source.address.host, piece.arrival);
+    const auto exchange = kinect_responder_->receive(ping, source.address.host, piece.arrival);
     if (!exchange) {
       ++source.pings_refused;
       continue;
     }
-    if (const auto pong = kinects_->answer(axis.now())) {
+    if (const auto pong = kinect_responder_->answer(axis.now())) {
       const std::string bytes = encoded(*pong, source.watch.speaks_lines());
       const bool forgeable = has_datagrams();
       if (!forgeable || bytes.size() <= may_send) {

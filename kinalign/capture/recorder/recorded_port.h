@@ -7,7 +7,7 @@
 #include "kinalign/capture/net/pieces.h"
 #include "kinalign/capture/recorder/findings_once.h"
 #include "kinalign/capture/recorder/held_back.h"
-#include "kinalign/capture/recorder/kinect_desk.h"
+#include "kinalign/capture/recorder/kinect_responder.h"
 #include "kinalign/capture/recorder/recorded_source.h"
 #include "kinalign/capture/recorder/slimevr_desk.h"
 #include "kinalign/capture/recorder/stream_watch.h"
@@ -105,7 +105,7 @@ class RecordedPort {
   NewestKinectFrames newest_frames_;
   FindingsOnce findings_;
   std::unique_ptr<SlimeDesk> slimes_;
-  std::unique_ptr<KinectDesk> kinects_;
+  std::unique_ptr<KinectResponder> kinect_responder_;
 };
 
 }  // namespace kinalign
