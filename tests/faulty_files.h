@@ -77,52 +77,39 @@ class FaultyFiles final : public FileSystem {
   PosixFiles files_;
 };
 
-/// The machine's files, but the disk can't read one page of a file: at each reading, or at one.
+/// The machine's files, but the disk can't read one page of a file.
 class BadPage final : public PosixFiles {
  public:
   static constexpr off_t size = 4096;
   BadPage(std::string path, off_t at) : path_(std::move(path)), at_(at / size * size) {}
 
-  int only_opening = 0;     // from 1: the opening whose reads fail; 0: each opening
-  bool comes_short = true;  // a read ends at the bad page; false: a read that reaches it fails
-
   int open(const char* path, int flags, mode_t mode) override {
     const int fd = PosixFiles::open(path, flags, mode);
-    if (path != path_) return fd;
-    ++openings_;
-    if (only_opening == 0 || only_opening == openings_) bad_[fd] = 0;
+    if (path == path_) next_[fd] = 0;
     return fd;
   }
   int close(int fd) override {
-    bad_.erase(fd);
+    next_.erase(fd);
     return PosixFiles::close(fd);
   }
-  int openings() const { return openings_; }
   ssize_t read(int fd, void* data, std::size_t want) override {
-    const auto bad = bad_.find(fd);
-    if (bad == bad_.end()) return PosixFiles::read(fd, data, want);
-    const ssize_t got = read_at(fd, data, want, bad->second);
-    bad->second += std::max<ssize_t>(got, 0);
+    const auto next = next_.find(fd);
+    if (next == next_.end()) return PosixFiles::read(fd, data, want);
+    const off_t left = at_ - next->second;  // bytes before the page
+    if (left == 0) {
+      errno = EIO;
+      return -1;
+    }
+    if (left > 0) want = std::min(want, static_cast<std::size_t>(left));
+    const ssize_t got = PosixFiles::read(fd, data, want);
+    next->second += std::max<ssize_t>(got, 0);
     return got;
-  }
-  ssize_t read_at(int fd, void* data, std::size_t want, off_t at) override {
-    if (!bad_.contains(fd)) return PosixFiles::read_at(fd, data, want, at);
-    if (at >= at_ && at < at_ + size) return unreadable();
-    const auto to_it = static_cast<std::size_t>(std::max<off_t>(at_ - at, 0));
-    if (at < at_ && want > to_it && !comes_short) return unreadable();
-    if (at < at_) want = std::min(want, to_it);
-    return PosixFiles::read_at(fd, data, want, at);
   }
 
  private:
-  static ssize_t unreadable() {
-    errno = EIO;
-    return -1;
-  }
   std::string path_;
   off_t at_;
-  int openings_ = 0;
-  std::map<int, off_t> bad_;  // offset of the next read() of each descriptor
+  std::map<int, off_t> next_;  // offset of the next read() of each descriptor
 };
 
 }  // namespace kinalign

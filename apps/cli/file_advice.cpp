@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/file_advice.h"
 
+#include "kinalign/core/files.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -8,9 +10,9 @@
 namespace kinalign {
 
 std::vector<std::string> file_advice(const Error& error) {
-  if (error.kind == ErrorKind::unreadable_disk && error.file.ends_with(".mcap")) {
-    return {"kinalign recover " + harmless(error.file) +
-            " -o whole.mcap makes a file of what the disk can give"};
+  if (error.kind == ErrorKind::unreadable_disk) {
+    return {"ddrescue " + harmless(error.file) + " COPY/" + harmless(file_name(error.file)) +
+            " copies all that the disk can read; use the copy, with copies of all other parts"};
   }
   if (error.kind != ErrorKind::directory) return {};
   std::vector<std::string> recordings;

@@ -9,8 +9,8 @@
 
 namespace kinalign {
 
-/// If a folder was named instead of a file: its first recording. If a bad disk can't read a
-/// recording: `recover`. Empty for any other failure.
+/// If a folder was named instead of a file: its first recording. If a disk can't
+/// read the file: `ddrescue`. Empty for any other failure.
 std::vector<std::string> file_advice(const Error& error);
 
 }  // namespace kinalign

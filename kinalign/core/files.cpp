@@ -106,8 +106,14 @@ InputFile::~InputFile() {
 Result<std::string_view> InputFile::next() {
   for (;;) {
     const ssize_t got = files_->read(fd_, buffer_.data(), buffer_.size());
-    if (got >= 0) return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
-    if (errno != EINTR) return unreadable(path_, errno);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {  // a disk may be unable to read a single page
+      Failure failure = unreadable(path_, errno);
+      failure.value().found += " at byte " + std::to_string(at_);
+      return failure;
+    }
+    at_ += static_cast<std::uint64_t>(got);
+    return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
   }
 }
 

@@ -7,7 +7,7 @@
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/formats/take/guarded.h"
 #include "kinalign/formats/take/take_hdf5.h"
-#include "kinalign/recording/beside.h"
+#include "kinalign/recording/parts.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/input_facts.h"
@@ -106,7 +106,7 @@ class CopyPlan {
     auto further = further_files_of(files_, stream, file);
     std::erase(further, stream.layout);
     if (further.empty()) {
-      for (const std::string& one : with_namesakes(files_, {file.path})) {
+      for (const std::string& one : with_siblings(files_, {file.path})) {
         place_alone(stream.name, one);
       }
       return place_alone(stream.name, file.path);

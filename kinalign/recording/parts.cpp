@@ -2,202 +2,206 @@
 #include "kinalign/recording/parts.h"
 
 #include "kinalign/core/file_version.h"
-#include "kinalign/recording/beside.h"
+#include "kinalign/mcap/reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <system_error>
 #include <tuple>
 
 namespace kinalign {
 
 namespace {
 
-/// Sorts files by their first part. Among files with the same first part, the one with the highest
-/// last part comes first, so that files that it repeats can be left out. If every sync fails, two
-/// files may have the same part number, but their names differ.
-void sort(RecordingParts& parts) {
-  const auto place = [](const RecordingPart& one) {
-    return std::tuple(one.facts.part, -one.facts.last_part(), part_number(one.path), one.path);
-  };
-  std::sort(parts.begin(), parts.end(),
-            [&](const RecordingPart& a, const RecordingPart& b) { return place(a) < place(b); });
+constexpr std::string_view suffix = ".mcap";
+
+/// "take" for "take.mcap" and for "take.part2.mcap".
+std::string_view stem_of(std::string_view name) {
+  if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
+  constexpr std::string_view part = ".part";
+  const std::string_view cut = name.substr(0, name.find_last_not_of("0123456789") + 1);
+  return cut.size() < name.size() && cut.ends_with(part) ? cut.substr(0, cut.size() - part.size())
+                                                         : name;
 }
 
-/// Returns whether a file follows another. A file joined by recover does not follow the parts that
-/// it contains, but later parts follow a joined file.
-bool stands_behind(const RecordingPart& other, const RecordingPart& part) {
-  const bool is_twin = other.facts.part == part.facts.part && other.facts.joined.empty() &&
-                       part.facts.joined.empty() &&
-                       part_number(other.path) > part_number(part.path);
-  return other.facts.part > part.facts.part || is_twin;
-}
-
-/// Leaves out files that only repeat earlier ones. The order is kept.
-RecordingParts without_repeated(RecordingParts parts) {
-  RecordingParts kept;
-  MessageNumbers before;
-  std::set<std::string> names;
-  EndTogether end;
-  bool all_proved = true;
-  for (RecordingPart& part : parts) {
-    const EndTogether with_it = end.with(part.ending, part.facts);
-    // If recover joined the first file from this part too, it has already taken everything readable
-    // from this part.
-    const bool is_joined = !kept.empty() && kept.front().facts.joined.contains(part.facts.part);
-    const bool is_repeated =
-        (part.is_sound || is_joined) && with_it.ending == end.ending && all_proved &&
-        before.has_all(part.numbers) &&
-        std::includes(names.begin(), names.end(), part.names.begin(), part.names.end());
-    if (!kept.empty() && is_repeated) continue;
-    for (const std::uint16_t channel : part.numbers.channels()) {
-      const bool takes_over =
-          part.numbers.goes_on_with(before, channel) && !part.unproved.shares_with(before, channel);
-      if (!takes_over) part.repeats.insert(channel);
-    }
-    before.add_all(part.numbers);
-    names.insert(part.names.begin(), part.names.end());
-    end = with_it;
-    all_proved = all_proved && part.unproved.empty();
-    kept.push_back(std::move(part));
+/// Reads the facts that stand before the messages of a file. Absent if the file is not a recording
+/// of kinalign.
+Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path) {
+  constexpr std::size_t page = 4096;  // bytes; the facts stand within the first page
+  InputFile file = KA_TRY(InputFile::open(files, path, page));
+  McapReader reader;
+  while (const auto record = KA_TRY(pull(reader, [&file] { return file.next(); }))) {
+    if (std::holds_alternative<McapMessage>(*record)) break;
+    const auto* metadata = std::get_if<McapMetadata>(&*record);
+    if (metadata == nullptr) continue;
+    if (auto facts = to_facts(*metadata)) return facts;
   }
-  return kept;
+  return std::nullopt;
+}
+
+/// Returns whether two files are from the same run of the recorder.
+bool is_same_recording(const std::optional<RecordingFacts>& a,
+                       const std::optional<RecordingFacts>& b) {
+  return a && b && a->first == b->first && a->host == b->host && a->anchor.raw == b->anchor.raw &&
+         a->anchor.utc == b->anchor.utc;
+}
+
+/// The folder of a file and, for a link, the folder of its target. Each is "" or ends in '/'.
+std::set<std::string> folders_of(const std::string& path) {
+  std::set<std::string> folders{std::string(folder(path))};
+  std::error_code failed;
+  if (std::filesystem::is_symlink(path, failed)) {
+    folders.emplace(folder(std::filesystem::weakly_canonical(path, failed).string()));
+  }
+  return folders;
+}
+
+bool contains(const std::vector<std::string>& paths, const std::string& path) {
+  return std::any_of(paths.begin(), paths.end(),
+                     [&](const std::string& one) { return one == path || same_file(one, path); });
+}
+
+/// The other files in a file's folders that have the name of the same recording, sorted. A file
+/// that was renamed still states the first name of its recording.
+std::vector<std::string> siblings_of(const RecordingPart& part) {
+  std::set<std::string_view> stems{stem_of(file_name(part.path))};
+  if (part.facts) stems.insert(stem_of(part.facts->first));
+  std::vector<std::string> found;
+  for (const std::string& place : folders_of(part.path)) {
+    std::error_code failed;  // a folder that cannot be listed has no siblings
+    std::filesystem::directory_iterator at(place.empty() ? "." : place, failed);
+    for (; !failed && at != std::filesystem::directory_iterator(); at.increment(failed)) {
+      const std::string name = at->path().filename().string();
+      if (!name.ends_with(suffix) || !stems.contains(stem_of(name))) continue;
+      if (!same_file(place + name, part.path)) found.push_back(place + name);
+    }
+  }
+  std::sort(found.begin(), found.end());  // a folder lists its files in no fixed order
+  return found;
+}
+
+/// Returns whether recover has joined `other` into the file, or `other` is a copy of the file under
+/// another name. If every sync fails, two parts may have the same number, but not the same name.
+bool has_all_of(const RecordingPart& part, const RecordingPart& other) {
+  const bool is_copy = part.facts->part == other.facts->part &&
+                       stem_of(file_name(part.path)) != stem_of(file_name(other.path));
+  return is_copy || part.facts->joined.contains(other.facts->part);
+}
+
+/// The order of parts. Of two names with the same number, "a.part10.mcap" follows "a.part9.mcap".
+auto place_of(const RecordingPart& part) {
+  return std::tuple(part.facts ? part.facts->last_part() : 1, part.path.size(), part.path);
+}
+
+Error is_no_part(const RecordingPart& part, const RecordingParts& parts) {
+  return {part.path, 0,
+          fmt::format("a part of {}, as {} is",
+                      parts.front().facts ? parts.front().facts->first : "a recording",
+                      parts.front().path),
+          part.facts
+              ? fmt::format("part {} of another run, {}", part.facts->part, part.facts->first)
+              : "a file that does not say of which recording it is"};
 }
 
 }  // namespace
 
-const McapChannel* proved_channel(const RecordingParts& parts, std::uint16_t id) {
-  for (const RecordingPart& part : parts) {
-    const auto found = part.definitions.channels.find(id);
-    if (found != part.definitions.channels.end()) return &found->second;
+Result<RecordingParts> find_parts(FileSystem& files, const std::vector<std::string>& named) {
+  RecordingParts parts;
+  std::vector<std::string> known;
+  for (const std::string& path : named) {
+    if (contains(known, path)) continue;
+    known.push_back(path);
+    RecordingPart part{path, KA_TRY(read_facts(files, path))};
+    if (!parts.empty() && !is_same_recording(parts.front().facts, part.facts)) {
+      return Failure(is_no_part(part, parts));
+    }
+    parts.push_back(std::move(part));
   }
-  return nullptr;
+  const RecordingParts given = parts;
+  for (const RecordingPart& one : given) {
+    for (const std::string& path : siblings_of(one)) {
+      auto facts = read_facts(files, path);
+      if (!facts && facts.error().kind == ErrorKind::unreadable_disk) return Failure(facts.error());
+      if (!facts || !is_same_recording(*facts, one.facts) || contains(known, path)) continue;
+      known.push_back(path);
+      RecordingPart part{path, *std::move(facts)};
+      const auto has = [&part](const RecordingPart& other) { return has_all_of(other, part); };
+      if (std::none_of(given.begin(), given.end(), has)) parts.push_back(std::move(part));
+    }
+  }
+  std::sort(parts.begin(), parts.end(), [](const RecordingPart& a, const RecordingPart& b) {
+    return place_of(a) < place_of(b);
+  });
+  return parts;
 }
 
-std::size_t source_of(const RecordingParts& parts, const std::string& name) {
-  std::size_t source = parts.size();
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (!parts[k].names.contains(name)) continue;
-    const bool is_end = name == name_of(McapMetadata{std::string(end_metadata), {}});
-    const bool is_surer = source < k && parts[k].all_checked && !parts[source].all_checked;
-    if (source == parts.size() || is_end || is_surer) source = k;
+std::vector<std::string> with_siblings(FileSystem& files, const std::vector<std::string>& named) {
+  std::vector<std::string> all = named;
+  for (const std::string& path : named) {
+    const auto facts = read_facts(files, path);
+    for (const std::string& one : siblings_of({path, facts ? *facts : std::nullopt})) {
+      if (!contains(all, one)) all.push_back(one);
+    }
   }
-  return source;
-}
-
-std::size_t furthest(const RecordingParts& parts) {
-  std::size_t found = 0;
-  for (std::size_t k = 1; k < parts.size(); ++k) {
-    if (parts[k].facts.last_part() >= parts[found].facts.last_part()) found = k;
-  }
-  return found;
-}
-
-bool has_better(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
-  const bool is_proved = !parts[part].unproved.has(message);
-  for (std::size_t other = 0; other < parts.size(); ++other) {
-    if (other == part || !parts[other].numbers.has(message)) continue;
-    const bool other_is_proved = !parts[other].unproved.has(message);
-    if (other_is_proved == is_proved ? other > part : other_is_proved) return true;
-  }
-  return false;
-}
-
-/// A file may lack the definition of a channel. A program that reads one file after the other could
-/// meet such a message before its definition, so a copy in a file with the definition is preferred.
-bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
-  const bool is_named = !parts[part].nameless.has(message);
-  for (std::size_t other = 0; other < parts.size(); ++other) {
-    if (other == part || !parts[other].numbers.has(message)) continue;
-    const bool other_is_named = !parts[other].nameless.has(message);
-    const RecordingPart& later = parts[std::max(part, other)];
-    const bool is_from_later = !later.repeats.contains(message.channel);
-    if (is_named == other_is_named ? is_from_later == (other > part) : other_is_named) return true;
-  }
-  return false;
+  return all;
 }
 
 namespace {
 
-Error is_no_part(const std::string& path, const RecordingParts& parts,
-                 const std::optional<RecordingFacts>& facts) {
-  return {path, 0,
-          parts.empty() ? "a part of a recording of kinalign's"
-                        : fmt::format("a part of {}, as {} is", parts.front().facts.first,
-                                      parts.front().path),
-          !facts ? "a file that does not say of which recording it is"
-                 : fmt::format("part {} of another run, {}", facts->part, facts->first)};
-}
-
-bool defines(const RecordingPart& part, std::uint16_t channel) {
-  return part.definitions.channels.contains(channel) ||
-         part.unproved_definitions.channels.contains(channel);
-}
-
-/// Gives messages their channel if another file defines it, because a channel has the same meaning
-/// in all files.
-void name(RecordingParts& parts) {
-  for (RecordingPart& part : parts) {
-    for (const std::uint16_t channel : part.nameless.channels()) {
-      const bool is_defined =
-          std::any_of(parts.begin(), parts.end(),
-                      [channel](const RecordingPart& other) { return defines(other, channel); });
-      if (is_defined) part.numbers.add_all(part.nameless, channel);
-    }
+/// Reports sibling files that have the recording's name and do not prove that they belong to it. A
+/// file of another recording is not reported if it has only the name that this one had at first.
+Findings judge_siblings(FileSystem& files, const RecordingPart& part) {
+  Findings findings;
+  for (const std::string& path : siblings_of(part)) {
+    const auto facts = read_facts(files, path);
+    const bool is_recording = facts && *facts;
+    if (is_recording && is_same_recording(*facts, part.facts)) continue;
+    if (is_recording && stem_of(file_name(path)) != stem_of(file_name(part.path))) continue;
+    findings.push_back(
+        {Severity::warning,
+         Error{path, 0, "a part of the recording " + shown(file_name(part.path)),
+               !facts ? "a file that can't be read: " + facts.error().found
+               : is_recording
+                   ? "a part of another recording, or one of the two has a damaged beginning"
+                   : "a file that does not say of which recording it is"},
+         "it has the name of a part, and was left out",
+         "give it another name if it belongs to another recording"});
   }
+  return findings;
 }
 
 }  // namespace
 
-Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
-                                  const Progress& progress) {
-  RecordingParts parts;
-  for (const std::string& path : paths) {
-    const auto facts = KA_TRY(read_facts(files, path));
-    if (!facts || !(parts.empty() || is_same_recording(parts.front().facts, *facts))) {
-      return Failure(is_no_part(path, parts, facts));
-    }
-    parts.push_back(KA_TRY(read_part(files, path, *facts, progress)));
-  }
-  name(parts);
-  sort(parts);
-  return without_repeated(std::move(parts));
-}
-
-Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
-                                  const Progress& progress) {
-  const auto facts = KA_TRY(read_facts(files, path));
-  if (!facts) return RecordingParts{{path, {}}};  // reading it later shows what the file is instead
-  std::vector<std::string> paths{path};
-  for (const std::string& one : with_parts(files, {path})) {
-    const auto other = KA_TRY(read_facts(files, one));
-    if (other && stands_behind({one, *other}, {path, *facts})) paths.push_back(one);
-  }
-  if (paths.size() == 1) return RecordingParts{{path, *facts}};
-  return read_parts(files, paths, progress);
-}
-
-Findings judge_parts(const RecordingParts& parts, PartsBehind behind) {
-  Findings findings;
-  const RecordingPart& one = parts.front();
+Findings judge_parts(FileSystem& files, const RecordingParts& parts, Severity several) {
   const char* join = "kinalign recover makes one file of all parts";
-  if (one.facts.part > 1) {
-    findings.push_back({Severity::warning,
-                        Error{one.path, 0, "the recording's first file, " + shown(one.facts.first),
-                              fmt::format("part {}", one.facts.part)},
-                        "what stands in the files before is not in this one", join});
+  const RecordingPart& front = parts.front();
+  Findings findings;
+  const bool has_first = std::any_of(parts.begin(), parts.end(), [](const RecordingPart& one) {
+    return !one.facts || one.facts->part == 1;
+  });
+  if (!has_first) {
+    findings.push_back(
+        {Severity::warning,
+         Error{front.path, 0, "the recording's first file, " + shown(front.facts->first),
+               fmt::format("part {}", front.facts->part)},
+         "the data of the parts before it is missing", join});
   }
-  if (parts.size() == 1) return findings;
-  std::vector<std::string> names;
-  for (const RecordingPart& part : parts) names.emplace_back(file_name(part.path));
-  names.erase(names.begin());
-  const bool read = behind == PartsBehind::read;
-  findings.push_back(
-      {read ? Severity::note : Severity::warning,
-       Error{one.path, 0, "a recording in one file", fmt::format("{}", fmt::join(names, ", "))},
-       read ? "what it went on in was read behind it" : "it went on there when the disk had failed",
-       read ? "" : join});
+  if (parts.size() > 1) {
+    std::vector<std::string> others;
+    for (const RecordingPart& part : parts) others.emplace_back(file_name(part.path));
+    others.erase(others.begin());
+    findings.push_back({several,
+                        Error{front.path, 0, "a recording in one file",
+                              fmt::format("{}", fmt::join(others, ", "))},
+                        "the recording went on there when the disk failed; all parts were read",
+                        several == Severity::note ? "" : join});
+  }
+  append(findings, judge_siblings(files, front));
   return findings;
 }
 

@@ -1,145 +1,184 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/recover.h"
 
+#include "kinalign/core/crc.h"
 #include "kinalign/core/file_version.h"
 #include "kinalign/formats/unknown_file.h"
-#include "kinalign/recording/beside.h"
-#include "kinalign/recording/copier.h"
-#include "kinalign/recording/merged_parts.h"
-#include "kinalign/recording/parts.h"
+#include "kinalign/mcap/store.h"
+#include "kinalign/recording/record_stream.h"
+#include "kinalign/recording/survey.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+#include <variant>
 
 namespace kinalign {
 
 namespace {
 
-/// Reads the new file from its beginning, before it gets its name.
-PieceSource pieces_of(const OutputFile& file, std::uint64_t size, std::string& buffer) {
-  return {file.path(), size,
-          [&file, &buffer, at = std::uint64_t{0}]() mutable -> Result<std::string_view> {
-            buffer.resize(InputFile::piece_size);
-            const std::size_t got = KA_TRY(file.read_at(at, buffer));
-            at += got;
-            return std::string_view(buffer).substr(0, got);
-          }};
-}
+/// The number of messages and their CRC-32, in order: channel, number, both times and payload.
+struct Contents {
+  std::uint64_t messages = 0;
+  std::uint32_t crc = 0;
 
-/// Reports everything in a part that could not be read.
-Findings judge(const MergedParts& merged, std::size_t part, const std::string& path) {
-  Findings findings = merged.reader(part).findings();
-  for (Finding& finding : findings) finding.what.file = path;
-  append(findings, judge_strays(path, merged.guard(part)));
-  if (merged.unread(part) > 0) {
-    findings.push_back({Severity::error,
-                        Error{path, 0, "bytes that the disk can read",
-                              fmt::format("{} that it can't", merged.unread(part))},
-                        "what lay there is lost, the rest was read",
-                        "ddrescue copies a bad disk and tries more often; recover that copy, too"});
+  void add(const McapMessage& message) {
+    std::string head;
+    append_little(message.channel, head);
+    append_little(message.sequence, head);
+    append_little(message.log_time, head);
+    append_little(message.publish_time, head);
+    append_little(static_cast<std::uint64_t>(message.data.size()), head);
+    crc = crc_of(message.data, crc_of(head, crc));
+    ++messages;
   }
-  return findings;
-}
+  bool operator==(const Contents&) const = default;
+};
 
-/// The error for a file in which nothing can be read. It names sibling files, because the beginning
-/// that names the recording may be damaged.
-Error nothing_in(FileSystem& files, const std::string& path) {
-  std::string found = "nothing";
-  for (const std::string& one : with_namesakes(files, {path})) {
-    if (same_file(one, path)) continue;
-    found += (found == "nothing" ? "; beside it are " : ", ") + shown(file_name(one));
+/// Writes the records of a stream into the new file.
+class Copier {
+ public:
+  Copier(OutputFile& out, const RecordingParts& parts) : writer_(mcap_store(out)), parts_(parts) {}
+
+  Result<void> take(const McapRecord& record) {
+    if (!std::holds_alternative<McapHeader>(record)) KA_TRY(begin({}));
+    return std::visit([this](const auto& one) { return add(one); }, record);
   }
-  return {path, 0, "a recording of which anything can be read", found};
-}
-
-Error reads_differently(const std::string& path) {
-  return {path, 0, "files that a second reading finds as the first one did",
-          "others: copy them with ddrescue, and recover the copies"};
-}
-
-/// Copies everything, and writes index and end.
-Result<void> copy(FileSystem& files, const RecordingParts& parts, RecordingCopier& copier,
-                  const Progress& progress) {
-  MergedParts merged = KA_TRY(MergedParts::open(files, parts, progress));
-  while (const auto one = KA_TRY(merged.next())) {
-    KA_TRY(copier.take(*one->record, one->part, merged.reader(one->part).unchecked()));
-  }
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    const McapReader& reader = merged.reader(part);
-    copier.recovered.skipped += reader.skipped();
-    if (reader.all_checked()) copier.all_checked(part);
-    if (reader.summary_spoilt() || !reader.closed()) copier.counted = 0;
-    append(copier.recovered.findings, judge(merged, part, parts[part].path));
-  }
-  copier.recovered.unchecked = copier.unchecked();
-  if (!copier.has_all()) return Failure(reads_differently(parts.front().path));
-  if (copier.is_empty()) return Failure(nothing_in(files, parts.front().path));
-  return copier.finish(!merged.reader(furthest(parts)).closed());
-}
-
-/// Fails if the file does not begin as an MCAP file.
-Result<void> check_beginning(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  const std::string_view head = KA_TRY(file.next_or_zeros());
-  if (file.unread() > 0) return Failure(unreadable_beginning(path));
-  if (head.empty()) return Failure(unknown_file(path, head));
-  if (looks_like_recording(head)) return {};
-  return Failure(Error{path, 0, "an MCAP file", beginning_of(head)});
-}
-
-/// The number of messages that were recorded and are not in the new file.
-std::uint64_t missing(const RecordingCopier& copier, std::size_t parts) {
-  const Recovered& recovered = copier.recovered;
-  std::uint64_t by_number = 0;
-  if (recovered.proof.facts) {  // other programs number messages as they like
-    const MessageNumbers numbers = copier.numbers();
-    for (const ChannelSurvey& one : recovered.proof.channels) {
-      by_number += numbers.missing(one.channel.id);
+  /// Writes index and end. `ending`: the end of the recording.
+  Result<void> finish(Ending ending) {
+    KA_TRY(close_chunk());
+    if (ending == Ending::torn && parts_.front().facts) {
+      KA_TRY(writer_.write(McapMetadata{std::string(torn_metadata), {}}));
     }
+    return writer_.finish();
   }
-  const bool counted = parts == 1 && copier.counted > recovered.messages;
-  return std::max(by_number, counted ? copier.counted - recovered.messages : 0);
-}
 
-Result<RecordingParts> parts_of(FileSystem& files, const std::vector<std::string>& paths,
-                                const Progress& progress) {
-  const std::vector<std::string> all = with_parts(files, paths);
-  return all.size() > 1 ? read_parts(files, all, progress)
-                        : parts_from(files, all.front(), progress);
-}
+  std::uint64_t size() const { return writer_.size(); }
+  const Contents& contents() const { return contents_; }
+  std::size_t channels() const { return copied_.size(); }
+  std::uint64_t nameless() const { return nameless_; }
+  /// Returns whether the files contain nothing but a header and definitions.
+  bool is_empty() const { return contents_.messages == 0 && is_empty_; }
 
-Error is_input(const std::string& out, const std::string& part) {
-  return {out, 0, "another name than those of the recording's files",
-          "'" + shown(file_name(part)) + "', which is one of them"};
-}
+ private:
+  Result<void> begin(const McapHeader& header) {
+    return writer_.size() == 0 ? writer_.begin(header) : Result<void>();
+  }
+  Result<void> add(const McapHeader& header) { return begin(header); }
+  // A damaged summary must not override the definitions in the data section, so the first
+  // definition is kept.
+  Result<void> add(const McapSchema& schema) {
+    schemas_.try_emplace(schema.id, schema);
+    return {};
+  }
+  Result<void> add(const McapChannel& channel) {
+    channels_.try_emplace(channel.id, channel);
+    return {};
+  }
+  Result<void> add(const McapMetadata& metadata) {
+    if (metadata.name == torn_metadata) return {};  // finish() writes it
+    is_empty_ = false;
+    KA_TRY(close_chunk());
+    return writer_.write(to_facts(metadata) ? of_all_parts(metadata) : metadata);
+  }
+  Result<void> add(const McapAttachment& attachment) {
+    is_empty_ = false;
+    KA_TRY(close_chunk());
+    return writer_.write(attachment);
+  }
+  Result<void> add(const McapMessage& message) {
+    const auto channel = channels_.find(message.channel);
+    if (channel == channels_.end()) {
+      ++nameless_;
+      return {};
+    }
+    if (!chunk_.messages().contains(message.channel)) {
+      const auto schema = schemas_.find(channel->second.schema_id);
+      if (schema != schemas_.end()) chunk_.add(schema->second);
+      chunk_.add(channel->second);
+      copied_.insert(message.channel);
+    }
+    chunk_.add(message);
+    contents_.add(message);
+    constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
+    return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
+  }
+  template <class Other>
+  Result<void> add(const Other&) {
+    return {};  // the new file gets its own summary
+  }
 
-/// Checks, before anything is read, that the files can be read and that none of them is
-/// overwritten.
+  /// Changes the metadata of one part so that it describes all parts together.
+  McapMetadata of_all_parts(McapMetadata metadata) const {
+    if (parts_.size() == 1) return metadata;
+    std::set<int> joined;
+    for (const RecordingPart& part : parts_) {
+      joined.insert(part.facts->part);
+      joined.insert(part.facts->joined.begin(), part.facts->joined.end());
+    }
+    metadata.texts["part"] = std::to_string(*joined.begin());
+    metadata.texts["joined"] = fmt::format("{}", fmt::join(joined, " "));
+    return metadata;
+  }
+  Result<void> close_chunk() {
+    if (chunk_.empty()) return {};
+    return writer_.write(store(std::exchange(chunk_, {}), McapCompression::zstd));
+  }
+
+  McapWriter writer_;
+  const RecordingParts& parts_;
+  std::map<std::uint16_t, McapSchema> schemas_;
+  std::map<std::uint16_t, McapChannel> channels_;
+  std::set<std::uint16_t> copied_;  // channels with messages
+  McapChunkContent chunk_;
+  Contents contents_;
+  std::uint64_t nameless_ = 0;
+  bool is_empty_ = true;
+};
+
+/// Checks, before anything is read, that the files are MCAP files and that none of them, nor a part
+/// in their folders, is overwritten.
 Result<void> check_names(FileSystem& files, const std::vector<std::string>& paths,
                          const std::string& out) {
-  for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
-  for (const std::string& path : with_namesakes(files, paths)) {  // also files that are not needed
-    if (same_file(out, path)) return Failure(is_input(out, path));
+  for (const std::string& path : paths) {
+    InputFile file = KA_TRY(InputFile::open(files, path));
+    const std::string_view head = KA_TRY(file.next());
+    if (head.empty()) return Failure(unknown_file(path, head));
+    if (!looks_like_recording(head)) {
+      return Failure(Error{path, 0, "an MCAP file", beginning_of(head)});
+    }
   }
-  for (const std::string& path : paths) {  // needed if the folder cannot be listed
-    if (version_of(out) && is_namesake(out, path)) return Failure(is_input(out, out));
+  for (const std::string& path : with_siblings(files, paths)) {
+    if (!same_file(out, path)) continue;
+    return Failure(Error{out, 0, "another name than those of the recording's files",
+                         "'" + shown(file_name(path)) + "', which is one of them"});
   }
   return {};
 }
 
-/// Reads the new file again before it gets its name.
-Result<void> prove(RecordingCopier& copier, const OutputFile& file, const std::string& out,
-                   const Progress& progress) {
-  std::string buffer;
-  Recovered& recovered = copier.recovered;
-  recovered.proof = KA_TRY(survey_recording(pieces_of(file, copier.size(), buffer), progress));
-  const RecordingSurvey& proof = recovered.proof;
-  if (copier.proved_by(proof)) return {};
-  return Failure(
-      Error{out, 0, std::to_string(recovered.messages) + " messages, read again",
-            std::to_string(proof.messages) +
-                (proof.torn.empty() ? ", not all as they were written" : " and no end")});
+/// Reads the new file again before it gets its name. Every byte of it is covered by a checksum.
+Result<void> prove(const OutputFile& file, const Copier& copier, const Progress& progress) {
+  std::string buffer(InputFile::piece_size, '\0');
+  std::uint64_t at = 0;
+  const auto next_piece = [&]() -> Result<std::string_view> {
+    const std::size_t got = KA_TRY(file.read_at(at, buffer));
+    at += got;
+    if (!go_on(progress, "reading again", at, copier.size())) return Failure(interruption());
+    return std::string_view(buffer).substr(0, got);
+  };
+  McapReader reader;
+  Contents read;
+  while (const auto record = KA_TRY(pull(reader, next_piece))) {
+    if (const auto* message = std::get_if<McapMessage>(&*record)) read.add(*message);
+  }
+  if (reader.closed() && reader.findings().empty() && read == copier.contents()) return {};
+  return Failure(Error{file.path(), 0,
+                       fmt::format("{} messages, read again", copier.contents().messages),
+                       fmt::format("{}, not all as they were written", read.messages)});
 }
 
 }  // namespace
@@ -149,18 +188,31 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
                                     const Progress& progress) {
   KA_TRY(check_names(files, paths, out));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
-  const RecordingParts parts = KA_TRY(parts_of(files, paths, progress));
-  RecordingCopier copier(file, parts);
-  KA_TRY(copy(files, parts, copier, progress));
-  Recovered& recovered = copier.recovered;
-  KA_TRY(prove(copier, file, out, progress));
-  recovered.missing = missing(copier, parts.size());
-  append(recovered.findings, judge_order(out, recovered.proof));
-  append(recovered.findings, judge_end(parts[furthest(parts)].path, recovered.proof));
-  append(recovered.findings, judge_parts(parts, PartsBehind::read));
-  append(recovered.findings, judge_namesakes(files, parts.front().path));
+  const RecordingParts parts = KA_TRY(find_parts(files, paths));
+  RecordStream stream = KA_TRY(RecordStream::open(files, parts, progress));
+  Copier copier(file, parts);
+  while (const McapRecord* record = KA_TRY(stream.next())) KA_TRY(copier.take(*record));
+  const std::string& first = parts.front().path;
+  if (copier.is_empty()) {
+    return Failure(Error{first, 0, "a recording of which anything can be read", "nothing"});
+  }
+  KA_TRY(copier.finish(stream.ending()));
+  KA_TRY(prove(file, copier, progress));
+
+  Recovered done;
+  done.messages = copier.contents().messages;
+  done.channels = copier.channels();
+  done.unchecked = stream.unchecked();
+  done.twice = stream.repeated();
+  done.nameless = copier.nameless();
+  done.skipped = stream.skipped();
+  done.missing = stream.missing();
+  done.findings = stream.findings();
+  append(done.findings,
+         judge_end(parts.back().path, parts.front().facts.has_value(), stream.ending()));
+  append(done.findings, judge_parts(files, parts, Severity::note));
   KA_TRY(file.commit());
-  return std::move(recovered);
+  return done;
 }
 
 }  // namespace kinalign

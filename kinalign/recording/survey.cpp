@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/survey.h"
 
-#include "kinalign/core/crc.h"
 #include "kinalign/documents/lab_toml.h"
 #include "kinalign/protocols/protocols.h"
 #include "kinalign/protocols/slimevr/packet.h"
@@ -54,32 +53,28 @@ std::vector<Counted> all_of(const LastCounts& last,
 
 class RecordingSurveyor::State {
  public:
-  explicit State(const McapReader& reader) : reader_(reader) {}
-
   void take(const McapRecord& record) {
     std::visit([this](const auto& one) { add(one); }, record);
   }
 
   /// Completes the survey after the last record.
-  RecordingSurvey finish(const std::string& path, std::uint64_t bytes) {
-    for (auto& [id, channel] : channels_) survey_.channels.push_back(std::move(channel));
+  RecordingSurvey finish(const std::string& path, const RecordStream& stream) {
+    for (auto& [id, channel] : channels_) {
+      channel.missing = stream.numbers().missing(id);
+      survey_.channels.push_back(std::move(channel));
+    }
     std::stable_sort(
         survey_.channels.begin(), survey_.channels.end(),
         [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
     survey_.senders = all_of(senders_, to_counted_sender);
     survey_.ports = all_of(ports_, to_counted_port);
-    if (reader_.all_checked()) survey_.unchecked = 0;
+    survey_.unchecked = stream.unchecked();
     if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
-    survey_.findings = reader_.findings();
-    survey_.flawed = !survey_.findings.empty();
-    for (Finding& finding : survey_.findings) finding.what.file = path;
-    append(survey_.findings, judge_strays(path, guard_));
+    survey_.findings = stream.findings();
     append(survey_.findings, kinects_.findings(path));
-    survey_.bytes = bytes;
-    if (!reader_.closed()) {
-      survey_.torn.push_back(path);
-      survey_.ending = std::max(survey_.ending, Ending::torn);
-    }
+    survey_.bytes = stream.bytes();
+    survey_.truncated = stream.truncated();
+    survey_.ending = stream.ending();
     return std::move(survey_);
   }
 
@@ -97,7 +92,6 @@ class RecordingSurveyor::State {
   void add(const McapMetadata& metadata) {
     if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
     if (const auto end = to_end(metadata)) survey_.end = end;
-    survey_.ending = std::max(survey_.ending, ending_of(metadata));
     if (survey_.facts) return;
     survey_.facts = to_facts(metadata);
     if (survey_.facts) clock_.push_back(survey_.facts->anchor);
@@ -116,21 +110,10 @@ class RecordingSurveyor::State {
     }
   }
   void add(const McapMessage& message) {
-    if (survey_.facts && !guard_.believes(message, reader_.unchecked())) return;
     ++survey_.messages;
-    survey_.contents = add_to(survey_.contents, message);
-    if (reader_.unchecked()) ++survey_.unchecked;
     ChannelSurvey& channel = channels_[message.channel];
     channel.channel.id = message.channel;  // the channel may have no definition
-    if (channel.messages == 0) {
-      channel.first = channel.last = message.log_time;
-    } else {
-      // If a writer does not number its messages, none is missing.
-      const std::uint32_t step = message.sequence - channel.last_number;
-      channel.in_order = channel.in_order && message.sequence > channel.last_number;
-      if (step > 1 && step < 1U << 31U) channel.missing += step - 1;
-    }
-    channel.last_number = message.sequence;
+    if (channel.messages == 0) channel.first = message.log_time;
     channel.first = std::min(channel.first, message.log_time);
     channel.last = std::max(channel.last, message.log_time);
     ++channel.messages;
@@ -140,11 +123,11 @@ class RecordingSurveyor::State {
     }
     kinects_.take(message.channel, message.data);
     if (survey_.facts && channel.channel.message_encoding == "json") {
-      add_told(channel.channel.topic, message);
+      add_own(channel.channel.topic, message);
     }
   }
   /// Takes messages of the recorder itself: counts, marks and clocks.
-  void add_told(std::string_view topic, const McapMessage& message) {
+  void add_own(std::string_view topic, const McapMessage& message) {
     if (topic == sender_counts_topic) return keep_last(message.data, senders_);
     if (topic == port_counts_topic) return keep_last(message.data, ports_);
     if (topic == marks_topic) return add_mark(message);
@@ -172,103 +155,34 @@ class RecordingSurveyor::State {
   template <class Other>
   void add(const Other&) {}
 
-  const McapReader& reader_;
   std::map<std::uint16_t, ChannelSurvey> channels_;
   std::vector<ClockPair> clock_;
   LastCounts senders_, ports_;
   KinectSurvey kinects_;
-  NumberGuard guard_;
   RecordingSurvey survey_;
 };
 
-RecordingSurveyor::RecordingSurveyor(const McapReader& reader)
-    : state_(std::make_unique<State>(reader)) {}
+RecordingSurveyor::RecordingSurveyor() : state_(std::make_unique<State>()) {}
 RecordingSurveyor::~RecordingSurveyor() = default;
 void RecordingSurveyor::take(const McapRecord& record) { state_->take(record); }
-RecordingSurvey RecordingSurveyor::finish(const std::string& path, std::uint64_t bytes) {
-  return state_->finish(path, bytes);
+RecordingSurvey RecordingSurveyor::finish(const std::string& path, const RecordStream& stream) {
+  return state_->finish(path, stream);
 }
 
-std::uint32_t add_to(std::uint32_t contents, const McapMessage& message) {
-  std::string head;
-  append_little(message.channel, head);
-  append_little(message.sequence, head);
-  append_little(message.log_time, head);
-  append_little(message.publish_time, head);
-  append_little(static_cast<std::uint64_t>(message.data.size()), head);
-  return crc_of(message.data, crc_of(head, contents));
-}
-
-Result<void> read_recording(const PieceSource& source, McapReader& reader, const TakeRecord& take,
-                            const Progress& progress) {
-  std::uint64_t done = 0;
-  const auto next_piece = [&]() -> Result<std::string_view> {
-    const std::string_view piece = KA_TRY(source.next());
-    done += piece.size();
-    if (!go_on(progress, "reading", done, source.size)) return Failure(interruption(source.path));
-    return piece;
-  };
-  while (const auto record = KA_TRY(pull(reader, next_piece))) KA_TRY(take(*record));
-  if (reader.is_mcap()) return {};
-  return Failure(Error{source.path, 0, "an MCAP file", "another beginning"});
-}
-
-Result<void> read_recording(FileSystem& files, const std::string& path, McapReader& reader,
-                            const TakeRecord& take, const Progress& progress) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  return read_recording({path, file.size(), [&file] { return file.next(); }}, reader, take,
-                        progress);
-}
-
-Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progress& progress) {
-  McapReader reader;
-  RecordingSurveyor surveyor(reader);
-  std::uint64_t bytes = 0;
-  const auto count = [&](std::string_view what, std::uint64_t done, std::uint64_t total) {
-    bytes = done;
-    return go_on(progress, what, done, total);
-  };
-  const auto take = [&](const McapRecord& record) -> Result<void> {
-    surveyor.take(record);
-    return {};
-  };
-  KA_TRY(read_recording(source, reader, take, count));
-  return surveyor.finish(source.path, bytes);
-}
-
-Findings judge_strays(const std::string& path, const NumberGuard& guard) {
-  if (guard.strays() == 0) return {};
-  return {{Severity::error,
-           Error{path, 0, "messages with numbers that can be",
-                 std::to_string(guard.strays()) + " of others"},
-           "no checksum covers them, and something there was altered: they are left out", ""}};
-}
-
-Finding ends_before(const std::string& path) {
-  return {Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
-          "the disk took no more: what came later is in another file, if it took one",
-          "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"};
-}
-
-Findings judge_end(const std::string& path, const RecordingSurvey& survey) {
-  if (!survey.facts || survey.ending != Ending::none) return {};
-  return {ends_before(path)};
-}
-
-Findings judge_order(const std::string& path, const RecordingSurvey& survey) {
-  const bool in_order = std::all_of(survey.channels.begin(), survey.channels.end(),
-                                    [](const ChannelSurvey& one) { return one.in_order; });
-  if (!survey.facts || in_order) return {};
-  return {{Severity::warning,
-           Error{path, 0, "each channel's messages in their order", "some behind later ones"},
-           "all are there, but check takes some for missing, and align leaves some out",
-           "recover the recording's own files together, without one that recover has made"}};
+Findings judge_end(const std::string& path, bool is_ours, Ending ending) {
+  if (!is_ours || ending != Ending::none) return {};
+  return {{Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
+           "the disk took no more: what came later is in another file, if it took one",
+           "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"}};
 }
 
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
                                          const Progress& progress) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  return survey_recording({path, file.size(), [&file] { return file.next(); }}, progress);
+  const RecordingParts parts = KA_TRY(find_parts(files, {path}));
+  RecordStream stream = KA_TRY(RecordStream::open(files, parts, progress));
+  RecordingSurveyor surveyor;
+  while (const McapRecord* record = KA_TRY(stream.next())) surveyor.take(*record);
+  return surveyor.finish(path, stream);
 }
 
 Result<bool> is_recording(FileSystem& files, const std::string& path) {

@@ -4,7 +4,7 @@
 
 #include "tests/mcap/mcap_files.h"
 
-#include "kinalign/recording/format.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <doctest/doctest.h>
@@ -19,6 +19,11 @@ inline Severity worst_of(const Findings& findings) {
   Severity worst = Severity::note;
   for (const Finding& one : findings) worst = std::max(worst, one.severity);
   return worst;
+}
+
+/// Returns whether a warning says that the rest of the recording is missing.
+inline bool ends_before(const RecordingSurvey& survey) {
+  return !judge_end("a.mcap", survey.facts.has_value(), survey.ending).empty();
 }
 
 /// Messages [from, to), numbered by channel as the recorder numbers them.

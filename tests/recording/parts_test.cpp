@@ -2,16 +2,18 @@
 #include "kinalign/recording/parts.h"
 
 #include "tests/folder.h"
+#include "tests/recording/part_files.h"
 #include "tests/recording/recorded_lab.h"
 
-#include "kinalign/recording/beside.h"
 #include "kinalign/recording/recover.h"
 #include "kinalign/recording/streams/recording_source.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <numeric>
 
 using namespace kinalign;
@@ -82,8 +84,7 @@ TEST_CASE("a recording is read on in the files that it went on in") {
   CHECK(samples(files, path, "12") == all);
   CHECK(samples(files, path, "13") == samples(files, whole, "13"));
   // The manifest has the nodes of all files, and the take has those files.
-  const auto manifest =
-      manifest_of(*survey_parts(files, *parts_from(files, path, {}), {}), "take.mcap");
+  const auto manifest = manifest_of(*survey_recording(files, path), "take.mcap");
   REQUIRE(manifest);
   CHECK(manifest->streams.front().files.size() == 2);
   const auto recording = open_recording(files, *manifest, folder.path() + "/");
@@ -110,24 +111,25 @@ TEST_CASE("who reads a recording whose later file is not there is told that it e
   CHECK(said(path).find("ends before") == std::string::npos);
 }
 
-TEST_CASE("of a recording's files it is said which are not there or were not read") {
+TEST_CASE("a recording of several files is reported, and a missing first file") {
   const FreshFolder folder;
   TornLab lab(folder);
   PosixFiles files;
   const std::string path = lab.first();
   const auto judged = [&](const std::string& which) {
-    return told(judge_parts(*parts_from(files, which, {}), PartsBehind::left));
+    return told(judge_parts(files, *find_parts(files, {which}), Severity::warning));
   };
   CHECK(judged(path).empty());
   const std::string second = lab.second();
-  CHECK(judged(path) == "a recording in one file, take.part2.mcap\n");
-  CHECK(judged(second) == "the recording's first file, take.mcap, part 2\n");
+  for (const std::string& which : {path, second}) {
+    CHECK(judged(which) == "a recording in one file, take.part2.mcap\n");
+  }
   lab.third();
   CHECK(judged(path) == "a recording in one file, take.part2.mcap, take.part10.mcap\n");
-  // A file that holds the whole recording has no further parts, and files of another run are no
-  // parts of it either.
-  folder.write("other.part2.mcap", lab.lab().file({2, 24.5, 35.0, "take_02.mcap"}));
-  CHECK(judged(lab.write("other.mcap", {})).empty());
+  std::filesystem::remove(path);
+  CHECK(judged(second) ==
+        "the recording's first file, take.mcap, part 2\n"
+        "a recording in one file, take.part10.mcap\n");
 }
 
 TEST_CASE(
@@ -140,9 +142,9 @@ TEST_CASE(
   PosixFiles files;
   const std::string path = lab.first();
   const std::string second = lab.second();
-  const auto survey = [&] { return *survey_parts(files, *parts_from(files, path, {}), {}); };
+  const auto survey = [&] { return *survey_recording(files, path); };
   const RecordingSurvey whole = survey();
-  CHECK(whole.torn.empty());
+  CHECK(whole.truncated.empty());
   CHECK(whole.findings.empty());
   CHECK(whole.steps.size() == 1);
   REQUIRE(whole.marks.size() == 2);
@@ -156,7 +158,7 @@ TEST_CASE(
   bytes[bytes.size() / 2] ^= 1;
   folder.write("take.part2.mcap", bytes.substr(0, bytes.size() - 100));
   const RecordingSurvey broken = survey();
-  CHECK(broken.torn == std::vector<std::string>{second});
+  CHECK(broken.truncated == std::vector<std::string>{second});
   REQUIRE(!broken.findings.empty());
   CHECK(broken.findings.front().what.file == second);
 }
@@ -166,7 +168,7 @@ TEST_CASE("what is missing of a recording is what no file of it has") {
   TornLab lab(folder);
   PosixFiles files;
   const auto missing = [&](const std::string& path) {
-    const auto survey = survey_parts(files, *parts_from(files, path, {}), {});
+    const auto survey = survey_recording(files, path);
     REQUIRE(survey);
     std::map<std::string, std::uint64_t> by_topic;
     for (const ChannelSurvey& one : survey->channels) by_topic[one.channel.topic] = one.missing;
@@ -192,7 +194,6 @@ TEST_CASE("recover takes parts in any order, and none of another run") {
   const ReadMcap read = read_mcap(folder.read("b.mcap")), whole = read_mcap(lab.lab().file());
   REQUIRE(read.messages.size() == whole.messages.size());
   CHECK(recovered->twice > 0);
-  CHECK(recovered->proof.contents == survey_recording(files, lab.whole())->contents);
   for (std::size_t k = 0; k < read.messages.size(); ++k) {
     CHECK(read.messages[k].message.sequence == whole.messages[k].message.sequence);
     CHECK(read.messages[k].data == whole.messages[k].data);
@@ -227,6 +228,10 @@ TEST_CASE("what the disk spoilt in one file is taken from the next, which repeat
   REQUIRE(recovered);
   CHECK(recovered->messages == whole);
   CHECK(samples(files, path, "12") == samples(files, lab.whole(), "12"));
+  const auto survey = survey_recording(files, path);
+  REQUIRE(survey);
+  CHECK(survey->messages == whole);
+  for (const ChannelSurvey& one : survey->channels) CHECK(one.missing == 0);
 }
 
 TEST_CASE("what a torn end says of a channel counts only where no checksum covers it elsewhere") {
@@ -267,5 +272,112 @@ TEST_CASE("a message of a torn end whose number can't be is left out, and told")
   options.files = {{folder / "take.mcap", "12"}};
   const auto streams = open_streams(files, {options});
   REQUIRE(streams);
-  CHECK(told(streams->shared_files.front().findings).find("1 of others") != std::string::npos);
+  CHECK(told(streams->shared_files.front().findings).find("1 with others") != std::string::npos);
+}
+
+TEST_CASE("for a link, siblings are found in its folder and in the folder of its target") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("A/a.mcap", part_of(1, 0, 20, false));
+  const std::string b = folder.write("B/a.part2.mcap", part_of(2, 20, 40, false));
+  const std::string c = folder.write("B/a.part3.mcap", part_of(3, 40, 60, true));
+  const std::string link = folder / "A/a.part2.mcap";
+  std::filesystem::create_symlink("../B/a.part2.mcap", link);
+  for (const auto& named :
+       {std::vector{a, b}, std::vector{b, a}, std::vector{link}, std::vector{c, a}}) {
+    std::vector<std::string> parts;
+    for (const RecordingPart& one : *find_parts(files, named)) parts.push_back(one.path);
+    for (const auto& all : {parts, with_siblings(files, named)}) {
+      CHECK(all.size() == 3);
+      for (const std::string& one : {a, b, c}) {
+        CHECK(std::any_of(all.begin(), all.end(), [&](const std::string& found) {
+          return std::filesystem::equivalent(found, one);
+        }));
+      }
+    }
+  }
+}
+
+TEST_CASE("the names of parts are those of a file's siblings") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", "");
+  for (const char* name : {"a.part2.mcap", "a.part77.mcap", "b.mcap", "a.parts.mcap", "a.part.mcap",
+                           "a.part2.txt", "sub/a.part2.mcap"}) {
+    folder.write(name, "");
+  }
+  CHECK(with_siblings(files, {a}) ==
+        std::vector{a, folder / "a.part2.mcap", folder / "a.part77.mcap"});
+}
+
+TEST_CASE("a file that has the name of a part and proves nothing is reported") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto reported = [&](const std::string& path) {
+    std::vector<std::string> paths;
+    for (const Finding& one : judge_parts(files, *find_parts(files, {path}), Severity::note)) {
+      paths.push_back(one.what.file);
+    }
+    return paths;
+  };
+  const std::string renamed = folder.write("old.mcap", part_of(1, 0, 20, false));
+  CHECK(reported(renamed).empty());
+  const std::string damaged = folder.write("a.part2.mcap", "???");
+  CHECK(reported(renamed) == std::vector{damaged});
+  std::filesystem::remove(damaged);
+  // A recording of another machine that has the same file name.
+  std::string another = part_of(1, 0, 20, true);
+  folder.write("a.mcap", another.replace(another.find("lab"), 3, "bal"));
+  CHECK(reported(renamed).empty());
+  CHECK(find_parts(files, {renamed})->size() == 1);
+  const std::string foreign = folder.write("b.mcap", mcap_file(6, 3, McapCompression::none));
+  CHECK(reported(foreign).empty());
+  const std::string other = folder.write("b.part2.mcap", mcap_file(6, 3, McapCompression::none));
+  CHECK(reported(foreign) == std::vector{other});
+}
+
+TEST_CASE("if two files have one part number, the higher number in the name is the later part") {
+  const FreshFolder folder;  // the state after every sync failed and the program was killed
+  PosixFiles files;
+  const std::string second = folder.write("a.part9.mcap", part_of(2, 10, 40, false));
+  const std::string third = folder.write("a.part10.mcap", part_of(2, 10, 60, true));
+  for (const std::string& named : {second, third}) {
+    const auto parts = find_parts(files, {named});
+    REQUIRE(parts);
+    REQUIRE(parts->size() == 2);
+    CHECK(parts->front().path == second);
+  }
+}
+
+TEST_CASE("parts that recover has joined are not read again, however bad they are") {
+  const std::string torn = torn_at(part_of(2, 27, 60, true), 57);
+  std::string damaged = part_of(2, 27, 60, true);
+  damaged[damaged.find(nth_message(40).data)] ^= 1;
+  for (const std::string& second : {torn, damaged}) {
+    const FreshFolder folder;
+    PosixFiles files;
+    const std::string a = folder.write("a.mcap", part_of(1, 0, 30, false));
+    folder.write("a.part2.mcap", second);
+    const std::string whole = folder / "whole.mcap";
+    const auto recovered = recover_recording(files, {a}, whole, Overwrite::no);
+    REQUIRE(recovered);
+    CHECK(find_parts(files, {whole})->size() == 1);
+    const auto survey = survey_recording(files, whole);
+    REQUIRE(survey);
+    CHECK(survey->messages == recovered->messages);
+    CHECK(survey->truncated.empty());
+    CHECK(survey->findings.empty());
+  }
+}
+
+TEST_CASE("a part that recover had not seen is read with the file that it made of others") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 30, false));
+  const std::string c = folder.write("a.part3.mcap", part_of(3, 30, 90, true));
+  const std::string joined = folder / "joined.mcap";
+  REQUIRE(recover_recording(files, {a, c}, joined, Overwrite::no));
+  CHECK(survey_recording(files, joined)->facts->joined == std::set<int>{1, 3});
+  folder.write("a.part2.mcap", part_of(2, 20, 40, false));
+  CHECK(find_parts(files, {joined})->size() == 2);
 }

@@ -7,7 +7,7 @@
 #include "tests/seeds.h"
 
 #include "kinalign/align/align.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <doctest/doctest.h>
@@ -34,7 +34,7 @@ RecordedLab troubled_lab(std::uint64_t seed, double slept_s) {
 /// Aligns take.mcap of the folder onto the stream named, or the first.
 Take aligned(FileSystem& files, const FreshFolder& folder, const std::string& reference) {
   const std::string path = folder / "take.mcap";
-  const auto survey = survey_parts(files, *parts_from(files, path, {}), {});
+  const auto survey = survey_recording(files, path);
   REQUIRE(survey);
   auto manifest = manifest_of(*survey, "take.mcap");
   REQUIRE(manifest);

@@ -5,7 +5,7 @@
 
 #include "kinalign/align/align.h"
 #include "kinalign/recording/streams/recording_source.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <doctest/doctest.h>
@@ -32,7 +32,7 @@ std::vector<std::string> warnings(const std::string& bytes, const std::string& f
   PosixFiles files;
   const std::string path = folder.write("take.mcap", bytes);
   if (!further.empty()) folder.write("take.part2.mcap", further);
-  const auto survey = survey_parts(files, *parts_from(files, path, {}), {});
+  const auto survey = survey_recording(files, path);
   REQUIRE(survey);
   auto manifest = manifest_of(*survey, "take.mcap");
   REQUIRE(manifest);

@@ -6,9 +6,7 @@
 #include "tests/recording/recorded_lab.h"
 
 #include "kinalign/motion/kinect_joints.h"
-#include "kinalign/recording/parts.h"
 #include "kinalign/recording/streams/recording_source.h"
-#include "kinalign/recording/survey_parts.h"
 #include "kinalign/sources/open_recording.h"
 #include "kinalign/view/show_xdf.h"
 #include "kinalign/view/shown_rows.h"

@@ -84,7 +84,7 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
     line("part", fmt::format("{} of {}", survey.facts->part, survey.facts->first));
   }
   for (std::size_t k = 1; k < parts.size(); ++k) line("goes on in", parts[k].path);
-  line("state", survey.torn.empty() ? "whole" : "torn: no index at its end");
+  line("state", survey.truncated.empty() ? "whole" : "truncated: no index at its end");
   line("messages", grouped(survey.messages));
   line("size", fmt::format("{:.1f} MB", static_cast<double>(survey.bytes) / 1e6));
   for (const ChannelSurvey& channel : survey.channels) {
@@ -113,7 +113,7 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
 /// The JSON about a recording.
 Json json_of(const std::string& path, const RecordingSurvey& survey, const RecordingParts& parts) {
   Json json{{"file", path},
-            {"closed", survey.torn.empty()},
+            {"closed", survey.truncated.empty()},
             {"messages", survey.messages},
             {"unchecked", survey.unchecked},
             {"bytes", survey.bytes},

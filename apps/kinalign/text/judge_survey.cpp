@@ -62,7 +62,7 @@ Findings gone(const std::string& path, const RecordingSurvey& survey) {
     findings.push_back({Severity::error,
                         {path, 0, std::move(expected), grouped(lacks) + " missing"},
                         "these messages reached the recorder and are not in the file",
-                        "a further part of the recording may have them: recover takes all parts"});
+                        "a part of the recording in another folder may have them"});
   };
   for (const ChannelSurvey& channel : survey.channels) {
     tell(channel.channel.topic + " without a number left out", channel.missing);
@@ -251,16 +251,15 @@ std::string new_name(const std::string& path) {
 
 Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
   Findings findings = survey.findings;
-  for (const std::string& torn : survey.torn) {
+  for (const std::string& file : survey.truncated) {
     findings.push_back({Severity::warning,
-                        {torn, 0, "an index at the recording's end", "none"},
+                        {file, 0, "an index at the recording's end", "none"},
                         "it was not closed: the program or the machine stopped, or the disk did",
                         survey.messages == 0 ? "nothing of it can be read"
-                                             : "kinalign recover " + torn + " -o " +
-                                                   new_name(torn) + " gives it one"});
+                                             : "kinalign recover " + file + " -o " +
+                                                   new_name(file) + " gives it one"});
   }
-  append(findings, judge_end(path, survey));
-  append(findings, judge_order(path, survey));
+  append(findings, judge_end(path, survey.facts.has_value(), survey.ending));
   if (!survey.steps.empty()) {
     const WallClockStep& worst = *std::max_element(
         survey.steps.begin(), survey.steps.end(), [](const auto& a, const auto& b) {

@@ -12,7 +12,7 @@
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/row_stamps.h"
 #include "kinalign/formats/unknown_file.h"
-#include "kinalign/recording/beside.h"
+#include "kinalign/recording/parts.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
@@ -225,7 +225,7 @@ Result<int> run(AlignVerb& o, Call& call) {
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
-  KA_TRY(keep_inputs(out, with_namesakes(call.surroundings.files, files_named(manifest, base))));
+  KA_TRY(keep_inputs(out, with_siblings(call.surroundings.files, files_named(manifest, base))));
   for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
     if (!use) return call.console.refuse(use.error());
   }

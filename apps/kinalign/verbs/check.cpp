@@ -16,7 +16,6 @@
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/take/take_hdf5.h"
-#include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"
 
@@ -108,15 +107,14 @@ void name_as_typed(const std::string& path, const RecordedStream& stream, Findin
   }
 }
 
-/// Checks a recording: its messages, its parts, and sibling files that share its name.
+/// Checks a recording with all of its parts.
 Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
   KA_TRY(check_flags(o, path, nullptr, call));
   FileSystem& files = call.surroundings.files;
   const auto recording = KA_TRY(RecordingSource::open(
       files, path, RecordingSource::Devices::unheard, {}, call.console.progress()));
   Checked out{judge_survey(path, recording->survey())};
-  append(out.findings, judge_parts(recording->parts(), PartsBehind::left));
-  append(out.findings, judge_namesakes(files, path));
+  append(out.findings, judge_parts(files, recording->parts(), Severity::warning));
   return out;
 }
 

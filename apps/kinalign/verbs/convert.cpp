@@ -14,7 +14,7 @@
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/formats/take/take_npz.h"
 #include "kinalign/formats/xdf/xdf.h"
-#include "kinalign/recording/beside.h"
+#include "kinalign/recording/parts.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
@@ -250,7 +250,7 @@ Result<int> run(Convert& o, Call& call) {
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
                 o.store_double};
-  KA_TRY(keep_inputs(job.to, with_namesakes(call.surroundings.files, {job.from})));
+  KA_TRY(keep_inputs(job.to, with_siblings(call.surroundings.files, {job.from})));
   const Findings findings = KA_TRY(convert(job, o, call));
   call.console.wrote(job.to);
   call.console.print(harmless(job.to) + "\n" + finding_lines(findings, call.console));

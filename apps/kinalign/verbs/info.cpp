@@ -66,7 +66,7 @@ Result<Description> describe(const Info& o, Call& call) {
     case FileKind::recording: {
       const auto source = KA_TRY(
           RecordingSource::open(files, path, RecordingSource::Devices::unheard, {}, progress));
-      return describe_survey(path, source->first_survey(), source->parts());
+      return describe_survey(path, source->survey(), source->parts());
     }
     case FileKind::xdf:
       return describe_xdf(path, KA_TRY(survey_xdf(files, path, progress)), names);

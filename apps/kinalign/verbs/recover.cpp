@@ -28,7 +28,7 @@ Usage describe_recover(Recover& o) {
   Usage usage;
   usage.positionals = {
       {"FILE",
-       "a recording's file, with all of the same recording beside it; or several, in any order",
+       "a recording's file, read with all other parts in its folder; or several, in any order",
        &o.files, 1, SIZE_MAX}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new file's name", "none"});
@@ -43,7 +43,7 @@ std::string head_line(const std::string& out, const Recovered& done) {
   const std::string of =
       done.missing > 0 ? " of at least " + grouped(done.messages + done.missing) : "";
   std::string text = fmt::format("{}: {}{} messages in {} channels, read again and whole\n", out,
-                                 grouped(done.messages), of, done.proof.channels.size());
+                                 grouped(done.messages), of, done.channels);
   if (done.missing > 0) {
     text += fmt::format("  {} are lost, as the recording's own numbers and counts say\n",
                         grouped(done.missing));
@@ -69,12 +69,12 @@ Result<int> run(Recover& o, Call& call) {
   std::string text = head_line(out, done);
   if (done.unchecked > 0) {
     text +=
-        fmt::format("  {} of them no checksum covers (a torn end, or a writer that made none)\n",
+        fmt::format("  {} of them have no checksum (a truncated end, or a writer that made none)\n",
                     grouped(done.unchecked));
   }
-  if (done.twice > 0) text += fmt::format("  {} stood in two files\n", grouped(done.twice));
+  if (done.twice > 0) text += fmt::format("  {} were in several files, and were taken once\n", grouped(done.twice));
   if (done.nameless > 0) {
-    text += fmt::format("  {} left out: what their channel is was lost\n", grouped(done.nameless));
+    text += fmt::format("  {} left out: the definition of their channel is lost\n", grouped(done.nameless));
   }
   call.console.print(harmless(text) + finding_lines(done.findings, call.console));
   call.console.print_json(json_text(nlohmann::ordered_json{
@@ -95,7 +95,7 @@ Result<int> run(Recover& o, Call& call) {
 Verb recover_verb() {
   return make_verb<Recover>(
       {.name = "recover",
-       .summary = "a torn recording, or several parts of one, into a whole file",
+       .summary = "a truncated recording, or several parts of one, into a whole file",
        .text = "Copies every message that can be read, once, gives the new file its index, and "
                "reads it again before it gets its name: what stands there must be what was copied. "
                "The old files stay as they are. Exit code "
@@ -104,7 +104,7 @@ Verb recover_verb() {
        .examples =
            {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
             {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
-             "after a disk that failed: what stands in both is taken once, the surer copy"}},
+             "after a disk failed: a message in both files is taken once"}},
        .common = {"out", "force", "json"}},
       describe_recover, run);
 }

@@ -2,7 +2,7 @@
 #include "kinalign/recording/streams/recording_scan.h"
 
 #include "kinalign/core/hash.h"
-#include "kinalign/recording/beside.h"
+#include "kinalign/recording/record_stream.h"
 
 #include <fmt/format.h>
 
@@ -42,65 +42,38 @@ class Scan {
   Scan(ScannedRecording& state, std::optional<Wanted> wanted)
       : state_(state), wanted_(std::move(wanted)) {}
 
-  /// Reads one file of the recording.
-  Result<void> read(std::size_t part, const Progress& progress) {
-    const std::string& path = state_.parts[part].path;
-    part_ = part;
-    guard_ = {};
-    versions_.push_back({path, version_of(path)});
-    InputFile file = KA_TRY(InputFile::open(*state_.files, path));
-    McapReader reader;
-    RecordingSurveyor surveyor(reader);
-    Sha256 hash;
-    std::uint64_t bytes = 0;
-    const auto next = [&]() -> Result<std::string_view> {
-      const std::string_view piece = KA_TRY(file.next());
-      hash.update(piece);
-      bytes += piece.size();
-      return piece;
+  Result<void> read(const Progress& progress) {
+    std::vector<StoredChunks::File> versions;
+    for (const RecordingPart& part : state_.parts) {
+      versions.push_back({part.path, version_of(part.path)});
+      state_.input_facts.push_back({std::string(file_name(part.path)), "", 0});
+    }
+    std::vector<Sha256> hashes(state_.parts.size());
+    const auto hash = [&](std::size_t part, std::string_view piece) {
+      hashes[part].update(piece);
+      state_.input_facts[part].bytes += piece.size();
     };
-    const auto take = [&](const McapRecord& record) -> Result<void> {
-      surveyor.take(record);
-      take_record(record, reader);
-      return {};
-    };
-    KA_TRY(read_recording({path, file.size(), next}, reader, take, progress));
+    RecordStream stream = KA_TRY(RecordStream::open(*state_.files, state_.parts, progress, hash));
+    RecordingSurveyor surveyor;
+    while (const McapRecord* record = KA_TRY(stream.next())) {
+      surveyor.take(*record);
+      take_record(*record, stream);
+    }
     end_chunk();
-    state_.surveys.push_back(surveyor.finish(path, bytes));
-    state_.input_facts.push_back({std::string(file_name(path)), hash.hex(), bytes});
-    judge_file(path, reader);
-    is_closed_ = reader.closed();
-    return {};
-  }
-
-  /// Call after the last file.
-  void finish() {
-    const std::string& path = state_.parts[part_].path;
-    Findings& findings = state_.shared.findings;
-    if (!ended_ && is_closed_) findings.push_back(ends_before(path));
-    if (more_marks_ > 0) {
-      findings.push_back({Severity::warning,
-                          Error{path, 0, fmt::format("at most {} marks", most_marks),
-                                fmt::format("{} more", more_marks_)},
-                          "they are left out", ""});
-    }
-    if (end_ && end_->dropped > 0) {
-      findings.push_back({Severity::warning,
-                          Error{path, 0, "every message that reached the recorder",
-                                fmt::format("{} fewer, of all devices", end_->dropped)},
-                          "the disk was too slow for too long, and memory full", ""});
-    }
     state_.chunks =
-        std::make_shared<StoredChunks>(*state_.files, std::move(versions_), std::move(chunks_));
+        std::make_shared<StoredChunks>(*state_.files, std::move(versions), std::move(chunks_));
+    for (std::size_t k = 0; k < hashes.size(); ++k) state_.input_facts[k].sha256 = hashes[k].hex();
+    for (auto& [id, channel] : state_.channels) channel.missing = stream.numbers().missing(id);
+    state_.survey = surveyor.finish(state_.path, stream);
+    judge(stream);
+    return {};
   }
 
  private:
   /// Keeps a record's data for the later passes.
-  void take_record(const McapRecord& record, const McapReader& reader) {
+  void take_record(const McapRecord& record, const RecordStream& stream) {
     if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
       if (!state_.facts) state_.facts = to_facts(*metadata);
-      if (const auto end = to_end(*metadata)) end_ = end;
-      ended_ = ended_ || ending_of(*metadata) != Ending::none;
     } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
       if (attachment->name.ends_with(".bvh"))
         state_.attachments[attachment->name] = attachment->data;
@@ -109,20 +82,17 @@ class Scan {
     } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
       add(*channel);
     } else if (const auto* message = std::get_if<McapMessage>(&record)) {
-      take_message(*message, reader);
+      take_message(*message, stream);
     }
   }
 
   /// Each chunk repeats the definitions of its channels, and so does the summary, which may be
-  /// damaged. A definition covered by a checksum is preferred.
-  void add(const McapChannel& defined) {
-    const McapChannel* proved = proved_channel(state_.parts, defined.id);
-    const McapChannel& channel = proved == nullptr ? defined : *proved;
+  /// damaged. The first definition is kept.
+  void add(const McapChannel& channel) {
     if (state_.channels.contains(channel.id)) return;
-    add_json(defined);
-    if (channel.topic == marks_topic) mark_channels_.insert(channel.id);
+    add_json(channel);
     const auto raw = to_raw(channel);
-    if (!raw || mark_channels_.contains(channel.id)) return;
+    if (!raw || channel.topic == marks_topic) return;
     DeviceChannel& added = state_.channels[channel.id];
     added.raw = *raw;
     added.id = channel.id;
@@ -156,103 +126,86 @@ class Scan {
     }
   }
 
-  // A message that does not count is stored in the index as left out, so that later passes skip it.
-  void take_message(const McapMessage& message, const McapReader& reader) {
-    const std::uint32_t place = place_of(reader);
-    const bool counts = guard_.believes(message, reader.unchecked()) && state_.facts &&
-                        message.log_time <= latest_log_time &&
-                        !stands_elsewhere(state_.parts, part_, message);
+  void take_message(const McapMessage& message, const RecordStream& stream) {
     const auto found = state_.channels.find(message.channel);
     const bool is_device = found != state_.channels.end();
     const bool is_json = json_channels_.contains(message.channel);
-    if (counts && mark_channels_.contains(message.channel)) take_mark(message);
-    if (!counts || !(is_device || is_json)) {
-      chunk_.left_out.push_back(place);
-      return;
-    }
-    note_channel(message.channel);
+    const bool counts = state_.facts && message.log_time <= latest_log_time;
+    if (!counts || !(is_device || is_json)) return;
+    add_to_index(message.channel, stream);
     if (is_device) hear(found->second, message);
   }
 
   void hear(DeviceChannel& from, const McapMessage& message) {
     const HostTime arrival = arrival_of(message.log_time, state_.utc_minus_host());
     if (from.sender) state_.senders[from.raw.stream].count(*from.sender, arrival);
-    const std::uint32_t step = message.sequence - from.last_number.value_or(message.sequence - 1);
-    from.last_number = message.sequence;
-    if (step > 1 && step < 1U << 31U) from.missing += step - 1;
     for (Listening* one : from.listening) {
       one->take({&from.raw, from.id, arrival, message.data});
     }
   }
 
-  /// Keeps a mark. Marks beyond most_marks are only counted.
-  void take_mark(const McapMessage& message) {
-    auto& marks = state_.shared.marks;
-    if (marks.size() >= most_marks) {
-      ++more_marks_;
-      return;
-    }
-    auto said = to_mark(message.data);
-    if (!said) return;
-    const Time at{Duration{static_cast<std::int64_t>(message.log_time)}};
-    marks.push_back({at, name_of(said->mark.kind), std::move(said->mark.text), said->mark.latency,
-                     std::move(said->source)});
-  }
-
-  /// The index of the message in its chunk, among the messages that the reader returns.
-  std::uint32_t place_of(const McapReader& reader) {
-    if (!is_in_chunk_ || chunk_.at != reader.at()) {
+  /// Adds the stream's last message to the index of its chunk. Messages that are not added are left
+  /// out by the later passes.
+  void add_to_index(std::uint16_t channel, const RecordStream& stream) {
+    const McapReader& reader = stream.reader();
+    if (chunk_.end == 0 || chunk_.part != stream.part() || chunk_.at != reader.at()) {
       end_chunk();
-      is_in_chunk_ = true;
-      chunk_.part = static_cast<std::uint32_t>(part_);
+      chunk_.part = static_cast<std::uint32_t>(stream.part());
       chunk_.is_torn = reader.in_torn_chunk();
       chunk_.at = reader.at();
       chunk_.size = reader.size();
     }
-    return places_++;
+    for (; chunk_.end < stream.place(); ++chunk_.end) chunk_.left_out.push_back(chunk_.end);
+    ++chunk_.end;
+    auto& channels = chunk_.channels;
+    const auto at = std::lower_bound(channels.begin(), channels.end(), channel);
+    if (at == channels.end() || *at != channel) channels.insert(at, channel);
   }
   void end_chunk() {
-    if (is_in_chunk_ && !chunk_.channels.empty()) chunks_.push_back(std::move(chunk_));
+    if (chunk_.end > 0) chunks_.push_back(std::move(chunk_));
     chunk_ = {};
-    is_in_chunk_ = false;
-    places_ = 0;
-  }
-  void note_channel(std::uint16_t id) {
-    auto& channels = chunk_.channels;
-    const auto at = std::lower_bound(channels.begin(), channels.end(), id);
-    if (at == channels.end() || *at != id) channels.insert(at, id);
   }
 
-  /// Reports damage and truncation of a file.
-  void judge_file(const std::string& path, const McapReader& reader) {
-    Findings& findings = state_.shared.findings;
-    for (Finding finding : reader.findings()) {
-      finding.what.file = path;
-      findings.push_back(std::move(finding));
+  /// Keeps the marks, and reports damage, truncated files, and what is missing of the recording.
+  void judge(const RecordStream& stream) {
+    const RecordingSurvey& survey = state_.survey;
+    const std::string& last = state_.parts.back().path;
+    for (const auto& [recorded, log_time] : survey.marks) {
+      if (log_time > latest_log_time) continue;
+      const Time at{Duration{static_cast<std::int64_t>(log_time)}};
+      state_.shared.marks.push_back({at, name_of(recorded.mark.kind), recorded.mark.text,
+                                     recorded.mark.latency, recorded.source});
     }
-    append(findings, judge_strays(path, guard_));
-    if (reader.closed()) return;
-    findings.push_back(
-        {Severity::warning, Error{path, 0, "a file that was closed", "one that breaks off"},
-         "everything up to the break was read", "kinalign recover makes a whole file of it"});
+    Findings& findings = state_.shared.findings;
+    findings = stream.findings();
+    for (const std::string& path : survey.truncated) {
+      findings.push_back(
+          {Severity::warning, Error{path, 0, "a file that was closed", "one that breaks off"},
+           "everything up to the break was read", "kinalign recover makes a whole file of it"});
+    }
+    append(findings, judge_end(last, survey.facts.has_value(), survey.ending));
+    if (survey.more_marks > 0) {
+      findings.push_back({Severity::warning,
+                          Error{last, 0, fmt::format("at most {} marks", most_marks),
+                                fmt::format("{} more", survey.more_marks)},
+                          "they are left out", ""});
+    }
+    if (survey.end && survey.end->dropped > 0) {
+      findings.push_back({Severity::warning,
+                          Error{last, 0, "every message that reached the recorder",
+                                fmt::format("{} fewer, of all devices", survey.end->dropped)},
+                          "the disk was too slow for too long, and memory full", ""});
+    }
+    append(findings, judge_parts(*state_.files, state_.parts, Severity::note));
   }
 
   ScannedRecording& state_;
   std::optional<Wanted> wanted_;  // absent: no device is listened to
-  std::size_t part_ = 0;
-  NumberGuard guard_;
-  std::vector<StoredChunks::File> versions_;
   std::vector<StoredChunk> chunks_;
-  StoredChunk chunk_;  // the chunk of the present messages
-  bool is_in_chunk_ = false;
-  std::uint32_t places_ = 0;
+  StoredChunk chunk_;  // the chunk of the last message
   std::map<std::uint16_t, McapSchema> schemas_;
-  std::set<std::uint16_t> mark_channels_, json_channels_;
+  std::set<std::uint16_t> json_channels_;
   std::map<std::string, std::size_t> hosts_;  // hosts of each stream
-  std::uint64_t more_marks_ = 0;              // marks beyond most_marks
-  std::optional<RecordingEnd> end_;
-  bool ended_ = false;  // the recording has ended, or recover found it truncated
-  bool is_closed_ = false;
 };
 
 }  // namespace
@@ -262,12 +215,9 @@ Result<ScannedRecording> scan_recording(FileSystem& files, const std::string& pa
   ScannedRecording scanned;
   scanned.files = &files;
   scanned.path = path;
-  scanned.parts = KA_TRY(parts_from(files, path, progress));
+  scanned.parts = KA_TRY(find_parts(files, {path}));
   Scan scan(scanned, listen.any ? std::optional(Wanted(listen.wanted)) : std::nullopt);
-  for (std::size_t part = 0; part < scanned.parts.size(); ++part) KA_TRY(scan.read(part, progress));
-  scan.finish();
-  append(scanned.shared.findings, judge_parts(scanned.parts, PartsBehind::read));
-  append(scanned.shared.findings, judge_namesakes(files, scanned.parts.front().path));
+  KA_TRY(scan.read(progress));
   return scanned;
 }
 

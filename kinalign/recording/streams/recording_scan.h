@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first pass over a recording. It indexes the chunks, hashes and surveys the files, and learns
+// The first pass over a recording. It indexes the chunks, hashes and surveys all parts, and learns
 // the devices' clocks.
 #pragma once
 
@@ -93,8 +93,7 @@ struct DeviceChannel {
   RawChannel raw;
   std::uint16_t id = 0;
   std::optional<std::size_t> sender{};  // number in the stream's SenderTable
-  std::optional<std::uint32_t> last_number{};
-  std::uint64_t missing = 0;  // messages missing between others
+  std::uint64_t missing = 0;            // messages missing between others
   std::vector<Listening*> listening{};
 };
 
@@ -103,8 +102,8 @@ struct ScannedRecording {
   FileSystem* files = nullptr;
   std::string path;
   RecordingParts parts;
-  std::vector<InputFacts> input_facts;
-  std::vector<RecordingSurvey> surveys;  // by part
+  std::vector<InputFacts> input_facts;  // by part
+  RecordingSurvey survey;
   SharedFile shared;
   std::shared_ptr<const StoredChunks> chunks;
   std::optional<RecordingFacts> facts;
@@ -127,7 +126,7 @@ struct ListenTo {
   std::vector<StreamOptions> wanted{};  // paths can be opened as they are; empty: all streams
 };
 
-/// Reads the file, and the files in the same folder in which its recording continues.
+/// Reads all parts of the recording to which the file belongs.
 Result<ScannedRecording> scan_recording(FileSystem& files, const std::string& path,
                                         const ListenTo& listen, const Progress& progress);
 

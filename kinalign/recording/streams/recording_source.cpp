@@ -5,7 +5,6 @@
 #include "kinalign/protocols/protocols.h"
 #include "kinalign/recording/streams/recording_scan.h"
 #include "kinalign/recording/streams/senders.h"
-#include "kinalign/recording/survey_parts.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -305,10 +304,7 @@ Result<std::shared_ptr<RecordingSource>> RecordingSource::open(
 
 const std::string& RecordingSource::path() const { return state_->path; }
 const RecordingParts& RecordingSource::parts() const { return state_->parts; }
-const RecordingSurvey& RecordingSource::first_survey() const { return state_->surveys.front(); }
-RecordingSurvey RecordingSource::survey() const {
-  return join_surveys(state_->parts, state_->surveys);
-}
+const RecordingSurvey& RecordingSource::survey() const { return state_->survey; }
 const std::vector<InputFacts>& RecordingSource::facts() const { return state_->input_facts; }
 SharedFile RecordingSource::shared() const { return state_->shared; }
 const std::vector<JsonChannel>& RecordingSource::json_channels() const { return state_->json; }

@@ -79,9 +79,9 @@ class RecordingSource {
   /// Whether streams will be read. If so, the first pass learns the devices' clocks too.
   enum class Devices { unheard, heard };
 
-  /// Reads the file, and the files in the same folder in which its recording continues. `wanted`:
-  /// streams of a manifest that may select a body or trackers. `files` must outlive the source and
-  /// the objects that it returns. An MCAP file of another program can only be surveyed.
+  /// Reads all parts of the recording to which the file belongs. `wanted`: streams of a manifest
+  /// that may select a body or trackers. `files` must outlive the source and the objects that it
+  /// returns. An MCAP file of another program can only be surveyed.
   static Result<std::shared_ptr<RecordingSource>> open(
       FileSystem& files, const std::string& path, Devices devices,
       const std::vector<StreamOptions>& wanted = {}, const Progress& progress = {});
@@ -91,9 +91,7 @@ class RecordingSource {
 
   const std::string& path() const;
   const RecordingParts& parts() const;
-  /// The survey of the first file, and of all files together.
-  const RecordingSurvey& first_survey() const;
-  RecordingSurvey survey() const;
+  const RecordingSurvey& survey() const;
   /// Hash and length of each file, under the file's own name.
   const std::vector<InputFacts>& facts() const;
   /// Findings about the files, and the marks, which do not depend on the stream.

@@ -29,12 +29,12 @@ Result<std::string> records_of(const StoredChunk& chunk, const std::string& path
 }
 
 /// The messages of unpacked records, as McapReader returns them, without those left out.
-std::vector<ChunkMessage> messages_in(std::string_view records,
-                                      const std::vector<std::uint32_t>& left_out) {
+std::vector<ChunkMessage> messages_in(std::string_view records, const StoredChunk& chunk) {
   std::vector<ChunkMessage> messages;
   std::uint32_t place = 0;
-  auto skipped = left_out.begin();
+  auto skipped = chunk.left_out.begin();
   while (const auto head = decode_mcap_head(records)) {
+    if (place == chunk.end) break;
     if (head->op == McapOp{} || head->length > records.size() - mcap_record_head) break;
     const std::string_view content = records.substr(mcap_record_head, head->length);
     records.remove_prefix(mcap_record_head + head->length);
@@ -42,7 +42,7 @@ std::vector<ChunkMessage> messages_in(std::string_view records,
     const auto record = decode_mcap_record(head->op, content);
     if (!record) continue;
     const std::uint32_t here = place++;
-    if (skipped != left_out.end() && *skipped == here) {
+    if (skipped != chunk.left_out.end() && *skipped == here) {
       ++skipped;
       continue;
     }
@@ -93,7 +93,7 @@ Result<std::shared_ptr<const OpenedChunk>> StoredChunks::read(const StoredChunk&
   if (got != bytes.size()) return Failure(altered(part.path));
   auto opened = std::make_shared<OpenedChunk>();
   opened->bytes = KA_TRY(records_of(chunk, part.path, bytes));
-  opened->messages = messages_in(opened->bytes, chunk.left_out);
+  opened->messages = messages_in(opened->bytes, chunk);
   return std::shared_ptr<const OpenedChunk>(std::move(opened));
 }
 

@@ -27,8 +27,9 @@ struct StoredChunk {
   bool is_torn = false;                 // the file ends within the chunk
   std::uint64_t at = 0, size = 0;       // position and size in the file, bytes
   std::vector<std::uint16_t> channels;  // channels with messages in the chunk, ascending
-  /// Messages to skip, by their index in the chunk, ascending. They are damaged, or taken from
-  /// another file of the recording.
+  std::uint32_t end = 0;  // one more than the index in the chunk of the last message to take
+  /// Messages before `end` to skip, by their index in the chunk, ascending. They are damaged, or
+  /// taken from another file of the recording.
   std::vector<std::uint32_t> left_out;
 };
 

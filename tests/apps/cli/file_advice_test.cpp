@@ -23,13 +23,10 @@ TEST_CASE("for a folder the first recording in it is named, if it has one") {
   CHECK(file_advice(error) == Lines{"name a file in it, as " + (folder / "a.mcap")});
 }
 
-TEST_CASE("for a recording on a bad disk recover is named, and for no other file") {
-  const auto advice = [](const std::string& file) {
-    return file_advice({file, 0, "any words", "others", ErrorKind::unreadable_disk});
-  };
-  CHECK(advice("t/a.mcap") ==
-        Lines{"kinalign recover t/a.mcap -o whole.mcap makes a file of what the disk can give"});
-  CHECK(advice("walk.bvh").empty());
+TEST_CASE("for a file that a disk can't read, the call of ddrescue is named") {
+  CHECK(file_advice({"t/a.mcap", 0, "any words", "others", ErrorKind::unreadable_disk}) ==
+        Lines{"ddrescue t/a.mcap COPY/a.mcap copies all that the disk can read; use the copy, with "
+              "copies of all other parts"});
 }
 
 TEST_CASE("an error of another kind has no such advice, whatever its words are") {

@@ -192,7 +192,7 @@ TEST_CASE("the counts of a torn recording, which are told once a second, are tol
   };
   CHECK(has("kinect: 314 messages, 0.0 MB\n"));
   survey.end.reset();
-  survey.torn = {"a.mcap"};
+  survey.truncated = {"a.mcap"};
   CHECK(has("/kinect/raw: 336 messages"));
   CHECK(has("kinect: 314 messages, 0.0 MB; counted up to 1 s before the end\n"));
 }
@@ -208,18 +208,12 @@ TEST_CASE("of a suit whose frames can mostly not be read check says so") {
   CHECK(judged(survey) == "frames that can be read in what kinect sent: 134; 266 times none\n");
 }
 
-TEST_CASE("check tells of messages behind later ones of their channel") {
-  RecordingSurvey survey = kinect_survey(1000, 1000, 0);
-  survey.channels.front().in_order = false;
-  CHECK(judged(survey) == "each channel's messages in their order: some behind later ones\n");
-}
-
 TEST_CASE("check of a torn file proposes a name for the whole one that is not its own") {
   for (const auto& [torn, named] :
        {std::pair("take.mcap", "whole.mcap"), std::pair("whole.mcap", "recovered.mcap")}) {
     RecordingSurvey survey = kinect_survey(1000, 1000, 0);
     survey.messages = 1000;
-    survey.torn = {torn};
+    survey.truncated = {torn};
     survey.ending = Ending::torn;
     const Findings told = judge_survey(torn, survey);
     REQUIRE(told.size() == 1);

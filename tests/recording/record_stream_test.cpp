@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/recording/merged_parts.h"
+#include "kinalign/recording/record_stream.h"
 
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
@@ -16,20 +16,20 @@ using namespace kinalign;
 
 namespace {
 
-struct Told {
+struct Sent {
   std::uint16_t channel = 1;
   std::uint32_t number = 0;
   std::uint64_t log_time = 0;
 };
 
 /// A part of a recording with these messages in a chunk, in this order.
-std::string part_with(int part, const std::vector<Told>& messages) {
+std::string part_with(int part, const std::vector<Sent>& messages) {
   MemoryFile file;
   McapWriter writer(file.store());
   REQUIRE(writer.begin({"kinalign", "test"}));
   REQUIRE(writer.write(to_metadata({"", "", "lab", "a.mcap", part, {}})));
   McapChunkContent content;
-  for (const Told& one : messages) {
+  for (const Sent& one : messages) {
     OwnedMessage message = nth_message(one.channel);
     message.message.channel = one.channel;
     message.message.sequence = one.number;
@@ -42,22 +42,22 @@ std::string part_with(int part, const std::vector<Told>& messages) {
 }
 
 /// The sequence numbers of each channel in the order in which they are read.
-std::map<std::uint16_t, std::vector<std::uint32_t>> merged(const std::vector<std::string>& bytes) {
+std::map<std::uint16_t, std::vector<std::uint32_t>> numbers_in(
+    const std::vector<std::string>& bytes) {
   const FreshFolder folder;
   PosixFiles files;
   std::vector<std::string> paths;
   for (std::size_t k = 0; k < bytes.size(); ++k) {
     paths.push_back(folder.write("a.part" + std::to_string(k + 1) + ".mcap", bytes[k]));
   }
-  const RecordingParts parts = *read_parts(files, paths, {});
-  auto records = MergedParts::open(files, parts, {});
-  REQUIRE(records);
+  auto stream = RecordStream::open(files, *find_parts(files, paths), {});
+  REQUIRE(stream);
   std::map<std::uint16_t, std::vector<std::uint32_t>> found;
   for (;;) {
-    const auto one = records->next();
-    REQUIRE(one);
-    if (!*one) return found;
-    const auto* message = std::get_if<McapMessage>((*one)->record);
+    const auto record = stream->next();
+    REQUIRE(record);
+    if (*record == nullptr) return found;
+    const auto* message = std::get_if<McapMessage>(*record);
     if (message != nullptr) found[message->channel].push_back(message->sequence);
   }
 }
@@ -67,22 +67,22 @@ std::map<std::uint16_t, std::vector<std::uint32_t>> merged(const std::vector<std
 TEST_CASE("channels stay in order where log times do not rise within a file") {
   // After a standstill of the disk the recorder wrote all messages of one device first, then those
   // of the other.
-  std::vector<Told> first, second;
+  std::vector<Sent> first, second;
   for (std::uint32_t k = 0; k < 50; ++k) first.push_back({1, k, 100 + k});
   for (std::uint32_t k = 0; k < 20; ++k) first.push_back({2, k, 100 + k});
   for (std::uint32_t k = 20; k < 50; ++k) second.push_back({2, k, 100 + k});
-  auto found = merged({part_with(1, first), part_with(2, second)});
+  auto found = numbers_in({part_with(1, first), part_with(2, second)});
   for (const std::uint16_t channel : {std::uint16_t{1}, std::uint16_t{2}}) {
     CHECK(found[channel].size() == 50);
     CHECK(std::is_sorted(found[channel].begin(), found[channel].end()));
   }
 }
 
-TEST_CASE("whatever files have of a recording, channels come in order, and all there is") {
+TEST_CASE("each message of all parts is read once, and each channel in order") {
   for (const auto seed : fresh_seeds(50)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    std::vector<Told> all;
+    std::vector<Sent> all;
     std::map<std::uint16_t, std::uint32_t> numbers;
     for (std::uint64_t at = 1; at <= 60; ++at) {
       const auto channel = static_cast<std::uint16_t>(1 + random() % 3);
@@ -91,21 +91,19 @@ TEST_CASE("whatever files have of a recording, channels come in order, and all t
     std::vector<std::string> files;
     std::map<std::uint16_t, std::set<std::uint32_t>> there;
     for (int part = 1; part <= 4; ++part) {
-      std::vector<Told> own;
-      for (const Told& one : all) {
+      std::vector<Sent> own;
+      for (const Sent& one : all) {
         if (random() % 3 == 0) own.push_back(one);
       }
       own.push_back(all[static_cast<std::size_t>(part)]);  // no part is empty
       std::stable_sort(own.begin(), own.end(),
-                       [](const Told& a, const Told& b) { return a.log_time < b.log_time; });
-      for (const Told& one : own) there[one.channel].insert(one.number);
+                       [](const Sent& a, const Sent& b) { return a.log_time < b.log_time; });
+      for (const Sent& one : own) there[one.channel].insert(one.number);
       files.push_back(part_with(part, own));
     }
-    std::map<std::uint16_t, std::set<std::uint32_t>> heard;
-    for (auto& [channel, order] : merged(files)) {
-      CHECK(std::is_sorted(order.begin(), order.end()));
-      heard[channel].insert(order.begin(), order.end());
-    }
-    CHECK(heard == there);
+    std::map<std::uint16_t, std::vector<std::uint32_t>> expected;
+    for (auto& [channel, all_of_it] : there)
+      expected[channel] = {all_of_it.begin(), all_of_it.end()};
+    CHECK(numbers_in(files) == expected);
   }
 }
