@@ -2,6 +2,7 @@
 #include "kinalign/recording/record_stream.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -68,31 +69,31 @@ Result<void> RecordStream::advance(Part& part) {
   return {};
 }
 
-/// Chooses the part with the next record: the first part whose message need not wait, then the
-/// first part that has not reached its truncated chunk.
+/// Chooses the part with the next record: first the messages with a checksum, then those that need
+/// not wait, then the earliest. So the channels of a device keep their common order.
 std::optional<std::size_t> RecordStream::first() const {
-  const auto part_with = [this](auto condition) -> std::optional<std::size_t> {
-    const auto found = std::find_if(parts_.begin(), parts_.end(),
-                                    [&](const Part& part) { return part.head && condition(part); });
-    if (found == parts_.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - parts_.begin());
-  };
-  const auto is_checked = [](const Part& part) { return !part.reader.in_torn_chunk(); };
-  auto found = part_with([&](const Part& part) { return is_checked(part) && !waits(part); });
-  if (!found) found = part_with(is_checked);
-  return found ? found : part_with([](const Part&) { return true; });
+  std::optional<std::size_t> first;
+  std::tuple<bool, bool, std::uint64_t> least;
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const Part& part = parts_[k];
+    if (!part.head) continue;
+    const auto* message = std::get_if<McapMessage>(&*part.head);
+    const std::tuple rank(part.reader.in_torn_chunk(), message != nullptr && waits(part, *message),
+                          message == nullptr ? 0 : message->log_time);
+    if (first && rank >= least) continue;
+    first = k;
+    least = rank;
+  }
+  return first;
 }
 
-/// Returns whether another part still has a lower number of the same channel.
-bool RecordStream::waits(const Part& part) const {
-  const auto* message = std::get_if<McapMessage>(&*part.head);
-  if (message == nullptr) return false;
+/// Returns whether another part still has a lower number of the message's channel.
+bool RecordStream::waits(const Part& part, const McapMessage& message) const {
   return std::any_of(parts_.begin(), parts_.end(), [&](const Part& other) {
     if (&other == &part || !other.head) return false;
-    const auto end = other.end.find(message->channel);
-    const auto next =
-        other.numbers.next(message->channel, end == other.end.end() ? 0 : end->second);
-    return next && *next < message->sequence;
+    const auto end = other.end.find(message.channel);
+    const auto next = other.numbers.next(message.channel, end == other.end.end() ? 0 : end->second);
+    return next && *next < message.sequence;
   });
 }
 

@@ -73,7 +73,7 @@ class RecordStream {
   Result<void> learn(FileSystem& files, const RecordingParts& parts);
   Result<void> advance(Part& part);
   std::optional<std::size_t> first() const;
-  bool waits(const Part& part) const;
+  bool waits(const Part& part, const McapMessage& message) const;
   bool passes(Part& part);
   bool passes(Part& part, const McapMessage& message);
   bool is_first(const std::string& name);

@@ -285,13 +285,15 @@ TEST_CASE("for a link, siblings are found in its folder and in the folder of its
   std::filesystem::create_symlink("../B/a.part2.mcap", link);
   for (const auto& named :
        {std::vector{a, b}, std::vector{b, a}, std::vector{link}, std::vector{c, a}}) {
+    const auto found = find_parts(files, named);
+    REQUIRE(found);
     std::vector<std::string> parts;
-    for (const RecordingPart& one : *find_parts(files, named)) parts.push_back(one.path);
+    for (const RecordingPart& one : *found) parts.push_back(one.path);
     for (const auto& all : {parts, with_siblings(files, named)}) {
       CHECK(all.size() == 3);
       for (const std::string& one : {a, b, c}) {
-        CHECK(std::any_of(all.begin(), all.end(), [&](const std::string& found) {
-          return std::filesystem::equivalent(found, one);
+        CHECK(std::any_of(all.begin(), all.end(), [&](const std::string& path) {
+          return std::filesystem::equivalent(path, one);
         }));
       }
     }
