@@ -5,7 +5,7 @@
 
 #include "kinalign/core/error.h"
 #include "kinalign/formats/mvnx/gunzip.h"
-#include "kinalign/formats/mvnx/xml_feed.h"
+#include "kinalign/syntax/xml_feed.h"
 #include "kinalign/motion/arrays.h"
 
 #include <cstdint>

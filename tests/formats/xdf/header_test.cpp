@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parsing the XML of stream headers; xdf_test.cpp tests the contents of headers.
+// Faults and odd texts in the XML of stream headers; xdf_test.cpp tests the contents of headers.
 #include "kinalign/formats/xdf/header.h"
 
 #include <doctest/doctest.h>
@@ -10,54 +10,55 @@ using namespace kinalign;
 
 namespace {
 
-/// "a/b=text" for each element in the order of their ends, then the error.
-std::vector<std::string> walked(std::string_view xml) {
-  std::vector<std::string> lines;
-  const auto result = walk_xml(xml, [&](auto path, const std::string& text) {
-    std::string line;
-    for (const auto name : path) line += (line.empty() ? "" : "/") + std::string(name);
-    lines.push_back(line + "=" + text);
-  });
-  if (!result) lines.push_back(to_string(result.error()));
-  return lines;
+struct Header {
+  std::string name;
+  std::vector<std::string> notes;
+};
+
+/// A sound header with `first` in front of its other elements, and `rest` behind them.
+Header header_of(const std::string& first, const std::string& rest = "</info>") {
+  std::vector<Error> notes;
+  const auto stream =
+      parse_xdf_header(1,
+                       "<?xml version=\"1.0\" encoding=\"ASCII\"?>\n<info x='>'>" + first +
+                           "<channel_count>1</channel_count><channel_format>int8</channel_format>"
+                           "<nominal_srate>5</nominal_srate>" +
+                           rest,
+                       notes);
+  if (!stream) return {"", {to_string(stream.error())}};
+  Header out{stream->name, {}};
+  for (const Error& note : notes) out.notes.push_back(note.expected + ", " + note.found);
+  return out;
 }
 
-using Lines = std::vector<std::string>;
+using Notes = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("xml: elements are visited where they end, with their own text") {
-  CHECK(walked("<?xml version=\"1.0\"?>\n<a x='>'>\n <b> one </b><c/>\n two<d y=\"1\" />\n</a>") ==
-        Lines{"a/b=one", "a/c=", "a/d=", "a=two"});
+TEST_CASE("an & that begins no entity is an &, and Latin-1 is read as such") {
+  const auto name = [](const std::string& text) {
+    const Header header = header_of("<name>" + text + "</name>");
+    CHECK(header.notes.empty());
+    return header.name;
+  };
+  CHECK(name(" a b\n") == "a b");
+  CHECK(name("&lt;&gt;&amp;&quot;&apos; &#65;&#xe9;&#x20ac;") == "<>&\"' A\xc3\xa9\xe2\x82\xac");
+  CHECK(name("B & C &lol; &") == "B & C &lol; &");
+  CHECK(name("\xb5V \xc2\xb5V") == "\xc2\xb5V \xc2\xb5V");
+  CHECK(name("<!-- <b> -->x<![CDATA[<y>]]>") == "x<y>");
 }
 
-TEST_CASE("xml: entities are the five and numbers, and an & alone is an &") {
-  CHECK(walked("<a>&lt;&gt;&amp;&quot;&apos; &#65;&#xe9;&#x20ac;&#x1f600;</a>") ==
-        Lines{"a=<>&\"' A\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80"});
-  CHECK(walked("<a>B & C &lol; &#0; &#xd800; &#x110000; &</a>") ==
-        Lines{"a=B & C &lol; &#0; &#xd800; &#x110000; &"});
+TEST_CASE("a header whose XML has a fault keeps the elements before it") {
+  const Header torn = header_of("<name>N</name>", "<desc><a></desc></info>");
+  CHECK(torn.name == "N");
+  CHECK(torn.notes == Notes{"well-formed XML, mismatched tag"});
+  CHECK(header_of("<name>N</name>", "").notes == Notes{"well-formed XML, no element found"});
+  CHECK(header_of("<name></info>").notes == Notes{"expected a channel_count, found none"});
 }
 
-TEST_CASE("xml: comments and verbatim text") {
-  CHECK(walked("<a><!-- <b> -->x<![CDATA[<&amp;>]]></a>") == Lines{"a=x<&amp;>"});
-}
-
-TEST_CASE("xml: a document type is refused, so nothing can be expanded") {
-  CHECK(walked("<!DOCTYPE a [<!ENTITY l \"ha\">]><a>&l;</a>") ==
-        Lines{"expected elements, found a document type"});
-}
-
-TEST_CASE("xml: what does not close in order is refused behind what could be visited") {
-  CHECK(walked("<a><b>1</b><c></a>") == Lines{"a/b=1", "expected </c>, found </a>"});
-  CHECK(walked("<a><b>1</b>") == Lines{"a/b=1", "expected </a>, found the end of the text"});
-  CHECK(walked("<a></a></b>") == Lines{"a=", "expected the end of the text, found </b>"});
-  CHECK(walked("<a") == Lines{"expected a tag's end, found the end of the text"});
-  CHECK(walked("<>") == Lines{"expected an element's name, found none"});
-}
-
-TEST_CASE("xml: at most 32 elements stand in each other") {
-  std::string deep;
-  for (int k = 0; k < 32; ++k) deep += "<a>";
-  CHECK(walked(deep).back() == "expected </a>, found the end of the text");
-  CHECK(walked(deep + "<a>").back() == "expected elements at most 32 deep, found deeper ones");
+TEST_CASE("a header that defines entities is refused, so nothing can be expanded") {
+  std::vector<Error> notes;
+  CHECK_FALSE(parse_xdf_header(1, "<!DOCTYPE a [<!ENTITY l \"ha\">]><info>&l;</info>", notes));
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].expected == "a document without entities of its own");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/mvnx/xml_feed.h"
+#include "kinalign/syntax/xml_feed.h"
 
 #include <expat.h>
 
