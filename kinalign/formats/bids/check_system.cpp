@@ -80,7 +80,8 @@ void check_channel(const std::string& path, std::int64_t line, const BidsChannel
   }
 }
 
-/// Checks that a quaternion has all four parts, for each tracked point and type.
+/// Checks that a quaternion has all four parts and a vector all three, for each tracked point and
+/// type.
 void check_groups(const std::string& path, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> groups;
@@ -92,9 +93,15 @@ void check_groups(const std::string& path, const std::vector<BidsChannel>& chann
     const auto quaternion = static_cast<std::size_t>(
         std::count_if(parts.begin(), parts.end(),
                       [](const std::string& part) { return part.starts_with("quat_"); }));
-    if (quaternion == 0 || quaternion == 4) continue;
-    check.error(path, "all four parts of the quaternion of " + shown(key.first),
-                std::to_string(quaternion));
+    if (quaternion != 0 && quaternion != 4) {
+      check.error(path, "all four parts of the quaternion of " + shown(key.first),
+                  std::to_string(quaternion));
+    }
+    const auto& [point, type] = key;
+    if (parts.size() < 3 && is_one_of(type, {"POS", "VEL", "ACCEL", "ANGACCEL", "GYRO", "MAGN"})) {
+      check.warning(path, "x, y and z of the " + type + " of " + shown(point),
+                    std::to_string(parts.size()));
+    }
   }
 }
 

@@ -159,6 +159,8 @@ TEST_CASE("channels that BIDS does not know are found") {
         "error " + path + ":4: expected channels of different names, found Hips_POS_x again");
   CHECK(with("Hips_ORNT_quat_w\tquat_w", "Hips_ORNT_quat_w\tquat_x") ==
         "error " + path + ": expected all four parts of the quaternion of Hips, found 3");
+  CHECK(with("Hips_POS_x\tx\tPOS", "Hips_POS_x\tn/a\tMISC") ==
+        "warning " + path + ": expected x, y and z of the POS of Hips, found 2");
   CHECK(with("\tglobal", "\troom") ==
         "warning " + of_suit("channels.json") + ": expected the reference frame room, found none");
   CHECK(with("\tHips\tglobal", "\tHips") == "error " + path + ":3: expected 7 cells, found 6");
