@@ -103,6 +103,7 @@ Result<void> set_field(const Field& field, std::string_view text) {
       [&](std::vector<std::string>* at) -> Result<void> {
         return string_in(field, text).map([&](std::string v) { at->push_back(std::move(v)); });
       },
+      [&](auto*) -> Result<void> { return instead_of("an option that has a flag", field.name); },
   };
   return std::visit(set, field.value);
 }
@@ -122,6 +123,7 @@ std::string field_text(const Field& field) {
         for (const std::string& one : *at) all += (all.empty() ? "" : ", ") + one;
         return all;
       },
+      [](const auto*) { return std::string(); },  // a table or numbers: in files only
   };
   return std::visit(text, field.value);
 }

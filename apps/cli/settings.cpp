@@ -4,9 +4,8 @@
 #include "apps/cli/command_line.h"
 #include "apps/cli/field_text.h"
 
-#include "kinalign/documents/toml_entries.h"
+#include "kinalign/syntax/toml.h"
 
-#include <toml++/toml.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,82 +18,54 @@ namespace {
 /// A larger settings file is refused.
 constexpr std::size_t most_bytes = std::size_t{1} << 20;
 
-std::int64_t line_of(const toml::node& node) { return node.source().begin.line; }
-
-/// A TOML value as text, in the form that set_field() reads. Absent for tables, arrays and dates.
-std::optional<std::string> scalar_text(const toml::node& node) {
-  if (node.is_string()) return node.value<std::string>();
-  if (const auto truth = node.value<bool>(); node.is_boolean()) return *truth ? "true" : "false";
-  if (const auto whole = node.value<std::int64_t>(); node.is_integer()) {
-    return std::to_string(*whole);
+/// The error for a table within a table. Only devices of a lab may have one; people often give a
+/// manifest instead of a lab's file.
+Failure no_table(const Value& value) {
+  if (value.path.starts_with("stream.") || value.path.starts_with("space.")) {
+    return at(value,
+              Error{"", 0, "settings, or a lab's devices",
+                    "[" + shown(value.path) + "] of a manifest, which is for kinalign align"});
   }
-  if (const auto number = node.value<double>(); node.is_floating_point()) {
-    double value = *number;
-    return field_text(Field{"", "", &value});
-  }
-  return std::nullopt;
+  const bool in_list = value.path == value.key;  // [[device]]
+  return at(value, Error{"", 0,
+                         "settings, or a lab's device as [device." +
+                             (in_list ? "NAME" : shown(value.key)) + "]",
+                         in_list ? "[[" + shown(value.key) + "]]" : "[" + shown(value.path) + "]"});
 }
 
-/// The values of a key; an array gives several.
-Result<Setting> setting_of(const std::string& path, const toml::key& key, const toml::node& node) {
-  Setting setting{"", std::string(key.str()), {}, line_of(node)};
-  const auto add = [&](const toml::node& one) -> Result<void> {
-    auto text = scalar_text(one);
-    if (!text) {
-      return Failure(Error{path, setting.line, "a number, a text or true or false",
-                           "something else for " + setting.name});
-    }
-    setting.values.push_back(std::move(*text));
-    return {};
-  };
-  if (const toml::array* many = node.as_array()) {
-    for (const toml::node& one : *many) KA_TRY(add(one));
-  } else {
-    KA_TRY(add(node));
+/// A TOML value as text, in the form that set_field() reads.
+Result<std::string> scalar_text(const Value& value) {
+  using Kind = Value::Kind;
+  if (value.kind == Kind::text) return text_of(value);
+  if (value.kind == Kind::truth || value.kind == Kind::whole || value.kind == Kind::number) {
+    return shown(value);
   }
+  if (value.is_table()) return no_table(value);
+  return at(value,
+            Error{"", 0, "a number, a text or true or false", "something else for " + value.key});
+}
+
+/// The values of a key; a list gives several.
+Result<Setting> setting_of(const std::string& verb, const Value& value) {
+  Setting setting{verb, value.key, {}, value.line};
+  if (value.kind != Value::Kind::list) {
+    setting.values.push_back(KA_TRY(scalar_text(value)));
+    return setting;
+  }
+  for (const Value& one : value.items) setting.values.push_back(KA_TRY(scalar_text(one)));
   return setting;
 }
 
-/// The error for a table within a table. Only devices of a lab may have one; people often give a
-/// manifest instead of a lab's file.
-Failure no_table(const std::string& path, const toml::node& node, const std::string& name) {
-  if (name.starts_with("stream.") || name.starts_with("space.")) {
-    return Failure(Error{path, line_of(node), "settings, or a lab's devices",
-                         "[" + name + "] of a manifest, which is for kinalign align"});
+/// Adds a setting of every verb, or the settings of a verb's table.
+Result<void> add_settings(const Value& value, SettingsFile& file) {
+  if (!value.is_table()) {
+    file.settings.push_back(KA_TRY(setting_of("", value)));
+    return {};
   }
-  const auto dot = name.find('.');
-  const std::string device = dot == std::string::npos ? ".NAME" : name.substr(dot);
-  return Failure(Error{path, line_of(node), "settings, or a lab's device as [device" + device + "]",
-                       "[" + name + "]"});
-}
-
-/// Adds the settings of a verb's table.
-Result<void> add_table(const toml::key& key, const toml::table& table, SettingsFile& file) {
-  for (const auto& [inner_key, inner] : table) {
-    const toml::table* within = inner.as_table();
-    if (within != nullptr && !within->is_inline()) {
-      return no_table(file.path, inner, shown(key.str()) + "." + shown(inner_key.str()));
-    }
-    Setting setting = KA_TRY(setting_of(file.path, inner_key, inner));
-    setting.verb = key.str();
-    file.settings.push_back(std::move(setting));
+  for (const Value& inner : value.items) {
+    file.settings.push_back(KA_TRY(setting_of(value.key, inner)));
   }
   return {};
-}
-
-Result<SettingsFile> settings_of(const toml::table& all, SettingsFile file) {
-  for (const auto& [key, node] : all) {
-    if (key == "device" && node.is_table()) continue;  // documents/lab_toml.h reads a lab's devices
-    if (node.is_array_of_tables()) {
-      return no_table(file.path, node, "[" + shown(key.str()) + "]");
-    }
-    if (const toml::table* table = node.as_table()) {
-      KA_TRY(add_table(key, *table, file));
-    } else {
-      file.settings.push_back(KA_TRY(setting_of(file.path, key, node)));
-    }
-  }
-  return file;
 }
 
 bool there(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
@@ -166,13 +137,15 @@ Result<void> check_name(const SettingsFile& file, const Setting& setting, const 
 }  // namespace
 
 Result<SettingsFile> parse_settings(const SettingsText& file) {
-  try {
-    return settings_of(toml::parse(file.text, file.path), SettingsFile{file.path, file.source, {}});
-  } catch (const toml::parse_error& error) {
-    const auto line = static_cast<std::int64_t>(error.source().begin.line);
-    return Failure(Error{file.path, line, "TOML" + quotes_advice(file.text, line),
-                         "a fault in it: " + std::string(error.description())});
-  }
+  SettingsFile out{file.path, file.source, {}};
+  KA_TRY(read_toml(file.text, file.path, [&](const Value& top) -> Result<void> {
+    for (const Value& value : top.items) {
+      if (value.key == "device" && value.is_table()) continue;  // documents/lab_toml.h reads them
+      KA_TRY(add_settings(value, out));
+    }
+    return {};
+  }));
+  return out;
 }
 
 Result<std::vector<SettingsFile>> parse_settings(const std::vector<SettingsText>& files) {

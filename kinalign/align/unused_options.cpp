@@ -33,7 +33,6 @@ void add_said(const KeyLines& lines, std::vector<std::string>& names) {
 std::vector<std::string> options_set(StreamOptions options) {
   StreamOptions defaults;
   std::vector<std::string> names = differing(describe(options), describe(defaults));
-  if (!options.mounting.empty()) names.emplace_back("mounting");
   add_said(options.lines, names);
   return names;
 }
@@ -42,9 +41,6 @@ std::vector<std::string> options_set(SpaceOptions options) {
   SpaceOptions defaults;
   defaults.method = options.method;
   std::vector<std::string> names = differing(describe(options), describe(defaults));
-  if (!options.joints.empty()) names.emplace_back("joints");
-  if (!options.rotation.empty()) names.emplace_back("rotation");
-  if (!options.translation.empty()) names.emplace_back("translation");
   add_said(options.lines, names);
   std::erase(names, "method");
   return names;

@@ -3,11 +3,9 @@
 
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/dataset/take_name.h"
-#include "kinalign/documents/option_values.h"
-#include "kinalign/documents/toml_entries.h"
+#include "kinalign/syntax/toml.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 
@@ -15,143 +13,48 @@ namespace kinalign {
 
 namespace {
 
-constexpr double most_cm = 300.0, most_kg = 500.0, most_m = 3.0;
+constexpr double least_m = 1e-6, most_m = 3.0, most_cm = 300.0, most_kg = 500.0;
 
-class CatalogueReader {
- public:
-  explicit CatalogueReader(std::string_view name) : file_(name) {}
+Result<void> check_id(const Value& entry) {
+  if (is_label(entry.key)) return {};
+  return at(entry, Error{"", 0, "an id of letters and digits, for file names", shown(entry.key)});
+}
 
-  Result<Catalogue> read(const toml::table& top) const {
-    Catalogue out;
-    const Fields texts = describe(out);
-    for (const TomlEntry& entry : in_file_order(top)) {
-      const auto table = tables().find(entry.key);
-      if (entry.key == "align") {
-        KA_TRY(read_align(entry, out.align));
-      } else if (table != tables().end()) {
-        for (const TomlEntry& one : in_file_order(KA_TRY(file_.table(entry)))) {
-          KA_TRY((this->*table->second)(one, out));
-        }
-      } else if (find_field(texts, entry.key) != nullptr) {
-        KA_TRY(file_.option(entry, texts, "", {}));
-      } else {
-        return file_.unknown(entry, "a key of dataset.toml",
-                             {"name", "licence", "contact", "description", "citation", "align",
-                              "subject", "class", "action", "device", "rig"});
-      }
-    }
-    KA_TRY(check_classes(top, out));
-    return out;
-  }
-
- private:
-  /// Reads one of the tables [subject.ID], [class.ID], ...
-  using ReadOne = Result<void> (CatalogueReader::*)(const TomlEntry& one, Catalogue& out) const;
-  static const std::map<std::string, ReadOne, std::less<>>& tables() {
-    static const std::map<std::string, ReadOne, std::less<>> all{
-        {"subject", &CatalogueReader::read_subject},
-        {"class", &CatalogueReader::read_class},
-        {"action", &CatalogueReader::read_action},
-        {"device", &CatalogueReader::read_device},
-        {"rig", &CatalogueReader::read_rig}};
-    return all;
-  }
-
-  Result<void> read_device(const TomlEntry& device, Catalogue& out) const {
-    return read_texts(device, out.devices);
-  }
-  Result<void> read_rig(const TomlEntry& rig, Catalogue& out) const {
-    return read_texts(rig, out.rigs);
-  }
-
-  Result<void> check_id(const TomlEntry& entry) const {
-    if (is_label(entry.key)) return {};
-    return file_.at(*entry.value,
-                    Error{"", 0, "an id of letters and digits, for file names", shown(entry.key)});
-  }
-
-  Result<void> read_align(const TomlEntry& align, AlignOptions& out) const {
-    const Fields fields = describe(out);
-    for (const TomlEntry& entry : in_file_order(KA_TRY(file_.table(align)))) {
-      KA_TRY(file_.option(entry, fields, "align", {}));
-    }
-    return {};
-  }
-
-  Result<void> read_subject(const TomlEntry& subject, Catalogue& out) const {
-    KA_TRY(check_id(subject));
-    Subject& made = out.subjects.emplace_back();
-    made.id = subject.key;
-    const Fields fields = describe(made);
-    for (const TomlEntry& entry : in_file_order(KA_TRY(file_.table(subject)))) {
-      if (entry.key == "segments_m") {
-        KA_TRY(read_segments(entry, made.segments_m));
-      } else {
-        KA_TRY(file_.option(entry, fields, "subject." + subject.key, {"segments_m"}));
-      }
-    }
-    return {};
-  }
-
-  Result<void> read_segments(const TomlEntry& segments, std::map<std::string, double>& out) const {
-    for (const TomlEntry& entry : in_file_order(KA_TRY(file_.table(segments)))) {
-      const auto length = entry.value->value<double>();
-      if (!length || !(*length > 0.0 && *length < most_m)) {
-        return file_.wrong(entry, "a segment's length in metres");
-      }
-      out[entry.key] = *length;
-    }
-    return {};
-  }
-
-  Result<void> read_class(const TomlEntry& one, Catalogue& out) const {
+/// Reads the tables [subject.ID], or those of classes or actions.
+template <class One>
+Result<void> read_each(const Value& tables, std::vector<One>& out) {
+  for (const Value& one : KA_TRY(entries_of(tables))) {
     KA_TRY(check_id(one));
-    ActionClass& made = out.classes.emplace_back();
+    One& made = out.emplace_back();
     made.id = one.key;
-    for (const TomlEntry& entry : in_file_order(KA_TRY(file_.table(one)))) {
-      if (entry.key != "name") return file_.unknown(entry, "a key of [class.ID]", {"name"});
-      made.name = KA_TRY(file_.text(entry));
-    }
-    return {};
+    KA_TRY(read_options(one, describe(made)));
   }
+  return {};
+}
 
-  Result<void> read_action(const TomlEntry& one, Catalogue& out) const {
-    KA_TRY(check_id(one));
-    Action& made = out.actions.emplace_back();
+/// Reads the tables [device.ID] or [rig.ID], which may have any keys.
+Result<void> read_each(const Value& tables, std::vector<Described>& out) {
+  for (const Value& one : KA_TRY(entries_of(tables))) {
+    Described& made = out.emplace_back();
     made.id = one.key;
-    for (const TomlEntry& entry : in_file_order(KA_TRY(file_.table(one)))) {
-      if (entry.key == "name") {
-        made.name = KA_TRY(file_.text(entry));
-      } else if (entry.key == "class") {
-        made.class_id = KA_TRY(file_.text(entry));
-      } else {
-        return file_.unknown(entry, "a key of [action.ID]", {"class", "name"});
-      }
-    }
-    return {};
+    KA_TRY(set_option({"", "", &made.texts}, one));
   }
+  return {};
+}
 
-  Result<void> read_texts(const TomlEntry& one, std::vector<Described>& out) const {
-    out.push_back({one.key, KA_TRY(file_.texts(one))});
-    return {};
+/// Classes are checked at the end, since they may be defined after the actions that name them.
+Result<void> check_classes(const Value& top, const Catalogue& catalogue) {
+  std::vector<std::string> known;
+  for (const ActionClass& one : catalogue.classes) known.push_back(one.id);
+  for (const Action& action : catalogue.actions) {
+    if (std::find(known.begin(), known.end(), action.class_id) != known.end()) continue;
+    return at(*top.find({"action", action.id}),
+              action.class_id.empty()
+                  ? Error{"", 0, "class in [action." + action.id + "]", "none"}
+                  : unknown_name(action.class_id, "a class of this file", known));
   }
-
-  /// Classes are checked at the end, since they may be defined after the actions that name them.
-  Result<void> check_classes(const toml::table& top, const Catalogue& catalogue) const {
-    std::vector<std::string> known;
-    for (const ActionClass& one : catalogue.classes) known.push_back(one.id);
-    for (const Action& action : catalogue.actions) {
-      if (std::find(known.begin(), known.end(), action.class_id) != known.end()) continue;
-      return file_.at(*top["action"][action.id].node(),
-                      action.class_id.empty()
-                          ? Error{"", 0, "class in [action." + action.id + "]", "none"}
-                          : unknown_name(action.class_id, "a class of this file", known));
-    }
-    return {};
-  }
-
-  TomlFile file_;
-};
+  return {};
+}
 
 std::string two_digits(int number) { return (number < 10 ? "0" : "") + std::to_string(number); }
 
@@ -245,7 +148,14 @@ Fields describe(Subject& s) {
       {"handedness", "right, left or both", &s.handedness, 0.0, 0.0, {"", "right", "left", "both"}},
       {"consent", "to what the person agreed", &s.consent},
       {"height_cm", "body height", &s.height_cm, 20.0, most_cm},
-      {"weight_kg", "body weight", &s.weight_kg, 1.0, most_kg}};
+      {"weight_kg", "body weight", &s.weight_kg, 1.0, most_kg},
+      {"segments_m", "lengths of the body's segments", &s.segments_m, least_m, most_m}};
+}
+
+Fields describe(ActionClass& c) { return {{"name", "what the class is called", &c.name}}; }
+Fields describe(Action& a) {
+  return {{"class", "the class that it belongs to", &a.class_id},
+          {"name", "what the action is called", &a.name}};
 }
 
 const Subject* find_subject(const Catalogue& catalogue, std::string_view id) {
@@ -257,12 +167,48 @@ const Action* find_action(const Catalogue& catalogue, std::string_view id) {
 }
 
 Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name) {
-  Catalogue catalogue;
-  KA_TRY(TomlFile(name).parse(toml, [&](const toml::table& top) -> Result<void> {
-    catalogue = KA_TRY(CatalogueReader(name).read(top));
-    return {};
+  Catalogue out;
+  const auto each = [](auto& all) {
+    return [&all](const Value& tables) { return read_each(tables, all); };
+  };
+  KA_TRY(read_toml(toml, name, [&](const Value& top) -> Result<void> {
+    KA_TRY(read_options(
+        top, describe(out),
+        {{"align", [&](const Value& v) { return read_options(v, describe(out.align)); }},
+         {"subject", each(out.subjects)},
+         {"class", each(out.classes)},
+         {"action", each(out.actions)},
+         {"device", each(out.devices)},
+         {"rig", each(out.rigs)}}));
+    return check_classes(top, out);
   }));
-  return catalogue;
+  return out;
+}
+
+std::string catalogue_toml(const Catalogue& catalogue) {
+  std::string text = toml_options(catalogue);
+  const auto head = [](const std::string& kind, const std::string& id) {
+    return "\n[" + kind + (id.empty() ? "" : "." + toml_key(id)) + "]\n";
+  };
+  const std::string align = toml_options(catalogue.align);
+  if (!align.empty()) text += head("align", "") + align;
+  const auto put = [&](const std::string& kind, const auto& all) {
+    for (const auto& one : all) text += head(kind, one.id) + toml_options(one);
+  };
+  const auto put_texts = [&](const std::string& kind, const std::vector<Described>& all) {
+    for (const Described& one : all) {
+      text += head(kind, one.id);
+      for (const auto& [key, value] : one.texts) {
+        text += toml_key(key) + " = " + toml_string(value) + "\n";
+      }
+    }
+  };
+  put("subject", catalogue.subjects);
+  put("class", catalogue.classes);
+  put("action", catalogue.actions);
+  put_texts("device", catalogue.devices);
+  put_texts("rig", catalogue.rigs);
+  return text;
 }
 
 std::vector<std::string> catalogue_template_names() { return {"empty", "hfut-mmd"}; }

@@ -53,6 +53,8 @@ struct Catalogue {
 
 Fields describe(Catalogue& catalogue);  // its texts
 Fields describe(Subject& subject);
+Fields describe(ActionClass& one);
+Fields describe(Action& action);
 
 /// nullptr if there is none with that id.
 const Subject* find_subject(const Catalogue& catalogue, std::string_view id);
@@ -61,6 +63,9 @@ const Action* find_action(const Catalogue& catalogue, std::string_view id);
 /// Reads dataset.toml. `name` appears in messages. Refused with their line: an unknown key, a value
 /// out of range, an id that a file name can't contain, and an action of an unknown class.
 Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name);
+
+/// The text that reads back as `catalogue`, with all values that differ from the defaults.
+std::string catalogue_toml(const Catalogue& catalogue);
 
 /// The text of a new dataset.toml. `template_name`: "empty", or "hfut-mmd" with the paper's 12
 /// people, 6 classes and 34 actions. The paper neither names the actions nor states their number in

@@ -214,6 +214,7 @@ Fields describe(DeviceOptions& o) {
       {"rate_hz", "nominal rate; 0: as usual for the protocol", &o.rate_hz, 0.0, 10'000.0},
       {"required", "whether a take needs it: red while it is missing", &o.required},
       {"lab_key", "of nodes: the file of the lab's key", &o.lab_key},
+      {"nodes", "of nodes: the place of each node by its id", &o.nodes},
   };
 }
 

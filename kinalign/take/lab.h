@@ -52,7 +52,7 @@ Result<void> validate(const Lab& lab);
 /// The rate that the device should send at, frames a second; 0: not known.
 double nominal_rate_hz(const DeviceOptions& device);
 
-/// Names, meanings and ranges of the scalar options, for flags, TOML and --help.
+/// Names, meanings and ranges of the options, for flags, TOML and --help.
 Fields describe(DeviceOptions& options);
 Fields describe(RecordOptions& options);
 

@@ -45,11 +45,14 @@ Result<void> check_stream_name(const std::string& name) {
                        name.empty() ? "an empty one" : "\"" + shown(name) + "\""});
 }
 
+Fields describe(Manifest& o) {
+  return {{"subject", "who moves", &o.subject}, {"action", "what the person does", &o.action}};
+}
+
 Fields describe(AlignOptions& o) {
   return {
       {"reference", "stream whose stamps are the take's grid (default: the first)", &o.reference},
-      {"gap_ms",
-       "longest stretch without samples to interpolate over, ms; 0: three nominal periods",
+      {"gap_ms", "longest stretch without samples to interpolate over, ms; 0: 3.1 nominal periods",
        &o.gap_ms, 0.0, day_ms},
       {.name = "rotations",
        .meaning = "between samples: spline (no jump in angular acceleration) or slerp",
@@ -61,6 +64,11 @@ Fields describe(AlignOptions& o) {
 
 Fields describe(StreamOptions& o) {
   return {
+      {"select", "rows of a table that holds several bodies: column = value", &o.select},
+      {.name = "mounting",
+       .meaning = "how nodes are worn: the rotation from the bone's axes to the sensor's, w,x,y,z",
+       .value = &o.mounting,
+       .count = 4},
       {"layout", "name or path of a declared layout (default: by the file's content)", &o.layout},
       {"skeleton", "of recorded mocap: a BVH with its hierarchy (default: the recording's own)",
        &o.skeleton},
@@ -106,6 +114,14 @@ Fields describe(SpaceOptions& o) {
       {"magnification", "paper: m, a ratio of sizes", &o.magnification, 1e-6, 1e6},
       {"root", "paper: this stream's root joint", &o.root},
       {"onto_root", "paper: the other stream's root joint", &o.onto_root},
+      {.name = "rotation", .meaning = "given: w,x,y,z", .value = &o.rotation, .count = 4},
+      {.name = "translation",
+       .meaning = "given: m",
+       .value = &o.translation,
+       .least = -1e9,
+       .most = 1e9,
+       .count = 3},
+      {"joints", "this stream's joint = the other stream's joint", &o.joints},
   };
 }
 

@@ -94,7 +94,9 @@ std::vector<std::string*> paths_in(Manifest& manifest);
 /// Fails if a take can't have a group of that name.
 Result<void> check_stream_name(const std::string& name);
 
-/// Names, meanings and ranges of the scalar options, for flags, TOML, JSON and --help.
+/// Names, meanings and ranges of the options, for flags, TOML, JSON and --help. All keys of a
+/// manifest are here, except the tables themselves and a stream's `file` and `files`.
+Fields describe(Manifest& manifest);
 Fields describe(AlignOptions& options);
 Fields describe(StreamOptions& options);
 Fields describe(SpaceOptions& options);

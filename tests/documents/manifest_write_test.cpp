@@ -33,9 +33,7 @@ click_latency_ms = 53.5
 
 [stream.imu]
 files = { waist = "w.csv", "wrist left" = "l.csv" }
-
-[stream.imu.mounting]
-waist = [1.0, 0.0, 0.0, 0.0]
+mounting = { waist = [1.0, 0.0, 0.0, 0.0] }
 
 [space.kinect]
 method = "fit"

@@ -3,8 +3,8 @@
 
 #include "apps/kinalign/text/advice.h"
 
-#include "kinalign/documents/toml_entries.h"
 #include "kinalign/protocols/protocols.h"
+#include "kinalign/syntax/toml.h"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 
 #include "kinalign/capture/nodes/node_keys.h"
 #include "kinalign/documents/lab_toml.h"
-#include "kinalign/documents/toml_entries.h"
 #include "kinalign/formats/bvh/head.h"
 #include "kinalign/protocols/protocols.h"
+#include "kinalign/syntax/toml.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

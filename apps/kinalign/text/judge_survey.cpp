@@ -5,8 +5,8 @@
 #include "apps/kinalign/text/record_text.h"
 #include "apps/kinalign/text/summary.h"
 
-#include "kinalign/documents/toml_entries.h"
 #include "kinalign/protocols/protocols.h"
+#include "kinalign/syntax/toml.h"
 
 #include <fmt/format.h>
 

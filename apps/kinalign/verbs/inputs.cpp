@@ -45,10 +45,11 @@ Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::str
   });
 }
 
-/// Options of alignment are left out: verbs that read a single stream do not align it.
+/// Options of alignment are left out: verbs that read a single stream do not align it. `select` is
+/// a flag with one column and value.
 Fields StreamFlags::fields() {
-  constexpr std::array<std::string_view, 5> of_alignment{"clock", "offset_ms", "drift_ppm",
-                                                         "interval_ms", "root_node"};
+  constexpr std::array<std::string_view, 7> of_alignment{
+      "clock", "offset_ms", "drift_ppm", "interval_ms", "root_node", "mounting", "select"};
   Fields out = describe(options);
   std::erase_if(out, [&](const Field& field) {
     return std::find(of_alignment.begin(), of_alignment.end(), field.name) != of_alignment.end();

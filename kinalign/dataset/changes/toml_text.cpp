@@ -61,21 +61,6 @@ void rename_id(std::vector<One>& all, const std::string& from, const std::string
   }
 }
 
-bool same(const Subject& a, const Subject& b) {
-  return a.id == b.id && a.sex == b.sex && a.handedness == b.handedness && a.consent == b.consent &&
-         a.height_cm == b.height_cm && a.weight_kg == b.weight_kg && a.segments_m == b.segments_m;
-}
-
-bool same(const Action& a, const Action& b) {
-  return a.id == b.id && a.class_id == b.class_id && a.name == b.name;
-}
-
-template <class One>
-bool all_same(const std::vector<One>& a, const std::vector<One>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const One& x, const One& y) { return same(x, y); });
-}
-
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
     text.replace(at, from.size(), to);
@@ -119,10 +104,7 @@ Result<std::string> with_id_renamed(const std::string& toml, const std::string& 
     return at == std::string_view::npos ? out : out.replace(at, from.size(), to);
   });
   const auto read = read_catalogue(edited, file);
-  const bool good = read && all_same(read->subjects, wanted.subjects) &&
-                    all_same(read->actions, wanted.actions) && read->name == wanted.name &&
-                    read->description == wanted.description && read->citation == wanted.citation;
-  if (good) return edited;
+  if (read && catalogue_toml(*read) == catalogue_toml(wanted)) return edited;
   return Failure(Error{file, 0,
                        "[" + table + "." + from +
                            "] as the head of a table, so that it can become [" + table + "." + to +

@@ -4,7 +4,6 @@
 #include "kinalign/core/files.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +11,6 @@
 #include <map>
 #include <regex>
 #include <span>
-#include <sstream>
 
 namespace kinalign {
 
@@ -163,16 +161,6 @@ class HiddenNames {
   std::map<std::string, std::string> names_;
 };
 
-toml::table described_table(const std::vector<Described>& all) {
-  toml::table out;
-  for (const Described& one : all) {
-    toml::table table;
-    for (const auto& [key, text] : one.texts) table.insert(key, text);
-    out.insert(one.id, table);
-  }
-  return out;
-}
-
 }  // namespace
 
 Findings look_for_people(const Catalogue& catalogue, const std::string& file,
@@ -259,44 +247,10 @@ void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report) {
   }
 }
 
-std::string released_catalogue(const Catalogue& catalogue, const std::set<std::string>& used) {
-  toml::table top;
-  const auto put = [](toml::table& table, const std::string& key, const std::string& text) {
-    if (!text.empty()) table.insert(key, text);
-  };
-  put(top, "name", catalogue.name);
-  put(top, "licence", catalogue.licence);
-  put(top, "contact", catalogue.contact);
-  put(top, "description", catalogue.description);
-  put(top, "citation", catalogue.citation);
-  toml::table subjects, classes, actions;
-  for (const Subject& one : catalogue.subjects) {
-    if (!used.contains(one.id)) continue;
-    toml::table table;
-    put(table, "sex", one.sex);
-    put(table, "handedness", one.handedness);
-    put(table, "consent", one.consent);
-    if (one.height_cm) table.insert("height_cm", *one.height_cm);
-    if (one.weight_kg) table.insert("weight_kg", *one.weight_kg);
-    toml::table segments;
-    for (const auto& [name, length] : one.segments_m) segments.insert(name, length);
-    if (!segments.empty()) table.insert("segments_m", segments);
-    subjects.insert(one.id, table);
-  }
-  for (const ActionClass& one : catalogue.classes) {
-    classes.insert(one.id, toml::table{{"name", one.name}});
-  }
-  for (const Action& one : catalogue.actions) {
-    actions.insert(one.id, toml::table{{"class", one.class_id}, {"name", one.name}});
-  }
-  top.insert("subject", subjects);
-  top.insert("class", classes);
-  top.insert("action", actions);
-  top.insert("device", described_table(catalogue.devices));
-  top.insert("rig", described_table(catalogue.rigs));
-  std::ostringstream out;
-  out << top << "\n";
-  return out.str();
+std::string released_catalogue(Catalogue catalogue, const std::set<std::string>& used) {
+  std::erase_if(catalogue.subjects, [&](const Subject& one) { return !used.contains(one.id); });
+  catalogue.align = {};
+  return catalogue_toml(catalogue);
 }
 
 }  // namespace kinalign

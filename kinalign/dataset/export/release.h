@@ -31,6 +31,6 @@ void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report);
 
 /// A dataset.toml with the known facts, without comments and unknown keys, and without subjects
 /// that are not in `used`.
-std::string released_catalogue(const Catalogue& catalogue, const std::set<std::string>& used);
+std::string released_catalogue(Catalogue catalogue, const std::set<std::string>& used);
 
 }  // namespace kinalign

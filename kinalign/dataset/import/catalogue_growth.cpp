@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/import/catalogue_growth.h"
 
-#include "kinalign/documents/toml_entries.h"
+#include "kinalign/syntax/toml.h"
 
 #include <algorithm>
 #include <set>

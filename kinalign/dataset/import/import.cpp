@@ -6,7 +6,7 @@
 #include "kinalign/dataset/import/ids.h"
 #include "kinalign/dataset/import/new_folder.h"
 #include "kinalign/dataset/scan.h"
-#include "kinalign/documents/toml_entries.h"
+#include "kinalign/syntax/toml.h"
 
 #include <algorithm>
 #include <optional>

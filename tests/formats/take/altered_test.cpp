@@ -48,7 +48,8 @@ const std::vector<Altered> alterations{
     {"joints of one name", "expected a name for each joint, once only, found \"Head\""},
     {"a list of parameters", "expected parameters_json as one text, found [1]"},
     {"parameters of another key",
-     "expected a known key (known: subject, action, streams, spaces, align), found \"colour\""},
+     "expected a known key (known: align, schema, spaces, streams, subject, action), found "
+     "\"colour\""},
     {"no kind", "expected kind as an attribute of one text, found none"},
     {"another kind", "expected a kind of stream: clip, points or imu, found \"ghost\""},
     {"another format", "expected format kinalign.take/1, found \"kinalign.take/2\""},

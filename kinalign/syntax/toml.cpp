@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/syntax/toml.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace kinalign {
+
+namespace {
+
+using Kind = Value::Kind;
+
+/// Advice for a line in which toml++ found a fault, such as [device.my suit], whose name needs
+/// quotes; else empty.
+std::string quotes_advice(std::string_view text, std::int64_t line) {
+  for (std::int64_t at = 1; at < line; ++at) {
+    const auto end = text.find('\n');
+    if (end == std::string_view::npos) return "";
+    text.remove_prefix(end + 1);
+  }
+  text = text.substr(0, text.find_first_of("\r\n"));
+  const auto begin = text.find_first_not_of(" \t["), end = text.find(']');
+  if (!text.starts_with('[') || end == std::string_view::npos || begin >= end) return "";
+  const std::string_view key = text.substr(begin, end - begin);
+  const auto dot = key.find('.');
+  const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
+  const bool blank = name.find(' ') != std::string_view::npos;
+  if (!blank || name.find_first_of(".\"'") != std::string_view::npos) return "";
+  const std::string_view table = key.substr(0, key.size() - name.size());
+  return " (a name with blanks stands in quotes: [" + shown(table) + "\"" + shown(name) + "\"])";
+}
+
+Value value_of(const toml::node& node, std::string key, std::string path);
+
+/// The entries in the order of the file; toml++ sorts them by key.
+std::vector<Value> entries_in_order(const toml::table& table, const std::string& path) {
+  std::vector<std::pair<std::string, const toml::node*>> entries;
+  for (const auto& [key, value] : table) entries.emplace_back(key.str(), &value);
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+    const auto& at = a.second->source().begin;
+    const auto& bt = b.second->source().begin;
+    return at.line != bt.line ? at.line < bt.line : at.column < bt.column;
+  });
+  std::vector<Value> out;
+  for (const auto& [key, node] : entries) {
+    out.push_back(value_of(*node, key, path + (path.empty() ? "" : ".") + key));
+  }
+  return out;
+}
+
+Value value_of(const toml::node& node, std::string key, std::string path) {
+  Value out;
+  out.key = std::move(key);
+  out.path = std::move(path);
+  out.line = std::max<std::int64_t>(node.source().begin.line, 1);
+  out.kind = Kind::date;
+  const auto scalar = [&](Kind kind, auto value) {
+    out.kind = kind;
+    out.scalar = std::move(value);
+  };
+  if (const auto* truth = node.as_boolean()) scalar(Kind::truth, truth->get());
+  if (const auto* whole = node.as_integer()) scalar(Kind::whole, whole->get());
+  if (const auto* number = node.as_floating_point()) scalar(Kind::number, number->get());
+  if (const auto* text = node.as_string()) scalar(Kind::text, text->get());
+  if (const auto* list = node.as_array()) {
+    out.kind = Kind::list;
+    for (const toml::node& one : *list) out.items.push_back(value_of(one, out.key, out.path));
+  }
+  if (const auto* table = node.as_table()) {
+    out.kind = Kind::table;
+    out.items = entries_in_order(*table, out.path);
+  }
+  return out;
+}
+
+std::string toml_text(bool value) { return value ? "true" : "false"; }
+std::string toml_text(std::int64_t value) { return std::to_string(value); }
+std::string toml_text(const std::string& value) { return toml_string(value); }
+std::string toml_text(double value) {  // the shortest text that reads back exactly
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+template <class One>
+std::string toml_text(const std::optional<One>& value) {
+  return value ? toml_text(*value) : "";
+}
+template <class One>
+std::string toml_text(const std::vector<One>& values) {
+  std::string text;
+  for (const One& one : values) text += (text.empty() ? "" : ", ") + toml_text(one);
+  return "[" + text + "]";
+}
+template <class One>
+std::string toml_text(const std::map<std::string, One>& values) {
+  std::string text;
+  for (const auto& [key, one] : values) {
+    text += (text.empty() ? "" : ", ") + toml_key(key) + " = " + toml_text(one);
+  }
+  return "{ " + text + " }";
+}
+
+}  // namespace
+
+Result<void> read_toml(std::string_view text, std::string_view name,
+                       const std::function<Result<void>(const Value& top)>& read) {
+  try {
+    return read(value_of(toml::parse(text, name), "", "")).map_error([&](Error error) {
+      error.file = std::string(name);
+      return error;
+    });
+  } catch (const toml::parse_error& error) {
+    const auto line = static_cast<std::int64_t>(error.source().begin.line);
+    return Failure(Error{std::string(name), line, "TOML" + quotes_advice(text, line),
+                         "a fault in it: " + std::string(error.description())});
+  }
+}
+
+std::string toml_key(const std::string& key) {
+  const auto bare = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  if (!key.empty() && std::all_of(key.begin(), key.end(), bare)) return key;
+  return toml_string(key);
+}
+
+std::string toml_string(const std::string& text) {
+  std::ostringstream quoted;
+  quoted << toml::toml_formatter(toml::value<std::string>(text), toml::format_flags::none);
+  return quoted.str();
+}
+
+std::string toml_table(const std::map<std::string, std::string>& texts) { return toml_text(texts); }
+std::string toml_list(const std::vector<std::string>& texts) { return toml_text(texts); }
+
+std::string toml_options(const Fields& fields, const Fields& defaults) {
+  const auto write = [](const auto* value) { return toml_text(*value); };
+  std::string text;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string value = std::visit(write, fields[i].value);
+    if (value == std::visit(write, defaults[i].value)) continue;
+    text += fields[i].name + " = " + value + "\n";
+  }
+  return text;
+}
+
+}  // namespace kinalign
