@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/formats/table/layout.h"
 
-#include "kinalign/formats/table/layout_keys.h"
+#include "kinalign/syntax/toml.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ namespace kinalign {
 namespace {
 
 template <class T>
-using Choices = std::vector<std::pair<std::string_view, T>>;
+using Choices = std::vector<std::pair<std::string, T>>;
 
 const Choices<TableField>& field_names() {
   static const Choices<TableField> names{
@@ -27,153 +27,118 @@ const Choices<TableField>& field_names() {
 
 bool of_points(TableField field) { return field <= TableField::state; }
 
-/// The choice that the key's text names; `otherwise` without the key. The error lists all choices.
+/// An option that names one of the choices.
 template <class T>
-Result<T> chosen(const LayoutKeys& keys, std::string_view key, const Choices<T>& choices,
-                 T otherwise) {
-  if (!keys.has(key)) return otherwise;
-  const std::string text = KA_TRY(keys.text(key));
-  std::string expected;
-  for (const auto& [name, value] : choices) {
-    if (name == text) return value;
-    expected += (expected.empty() ? "" : ", ") + std::string(name);
-  }
-  return Failure(keys.error(key, std::string(key) + " = one of " + expected, shown(text)));
+Field choice(const char* key, const Choices<T>& choices, std::string& name) {
+  Field field{key, "", &name};
+  for (const auto& [known, value] : choices) field.choices.push_back(known);
+  return field;
+}
+template <class T>
+T chosen(const Choices<T>& choices, const std::string& name) {
+  return std::find_if(choices.begin(), choices.end(),
+                      [&](const auto& one) { return one.first == name; })
+      ->second;
 }
 
-/// Reads the keys about lines and cells.
-Result<void> read_shape(const LayoutKeys& keys, TableLayout& layout) {
-  layout.kind = KA_TRY(chosen<TableKind>(
-      keys, "kind", {{"points", TableKind::points}, {"imu", TableKind::imu}}, TableKind::points));
-  layout.delimiter = KA_TRY(chosen<char>(
-      keys, "delimiter",
-      {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", runs_of_blanks}}, ','));
-  layout.comment = KA_TRY(keys.text("comment", ""));
-  layout.header = KA_TRY(keys.truth("header", true));
-  layout.skip_lines = KA_TRY(keys.count("skip_lines", 0));
-  layout.columns = KA_TRY(keys.count("columns", 0));
-  layout.rate_hz = KA_TRY(keys.positive("rate_hz", 0.0));
-  return {};
-}
+Field positive(const char* key, double& number) { return {key, "", &number, 1e-9, 1e9}; }
+Field count(const char* key, std::int64_t& number) { return {key, "", &number, 0.0, 100'000.0}; }
 
-Result<ColumnChoice> column_choice(const LayoutKeys& keys, std::string_view key) {
-  if (keys.is_text(key)) return ColumnChoice{KA_TRY(keys.text(key)), 0};
-  ColumnChoice choice{"", KA_TRY(keys.count(key, 0))};
-  if (choice.number == 0) {
-    return Failure(keys.error(key, "the column's name, or its number from 1", "no such thing"));
-  }
-  return choice;
+/// Accepts a table that is read later, when the kind of the layout is known.
+Result<void> later(const Value&) { return {}; }
+
+/// Reads the keys that are not in a table.
+Result<void> read_top(const Value& top, TableLayout& layout) {
+  const Choices<TableKind> kinds{{"points", TableKind::points}, {"imu", TableKind::imu}};
+  const Choices<char> delimiters{
+      {"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", runs_of_blanks}};
+  const Choices<Axes> ups{{"y", y_up}, {"z", z_up}};
+  const Choices<double> accelerations{{"m/s2", 1.0}, {"g", 9.80665}};
+  const Choices<double> angular_velocities{{"rad/s", 1.0}, {"deg/s", std::numbers::pi / 180.0}};
+  std::string kind = "points", delimiter = "comma", up = "y", acceleration = "m/s2",
+              angular_velocity = "rad/s";
+  std::int64_t skip_lines = 0, columns = 0;
+  const Fields fields{
+      {"name", "", &layout.name},
+      choice("kind", kinds, kind),
+      choice("delimiter", delimiters, delimiter),
+      {"comment", "", &layout.comment},
+      {"header", "", &layout.header},
+      count("skip_lines", skip_lines),
+      count("columns", columns),
+      positive("rate_hz", layout.rate_hz),
+      choice("up", ups, up),
+      positive("metres_per_unit", layout.metres_per_unit),
+      choice("acceleration_unit", accelerations, acceleration),
+      choice("angular_velocity_unit", angular_velocities, angular_velocity),
+      {"gravity", "", &layout.gravity},
+      {.name = "missing_point", .meaning = "", .value = &layout.missing_point, .count = 3},
+      {"select", "", &layout.select},
+      {"body", "", &layout.body}};
+  KA_TRY(read_options(
+      top, fields,
+      {{"time", later}, {"joints", later}, {"nodes", later}, {"state", later}, {"axes", later}}));
+  layout.kind = chosen(kinds, kind);
+  layout.delimiter = chosen(delimiters, delimiter);
+  layout.axes = chosen(ups, up);
+  layout.acceleration_unit = chosen(accelerations, acceleration);
+  layout.angular_velocity_unit = chosen(angular_velocities, angular_velocity);
+  layout.skip_lines = static_cast<std::size_t>(skip_lines);
+  layout.columns = static_cast<std::size_t>(columns);
+  if (!layout.name.empty()) return {};
+  return at(top, {"", 0, "name, what the layout is called", "none"});
 }
 
 /// Reads the table `time`; without it, rows come at rate_hz.
-Result<void> read_time(const LayoutKeys& top, TableLayout& layout) {
-  if (!top.has("time")) return {};
-  const LayoutKeys keys = KA_TRY(top.table("time", {"column", "unit", "epoch"}));
-  TableTime time;
-  time.column = KA_TRY(column_choice(keys, "column"));
-  time.scale.unit_ns = KA_TRY(chosen<std::int64_t>(
-      keys, "unit",
-      {{"ns", 1}, {"us", 1000}, {"ms", 1'000'000}, {"s", 1'000'000'000}, {"ticks_100ns", 100}}, 1));
-  time.scale.epoch_s =
-      KA_TRY(chosen<std::int64_t>(keys, "epoch", {{"unix", 0}, {"year_1", year_1_s}}, 0));
-  layout.time = time;
+Result<void> read_time(const Value& top, TableLayout& layout) {
+  const Value* table = top.find({"time"});
+  if (table == nullptr) return {};
+  const Choices<std::int64_t> units{
+      {"ns", 1}, {"us", 1000}, {"ms", 1'000'000}, {"s", 1'000'000'000}, {"ticks_100ns", 100}};
+  const Choices<std::int64_t> epochs{{"unix", 0}, {"year_1", year_1_s}};
+  std::string unit = "ns", epoch = "unix";
+  ColumnChoice column;
+  const auto read_column = [&](const Value& value) -> Result<void> {
+    if (value.kind != Value::Kind::whole) return set_option({"column", "", &column.name}, value);
+    std::int64_t number = 0;
+    KA_TRY(set_option({"column", "", &number, 1.0, 100'000.0}, value));
+    column.number = static_cast<std::size_t>(number);
+    return {};
+  };
+  KA_TRY(read_options(*table, {choice("unit", units, unit), choice("epoch", epochs, epoch)},
+                      {{"column", read_column}}));
+  if (column.name.empty() && column.number == 0) {
+    return at(*table, {"", 0, "column in [time], a name or a number from 1", "none"});
+  }
+  layout.time = TableTime{column, {chosen(units, unit), chosen(epochs, epoch)}};
   return {};
 }
 
-/// The field of that name, if tables of that kind can have it.
-Result<TableField> field_of(const LayoutKeys& keys, std::string_view name, TableKind kind) {
-  for (const auto& [known, field] : field_names()) {
-    const bool fits = field == TableField::skip || of_points(field) == (kind == TableKind::points);
-    if (known == name && fits) return field;
-  }
-  return Failure(keys.error("fields",
-                            kind == TableKind::points
-                                ? "fields x, y, z, state, skip"
-                                : "fields qw ... qz, ax ... az, gx ... gz, skip",
-                            shown(name)));
-}
-
-Result<void> read_fields_in_order(const LayoutKeys& keys, TableLayout& layout) {
-  for (const std::string& name : KA_TRY(keys.texts("fields"))) {
-    layout.fields.push_back({KA_TRY(field_of(keys, name, layout.kind)), ""});
-  }
-  layout.first_column = KA_TRY(keys.count("first_column", 1));
-  return {};
-}
-
-Result<void> read_fields_by_name(const LayoutKeys& keys, TableLayout& layout) {
-  const LayoutKeys named = KA_TRY(keys.table("fields", {}));
-  for (const std::string& name : named.keys()) {
-    const TableField field = KA_TRY(field_of(keys, name, layout.kind));
-    layout.fields.push_back({field, KA_TRY(named.text(name))});
-  }
-  return {};
-}
-
-Result<void> read_members(const LayoutKeys& top, TableLayout& layout) {
+/// Adds a field, if tables of that kind can have it.
+Result<void> add_field(const Value& fields, const std::string& name, const std::string& pattern,
+                       TableLayout& layout) {
   const bool points = layout.kind == TableKind::points;
-  const std::string_view key = points ? "joints" : "nodes";
-  const LayoutKeys keys = KA_TRY(top.table(key, {"names", "fields", "first_column"}));
-  if (points || keys.has("names")) layout.names = KA_TRY(keys.texts("names"));
-  layout.by_name = keys.is_table("fields");
-  return layout.by_name ? read_fields_by_name(keys, layout) : read_fields_in_order(keys, layout);
-}
-
-Result<void> read_state(const LayoutKeys& top, TableLayout& layout) {
-  if (!top.has("state")) return {};
-  const LayoutKeys keys = KA_TRY(top.table("state", {"missing", "inferred", "tracked"}));
-  layout.state.missing = KA_TRY(keys.numbers("missing"));
-  layout.state.inferred = KA_TRY(keys.numbers("inferred"));
-  layout.state.tracked = KA_TRY(keys.numbers("tracked"));
-  return {};
-}
-
-/// Reads `up` or the table `axes`. Axes that mirror need mirrored = true, so that nobody mirrors by
-/// mistake.
-Result<void> read_axes(const LayoutKeys& top, TableLayout& layout) {
-  layout.axes = KA_TRY(chosen<Axes>(top, "up", {{"y", y_up}, {"z", z_up}}, y_up));
-  if (!top.has("axes")) return {};
-  const LayoutKeys keys = KA_TRY(top.table("axes", {"x", "y", "z", "mirrored"}));
-  const Choices<int> signed_axes{{"x", 1}, {"y", 2}, {"z", 3}, {"-x", -1}, {"-y", -2}, {"-z", -3}};
-  layout.axes = {KA_TRY(chosen(keys, "x", signed_axes, 1)),
-                 KA_TRY(chosen(keys, "y", signed_axes, 2)),
-                 KA_TRY(chosen(keys, "z", signed_axes, 3))};
-  const bool mirrored = KA_TRY(keys.truth("mirrored", false));
-  if (mirrored && layout.kind == TableKind::imu) {
-    return Failure(keys.error("mirrored",
-                              "axes of nodes that keep right-handed: an orientation has "
-                              "no mirror image",
-                              "mirrored = true"));
+  for (const auto& [known, field] : field_names()) {
+    const bool fits = field == TableField::skip || of_points(field) == points;
+    if (known != name || !fits) continue;
+    layout.fields.push_back({field, pattern});
+    return {};
   }
-  if (determinant(layout.axes) == (mirrored ? -1 : 1)) return {};
-  return Failure(top.error("axes", mirrored ? "axes that mirror" : "axes that keep right-handed",
-                           determinant(layout.axes) == 0 ? "an axis that stands twice"
-                           : mirrored                    ? "axes that keep right-handed"
-                                      : "a mirror image without mirrored = true"));
+  return at(fields, {"", 0,
+                     points ? "fields x, y, z, state, skip"
+                            : "fields qw ... qz, ax ... az, gx ... gz, skip",
+                     shown(name)});
 }
 
-/// Reads the units and the values of a joint that was not seen.
-Result<void> read_units(const LayoutKeys& keys, TableLayout& layout) {
-  constexpr double g = 9.80665;
-  layout.metres_per_unit = KA_TRY(keys.positive("metres_per_unit", 1.0));
-  layout.acceleration_unit =
-      KA_TRY(chosen(keys, "acceleration_unit", Choices<double>{{"m/s2", 1.0}, {"g", g}}, 1.0));
-  layout.angular_velocity_unit =
-      KA_TRY(chosen(keys, "angular_velocity_unit",
-                    Choices<double>{{"rad/s", 1.0}, {"deg/s", std::numbers::pi / 180.0}}, 1.0));
-  layout.gravity = KA_TRY(keys.truth("gravity", true));
-  if (!keys.has("missing_point")) return {};
-  layout.missing_point = KA_TRY(keys.numbers("missing_point"));
-  if (layout.missing_point.size() == 3) return {};
-  return Failure(
-      keys.error("missing_point", "three numbers", std::to_string(layout.missing_point.size())));
-}
-
-Result<void> read_selection(const LayoutKeys& top, TableLayout& layout) {
-  layout.body = KA_TRY(top.text("body", ""));
-  if (!top.has("select")) return {};
-  const LayoutKeys keys = KA_TRY(top.table("select", {}));
-  for (const std::string& column : keys.keys()) layout.select[column] = KA_TRY(keys.text(column));
+/// Reads the fields: a table of patterns, or a list in the order of the columns.
+Result<void> read_fields(const Value& fields, TableLayout& layout) {
+  layout.by_name = fields.is_table();
+  std::map<std::string, std::string> patterns;
+  std::vector<std::string> names;
+  KA_TRY(set_option(layout.by_name ? Field{"fields", "", &patterns} : Field{"fields", "", &names},
+                    fields));
+  for (const auto& [name, pattern] : patterns) KA_TRY(add_field(fields, name, pattern, layout));
+  for (const std::string& name : names) KA_TRY(add_field(fields, name, "", layout));
   return {};
 }
 
@@ -183,12 +148,12 @@ bool has_field(const TableLayout& layout, TableField field) {
 }
 
 /// Checks that each quantity has all its components or none, and that no component occurs twice.
-Result<void> check_fields(const LayoutKeys& keys, TableLayout& layout) {
+Result<void> check_fields(const Value& fields, const TableLayout& layout) {
   using enum TableField;
   for (const FieldColumn& one : layout.fields) {
     const auto same = [&](const FieldColumn& each) { return each.field == one.field; };
     if (one.field != skip && std::count_if(layout.fields.begin(), layout.fields.end(), same) > 1) {
-      return Failure(keys.error("fields", "each field once", "one twice"));
+      return at(fields, {"", 0, "each field once", "one twice"});
     }
   }
   std::size_t whole = 0;
@@ -198,73 +163,100 @@ Result<void> check_fields(const LayoutKeys& keys, TableLayout& layout) {
     const auto there = std::count_if(group.begin(), group.end(),
                                      [&](TableField each) { return has_field(layout, each); });
     if (there != 0 && there != static_cast<std::ptrdiff_t>(group.size())) {
-      return Failure(keys.error("fields", "all components of a quantity",
-                                std::to_string(there) + " of " + std::to_string(group.size())));
+      return at(fields, {"", 0, "all components of a quantity",
+                         std::to_string(there) + " of " + std::to_string(group.size())});
     }
     whole += there != 0 ? 1 : 0;
   }
   if (whole > 0) return {};
-  return Failure(keys.error("fields", "x, y and z, or a quantity of an IMU", "none"));
+  return at(fields, {"", 0, "x, y and z, or a quantity of an IMU", "none"});
+}
+
+/// Reads the table of the joints or nodes.
+Result<void> read_members(const Value& top, TableLayout& layout) {
+  const std::string_view key = layout.kind == TableKind::points ? "joints" : "nodes";
+  const Value* table = top.find({key});
+  if (table == nullptr) return at(top, {"", 0, "a table [" + std::string(key) + "]", "none"});
+  std::int64_t first_column = 1;
+  KA_TRY(read_options(*table, {{"names", "", &layout.names}, count("first_column", first_column)},
+                      {{"fields", later}}));
+  layout.first_column = static_cast<std::size_t>(first_column);
+  if (layout.names.empty() && (key == "joints" || table->find({"names"}) != nullptr)) {
+    return at(*table, {"", 0, "names in [" + table->path + "]", "none"});
+  }
+  const Value* fields = table->find({"fields"});
+  if (fields == nullptr) return at(*table, {"", 0, "fields in [" + table->path + "]", "none"});
+  KA_TRY(read_fields(*fields, layout));
+  return check_fields(*fields, layout);
+}
+
+Result<void> read_state(const Value& top, TableLayout& layout) {
+  const Value* table = top.find({"state"});
+  if (table == nullptr) return {};
+  return read_options(*table, {{"missing", "", &layout.state.missing},
+                               {"inferred", "", &layout.state.inferred},
+                               {"tracked", "", &layout.state.tracked}});
+}
+
+/// Reads the table `axes`. Axes that mirror need mirrored = true, so that nobody mirrors by
+/// mistake.
+Result<void> read_axes(const Value& top, TableLayout& layout) {
+  const Value* table = top.find({"axes"});
+  if (table == nullptr) return {};
+  const Choices<int> signed_axes{{"x", 1}, {"y", 2}, {"z", 3}, {"-x", -1}, {"-y", -2}, {"-z", -3}};
+  std::string x = "x", y = "y", z = "z";
+  bool mirrored = false;
+  KA_TRY(read_options(*table, {choice("x", signed_axes, x),
+                               choice("y", signed_axes, y),
+                               choice("z", signed_axes, z),
+                               {"mirrored", "", &mirrored}}));
+  layout.axes = {chosen(signed_axes, x), chosen(signed_axes, y), chosen(signed_axes, z)};
+  if (mirrored && layout.kind == TableKind::imu) {
+    return at(*table->find({"mirrored"}),
+              {"", 0, "axes of nodes that keep right-handed: an orientation has no mirror image",
+               "mirrored = true"});
+  }
+  if (determinant(layout.axes) == (mirrored ? -1 : 1)) return {};
+  return at(*table, {"", 0, mirrored ? "axes that mirror" : "axes that keep right-handed",
+                     determinant(layout.axes) == 0 ? "an axis that stands twice"
+                     : mirrored                    ? "axes that keep right-handed"
+                                                   : "a mirror image without mirrored = true"});
 }
 
 /// Checks that columns are given in a form that the file allows, and computes the width of a row.
-Result<void> check_columns(const LayoutKeys& keys, TableLayout& layout) {
+Result<void> check_columns(const Value& top, TableLayout& layout) {
   if (layout.by_name && !layout.header) {
-    return Failure(
-        keys.error("fields", "fields in order where no line names the columns", "fields by name"));
+    return at(top, {"", 0, "fields in order where no line names the columns", "fields by name"});
   }
   if (!layout.header && layout.time && layout.time->column.number == 0) {
-    return Failure(keys.error("time", "a column's number where no line names the columns",
-                              shown(layout.time->column.name)));
+    return at(*top.find({"time"}), {"", 0, "a column's number where no line names the columns",
+                                    shown(layout.time->column.name)});
   }
-  if (!layout.by_name) {
-    const std::size_t members = std::max<std::size_t>(layout.names.size(), 1);
-    const std::size_t last = layout.first_column + members * layout.fields.size() - 1;
-    if (layout.first_column == 0 || (layout.columns != 0 && layout.columns < last)) {
-      return Failure(keys.error("columns", "at least " + std::to_string(last) + " columns",
-                                std::to_string(layout.columns)));
-    }
-    if (layout.columns == 0 && !layout.header) layout.columns = last;
+  if (layout.by_name) return {};
+  const std::size_t members = std::max<std::size_t>(layout.names.size(), 1);
+  const std::size_t last = layout.first_column + members * layout.fields.size() - 1;
+  if (layout.first_column == 0 || (layout.columns != 0 && layout.columns < last)) {
+    const Value* columns = top.find({"columns"});
+    return at(
+        columns != nullptr ? *columns : top,
+        {"", 0, "at least " + std::to_string(last) + " columns", std::to_string(layout.columns)});
   }
+  if (layout.columns == 0 && !layout.header) layout.columns = last;
   return {};
-}
-
-Result<TableLayout> read_layout(const LayoutKeys& keys) {
-  TableLayout layout;
-  layout.name = KA_TRY(keys.text("name"));
-  for (const auto step : {read_shape, read_time, read_members, read_state, read_axes, read_units,
-                          read_selection, check_fields, check_columns}) {
-    KA_TRY(step(keys, layout));
-  }
-  return layout;
 }
 
 }  // namespace
 
 Result<TableLayout> parse_layout(std::string_view toml, std::string_view name) {
-  const LayoutKeys keys = KA_TRY(LayoutKeys::parse(toml, name,
-                                                   {"name",
-                                                    "kind",
-                                                    "delimiter",
-                                                    "comment",
-                                                    "header",
-                                                    "skip_lines",
-                                                    "columns",
-                                                    "rate_hz",
-                                                    "time",
-                                                    "joints",
-                                                    "nodes",
-                                                    "state",
-                                                    "up",
-                                                    "axes",
-                                                    "metres_per_unit",
-                                                    "acceleration_unit",
-                                                    "angular_velocity_unit",
-                                                    "gravity",
-                                                    "missing_point",
-                                                    "select",
-                                                    "body"}));
-  return read_layout(keys);
+  TableLayout layout;
+  KA_TRY(read_toml(toml, name, [&](const Value& top) -> Result<void> {
+    for (const auto step :
+         {read_top, read_time, read_members, read_state, read_axes, check_columns}) {
+      KA_TRY(step(top, layout));
+    }
+    return {};
+  }));
+  return layout;
 }
 
 }  // namespace kinalign
