@@ -114,6 +114,7 @@ std::string files_toml(const std::vector<StreamFile>& files) {
   }
   if (files.size() == 1) return "file = " + toml_string(files.front().path);
   std::vector<std::string> paths;
+  paths.reserve(files.size());
   for (const StreamFile& file : files) paths.push_back(file.path);
   return "files = " + toml_list(paths);
 }

@@ -44,10 +44,10 @@ std::vector<Value> entries_in_order(const toml::table& table, const std::string&
     const auto& bt = b.second->source().begin;
     return at.line != bt.line ? at.line < bt.line : at.column < bt.column;
   });
+  const std::string before = path.empty() ? "" : path + ".";
   std::vector<Value> out;
-  for (const auto& [key, node] : entries) {
-    out.push_back(value_of(*node, key, path + (path.empty() ? "" : ".") + key));
-  }
+  out.reserve(entries.size());
+  for (const auto& [key, node] : entries) out.push_back(value_of(*node, key, before + key));
   return out;
 }
 
