@@ -31,8 +31,8 @@ std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size
 /// Fits the rigid transform of a space to the pairs of joints that were collected in `moments`.
 Result<void> fit_space(const PairMoments& moments, const std::string& name, SpacePlan& space) {
   if (moments.count == 0) {
-    return Failure(Error{name, 0, "rows in which joints of both are tracked, for a fit",
-                         "none (are rate_hz and gap_ms the device's?)"});
+    return Failure(Error{name, 0, "rows for a fit, with tracked joints of both streams",
+                         "no such row (check rate_hz and gap_ms)"});
   }
   auto fitted = fit_rigid(moments);
   if (!fitted) {

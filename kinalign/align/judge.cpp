@@ -51,11 +51,11 @@ Findings judge_unit(const Steps& steps, const RecordedStream& s) {
   constexpr double slowest_hz = 0.5;
   const double rate = 1e9 / steps.median;
   if (rate <= fastest_hz && rate >= slowest_hz) return {};
-  return warning(file_of(s), fmt::format("{} to {} samples a second", slowest_hz, fastest_hz),
-                 fmt::format("{:.4g} by the stamps", rate),
-                 "the stamps may be in another unit than they were read in",
-                 "where a layout reads them, its [time] says the column's unit: ns, us, ms, s or "
-                 "ticks_100ns");
+  return warning(
+      file_of(s), fmt::format("{} to {} samples per second", slowest_hz, fastest_hz),
+      fmt::format("{:.4g} according to the stamps", rate),
+      "the stamps were probably read in the wrong unit",
+      "if a layout reads the stamps, correct the unit in its [time]: ns, us, ms, s or ticks_100ns");
 }
 
 /// Warns if a stated rate fits neither the median step nor the mean step.
@@ -65,10 +65,10 @@ Findings judge_stated(const Steps& steps, double nominal_hz, const std::string& 
     return step < alike * 1e9 / nominal_hz && alike * step > 1e9 / nominal_hz;
   };
   if (fits(steps.median) || fits(steps.mean)) return {};
-  return warning(file, fmt::format("steps of {:.3g} ms, by rate_hz", 1e3 / nominal_hz),
+  return warning(file, fmt::format("steps of {:.3g} ms, as stated by rate_hz", 1e3 / nominal_hz),
                  fmt::format("a median of {:.3g} ms", 1e-6 * steps.median),
-                 "gaps and invalid samples are told by the wrong rate",
-                 fmt::format("say rate_hz = {:.3g}, or nothing", 1e9 / steps.median));
+                 "gaps and invalid samples are judged by the wrong rate",
+                 fmt::format("set rate_hz = {:.3g}, or remove it", 1e9 / steps.median));
 }
 
 /// Warns if a stream stands still for more than half of its time. Either the device paused, or
@@ -85,18 +85,18 @@ Findings judge_rate(const Steps& steps, const std::string& file) {
   const double from_mean = 1e9 / steps.mean;
   if (steps.mean < burst * steps.median) {
     return warning(file, median, fmt::format("a mean of {:.3g} ms", 1e-6 * steps.mean),
-                   "stretches longer than three median steps are taken for gaps",
-                   fmt::format("where that is the device's way, say rate_hz = {:.3g} or gap_ms = "
-                               "{:.3g}; else many are missing",
+                   "stretches longer than three median steps count as gaps",
+                   fmt::format("if the device sends this way, set rate_hz = {:.3g} or gap_ms = "
+                               "{:.3g}; otherwise many samples are missing",
                                from_mean, gap_steps * 1e-6 * steps.mean));
   }
   return warning(
       file, median,
-      fmt::format("{} longer ones, {:.0f} % of the time", steps.long_ones,
+      fmt::format("{} longer steps, {:.0f} % of the time", steps.long_ones,
                   100.0 * steps.long_share),
       "the device paused, or samples came in bursts and were stamped on arrival",
-      fmt::format("if it paused, say rate_hz = {:.3g}; if they came in bursts, leave the "
-                  "time column out of a layout and say rate_hz = {:.3g}",
+      fmt::format("if the device paused, set rate_hz = {:.3g}; if samples came in bursts, remove "
+                  "the time column from the layout and set rate_hz = {:.3g}",
                   1e9 / steps.median, from_mean));
 }
 
@@ -108,30 +108,31 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   // Single samples are sometimes sent twice; many duplicates have another cause.
   const bool often = s.survey.duplicates > 10 && 20 * s.survey.duplicates > s.survey.samples;
   if (s.survey.duplicates > 0) {
-    out.push_back({often ? Severity::warning : Severity::note,
-                   Error{file, 0, "stamps that rise",
-                         fmt::format("{} that repeat the one before", s.survey.duplicates)},
-                   "these samples were left out",
-                   often ? "stamps that are rounded, or rows of several nodes in one file" : ""});
+    out.push_back(
+        {often ? Severity::warning : Severity::note,
+         Error{file, 0, "rising stamps",
+               fmt::format("{} that repeat the previous stamp", s.survey.duplicates)},
+         "these samples were left out",
+         often ? "the stamps are rounded, or one file contains rows of several nodes" : ""});
   }
   if (s.survey.ahead > 0) {
     out.push_back({Severity::warning,
-                   Error{file, 0, "stamps that go on from one another",
-                         fmt::format("{} far ahead of the ones around", s.survey.ahead)},
+                   Error{file, 0, "stamps without jumps",
+                         fmt::format("{} far ahead of their neighbours", s.survey.ahead)},
                    "these samples were left out", ""});
   }
   if (s.survey.backward > 0) {
     // After a clock was set back, all further stamps are before earlier ones, so there are many.
     const bool many = 20 * s.survey.backward > s.survey.samples;
     out.push_back({many ? Severity::error : Severity::warning,
-                   Error{file, 0, "stamps that rise",
+                   Error{file, 0, "rising stamps",
                          fmt::format("{} of {} that step back, by up to {:.3f} s",
                                      s.survey.backward, s.survey.samples,
                                      1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
                    "these samples were left out",
-                   many ? "the device's clock was set back: cut the file there, or leave the time "
-                          "column out of its layout and say rate_hz"
-                        : "look at the device's clock if there are many"});
+                   many ? "the device's clock was set back: cut the file there, or remove the time "
+                          "column from its layout and set rate_hz"
+                        : "if there are many, check the device's clock"});
   }
   if (const auto steps = steps_of(s)) {
     append(out, judge_unit(*steps, s));
@@ -145,31 +146,31 @@ Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role 
   Findings out;
   if (arrivals.near > 0) {
     const std::string what = role == Role::reference
-                                 ? "as the reference they keep the stamp of their arrival, at "
-                                   "which the other streams are taken"
-                                 : "they are left out where the stream is resampled";
-    append(out, warning(file_of(s), "samples a fifth of a step or more apart",
-                        fmt::format("{} with the next one nearer", arrivals.near),
-                        "held back on their way: " + what,
-                        "stamp samples where they are taken, not where they arrive"));
+                                 ? "this stream is the reference, so they keep their late stamps, "
+                                   "and the other streams are resampled onto them"
+                                 : "they are dropped when the stream is resampled";
+    append(out, warning(file_of(s), "samples at least a fifth of a step apart",
+                        fmt::format("{} closer to the next sample", arrivals.near),
+                        "these samples were delayed: " + what,
+                        "stamp samples when they are measured, not when they arrive"));
   }
   if (arrivals.late > 0) {
     append(out,
-           warning(file_of(s), "samples that come as they are taken",
-                   fmt::format("{} that came quicker behind a pause, {:.2f} s late and more",
+           warning(file_of(s), "samples without delay",
+                   fmt::format("{} in a burst after a pause, late by {:.2f} s or more",
                                arrivals.late, 1e-9 * static_cast<double>(arrivals.worst_late_ns)),
-                   "where they are used, the take is so far behind the motion",
-                   "use the device's own stamps where the file has them, or leave the time "
-                   "column out of its layout and say rate_hz"));
+                   "where these samples are used, the take lags behind the motion by this time",
+                   "use the device's own stamps if the file has them, or remove the time column "
+                   "from its layout and set rate_hz"));
   }
   if (arrivals.near_only) {
     out.push_back({Severity::note,
-                   Error{file_of(s), 0, "a step by which late samples can be told",
+                   Error{file_of(s), 0, "a regular step, to detect late samples",
                          fmt::format("a median of {:.4g} ms, a mean of {:.4g}",
                                      1e-6 * static_cast<double>(s.survey.median_step_ns),
                                      1e-6 * static_cast<double>(s.survey.usual_step_ns))},
-                   "they were not looked for",
-                   "the device's true rate as rate_hz, or finer stamps"});
+                   "late samples were not looked for",
+                   "set rate_hz to the device's true rate, or use finer stamps"});
   }
   return out;
 }
@@ -181,7 +182,7 @@ Findings said_of(const RecordedStream& stream, const Recording& recording, Findi
   const auto& streams = recording.streams;
   if (std::none_of(streams.begin(), streams.end(), reads_the_same)) return findings;
   for (Finding& finding : findings) {
-    finding.what.expected = fmt::format("of '{}' {}", stream_label(stream), finding.what.expected);
+    finding.what.expected = fmt::format("{} in '{}'", finding.what.expected, stream_label(stream));
   }
   return findings;
 }
@@ -194,10 +195,11 @@ Findings judge_start(const RecordedStream& s, const StreamOptions& options,
   if (several && s.survey.first + own_offset(s, options) != start) return {};
   const bool first_kept = several || s.survey.first == start;
   if (first_kept && !arrivals.first_late) return {};
-  return warning(file_of(s), "start_ns at a first sample stamped when it was taken",
-                 first_kept ? "one that was held back" : "one with a stamp far from the others'",
-                 "all of the stream is shifted by as much",
-                 "cut that sample from the file, and say start_ns of the one behind it");
+  return warning(
+      file_of(s), "a first sample that was stamped when it was measured, for start_ns",
+      first_kept ? "a delayed sample" : "a sample whose stamp is far from the others",
+      "the whole stream is shifted by this delay",
+      "remove this sample from the file, and set start_ns to the stamp of the next sample");
 }
 
 Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {

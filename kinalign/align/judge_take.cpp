@@ -20,13 +20,15 @@ Findings judge_spaces(const TakeHeader& header) {
     if (std::holds_alternative<ClipGroup>(group.kind)) {
       out.push_back({Severity::note,
                      Error{"", 0, "'" + group.name + "' in the take's space",
-                           "a skeleton, and only points are moved so far"},
+                           "a skeleton, but only points can be moved"},
                      "its positions stay in its own space", ""});
       continue;
     }
-    out.push_back({Severity::note, Error{"", 0, "a space for '" + group.name + "'", "none"},
-                   "its positions stay in its own space",
-                   "[space." + group.name + "] method = \"fit\" (or \"none\", if so meant)"});
+    out.push_back(
+        {Severity::note,
+         Error{"", 0, "a space for '" + group.name + "'", "no [space." + group.name + "]"},
+         "its positions stay in its own space",
+         "[space." + group.name + "] method = \"fit\" (or \"none\", if this is intended)"});
   }
   return out;
 }
@@ -41,10 +43,11 @@ Findings judge_nodes_alike(const TakeHeader& header) {
       const auto same = [&](const InputFacts& other) { return other.sha256 == files[i].sha256; };
       const auto before = files.begin() + static_cast<std::ptrdiff_t>(i);
       if (std::none_of(files.begin(), before, same)) continue;
-      out.push_back({Severity::warning,
-                     Error{files[i].name, 0, "files of '" + group.name + "' that differ",
-                           "the same bytes as another's"},
-                     "two of its nodes are one", "name the other node's own file"});
+      out.push_back(
+          {Severity::warning,
+           Error{files[i].name, 0, "different files for the nodes of '" + group.name + "'",
+                 "the same bytes as another file"},
+           "two of its nodes have the same data", "name the other node's own file"});
     }
   }
   return out;
@@ -69,9 +72,10 @@ Findings judge_streams_alike(const TakeHeader& header) {
     out.push_back(
         {Severity::warning,
          Error{later->files.front().name, 0,
-               fmt::format("other samples in '{}' than in '{}'", later->name, first->name),
+               fmt::format("different samples in '{}' and '{}'", later->name, first->name),
                "the same file and the same selection"},
-         "both are one stream", "name the other one's file, or select its rows"});
+         "both streams have the same data",
+         "name the file of the second stream, or select its rows"});
   }
   return out;
 }
@@ -93,20 +97,21 @@ Findings judge_span(const Recording& recording, const AlignPlan& plan) {
   if (2.0 * common < span(brief)) {
     return {{Severity::warning,
              Error{"", 0,
-                   fmt::format("streams that share most of '{}', {:.2f} s", stream_label(brief),
+                   fmt::format("a common time of most of '{}', {:.2f} s", stream_label(brief),
                                span(brief)),
-                   fmt::format("{:.2f} s that all have: {}", common, bounds)},
-             "all else is cut; over so little a fit looks good at any offset",
-             "are start_ns and offset_ms right?"}};
+                   fmt::format("{:.2f} s in common: {}", common, bounds)},
+             "the rest is cut off; a fit over so little time looks good at any offset",
+             "check start_ns and offset_ms"}};
   }
   const RecordedStream& reference = streams[plan.reference];
   const std::uint64_t cut = reference.survey.kept() - plan.header.frames;
   if (10 * cut <= reference.survey.kept()) return {};
   return {{Severity::note,
            Error{"", 0,
-                 fmt::format("the frames of '{}' within the span of all streams", reference.name),
+                 fmt::format("all frames of '{}' within the common time of all streams",
+                             reference.name),
                  fmt::format("{} of {} outside: {}", cut, reference.survey.kept(), bounds)},
-           "these are cut", ""}};
+           "the frames outside are cut off", ""}};
 }
 
 }  // namespace
@@ -126,9 +131,9 @@ Findings judge_rows(const StreamReport& stream, std::uint64_t rows) {
   const double share = static_cast<double>(stream.empty_rows) / static_cast<double>(rows);
   return {{Severity::warning,
            Error{"", 0, fmt::format("samples of '{}' in most rows", name),
-                 fmt::format("none in {:.1f} % of them", 100.0 * share)},
-           "little of it is in the take",
-           "see its gaps: are rate_hz and gap_ms the device's, is it there for the whole take?"}};
+                 fmt::format("no sample in {:.1f} % of the rows", 100.0 * share)},
+           "the take contains little of this stream",
+           "check rate_hz and gap_ms of this device, and whether it sent during the whole take"}};
 }
 
 Findings judge_residual(const SpaceReport& space) {
@@ -141,8 +146,8 @@ Findings judge_residual(const SpaceReport& space) {
       {Severity::warning,
        Error{"", 0, fmt::format("'{}' on '{}' to less than 30 cm rms", space.stream, space.onto),
              fmt::format("{:.1f} cm", 100.0 * space.after_m)},
-       "the positions are not to be trusted",
-       "are both the same motion, at the same time, of the same units and joints?"}};
+       "the positions can't be trusted",
+       "check that both streams have the same motion, time, units and joints"}};
 }
 
 Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
@@ -155,11 +160,11 @@ Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
     names += (names.empty() ? "" : ", ") + joint.joint;
   return {{Severity::warning,
            Error{"", 0,
-                 fmt::format("joints that spread 10 cm or more beside a line, to fit '{}' by",
+                 fmt::format("joints that are at least 10 cm away from a line, to fit '{}'",
                              space.stream),
                  fmt::format("{:.1f} cm: {}", 100.0 * plan.beside_line_m, names)},
-           "the turn about that line is a guess, whatever the residuals say",
-           "name joints of arms or legs too: joints = { ... }"}};
+           "the rotation about this line is a guess, even if the residuals are small",
+           "also name joints of arms or legs: joints = { ... }"}};
 }
 
 }  // namespace kinalign

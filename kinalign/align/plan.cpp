@@ -169,18 +169,18 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
   const auto* imu = std::get_if<ImuInput>(&s.data);
   if (nodes == nullptr || imu == nullptr) {
     return Failure(Error{
-        "", 0, "streams with names that differ",
+        "", 0, "streams with different names",
         fmt::format("'{}' twice: {} and {}", s.name, file_and_kind(group.files, group.kind.index()),
                     file_and_kind(s.files, s.data.index()))});
   }
   if (!(nodes->content == imu->content)) {
     return Failure(Error{"", 0, "nodes of '" + s.name + "' that measure the same quantities",
-                         "'" + imu->node_names.front() + "', which measures others"});
+                         "'" + imu->node_names.front() + "', which measures other quantities"});
   }
   for (const std::string& node : imu->node_names) {
     if (std::find(nodes->node_names.begin(), nodes->node_names.end(), node) !=
         nodes->node_names.end()) {
-      return Failure(Error{"", 0, "nodes with names that differ", "'" + node + "' twice"});
+      return Failure(Error{"", 0, "nodes with different names", "'" + node + "' twice"});
     }
     nodes->node_names.push_back(node);
   }
@@ -307,7 +307,7 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   plan.header.frames = KA_TRY(count_rows(reference, plan));
   if (plan.header.frames == 0) {
     return Failure(Error{"", 0, "frames of '" + reference.name + "' in the common span",
-                         "none; " + spans(recording), ErrorKind::no_common_span});
+                         "no frame; " + spans(recording), ErrorKind::no_common_span});
   }
   return plan;
 }

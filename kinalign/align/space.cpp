@@ -53,7 +53,7 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
     const auto same = [other](const JointPair& pair) { return pair.onto == other; };
     if (std::any_of(pairs.begin(), pairs.end(), same)) {
       return Failure(
-          Error{"", line, "joints of '" + onto.name + "' that differ", "'" + shown(b) + "' twice"});
+          Error{"", line, "different joints of '" + onto.name + "'", "'" + shown(b) + "' twice"});
     }
     pairs.push_back({KA_TRY(known_joint(from, a, line)), other});
   }
@@ -119,7 +119,7 @@ Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
                           const Manifest& manifest) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
   if (plan.group == plan.onto || !std::holds_alternative<PointGroup>(from.kind)) {
-    return Failure(Error{"", 0, "points to be brought onto another stream", "'" + from.name + "'"});
+    return Failure(Error{"", 0, "points to be moved onto another stream", "'" + from.name + "'"});
   }
   const auto moved = manifest.spaces.find(onto.name);
   if (moved != manifest.spaces.end() && moved->second.method != "none") {
@@ -140,7 +140,7 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   }
   if (plan.options.method == "fit" && plan.pairs.size() < 3) {
     return Failure(Error{"", line_of(plan.options.lines, "joints"),
-                         "three named joints or more for a fit (joints = { ... })",
+                         "at least three named joints for a fit (joints = { ... })",
                          std::to_string(plan.pairs.size()), ErrorKind::too_few_joints});
   }
   return {};

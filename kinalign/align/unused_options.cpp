@@ -74,7 +74,7 @@ Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
     if (contains(method.takes, name)) continue;
     const std::string taken = fmt::format("{}", fmt::join(method.takes, ", "));
     return Failure(Error{"", line_of(space.lines, name),
-                         "of " + at + " what method = \"" + space.method + "\" takes (" +
+                         "in " + at + " only options of method = \"" + space.method + "\" (" +
                              (taken.empty() ? "nothing" : taken) + ")",
                          name});
   }
@@ -93,20 +93,20 @@ Result<void> check_intervals(const Recording& recording, const Manifest& manifes
   for (const StreamOptions& options : manifest.streams) {
     const std::int64_t doubt = options.clock == "unknown" ? line_of(options.lines, "clock") : 0;
     if (doubt > 0 && (options.interval_ms || options.name == reference)) {
-      return Failure(
-          Error{"", doubt,
-                "no clock of '" + options.name + "', of whose stamps is known how sure they are",
-                "clock = \"unknown\""});
+      return Failure(Error{
+          "", doubt, "no clock for '" + options.name + "', whose stamps have a known accuracy",
+          "clock = \"unknown\""});
     }
     if (!options.interval_ms) continue;
     const std::int64_t line = line_of(options.lines, "interval_ms");
     if (options.clock == "shared") {
-      return Failure(Error{"", line, "of '" + options.name + "' a shared clock or an interval_ms",
-                           "both: clock = \"shared\" leaves no doubt"});
+      return Failure(Error{"", line,
+                           "either a shared clock or an interval_ms for '" + options.name + "'",
+                           "both: with clock = \"shared\" the interval is 0"});
     }
     if (options.name == reference) {
-      return Failure(Error{"", line, "an interval_ms of streams beside the reference",
-                           "one of '" + reference + "', whose stamps are the take's"});
+      return Failure(Error{"", line, "interval_ms only for streams other than the reference",
+                           "interval_ms for '" + reference + "', the reference"});
     }
   }
   return {};
@@ -148,10 +148,10 @@ Result<void> check_options_used(const Recording& recording, const Manifest& mani
     for (const std::string& name : options_set(options)) {
       if (!contains(useless_options(stream), name)) continue;
       const std::string file = stream.files.empty() ? "" : " (" + stream.files[0].name + ")";
-      return Failure(Error{"", line_of(options.lines, name),
-                           "of '" + stream.name + "'" + file + " only options that " +
-                               kinds[stream.data.index()] + " can use",
-                           name});
+      return Failure(Error{
+          "", line_of(options.lines, name),
+          "for '" + stream.name + "'" + file + " only options of " + kinds[stream.data.index()],
+          name});
     }
   }
   KA_TRY(check_intervals(recording, manifest));

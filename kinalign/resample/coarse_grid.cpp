@@ -73,12 +73,13 @@ Findings judge_carried(const std::vector<CarriedContent>& contents, const Conten
     part = k;
   }
   if (part == contents.size()) return {};
-  return {{Severity::warning,
-           Error{names.stream, 0, "a grid that carries the stream's content",
-                 fmt::format("{:.0f} % of the rms of {}'s {} beyond what a {:.4g} Hz grid carries",
-                             100.0 * worst, names.parts[part], names.quantity, names.grid_hz)},
-           "fast changes between the take's rows are lost or look slower than they were",
-           "choose a faster stream as the reference, or read this stream's own file for them"}};
+  return {
+      {Severity::warning,
+       Error{names.stream, 0, "a grid that can represent the stream's content",
+             fmt::format("{:.0f} % of the rms of {}'s {} above what a {:.4g} Hz grid can represent",
+                         100.0 * worst, names.parts[part], names.quantity, names.grid_hz)},
+       "fast changes between the rows of the take are lost or look slower",
+       "choose a faster stream as the reference, or use this stream's original file"}};
 }
 
 }  // namespace kinalign

@@ -117,7 +117,7 @@ TEST_CASE("stamps that repeat or step back are left out and reported") {
   CHECK(take->report.streams[1].survey.backward == 1);
   REQUIRE(take->report.findings.size() == 2);
   CHECK(to_string(take->report.findings[0].what) ==
-        "kinect: expected stamps that rise, found 1 of 100 that step back, by up to 0.060 s");
+        "kinect: expected rising stamps, found 1 of 100 that step back, by up to 0.060 s");
 }
 
 TEST_CASE("streams that do not overlap are refused with their spans") {
@@ -141,8 +141,9 @@ TEST_CASE("samples in bursts are a warning, and rate_hz tells the true period") 
   REQUIRE(take);
   CHECK(take->report.streams[1].invalid > take->report.streams[1].samples / 2);
   REQUIRE(!take->report.findings.empty());
-  CHECK(to_string(take->report.findings[0].what) ==
-        "kinect: expected steps near their median of 1 ms, found 33 longer ones, 98 % of the time");
+  CHECK(
+      to_string(take->report.findings[0].what) ==
+      "kinect: expected steps near their median of 1 ms, found 33 longer steps, 98 % of the time");
   Manifest manifest;
   manifest.streams.resize(1);
   manifest.streams[0].name = "kinect";

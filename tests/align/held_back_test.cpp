@@ -257,7 +257,7 @@ TEST_CASE("the reference keeps its rows, and blocks of any size hold back the sa
   CHECK(take->report.streams[0].held_back == 0);
   // They are used, but a finding says that the stamps are not the device's.
   REQUIRE(take->report.findings.size() == 1);
-  CHECK(take->report.findings[0].what.found.starts_with("4 with the next one nearer"));
+  CHECK(take->report.findings[0].what.found.starts_with("4 closer to the next sample"));
   CHECK(take->report.findings[0].meaning.find("as the reference") != std::string::npos);
   for (const std::size_t size : {1, 2, 7, 100}) {
     CAPTURE(size);
@@ -296,7 +296,7 @@ TEST_CASE("what waited in a stall and was sent quicker than it was taken is a wa
   CHECK(take.report.streams[1].arrivals.worst_late_ns > 900 * ms);
   REQUIRE(take.report.findings.size() == 1);
   CHECK(take.report.findings[0].severity == Severity::warning);
-  CHECK(take.report.findings[0].what.expected == "samples that come as they are taken");
+  CHECK(take.report.findings[0].what.expected == "samples without delay");
 }
 
 TEST_CASE("a stated rate that is a tenth off makes no sample late, nor a stamp that is rounded") {

@@ -36,11 +36,12 @@ TEST_CASE("points that nobody placed say how to place them; what was said is not
   const Findings found = judged(header);
   REQUIRE(found.size() == 2);
   CHECK(whole(found[1]) ==
-        "note: expected 'suit' in the take's space, found a skeleton, and only points are moved so "
-        "far; its positions stay in its own space; ");
+        "note: expected 'suit' in the take's space, found a skeleton, but only points can be "
+        "moved; its positions stay in its own space; ");
   CHECK(whole(found[0]) ==
-        "note: expected a space for 'kinect', found none; its positions stay in its own space; "
-        "[space.kinect] method = \"fit\" (or \"none\", if so meant)");
+        "note: expected a space for 'kinect', found no [space.kinect]; its positions stay in its "
+        "own space; "
+        "[space.kinect] method = \"fit\" (or \"none\", if this is intended)");
   header.parameters.spaces["kinect"].method = "none";
   CHECK(judged(header).size() == 1);
 }
@@ -56,10 +57,10 @@ TEST_CASE("joints more than 30 cm rms from their counterparts are a warning with
   space.after_m = 0.4567;
   const Findings found = judge_residual(space);
   REQUIRE(found.size() == 1);
-  CHECK(whole(found[0]) ==
-        "warning: expected 'kinect' on 'mocap' to less than 30 cm rms, found 45.7 cm; the "
-        "positions are not to be trusted; are both the same motion, at the same time, of the same "
-        "units and joints?");
+  CHECK(
+      whole(found[0]) ==
+      "warning: expected 'kinect' on 'mocap' to less than 30 cm rms, found 45.7 cm; the positions "
+      "can't be trusted; check that both streams have the same motion, time, units and joints");
 }
 
 TEST_CASE("a fit by joints near one line is a warning with their names") {
@@ -72,9 +73,9 @@ TEST_CASE("a fit by joints near one line is a warning with their names") {
   const Findings found = judge_fit(plan, space);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: expected joints that spread 10 cm or more beside a line, to fit 'kinect' by, "
-        "found 4.3 cm: SpineBase, Head; the turn about that line is a guess, whatever the "
-        "residuals say; name joints of arms or legs too: joints = { ... }");
+        "warning: expected joints that are at least 10 cm away from a line, to fit 'kinect', "
+        "found 4.3 cm: SpineBase, Head; the rotation about this line is a guess, even if the "
+        "residuals are small; also name joints of arms or legs: joints = { ... }");
   plan.beside_line_m = 0.099;
   CHECK(judge_fit(plan, space).size() == 1);
   plan.beside_line_m = 0.1;
@@ -95,8 +96,9 @@ TEST_CASE("one file for two nodes is a warning") {
   const Findings found = judged(header);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: w.csv: expected files of 'imu' that differ, found the same bytes as another's; "
-        "two of its nodes are one; name the other node's own file");
+        "warning: w.csv: expected different files for the nodes of 'imu', found the same bytes as "
+        "another file; "
+        "two of its nodes have the same data; name the other node's own file");
 }
 
 TEST_CASE("one file with one selection for two streams is a warning, with another selection none") {
@@ -112,8 +114,9 @@ TEST_CASE("one file with one selection for two streams is a warning, with anothe
   const Findings found = judged(header);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: k.csv: expected other samples in 'right' than in 'left', found the same file and "
-        "the same selection; both are one stream; name the other one's file, or select its rows");
+        "warning: k.csv: expected different samples in 'right' and 'left', found the same file and "
+        "the same selection; both streams have the same data; name the file of the second stream, "
+        "or select its rows");
 }
 
 TEST_CASE("streams that share less than half of the shortest one's time are a warning") {
@@ -130,8 +133,9 @@ TEST_CASE("streams that share less than half of the shortest one's time are a wa
   const Findings half = judge_plan(recording, plan);
   REQUIRE(half.size() == 1);
   CHECK(whole(half[0]) ==
-        "note: expected the frames of 'kinect' within the span of all streams, found 486 of 1000 "
-        "outside: 'suit' begins last, 'kinect' ends first; these are cut; ");
+        "note: expected all frames of 'kinect' within the common time of all streams, found 486 of "
+        "1000 "
+        "outside: 'suit' begins last, 'kinect' ends first; the frames outside are cut off; ");
   plan.header.frames = 900;
   CHECK(judge_plan(recording, plan).empty());  // a tenth is still accepted
   plan.header.frames = 899;
@@ -141,11 +145,10 @@ TEST_CASE("streams that share less than half of the shortest one's time are a wa
   recording.streams[1].survey.last = utc_time(49'967'000'000);
   const Findings less = judge_plan(recording, plan);
   REQUIRE(less.size() == 1);
-  CHECK(
-      whole(less[0]) ==
-      "warning: expected streams that share most of 'kinect', 32.97 s, found 15.97 s that all "
-      "have: 'suit' begins last, 'kinect' ends first; all else is cut; over so little a fit looks "
-      "good at any offset; are start_ns and offset_ms right?");
+  CHECK(whole(less[0]) ==
+        "warning: expected a common time of most of 'kinect', 32.97 s, found 15.97 s in common: "
+        "'suit' begins last, 'kinect' ends first; the rest is cut off; a fit over so little time "
+        "looks good at any offset; check start_ns and offset_ms");
 }
 
 TEST_CASE("a stream that has nothing in most rows is a warning with its node") {
@@ -158,7 +161,8 @@ TEST_CASE("a stream that has nothing in most rows is a warning with its node") {
   const Findings found = judge_rows(imu, 1000);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: expected samples of 'imu waist' in most rows, found none in 50.1 % of them; "
-        "little of it is in the take; see its gaps: are rate_hz and gap_ms the device's, is it "
-        "there for the whole take?");
+        "warning: expected samples of 'imu waist' in most rows, found no sample in 50.1 % of the "
+        "rows; "
+        "the take contains little of this stream; check rate_hz and gap_ms of this device, and "
+        "whether it sent during the whole take");
 }

@@ -36,15 +36,16 @@ TEST_CASE("stamps that repeat are a note, those that ran ahead or back a warning
   s.survey.largest_step_back_ns = 1'500'000'000;
   const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 3);
-  CHECK(whole(found[0]) ==
-        "note: k.csv: expected stamps that rise, found 3 that repeat the one before; these samples "
-        "were left out; ");
+  CHECK(
+      whole(found[0]) ==
+      "note: k.csv: expected rising stamps, found 3 that repeat the previous stamp; these samples "
+      "were left out; ");
   CHECK(whole(found[1]) ==
-        "warning: k.csv: expected stamps that go on from one another, found 2 far ahead of the "
-        "ones around; these samples were left out; ");
+        "warning: k.csv: expected stamps without jumps, found 2 far ahead of their neighbours; "
+        "these samples were left out; ");
   CHECK(whole(found[2]) ==
-        "warning: k.csv: expected stamps that rise, found 50 of 1000 that step back, by up to "
-        "1.500 s; these samples were left out; look at the device's clock if there are many");
+        "warning: k.csv: expected rising stamps, found 50 of 1000 that step back, by up to "
+        "1.500 s; these samples were left out; if there are many, check the device's clock");
 }
 
 TEST_CASE("samples held back are a warning that says what to do about it") {
@@ -53,22 +54,22 @@ TEST_CASE("samples held back are a warning that says what to do about it") {
   const Findings found = judge_arrivals(kinect(), {3, 0, 0}, Role::resampled);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: kinect: expected samples a fifth of a step or more apart, found 3 with the next "
-        "one nearer; held back on their way: they are left out where the stream is resampled; "
-        "stamp samples where they are taken, not where they arrive");
+        "warning: kinect: expected samples at least a fifth of a step apart, found 3 closer to the "
+        "next sample; these samples were delayed: they are dropped when the stream is resampled; "
+        "stamp samples when they are measured, not when they arrive");
   CHECK(judge_arrivals(kinect(), {3, 0, 0}, Role::reference).at(0).meaning ==
-        "held back on their way: as the reference they keep the stamp of their arrival, at which "
-        "the other streams are taken");
+        "these samples were delayed: this stream is the reference, so they keep their late stamps, "
+        "and the other streams are resampled onto them");
 }
 
 TEST_CASE("samples that came late behind a pause are a warning with how late they were") {
   const Findings found = judge_arrivals(kinect(), {0, 12, 414'000'000}, Role::resampled);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: kinect: expected samples that come as they are taken, found 12 that came quicker "
-        "behind a pause, 0.41 s late and more; where they are used, the take is so far behind "
-        "the motion; use the device's own stamps where the file has them, or leave the time column "
-        "out of its layout and say rate_hz");
+        "warning: kinect: expected samples without delay, found 12 in a burst after a pause, late "
+        "by 0.41 s or more; where these samples are used, the take lags behind the motion by this "
+        "time; use the device's own stamps if the file has them, or remove the time column from "
+        "its layout and set rate_hz");
 }
 
 TEST_CASE("a start_ns at a first sample that was late or wild is a warning") {
@@ -79,18 +80,18 @@ TEST_CASE("a start_ns at a first sample that was late or wild is a warning") {
   const Findings late = judge_start(kinect(), options, {1, 0, 0, true});
   REQUIRE(late.size() == 1);
   CHECK(whole(late[0]) ==
-        "warning: kinect: expected start_ns at a first sample stamped when it was taken, found one "
-        "that was held back; all of the stream is shifted by as much; cut that sample from the "
-        "file, and say start_ns of the one behind it");
+        "warning: kinect: expected a first sample that was stamped when it was measured, for "
+        "start_ns, found a delayed sample; the whole stream is shifted by this delay; remove this "
+        "sample from the file, and set start_ns to the stamp of the next sample");
   options.start_ns = 7;  // and the first row that is kept has stamp 0
   CHECK(judge_start(kinect(), options, {}).at(0).what.found ==
-        "one with a stamp far from the others'");
+        "a sample whose stamp is far from the others");
   options.files = {{"a.csv", "a"}, {"b.csv", "b"}};  // and the other begins 7 ns earlier
   RecordedStream s = kinect();
   s.clock.pieces.front().offset = Duration{14};
   CHECK(judge_start(s, options, {1, 0, 0, true}).empty());
   s.clock.pieces.front().offset = Duration{7};
-  CHECK(judge_start(s, options, {1, 0, 0, true}).at(0).what.found == "one that was held back");
+  CHECK(judge_start(s, options, {1, 0, 0, true}).at(0).what.found == "a delayed sample");
 }
 
 TEST_CASE("where no step is known to tell late samples by, a note says so") {
@@ -99,9 +100,9 @@ TEST_CASE("where no step is known to tell late samples by, a note says so") {
   Arrivals arrivals;
   arrivals.near_only = true;
   CHECK(whole(judge_arrivals(s, arrivals, Role::resampled).at(0)) ==
-        "note: kinect: expected a step by which late samples can be told, found a median of 33 ms, "
-        "a mean of 27.5; they were not looked for; the device's true rate as rate_hz, or finer "
-        "stamps");
+        "note: kinect: expected a regular step, to detect late samples, found a median of 33 ms, "
+        "a mean of 27.5; late samples were not looked for; set rate_hz to the device's true rate, "
+        "or use finer stamps");
 }
 
 TEST_CASE("stamps that repeat in one of twenty samples and more are no chance") {
@@ -119,9 +120,9 @@ TEST_CASE("from one sample in twenty on, a clock that stepped back is an error")
   const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "error: kinect: expected stamps that rise, found 51 of 1000 that step back, by up to "
+        "error: kinect: expected rising stamps, found 51 of 1000 that step back, by up to "
         "3600.000 s; these samples were left out; the device's clock was set back: cut the file "
-        "there, or leave the time column out of its layout and say rate_hz");
+        "there, or remove the time column from its layout and set rate_hz");
 }
 
 TEST_CASE("a stream that stands still for half its time is told as what the stamps allow") {
@@ -133,16 +134,15 @@ TEST_CASE("a stream that stands still for half its time is told as what the stam
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: kinect: expected steps near their median of 33 ms, found a mean of 66 ms; "
-        "stretches longer than three median steps are taken for gaps; where that is the device's "
-        "way, say rate_hz = 15.2 or gap_ms = 198; else many are missing");
+        "stretches longer than three median steps count as gaps; if the device sends this way, set "
+        "rate_hz = 15.2 or gap_ms = 198; otherwise many samples are missing");
   s.survey.last = utc_time(329'670'000'000);
   s.survey.long_time_ns = 296'703'000'000;
-  CHECK(
-      whole(judge_stamps(s, {}).at(0)) ==
-      "warning: kinect: expected steps near their median of 33 ms, found 500 longer ones, 90 % of "
-      "the time; the device paused, or samples came in bursts and were stamped on arrival; if it "
-      "paused, say rate_hz = 30.3; if they came in bursts, leave the time column out of a layout "
-      "and say rate_hz = 3.03");
+  CHECK(whole(judge_stamps(s, {}).at(0)) ==
+        "warning: kinect: expected steps near their median of 33 ms, found 500 longer steps, 90 % "
+        "of the time; the device paused, or samples came in bursts and were stamped on arrival; if "
+        "the device paused, set rate_hz = 30.3; if samples came in bursts, remove the time column "
+        "from the layout and set rate_hz = 3.03");
   s.survey.long_steps = 10;  // 10 of eleven steps are long
   CHECK(judge_stamps(s, {}).empty());
   s.survey.long_steps = 500;
@@ -169,8 +169,8 @@ TEST_CASE("a stated rate is held against the stamps, and says that long steps ar
   const Findings found = judge_stamps(s, options);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: kinect: expected steps of 10 ms, by rate_hz, found a median of 33 ms; gaps and "
-        "invalid samples are told by the wrong rate; say rate_hz = 30.3, or nothing");
+        "warning: kinect: expected steps of 10 ms, as stated by rate_hz, found a median of 33 ms; "
+        "gaps and invalid samples are judged by the wrong rate; set rate_hz = 30.3, or remove it");
   options.rate_hz = 5.0;
   CHECK(judge_stamps(s, options).size() == 1);
 }
@@ -211,9 +211,9 @@ TEST_CASE("a rate that no device has is a unit taken for another") {
   const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: kinect: expected 0.5 to 1200 samples a second, found 3.03e+04 by the stamps; the "
-        "stamps may be in another unit than they were read in; where a layout reads them, "
-        "its [time] says the column's unit: ns, us, ms, s or ticks_100ns");
+        "warning: kinect: expected 0.5 to 1200 samples per second, found 3.03e+04 according to the "
+        "stamps; the stamps were probably read in the wrong unit; if a layout reads the stamps, "
+        "correct the unit in its [time]: ns, us, ms, s or ticks_100ns");
   s.survey.median_step_ns = 33'000'000'000;
   s.survey.last = utc_time(32'967'000'000'000);
   CHECK(judge_stamps(s, {}).size() == 1);
@@ -233,10 +233,11 @@ TEST_CASE("a grid that loses more than a tenth of a joint's motion names the wor
   const Findings found = judge_content(kinect(), count, 29.97);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: kinect: expected a grid that carries the stream's content, found 30 % of the rms "
-        "of Head's position beyond what a 29.97 Hz grid carries; fast changes between the take's "
-        "rows are lost or look slower than they were; choose a faster stream as the reference, or "
-        "read this stream's own file for them");
+        "warning: kinect: expected a grid that can represent the stream's content, found 30 % of "
+        "the rms "
+        "of Head's position beyond what a 29.97 Hz grid carries; fast changes between the rows of "
+        "the take are lost or look slower; choose a faster stream as the reference, or use this "
+        "stream's original file");
   count.positions = {carried(0.1, 0.0099), carried(0.0, 0.0)};
   CHECK(judge_content(kinect(), count, 29.97).empty());
   count.positions = {carried(0.002, 0.0019), carried(0.0, 0.0)};  // a Kinect's own noise

@@ -70,10 +70,11 @@ TEST_CASE("the reference is a stream of the recording, and no nodes") {
 TEST_CASE("a stream without a sample, or none of the reference in the span, is refused") {
   CHECK(fault(two(hundred(), points(joints, {}, wander))) ==
         "expected at least one sample for stream 'kinect', found none");
-  CHECK(fault(two(points(joints, every(1000 * ms, 2), wander),
-                  points(joints, every(10 * ms, 21, 400 * ms), wander))) ==
-        "expected frames of 'optical' in the common span, found none; optical 0.000 to 1.000 s, "
-        "kinect 0.400 to 0.600 s");
+  CHECK(
+      fault(two(points(joints, every(1000 * ms, 2), wander),
+                points(joints, every(10 * ms, 21, 400 * ms), wander))) ==
+      "expected frames of 'optical' in the common span, found no frame; optical 0.000 to 1.000 s, "
+      "kinect 0.400 to 0.600 s");
   auto late = recorded("imu", node("waist"));
   late.clock.pieces.front().offset = Duration{5000 * ms};
   CHECK(fault(of({recorded("optical", hundred()), late})) ==
@@ -85,21 +86,21 @@ TEST_CASE("streams share a name only where they are nodes that measure the same"
   auto named = recorded("kinect", skeleton());
   named.files = {{"walk.bvh", "", 0}};
   CHECK(fault(of({recorded("kinect", hundred()), named})) ==
-        "expected streams with names that differ, found 'kinect' twice: memory (points) and "
+        "expected streams with different names, found 'kinect' twice: memory (points) and "
         "walk.bvh (a skeleton)");
   CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist")),
                   recorded("imu", hundred())})) ==
-        "expected streams with names that differ, found 'imu' twice: memory (nodes) and memory "
+        "expected streams with different names, found 'imu' twice: memory (nodes) and memory "
         "(points)");
   CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist")),
                   recorded("imu", node("waist"))})) ==
-        "expected nodes with names that differ, found 'waist' twice");
+        "expected nodes with different names, found 'waist' twice");
   ImuStream without_gravity = node("wrist_left");
   without_gravity.content.gravity = false;
   CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist")),
                   recorded("imu", without_gravity)})) ==
         "expected nodes of 'imu' that measure the same quantities, found 'wrist_left', which "
-        "measures others");
+        "measures other quantities");
 }
 
 TEST_CASE("a root node is one of the nodes and has an orientation") {
@@ -125,10 +126,10 @@ TEST_CASE("only points are brought onto another stream, and that one stays where
         "expected a stream with joints in [space] (known: optical), found \"imu\"");
   manifest.spaces = {{"mocap", by("fit")}};
   CHECK(fault(of({recorded("optical", hundred()), recorded("mocap", skeleton())}), manifest) ==
-        "expected points to be brought onto another stream, found 'mocap'");
+        "expected points to be moved onto another stream, found 'mocap'");
   manifest.spaces = {{"optical", by("fit")}};
   CHECK(fault(two(hundred(), hundred()), manifest) ==
-        "expected points to be brought onto another stream, found 'optical'");
+        "expected points to be moved onto another stream, found 'optical'");
   SpaceOptions onto_nothing = by("fit");
   onto_nothing.onto = "vicon";
   CHECK(fault_of_space(onto_nothing) ==
@@ -160,24 +161,24 @@ TEST_CASE("joints that a manifest names are there on both sides") {
         "expected a joint of 'kinect' (known: SpineBase, Head, HandLeft, HandRight), found "
         "\"Pelvis\"");
   space.joints = {{"Head", "Head"}, {"HandLeft", "Head"}, {"HandRight", "HandRight"}};
-  CHECK(fault_of_space(space) == "expected joints of 'optical' that differ, found 'Head' twice");
+  CHECK(fault_of_space(space) == "expected different joints of 'optical', found 'Head' twice");
 }
 
 TEST_CASE("a fit needs three named joints, and three places that stand on no line") {
   SpaceOptions space = by("fit");
   space.joints = {{"Head", "Head"}, {"HandLeft", "HandLeft"}};
   CHECK(fault_of_space(space) ==
-        "expected three named joints or more for a fit (joints = { ... }), found 2");
+        "expected at least three named joints for a fit (joints = { ... }), found 2");
   const auto on_a_line = [](std::size_t j, double) {
     return Vec3(static_cast<double>(j), 2.0, -static_cast<double>(j));
   };
   CHECK(fault_of_space(by("fit"), points(joints, every(10 * ms, 100), on_a_line)) ==
-        "kinect: expected points that do not lie on one line, found a line");
+        "kinect: expected points that are not on one line, found a line");
   auto never_seen = hundred();
   never_seen.frames.state.assign(never_seen.frames.state.size(), Tracking::inferred);
   CHECK(fault_of_space(by("fit"), never_seen) ==
-        "kinect: expected rows in which joints of both are tracked, for a fit, found none (are "
-        "rate_hz and gap_ms the device's?)");
+        "kinect: expected rows for a fit, with tracked joints of both streams, found no "
+        "such row (check rate_hz and gap_ms)");
 }
 
 TEST_CASE("a given rotation is one") {

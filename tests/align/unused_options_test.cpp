@@ -57,9 +57,8 @@ std::string of_space(const std::string& method, const SayOfSpace& say) {
 TEST_CASE(
     "of a skeleton's file clicks, unit and axis can be said, a rate can't: it states its step") {
   for (const auto& say : {end, latency, unit}) CHECK(of_clip(say).empty());
-  CHECK(of_clip(rate) == "expected of 'some' only options that a skeleton can use, found rate_hz");
-  CHECK(of_clip(root) ==
-        "expected of 'some' only options that a skeleton can use, found root_node");
+  CHECK(of_clip(rate) == "expected for 'some' only options of a skeleton, found rate_hz");
+  CHECK(of_clip(root) == "expected for 'some' only options of a skeleton, found root_node");
 }
 
 TEST_CASE("of what a recording knows itself nothing can be said: start, clock, drift, interval") {
@@ -98,12 +97,12 @@ TEST_CASE("an interval is of another clock than the reference's, and of one that
   manifest.streams[1].interval_ms = 4.0;
   CHECK(fault_of("").empty());
   CHECK(fault_of("kinect") ==
-        "expected an interval_ms of streams beside the reference, found one of 'kinect', whose "
-        "stamps are the take's");
+        "expected interval_ms only for streams other than the reference, found interval_ms for "
+        "'kinect', the reference");
   manifest.streams[1].clock = "shared";
   CHECK(fault_of("") ==
-        "expected of 'kinect' a shared clock or an interval_ms, found both: clock = \"shared\" "
-        "leaves no doubt");
+        "expected either a shared clock or an interval_ms for 'kinect', found both: with clock = "
+        "\"shared\" the interval is 0");
   manifest.streams[1].interval_ms.reset();
   manifest.streams[0].clock = "shared";  // the reference's clock is shared in any case
   CHECK(fault_of("").empty());
@@ -111,29 +110,26 @@ TEST_CASE("an interval is of another clock than the reference's, and of one that
 
 TEST_CASE("of points a rate and a unit can be said, clicks can't") {
   for (const auto& say : {rate, unit}) CHECK(of_points(say).empty());
-  CHECK(of_points(end) == "expected of 'some' only options that points can use, found end_ns");
-  CHECK(of_points(latency) ==
-        "expected of 'some' only options that points can use, found click_latency_ms");
-  CHECK(of_points(root) == "expected of 'some' only options that points can use, found root_node");
+  CHECK(of_points(end) == "expected for 'some' only options of points, found end_ns");
+  CHECK(of_points(latency) == "expected for 'some' only options of points, found click_latency_ms");
+  CHECK(of_points(root) == "expected for 'some' only options of points, found root_node");
 }
 
 TEST_CASE("mountings are of nodes, and a refusal names the file") {
   const SayOfStream worn = [](StreamOptions& o) { o.mounting["waist"] = {1, 0, 0, 0}; };
   CHECK(of_nodes(worn).empty());
-  CHECK(of_points(worn) == "expected of 'some' only options that points can use, found mounting");
+  CHECK(of_points(worn) == "expected for 'some' only options of points, found mounting");
   RecordedStream clip = recorded("", skeleton());
   clip.files = {{"walk.bvh", "", 0}};
   CHECK(fault(clip, worn) ==
-        "expected of 'some' (walk.bvh) only options that a skeleton can use, found mounting");
+        "expected for 'some' (walk.bvh) only options of a skeleton, found mounting");
 }
 
 TEST_CASE("of nodes a rate and a root can be said, clicks and a length can't") {
   for (const auto& say : {rate, root}) CHECK(of_nodes(say).empty());
-  CHECK(of_nodes(end) == "expected of 'some' only options that nodes can use, found end_ns");
-  CHECK(of_nodes(latency) ==
-        "expected of 'some' only options that nodes can use, found click_latency_ms");
-  CHECK(of_nodes(unit) ==
-        "expected of 'some' only options that nodes can use, found metres_per_unit");
+  CHECK(of_nodes(end) == "expected for 'some' only options of nodes, found end_ns");
+  CHECK(of_nodes(latency) == "expected for 'some' only options of nodes, found click_latency_ms");
+  CHECK(of_nodes(unit) == "expected for 'some' only options of nodes, found metres_per_unit");
 }
 
 TEST_CASE("a space's method takes what it has a use for, and nothing else") {
@@ -166,8 +162,8 @@ TEST_CASE("a space's method takes what it has a use for, and nothing else") {
       CAPTURE(key);
       const bool used = (", " + list + ",").find(", " + key + ",") != std::string::npos;
       const bool lacks = method == "given" && key != "rotation" && key != "translation";
-      const std::string refusal = "expected of [space.kinect] what method = \"" + method +
-                                  "\" takes (" + list + "), found " + key;
+      const std::string refusal = "expected in [space.kinect] only options of method = \"" +
+                                  method + "\" (" + list + "), found " + key;
       const std::string lack =
           "expected rotation or translation in [space.kinect], whose method is \"given\", found "
           "neither";

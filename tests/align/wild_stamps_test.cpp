@@ -67,8 +67,7 @@ TEST_CASE("one wild stamp in a stream costs one sample of the take's neighbourho
   CHECK(report.streams[1].invalid == 0);
   REQUIRE(report.findings.size() == 1);
   CHECK(to_string(report.findings[0].what) ==
-        "kinect: expected stamps that go on from one another, found 1 far ahead of the ones "
-        "around");
+        "kinect: expected stamps without jumps, found 1 far ahead of their neighbours");
 }
 
 TEST_CASE("a clock set back by an hour is an error that says how many samples are lost") {
@@ -82,10 +81,10 @@ TEST_CASE("a clock set back by an hour is an error that says how many samples ar
   REQUIRE(take);
   REQUIRE(take->report.findings.size() == 2);
   CHECK(take->report.findings[1].what.expected ==
-        "the frames of 'points' within the span of all streams");
+        "all frames of 'points' within the common time of all streams");
   CHECK(take->report.findings[0].severity == Severity::error);
   CHECK(to_string(take->report.findings[0].what) ==
-        "kinect: expected stamps that rise, found 101 of 161 that step back, by up to 3601.770 s");
+        "kinect: expected rising stamps, found 101 of 161 that step back, by up to 3601.770 s");
 }
 
 TEST_CASE("a gap of the reference between two blocks is counted") {

@@ -45,8 +45,8 @@ TEST_CASE("a sine of 40 Hz does not, and the warning says how much of it is lost
   REQUIRE(found.size() == 1);
   CHECK(found[0].severity == Severity::warning);
   CHECK(to_string(found[0].what) ==
-        "imu: expected a grid that carries the stream's content, found 100 % of the rms of waist's "
-        "acceleration beyond what a 60 Hz grid carries");
+        "imu: expected a grid that can represent the stream's content, found 100 % of the rms of "
+        "waist's acceleration above what a 60 Hz grid can represent");
 }
 
 TEST_CASE("between them the share grows with the frequency") {
