@@ -40,7 +40,7 @@ Result<void> check_known(const Catalogue& catalogue, const AddRequest& request,
     const std::string flag = what == "a subject" ? "--subject" : "--action";
     if (id.empty()) {
       return Failure(
-          Error{request.path, 0, what + ", by " + flag + " where the file names none", "none"});
+          Error{request.path, 0, what + " (give " + flag + " if the file names none)", "nothing"});
     }
     Error error = unknown_name(id, what + " of dataset.toml ([" + table + "." + id + "])", known);
     error.file = request.path;
@@ -287,7 +287,7 @@ Result<Added> TakeAdder::add_take(const AddRequest& request) {
   if (differs(request.subject, subject) || differs(request.action, action)) {
     return Failure(Error{request.path, 0,
                          "a take of subject " + shown(request.subject) + " and action " +
-                             shown(request.action) + ", which a take says itself",
+                             shown(request.action) + " (a take states both)",
                          shown(subject) + " and " + shown(action)});
   }
   KA_TRY(check_known(catalogue_, request, subject, action));
@@ -318,7 +318,7 @@ Result<Added> TakeAdder::add(const AddRequest& request, const Progress& progress
       return Failure(Error{request.path, 0,
                            "a recording, a recording.toml or a take (single files go into a "
                            "recording.toml)",
-                           "another file"});
+                           "a file of another kind"});
   }
 }
 

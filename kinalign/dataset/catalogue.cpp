@@ -61,14 +61,14 @@ std::string two_digits(int number) { return (number < 10 ? "0" : "") + std::to_s
 constexpr std::string_view head_of_template =
     R"(# A data set of kinalign: docs/formats/dataset.md lists every key.
 name = {0}
-licence = {1}       # on what terms others may use it: "CC BY 4.0"
-contact = ""       # whom they may ask
+licence = {1}       # terms under which others may use it: "CC BY 4.0"
+contact = ""       # whom to ask
 description = ""
 citation = {2}
 
-# [align]          what the manifests of takes leave open, as in a recording.toml
+# [align]          defaults for the manifests of takes, as in a recording.toml
 
-# People by a pseudonym. Who they are stands nowhere in this folder.
+# People by pseudonyms. This folder never contains their names.
 )";
 
 constexpr std::string_view empty_template = R"(
@@ -135,18 +135,18 @@ const One* find_id(const std::vector<One>& all, std::string_view id) {
 }  // namespace
 
 Fields describe(Catalogue& c) {
-  return {{"name", "what the data set is called", &c.name},
-          {"licence", "on what terms others may use it", &c.licence},
-          {"contact", "whom they may ask", &c.contact},
-          {"description", "what it is for", &c.description},
-          {"citation", "how it is cited", &c.citation}};
+  return {{"name", "name of the data set", &c.name},
+          {"licence", "terms under which others may use it", &c.licence},
+          {"contact", "whom to ask", &c.contact},
+          {"description", "what the data set is for", &c.description},
+          {"citation", "how to cite the data set", &c.citation}};
 }
 
 Fields describe(Subject& s) {
   return {
       {"sex", "f, m or x", &s.sex, 0.0, 0.0, {"", "f", "m", "x"}},
       {"handedness", "right, left or both", &s.handedness, 0.0, 0.0, {"", "right", "left", "both"}},
-      {"consent", "to what the person agreed", &s.consent},
+      {"consent", "what the person agreed to", &s.consent},
       {"height_cm", "body height", &s.height_cm, 20.0, most_cm},
       {"weight_kg", "body weight", &s.weight_kg, 1.0, most_kg},
       {"segments_m", "lengths of the body's segments", &s.segments_m, least_m, most_m}};

@@ -210,9 +210,10 @@ Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder) {
   std::error_code fault;
   if (!fs::exists(folder, fault) || !fs::exists(path, fault)) {
     if (fault) return Failure(Error{folder, 0, "the folder of a data set", fault.message()});
-    if (!is_there(folder)) return Failure(Error{folder, 0, "the folder of a data set", "none"});
+    if (!is_there(folder))
+      return Failure(Error{folder, 0, "the folder of a data set", "no such folder"});
     return Failure(Error{folder, 0, "the folder of a data set, with a dataset.toml in it",
-                         "none; kinalign dataset init makes one"});
+                         "no dataset.toml; kinalign dataset init makes one"});
   }
   return read_catalogue(KA_TRY(read_whole(files, path, most_toml)), path);
 }
@@ -276,7 +277,8 @@ Result<void> DatasetIndex::State::make_tables_of(const std::string& path) {
   if (!KA_TRY(has_tables())) {  // another process may have made them meanwhile
     auto old = KA_TRY(database.prepare("select count(*) from sqlite_master"));
     const bool is_other = KA_TRY(old.step()) && std::get<std::int64_t>(old.at(0)) > 0;
-    if (is_other) return Failure(Error{path, 0, "an index of this version", "another one"});
+    if (is_other)
+      return Failure(Error{path, 0, "an index of this version", "an index of another version"});
     KA_TRY(database.run(make_tables));
     KA_TRY(database.run(fmt::format("pragma user_version={}", layout)));
   }
@@ -356,7 +358,7 @@ Result<void> DatasetIndex::State::refresh_take(const Found& found,
   }
   const auto take = read_summary(*files, folder, found.name);
   if (take) return put(found, *take, add);
-  findings.push_back({Severity::error, take.error(), "the take is in no list",
+  findings.push_back({Severity::error, take.error(), "lists do not show this take",
                       "kinalign dataset build makes it again"});
   return {};
 }

@@ -242,10 +242,10 @@ Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& c
     return Failure(Error{
         "", 0,
         "takes for the part " + part.name + " (a larger --test or --validation, or --by take)",
-        "none (of " + std::to_string(takes.size()) + " takes in all)"});
+        "no take (of " + std::to_string(takes.size()) + " takes in all)"});
   }
   if (out.parts.size() < 2)
-    return Failure(Error{"", 0, "takes of two people at least", "of fewer"});
+    return Failure(Error{"", 0, "takes of at least two people", "takes of fewer people"});
   return out;
 }
 
@@ -276,7 +276,7 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
   }
   for (const std::string& name : seen.unknown) tell(Severity::error, "takes of the data set", name);
   if (!seen.changed.empty()) {
-    tell(Severity::warning, "takes as they were when the split was made",
+    tell(Severity::warning, "takes that did not change since the split was made",
          fmt::format("{} made again: {}{}", seen.changed.size(), *seen.changed.begin(),
                      seen.changed.size() > 1 ? ", ..." : ""));
   }

@@ -124,7 +124,7 @@ Result<Statement> Database::prepare(const std::string& sql) const {
   if (made == nullptr) return Failure(Error{"", 0, "a statement of SQL", "nothing"});
   const std::string_view rest(behind);
   if (rest.find_first_not_of(" \t\r\n;") != std::string_view::npos) {
-    return Failure(Error{"", 0, "one statement of SQL", "more behind it: " + shown(rest)});
+    return Failure(Error{"", 0, "one statement of SQL", "more text after it: " + shown(rest)});
   }
   return out;
 }
@@ -137,7 +137,7 @@ Result<Statement> Database::prepare_reading(const std::string& sql) const {
   const bool is_other =
       made && (made->columns() == 0 || sqlite3_stmt_readonly(made->statement_.get()) == 0);
   if (is_denied || is_other) {
-    return Failure(Error{"", 0, "a SELECT, which changes nothing", "another statement"});
+    return Failure(Error{"", 0, "a SELECT", "another statement"});
   }
   return made;
 }

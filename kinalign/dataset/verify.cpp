@@ -115,9 +115,9 @@ class Verifier {
 
   void compare_summary(const TakeName& name, TakeSummary made) {
     const std::string file = path_of(name, TakeFile::summary);
-    const std::string again = "kinalign dataset build makes it again, once it is removed";
+    const std::string again = "remove this file; kinalign dataset build makes it again";
     if (!takes_.at(name).summary) {
-      tell(Severity::error, file, "a summary beside the take", "none",
+      tell(Severity::error, file, "a summary next to the take", "no summary",
            "kinalign dataset build makes it");
       return;
     }
@@ -132,11 +132,11 @@ class Verifier {
     std::error_code fault;
     made.bytes = std::filesystem::file_size(folder_ + "/" + path_of(name, TakeFile::take), fault);
     if (summary_json(made) != *text) {
-      tell(Severity::error, file, "what the take says", "something else", again);
+      tell(Severity::error, file, "the contents of the take", "other values", again);
     }
     if (made.subject != name.subject || made.action != name.action) {
-      tell(Severity::error, path_of(name, TakeFile::take), "subject and action as in its name",
-           made.subject + " and " + made.action);
+      tell(Severity::error, path_of(name, TakeFile::take),
+           "subject and action as in the take's name", made.subject + " and " + made.action);
     }
     hashes_.push_back({folder_ + "/" + path_of(name, TakeFile::take), said->sha256,
                        path_of(name, TakeFile::take), said->bytes});
@@ -146,7 +146,7 @@ class Verifier {
   void check_take(const TakeName& name, const TakeFiles& there) {
     if (!there.take) {
       tell(Severity::error, path_of(name, there.manifest ? TakeFile::manifest : TakeFile::summary),
-           "a take beside it", "none", there.manifest ? "kinalign dataset build" : "");
+           "a take with this name", "no take", there.manifest ? "kinalign dataset build" : "");
     }
     if (find_subject(catalogue_, name.subject) == nullptr) {
       tell(Severity::warning, path_of(name, TakeFile::take), "a subject of dataset.toml",
@@ -168,7 +168,7 @@ class Verifier {
       return;
     }
     if (recipe_of(*manifest) != summary.recipe) {
-      tell(Severity::warning, file, "the parameters that the take was made with", "others", build);
+      tell(Severity::warning, file, "the parameters of the take", "other parameters", build);
     }
     for (const TakeInput& input :
          inputs_of(files_, *manifest, folder_ + "/sub-" + name.subject + "/", summary.inputs)) {
@@ -183,11 +183,12 @@ class Verifier {
     std::error_code fault;
     const auto size = fs::file_size(input.path, fault);
     if (fault) {
-      tell(Severity::warning, manifest, "the raw file " + input.name, "none there",
-           "the take can't be made again without it");
+      tell(Severity::warning, manifest, "the raw file " + input.name, "no such file",
+           "the take can't be made again without this file");
     } else if (known == summary.inputs.end() || known->bytes != size) {
-      tell(Severity::warning, manifest, "the raw file " + input.name + " that the take was made of",
-           "another one", "kinalign dataset build");
+      tell(Severity::warning, manifest,
+           "the raw file " + input.name + " that the take was made from", "another file",
+           "kinalign dataset build");
     } else if (options_.deep) {
       hashes_.push_back({input.path, known->sha256, manifest, size});
     }
@@ -201,8 +202,8 @@ class Verifier {
           std::find(known_names.begin(), known_names.end(), name) != known_names.end();
       if (is_known || name.starts_with('.')) continue;
       if (name == unfinished_rename_file) {
-        tell(Severity::error, name, "a finished rename", "one that was stopped",
-             "run the same kinalign dataset rename again; the file says which");
+        tell(Severity::error, name, "a finished rename", "a stopped rename",
+             "run the same kinalign dataset rename again; this file names it");
         continue;
       }
       const std::string place = root + name, below = name + "/";
@@ -210,14 +211,13 @@ class Verifier {
       const bool is_person =
           name.starts_with("sub-") && is_label(name.substr(4)) && fs::is_directory(place, ignored);
       if (!is_person) {
-        tell(Severity::note, name, "a file or folder of a data set",
-             "one that kinalign does not know");
+        tell(Severity::note, name, "a file or folder of a data set", "an unknown file or folder");
         continue;
       }
       for (const std::string& file : KA_TRY(names_in_folder(place))) {
         const std::string path = below + file;
         if (!parse_take_path(path)) {
-          tell(Severity::note, path, "a file of a take", "one that kinalign does not know");
+          tell(Severity::note, path, "a file of a take", "an unknown file");
         }
       }
     }
@@ -229,7 +229,7 @@ class Verifier {
     const auto there = files_in_sourcedata(folder_);
     if (!there) {
       tell(Severity::warning, std::string(raw_files_folder), there.error().expected,
-           there.error().found, "which of its files belong to no take is not known");
+           there.error().found, "files of no take could not be found");
       return;
     }
     if (there->empty()) return;
@@ -248,8 +248,8 @@ class Verifier {
     if (others.empty()) return;
     std::vector<std::string> first(others.begin(), others.end());
     first.resize(std::min<std::size_t>(first.size(), 3));
-    tell(Severity::note, std::string(raw_files_folder), "files that a manifest names",
-         fmt::format("{} that none names: {}{}", others.size(), fmt::join(first, ", "),
+    tell(Severity::note, std::string(raw_files_folder), "only files that a manifest names",
+         fmt::format("{} other files: {}{}", others.size(), fmt::join(first, ", "),
                      others.size() > first.size() ? ", ..." : ""));
   }
 
@@ -275,8 +275,8 @@ class Verifier {
       if (facts && facts->sha256 == one.sha256) return;
       if (!facts && is_interruption(facts.error())) return;
       tell(Severity::error, one.name,
-           one.name.ends_with(".toml") ? "raw files that the take was made of: " + one.path
-                                       : "bytes of the SHA-256 " + one.sha256.substr(0, 12) + "...",
+           one.name.ends_with(".toml") ? "the raw file that the take was made from: " + one.path
+                                       : "bytes with SHA-256 " + one.sha256.substr(0, 12) + "...",
            facts ? facts->sha256.substr(0, 12) + "..." : facts.error().found);
     });
     out_.takes = takes_.size();

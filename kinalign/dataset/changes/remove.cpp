@@ -74,7 +74,8 @@ class RemovalPlanner {
   Failure unknown(const std::string& word) const {
     std::vector<std::string> known;
     for (const auto& [take, there] : takes_) known.push_back(to_string(take));
-    return Failure(unknown_name(word, "a take of " + folder_ + ", or a person as sub-03", known));
+    return Failure(
+        unknown_name(word, "a take of " + folder_ + ", or a person such as sub-03", known));
   }
 
   std::set<TakeName> takes_with_raw(const std::string& person) const {
@@ -97,7 +98,7 @@ class RemovalPlanner {
         for (const TakeName& going : wanted) {
           if (!place.starts_with(raw_folder(going))) continue;
           return Failure(Error{path_of(name, TakeFile::manifest), 0,
-                               "no raw files of " + to_string(going) + ", which would go",
+                               "no raw files of " + to_string(going) + ", which would be removed",
                                raw_folder(going)});
         }
       }
@@ -142,10 +143,10 @@ class RemovalPlanner {
   Result<void> add_inputs(const TakeName& name) {
     auto inputs = raw_files_of(files_, folder_, name);
     if (!inputs && with_raw_) {
-      return Failure(Error{path_of(name, TakeFile::manifest), 0,
-                           "a manifest that says which raw files go (without --raw the take goes, "
-                           "and they stay)",
-                           to_string(inputs.error())});
+      return Failure(Error{
+          path_of(name, TakeFile::manifest), 0,
+          "a manifest that lists the raw files to remove (without --raw only the take is removed)",
+          to_string(inputs.error())});
     }
     if (!inputs) return {};  // the take is removed anyway; `verify` reports raw files that are left
     std::reverse(inputs->begin(), inputs->end());
@@ -194,7 +195,7 @@ class RemovalPlanner {
          {std::string("sourcedata"), "sourcedata/sub-" + name.subject, folder}) {
       if (!fs::is_symlink(folder_ + "/" + part, fault)) continue;
       return Failure(Error{folder_ + "/" + part, 0,
-                           "raw files within the data set; those elsewhere are not removed",
+                           "raw files within the data set; other raw files are not removed",
                            "a link to another place"});
     }
     std::vector<std::string> inner;

@@ -55,7 +55,7 @@ std::string journal_json(const RenamePlan& plan) {
 
 /// Reads the journal of a stopped rename.
 Result<RenamePlan> read_journal(FileSystem& files, const std::string& path) {
-  const Failure broken(Error{path, 0, "what a rename that was stopped has left", "other text"});
+  const Failure broken(Error{path, 0, "the journal of a stopped rename", "other text"});
   const std::string text = KA_TRY(read_whole(files, path, longest_journal));
   try {
     const Json json = Json::parse(text);
@@ -104,7 +104,8 @@ class RenamePlanner {
  private:
   Result<RenamePlan> plan_take(const TakeName& from, const std::string& to_text) const {
     const auto to = parse_take_name(to_text);
-    if (!to) return fault(to_text, "a take's name, as sub-03_task-S2A03_run-01", shown(to_text));
+    if (!to)
+      return fault(to_text, "the name of a take, such as sub-03_task-S2A03_run-01", shown(to_text));
     if (!takes_.contains(from)) {
       std::vector<std::string> known;
       for (const auto& [name, there] : takes_) known.push_back(to_string(name));
@@ -159,7 +160,7 @@ class RenamePlanner {
 
   static Result<void> check_new_id(const std::string& word, const std::string& id, bool is_taken) {
     if (!is_label(id)) return fault(word, "an id of letters and digits", shown(id));
-    if (is_taken) return fault(word, "an id that the data set does not have", "one that it has");
+    if (is_taken) return fault(word, "an id that the data set does not have", "an id that it has");
     return {};
   }
 
@@ -170,7 +171,8 @@ class RenamePlanner {
 
   Result<void> check(const TakeName& from, const TakeName& to) const {
     if (takes_.contains(to)) {
-      return fault(folder_ + "/" + path_of(to, TakeFile::take), "no take of the new name", "one");
+      return fault(folder_ + "/" + path_of(to, TakeFile::take), "no take of the new name",
+                   "an existing take");
     }
     std::error_code fault_code;
     if (fs::exists(folder_ + "/" + raw_folder(to), fault_code)) {
@@ -183,7 +185,7 @@ class RenamePlanner {
   Result<void> check_can_be_made(const TakeName& name) const {
     const std::string take = folder_ + "/" + path_of(name, TakeFile::take);
     const std::string why =
-        " (subject and action stand in a take's own bytes: it is made again under its new name)";
+        " (a take's file contains subject and action, so the take has to be made again)";
     if (!takes_.at(name).manifest) {
       return fault(take, "a take with a manifest" + why, "a take that was added as a take");
     }
@@ -192,7 +194,7 @@ class RenamePlanner {
          inputs_of(files_, manifest, folder_ + "/sub-" + name.subject + "/", {})) {
       std::error_code missing;
       if (fs::exists(input.path, missing)) continue;
-      return fault(input.path, "the raw file of " + to_string(name) + why, "none there");
+      return fault(input.path, "the raw file of " + to_string(name) + why, "no such file");
     }
     return {};
   }
@@ -313,8 +315,8 @@ Result<RenamePlan> plan_rename(FileSystem& files, const std::string& folder,
                                                               : "";
   if (without(lead, from) == begun.from && without(lead, to) == begun.to) return begun;
   return Failure(Error{journal, 0,
-                       "first the rename that was stopped: kinalign dataset rename " + folder +
-                           " " + lead + begun.from + " " + lead + begun.to,
+                       "the stopped rename to be finished first: kinalign dataset rename " +
+                           folder + " " + lead + begun.from + " " + lead + begun.to,
                        shown(from) + " to " + shown(to)});
 }
 

@@ -109,7 +109,7 @@ Result<std::string> with_id_renamed(const std::string& toml, const std::string& 
                        "[" + table + "." + from +
                            "] as the head of a table, so that it can become [" + table + "." + to +
                            "]",
-                       "another form; change the id there by hand, then run this again"});
+                       "another form; change the id there by hand, then run the command again"});
 }
 
 Result<std::string> manifest_of_renamed(const std::string& toml, const TakeName& from,

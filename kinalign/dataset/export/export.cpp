@@ -34,15 +34,16 @@ struct Made {
   Result<void> holds_something(const ExportJob& job, std::string_view needs) const {
     if (files > 0) return {};
     if (!findings.empty()) return Failure(findings.front().what);
-    return Failure(Error{
-        job.folder, 0, fmt::format("{} in one take at least, for {}", needs, job.format), "none"});
+    return Failure(Error{job.folder, 0,
+                         fmt::format("{} in at least one take, for {}", needs, job.format),
+                         "no take with them"});
   }
 
   void add(const TakeName& name, const FilesMade& made) {
     files += made.paths.size();
     for (const std::string& why : made.left_out) left_out.push_back({to_string(name), why});
     for (const Error& error : made.failed) {
-      findings.push_back({Severity::error, error, "it was not written", ""});
+      findings.push_back({Severity::error, error, "this file was not written", ""});
     }
   }
 };
@@ -186,13 +187,14 @@ class PartFolder {
   static Result<PartFolder> make(const std::string& target) {
     std::error_code failed;
     if (fs::exists(fs::symlink_status(target, failed))) {
-      return Failure(Error{target, 0, "a folder that is not there yet", "one that is"});
+      return Failure(Error{target, 0, "a folder that does not exist yet", "an existing one"});
     }
     const auto above = fs::path(target).parent_path();
     if (!above.empty()) fs::create_directories(above, failed);
     const std::string path = target + ".part";
     if (fs::exists(fs::symlink_status(path, failed))) {
-      return Failure(Error{path, 0, "no export that goes on or was broken off (remove it)", "one"});
+      return Failure(Error{path, 0, "no unfinished export (if no export is running, remove it)",
+                           "an existing folder"});
     }
     KA_TRY(make_new_folder(path));
     return PartFolder(path);
@@ -228,7 +230,7 @@ std::vector<ExportFormat> export_formats() {
   for (const TakeFormat& one : take_formats()) {
     out.push_back({std::string(one.name), std::string(one.title), std::string(one.lost)});
   }
-  out.push_back({"bids", "BIDS-Motion, checked when it is written",
+  out.push_back({"bids", "BIDS-Motion, checked after writing",
                  "bones and local rotations; inferred against tracked; intervals; gravity"});
   out.push_back(
       {"webdataset", "tar shards, a sample for each take", "the report and the parameters"});

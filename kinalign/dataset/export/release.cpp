@@ -61,7 +61,7 @@ class Look {
   void add(Severity severity, const std::string& where, std::string found, std::string repair) {
     findings.push_back(
         {severity,
-         Error{file_, 0, fmt::format("{} that tells nobody who it is", where), std::move(found)},
+         Error{file_, 0, fmt::format("{} that can't identify a person", where), std::move(found)},
          "", std::move(repair)});
   }
 
@@ -82,7 +82,7 @@ class Look {
     const bool is_proper = value.size() > 1 && std::isupper(letter(0)) && std::islower(letter(1));
     if (!is_proper || !reads_like_a_name(value)) return;
     add(Severity::warning, fmt::format("the id of a {}", table),
-        fmt::format("\"{}\"", shown(value)), "give another id, if it is a person's name");
+        fmt::format("\"{}\"", shown(value)), "give another id, if this is a person's name");
   }
 
   Findings findings;
@@ -94,7 +94,7 @@ class Look {
       std::smatch match;
       if (!std::regex_search(value, match, pattern.text)) continue;
       add(Severity::error, where, fmt::format("{}: \"{}\"", pattern.what, shown(match.str())),
-          "take it out of dataset.toml");
+          "remove it from dataset.toml");
       return;
     }
   }
@@ -110,7 +110,7 @@ void look_at_devices(const std::vector<Described>& all, const char* table, Look&
       const std::string where = fmt::format("{}.{}.{}", table, one.id, key);
       if (names_a_device(key) && !value.empty()) {
         look.add(Severity::error, where, fmt::format("\"{}\"", shown(value)),
-                 "take it out of dataset.toml: it leads to a lab and a day");
+                 "remove it from dataset.toml: a serial number identifies a lab and a day");
       } else {
         look.text(where, value);
       }
@@ -128,8 +128,8 @@ void look_at_measures(const std::vector<Subject>& people, const char* what,
     });
     if (same > 1) continue;
     look.add(Severity::note, fmt::format("subject.{}.{}", person.id, what),
-             fmt::format("{:g}, which nobody else here has", *(person.*measure)),
-             "round it, or leave it out");
+             fmt::format("{:g}, which no other person in this data set has", *(person.*measure)),
+             "round this value, or leave it out");
   }
 }
 
@@ -169,13 +169,14 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file,
   for (const Subject& person : catalogue.subjects) {
     if (reads_like_a_name(person.id)) {
       look.add(Severity::error, "a subject's id", fmt::format("\"{}\"", shown(person.id)),
-               "give a number: kinalign dataset rename");
+               "use a number as id: kinalign dataset rename");
     }
     look.text("a subject's id", person.id);
     look.text(fmt::format("subject.{}.consent", person.id), person.consent);
     if (!person.consent.empty()) {
       look.add(Severity::warning, fmt::format("subject.{}.consent", person.id),
-               fmt::format("free text: \"{}\"", shown(person.consent)), "read it before others do");
+               fmt::format("free text: \"{}\"", shown(person.consent)),
+               "check this text before you publish it");
     }
   }
   look_at_measures(catalogue.subjects, "height_cm", &Subject::height_cm, look);
@@ -197,7 +198,7 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file,
   look.text("description", catalogue.description);
   if (!catalogue.contact.empty()) {
     look.add(Severity::note, "contact", fmt::format("\"{}\"", shown(catalogue.contact)),
-             "it is published as it stands");
+             "this text is published unchanged");
   }
   std::stable_sort(look.findings.begin(), look.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

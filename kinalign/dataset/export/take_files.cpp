@@ -181,14 +181,14 @@ const std::vector<TakeFormat>& take_formats() {
       {"csv", "a table for each stream, and JSON of the skeletons", "the report and the parameters",
        "a stream", as_csv},
       {"bvh", "a take's skeleton",
-       "points and nodes; stamps, of which an even step is left; which rows are valid",
-       "a skeleton", as_bvh},
+       "points and nodes; stamps, which become an even step; which rows are valid", "a skeleton",
+       as_bvh},
       {"trc", "points, and joints of skeletons as points",
        "rotations and nodes; inferred against tracked; intervals; the date", "points or a skeleton",
        as_trc},
       {"c3d", "points, and joints of skeletons as points",
-       "rotations and nodes; inferred against tracked; intervals; stamps, of which an even step is "
-       "left",
+       "rotations and nodes; inferred against tracked; intervals; stamps, which become an even "
+       "step",
        "points or a skeleton", as_c3d},
       {"sto", "OpenSim: orientations of nodes",
        "accelerations and angular velocities; intervals; the date", "nodes with orientations",

@@ -44,8 +44,8 @@ Result<std::string> grown_catalogue(const std::string& toml, const std::string& 
   const std::string grown = toml + (toml.empty() || toml.ends_with('\n') ? "" : "\n") + more;
   const auto read = read_catalogue(grown, name);
   if (read) return grown;
-  return Failure(
-      Error{name, 0, "room for [subject.ID] and [action.ID] at the end", to_string(read.error())});
+  return Failure(Error{name, 0, "a file to which [subject.ID] and [action.ID] can be appended",
+                       to_string(read.error())});
 }
 
 }  // namespace kinalign

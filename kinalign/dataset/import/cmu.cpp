@@ -83,7 +83,7 @@ void leave_out_doubles(std::map<std::string, CorpusTake>& takes,
                        const std::set<std::string>& doubles, Corpus& corpus) {
   for (auto& [key, take] : takes) {
     if (doubles.contains(key)) {
-      corpus.left_out.push_back({key, "there on the person's own skeleton, too"});
+      corpus.left_out.push_back({key, "also available on the person's own skeleton"});
     } else {
       corpus.takes.push_back(std::move(take));
     }

@@ -61,7 +61,7 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
     const std::string subject = says[i].subject.empty() ? input.subject : says[i].subject;
     const std::string named = says[i].action.empty() ? unnamed : says[i].action;
     if (subject.empty()) {
-      out.left_out.push_back({files[i].name, "no folder or name says who it is (--subject ID)"});
+      out.left_out.push_back({files[i].name, "no folder or name states the person (--subject ID)"});
       continue;
     }
     CorpusTake take{

@@ -311,7 +311,7 @@ Result<Corpus> list_ui_prmd_joints(const ImportInput& input) {
 }  // namespace
 
 CorpusKind ui_prmd_joints_corpus() {
-  return {"ui-prmd-joints", "the files of ui-prmd, only by --from", false,
+  return {"ui-prmd-joints", "the files of ui-prmd, with --from", false,
           [](FileSystem&, const std::vector<SourceFile>&) { return false; }, list_ui_prmd_joints};
 }
 

@@ -34,7 +34,7 @@ std::string plain(std::string_view text) {
 }
 
 std::string or_not_said(const std::string& text) {
-  return text.empty() ? "not said in dataset.toml" : plain(text);
+  return text.empty() ? "not stated in dataset.toml" : plain(text);
 }
 
 std::string text_at(const Cell& cell, const TableColumn& column) {
@@ -152,7 +152,7 @@ class Card {
     line("- Positions in metres, right-handed, y up. Rotations are quaternions w,x,y,z.");
     line("- Angular velocity in rad/s, acceleration in m/s².");
     line(
-        "- `valid` is 0 where a device measured nothing near enough; nothing is invented there. "
+        "- `valid` is 0 where a device has no measurement near enough; no value is made up there. "
         "`state`: 2 tracked, 1 inferred, 0 missing.");
     return {};
   }
@@ -164,8 +164,8 @@ class Card {
         "dataset.toml                                people, classes, actions, terms\n"
         "sub-ID/sub-ID_task-ACTION_run-NN_take.h5    a take (HDF5)\n"
         "sub-ID/..._take.json                        its summary and SHA-256\n"
-        "sub-ID/..._recording.toml                   how it was made of raw files\n"
-        "sourcedata/sub-ID/...                       raw files, where they came along\n"
+        "sub-ID/..._recording.toml                   how it was made from raw files\n"
+        "sourcedata/sub-ID/...                       raw files, if they were copied\n"
         "splits/                                     parts for training and test\n"
         "```\n"
         "`kinalign dataset verify` compares every byte with its SHA-256.\n";
@@ -220,7 +220,7 @@ class Card {
     if (names.empty()) return;
     title("Splits");
     for (const std::string& name : names) line("- `splits/" + name + "`");
-    line("\n`kinalign dataset split FOLDER --check FILE` says whether one still holds.");
+    line("\n`kinalign dataset split FOLDER --check FILE` checks whether a split still fits.");
   }
 
   void put_terms() {
@@ -235,7 +235,7 @@ class Card {
     for (const auto& [consent, people] : consents) {
       line(fmt::format("- Consent of {}: {}", fmt::join(people, ", "), or_not_said(consent)));
     }
-    line("- People have pseudonyms. The list of names lies elsewhere.");
+    line("- People have pseudonyms. The list of names is kept elsewhere.");
     line("\nWritten by " + plain(software_) + ".");
   }
 

@@ -102,7 +102,7 @@ Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
     if (!name || hash == hashes.end() || !page_of(take, hash->second).empty()) continue;
     const std::string page = path_of_page(take);
     if (is_there(page) && !is_own_page(files_, page, "name=\"generator\" content=\"kinalign")) {
-      return Failure(Error{page, 0, "a page that kinalign wrote, or none", "another file"});
+      return Failure(Error{page, 0, "a page that kinalign wrote, or no file", "another file"});
     }
     jobs.push_back({*name, folder_ + "/" + path_of(*name, TakeFile::take), page,
                     inputs_folder(files_, folder_, index.catalogue(), *name), hash->second});

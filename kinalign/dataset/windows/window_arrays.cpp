@@ -28,8 +28,8 @@ enum Fixed : std::size_t {
 /// agree.
 std::string difference(const TakeGroup& group, const TakeGroup& other) {
   if (group.kind.index() != other.kind.index())
-    return fmt::format("{} of another kind", group.name);
-  if (group.space != other.space) return fmt::format("{} in another space", group.name);
+    return fmt::format("another kind of {}", group.name);
+  if (group.space != other.space) return fmt::format("another space of {}", group.name);
   if (names_of(group) != names_of(other)) return fmt::format("other names in {}", group.name);
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
     const auto& parents = std::get<ClipGroup>(other.kind).skeleton.parents;
@@ -171,10 +171,11 @@ Result<std::vector<std::size_t>> WindowStreams::find_in(const TakeHeader& header
     const auto found = std::find_if(header.groups.begin(), header.groups.end(),
                                     [&](const TakeGroup& g) { return g.name == wanted.name; });
     if (found == header.groups.end()) {
-      return Failure(Error{"", 0, "a stream '" + shown(wanted.name) + "'", "none of that name"});
+      return Failure(Error{"", 0, "a stream '" + shown(wanted.name) + "'", "no such stream"});
     }
     const std::string differs = difference(*found, wanted);
-    if (!differs.empty()) return Failure(Error{"", 0, "the first take's streams", shown(differs)});
+    if (!differs.empty())
+      return Failure(Error{"", 0, "the same streams as in the first take", shown(differs)});
     out.push_back(static_cast<std::size_t>(found - header.groups.begin()));
   }
   return out;

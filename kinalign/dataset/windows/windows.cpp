@@ -47,7 +47,7 @@ Result<std::vector<std::string>> chosen_streams(const WindowSource& source,
     if (everywhere) out.push_back(stream.name);
   }
   if (!out.empty()) return out;
-  return Failure(Error{"", 0, "a stream that all takes have, or --streams", "none"});
+  return Failure(Error{"", 0, "a stream that all takes have, or --stream", "no such stream"});
 }
 
 /// Without --rate all takes must have the same rate, within 0.5 %.
@@ -59,7 +59,7 @@ Result<void> check_rates(const WindowSource& source, const WindowOptions& option
     constexpr double tolerance = 0.005;
     if (std::abs(other - rate) <= tolerance * rate) continue;
     return Failure(
-        Error{"", 0, "takes of one rate, or --rate HZ",
+        Error{"", 0, "takes with the same rate, or --rate HZ",
               fmt::format("{:g} Hz in {} and {:g} Hz in {}", rate,
                           to_string(source.takes.front().name), other, to_string(take.name))});
   }
@@ -207,14 +207,14 @@ Result<void> Job::find(const std::vector<std::string>& names) {
     WindowedTake found = KA_TRY(windowed(take, reader));
     made.windows[of.part] += found.places.size();
     if (found.places.empty()) {
-      made.takes_left_out.push_back({of.name, "has no window: too short, or too little is valid"});
+      made.takes_left_out.push_back({of.name, "has no window: too short, or too few valid cells"});
     } else {
       takes_.push_back(std::move(found));
     }
     KA_TRY(done_with(take));
   }
   if (!takes_.empty()) return {};
-  return Failure(Error{source_.folder, 0, "a window in one of the takes at least", reasons()});
+  return Failure(Error{source_.folder, 0, "at least one window", reasons()});
 }
 
 /// The second pass: writes the windows.

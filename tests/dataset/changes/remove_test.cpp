@@ -98,7 +98,7 @@ TEST_CASE("raw files that another take is made of are not removed") {
   REQUIRE(!done);
   CHECK(to_string(done.error()) ==
         other +
-            ": expected no raw files of sub-01_task-S1A01_run-01, which would go, found "
+            ": expected no raw files of sub-01_task-S1A01_run-01, which would be removed, found "
             "sourcedata/sub-01/sub-01_task-S1A01_run-01/");
   CHECK(set.contents() == before);
 }

@@ -109,11 +109,12 @@ TEST_CASE(
 TEST_CASE("a rename onto what is there changes nothing") {
   ChangedSet set;
   CHECK(fault(set, "sub-01", "sub-02") ==
-        "sub-02: expected an id that the data set does not have, found one that it has");
+        "sub-02: expected an id that the data set does not have, found an id that it has");
   CHECK(fault(set, "S1A01", "S1A02") ==
-        "task-S1A02: expected an id that the data set does not have, found one that it has");
+        "task-S1A02: expected an id that the data set does not have, found an id that it has");
   CHECK(fault(set, "sub-01_task-S1A01_run-01", "sub-02_task-S1A01_run-01") ==
-        "SET/sub-02/sub-02_task-S1A01_run-01_take.h5: expected no take of the new name, found one");
+        "SET/sub-02/sub-02_task-S1A01_run-01_take.h5: expected no take of the new name, found an "
+        "existing take");
   CHECK(fault(set, "sub-01_task-S1A01_run-01", "sub-07_task-S1A01_run-01") ==
         "sub-07_task-S1A01_run-01: expected a subject of dataset.toml, found 07");
   CHECK(fault(set, "sub-01", "sub-../x") ==

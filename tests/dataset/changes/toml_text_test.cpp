@@ -32,7 +32,8 @@ TEST_CASE("an id that stands in another form, or in a text of several lines, is 
     REQUIRE(!edited);
     CHECK(to_string(edited.error()) ==
           "dataset.toml: expected [subject.03] as the head of a table, so that it can become "
-          "[subject.13], found another form; change the id there by hand, then run this again");
+          "[subject.13], found another form; change the id there by hand, then run the command "
+          "again");
   }
 }
 

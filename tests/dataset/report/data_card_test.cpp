@@ -35,8 +35,8 @@ TEST_CASE("the card says what the data set is, how it is read and on what terms"
         "Verdicts: usable (1).", "| 01 | f | 165 | 600 | 0 | 0 |", "| S1 | walking | 600 | 0 | 0 |",
         "| mocap | mocap | 59 | 1 |", "60.0 Hz (1)",
         "h5py.File(\"sub-01/sub-01_task-A_run-01_take.h5\")", "- kinect: model: v2",
-        "- `splits/people.json`", "- Licence: not said in dataset.toml",
-        "- Consent of 01: released", "- Consent of 02: not said in dataset.toml",
+        "- `splits/people.json`", "- Licence: not stated in dataset.toml",
+        "- Consent of 01: released", "- Consent of 02: not stated in dataset.toml",
         "Written by kinalign 0.1.0."}) {
     CAPTURE(std::string(text));
     CHECK(has(*card, text));

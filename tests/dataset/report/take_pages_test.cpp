@@ -87,7 +87,7 @@ TEST_CASE("pages of takes that are gone go, and no file of another kind is repla
   set.folder.write("report/sub-01_task-A_run-02.html", "<p>notes of my own</p>");
   done = set.make();
   REQUIRE(!done);
-  CHECK(done.error().expected == "a page that kinalign wrote, or none");
+  CHECK(done.error().expected == "a page that kinalign wrote, or no file");
   CHECK(set.folder.read("report/sub-01_task-A_run-02.html") == "<p>notes of my own</p>");
 }
 
