@@ -117,7 +117,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return run_guarded(limits, blame, [&] { return contents(file.path()); });
   };
   const auto first = read();
-  if (!first && first.error().found == "one that ended the program that read it") std::abort();
+  if (!first && first.error().found == "a file that ended the program that read it") std::abort();
   if (!first) return 0;
   const auto second = read();
   // The fuzzer's own timer sends a signal, which counts as Ctrl-C.

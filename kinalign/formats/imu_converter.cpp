@@ -55,16 +55,15 @@ void ImuConverter::report(const std::string& file, Findings& findings) const {
     findings.push_back({Severity::note,
                         Error{file, 0, "quaternions of length 1",
                               std::to_string(zero_) + " of " + std::to_string(samples_) +
-                                  " samples with a zero one"},
+                                  " samples with length 0"},
                         "these samples are invalid", ""});
   }
   if (not_unit_ > 0) {
     findings.push_back({Severity::warning,
                         Error{file, 0, "quaternions of length 1",
                               std::to_string(not_unit_) + " of " + std::to_string(samples_) +
-                                  " off by more than 2 %"},
-                        "they were brought to length 1",
-                        "check that the layout names the right columns"});
+                                  " samples that differ by more than 2 %"},
+                        "these quaternions were normalised", "check the columns in the layout"});
   }
 }
 

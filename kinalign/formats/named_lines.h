@@ -14,8 +14,8 @@ namespace kinalign {
 /// Finding: the file ends in the middle of its last line, and that line could be read.
 inline Finding unended_finding(const std::string& file, std::int64_t line) {
   return {Severity::note,
-          Error{file, line, "a line end behind the last value", "the end of the file"},
-          "if the file was cut there, the last value is only the beginning of the true one", ""};
+          Error{file, line, "a line end after the last value", "the end of the file"},
+          "the file was probably truncated, and the last value may be incomplete", ""};
 }
 
 class NamedLines {

@@ -132,11 +132,11 @@ void RowStamps::restamp(std::vector<Time>& held) const {
 Finding stuck_finding(std::string_view file, const RowStamps& stamps) {
   const bool rate = stamps.rate_hz() > 0.0;
   return {Severity::warning,
-          Error{std::string(file), 0, "stamps that move",
+          Error{std::string(file), 0, "stamps that change",
                 "the same stamp in the first " +
                     std::to_string(std::min(stamps.rows(), RowStamps::patience)) + " rows"},
-          rate ? "the rows were stamped by rate_hz" : "the rows can't be placed in time",
-          rate ? "" : "say rate_hz, the rate at which the device wrote"};
+          rate ? "the rows were stamped by rate_hz" : "the rows have no known time",
+          rate ? "" : "set rate_hz to the rate of the device"};
 }
 
 }  // namespace kinalign

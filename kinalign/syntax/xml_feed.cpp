@@ -67,7 +67,7 @@ struct XmlFeed::State {
     if (self.error) return;
     self.text.clear();
     if (++self.depth > deepest) {
-      self.stop({"", 0, "elements nested 64 deep at most", "deeper ones"});
+      self.stop({"", 0, "elements nested at most 64 deep", "deeper elements"});
       return;
     }
     self.check(self.handler->begin(without_prefix(name), XmlAttributes(attributes)));
@@ -83,7 +83,7 @@ struct XmlFeed::State {
     State& self = of(data);
     if (self.error) return;
     self.text.append(text, static_cast<std::size_t>(size));
-    if (self.text.size() > longest) self.stop({"", 0, "texts of 1 MiB at most", "a longer one"});
+    if (self.text.size() > longest) self.stop({"", 0, "texts of at most 1 MiB", "a longer text"});
   }
   // NOLINTNEXTLINE(readability-function-size): Expat's signature
   static void entity(void* data, const char* name, int, const char*, int, const char*, const char*,
@@ -132,7 +132,8 @@ Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handl
   }
   // Expat keeps a tag or a comment until it is complete, so its length must be limited here.
   if (!last && s.fed - std::min(s.last_event, s.fed) > longest) {
-    return Failure(Error{s.file, s.line(), "tags and comments of 1 MiB at most", "a longer one"});
+    return Failure(
+        Error{s.file, s.line(), "tags and comments of at most 1 MiB", "a longer tag or comment"});
   }
   return {};
 }

@@ -45,9 +45,9 @@ TEST_CASE("a file is mirrored by most of the rows in which both shoulders were s
   CHECK(text_of(said[0]) ==
         "k.csv: expected the left shoulder at smaller x than the right one, found it at larger x "
         "in 2 of 3 rows");
-  CHECK(said[0].meaning ==
-        "the file was mirrored, or the person stood with the back to the sensor");
-  CHECK(said[0].repair == "if it was mirrored, use a layout with x = \"-x\" and mirrored = true");
+  CHECK(said[0].meaning == "the file is mirrored, or the person stood with the back to the sensor");
+  CHECK(said[0].repair ==
+        "if the file is mirrored, use a layout with x = \"-x\" and mirrored = true");
 }
 
 TEST_CASE("a skeleton without both shoulders is not watched") {

@@ -173,12 +173,12 @@ TEST_CASE("a stuck column is said with what became of the rows") {
   const Finding lost = said(0, 40);
   CHECK(lost.severity == Severity::warning);
   CHECK(text_of(lost) ==
-        "k.csv: expected stamps that move, found the same stamp in the first 32 rows");
-  CHECK(lost.meaning == "the rows can't be placed in time");
-  CHECK(lost.repair == "say rate_hz, the rate at which the device wrote");
+        "k.csv: expected stamps that change, found the same stamp in the first 32 rows");
+  CHECK(lost.meaning == "the rows have no known time");
+  CHECK(lost.repair == "set rate_hz to the rate of the device");
   const Finding mended = said(30, 5);
   CHECK(text_of(mended) ==
-        "k.csv: expected stamps that move, found the same stamp in the first 5 rows");
+        "k.csv: expected stamps that change, found the same stamp in the first 5 rows");
   CHECK(mended.meaning == "the rows were stamped by rate_hz");
   CHECK(mended.repair == "");
 }

@@ -78,13 +78,13 @@ TEST_CASE("hostile documents are refused before they take memory") {
   CHECK(told("<!DOCTYPE a [\n<!ENTITY x 'xxxxxxxxxx'>]><a>&x;</a>").error ==
         "x.mvnx:2: expected a document without entities of its own, found x");
   CHECK(told(times(65, "<a>")).error ==
-        "x.mvnx:1: expected elements nested 64 deep at most, found deeper ones");
+        "x.mvnx:1: expected elements nested at most 64 deep, found deeper elements");
   CHECK(told(times(64, "<a>") + times(64, "</a>")).error == "");
   const std::string long_text(std::size_t{2} << 20, 'x');
   CHECK(told("<a>" + long_text + "</a>", 65'536).error ==
-        "x.mvnx:1: expected texts of 1 MiB at most, found a longer one");
+        "x.mvnx:1: expected texts of at most 1 MiB, found a longer text");
   CHECK(told("<a b='" + long_text + "'/>", 65'536).error ==
-        "x.mvnx:1: expected tags and comments of 1 MiB at most, found a longer one");
+        "x.mvnx:1: expected tags and comments of at most 1 MiB, found a longer tag or comment");
 }
 
 TEST_CASE("a long document of short elements is read to its end") {

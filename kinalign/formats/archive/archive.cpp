@@ -171,9 +171,9 @@ class ArchiveReader {
     const auto type = archive_entry_filetype(entry);
     const bool is_link = type == AE_IFLNK || archive_entry_hardlink(entry) != nullptr ||
                          archive_entry_symlink(entry) != nullptr;
-    if (is_link) return refuse("files and folders alone", "a link, " + shown(name));
+    if (is_link) return refuse("only files and folders", "a link, " + shown(name));
     if (type != AE_IFREG && type != AE_IFDIR) {
-      return refuse("files and folders alone", "a device, " + shown(name));
+      return refuse("only files and folders", "a device, " + shown(name));
     }
     if (archive_entry_is_encrypted(entry) > 0) {
       return refuse("files without a password", shown(name));
@@ -192,11 +192,11 @@ class ArchiveReader {
     bytes_ += static_cast<std::uint64_t>(got);
     if (bytes_ > limits_.bytes) {
       return refuse(fmt::format("at most {} bytes in all files", limits_.bytes),
-                    "more, up to " + shown(name));
+                    "more files, up to " + shown(name));
     }
     if (bytes_ > not_judged && (bytes_ - not_judged) / limits_.ratio > feed_.bytes.size) {
       return refuse(fmt::format("files at most {} times the archive's size", limits_.ratio),
-                    "more, in " + shown(name));
+                    "larger files, in " + shown(name));
     }
     return std::string_view(piece_.data(), static_cast<std::size_t>(got));
   }

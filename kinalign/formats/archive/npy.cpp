@@ -146,7 +146,7 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
     return Failure(Error{std::string(name), 0, std::move(expected), std::move(found)});
   };
   if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
-    return refuse("an array of numpy, NPY", "another beginning");
+    return refuse("a NumPy array (NPY)", "other bytes at the beginning");
   }
   const auto version = static_cast<unsigned char>(bytes[6]);
   if (version < 1 || version > 3) {
@@ -158,7 +158,7 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
     length = length << 8 | static_cast<unsigned char>(bytes[8 + i]);
   }
   if (bytes.size() < at || length > longest_header || bytes.size() - at < length) {
-    return refuse("a whole NPY header", "one of " + std::to_string(length) + " bytes");
+    return refuse("a complete NPY header", "a header of " + std::to_string(length) + " bytes");
   }
   NpyHeader out;
   const std::string_view text = bytes.substr(at, length);
@@ -169,7 +169,7 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
   std::uint64_t all = std::max<std::size_t>(out.value_bytes, 1);
   for (const std::uint64_t one : out.shape) {
     if (one > 0 && all > most_bytes / one)
-      return refuse("an array below 2^40 bytes", "a larger one");
+      return refuse("an array below 2^40 bytes", "a larger array");
     all *= std::max<std::uint64_t>(one, 1);
   }
   return out;

@@ -46,7 +46,7 @@ Result<Npz> Npz::read(const ArchiveBytes& bytes, const ArchiveLimits& limits) {
           file += piece;
         }
         if (!name.ends_with(".npy")) {
-          return Failure(Error{bytes.name, 0, "arrays alone, NAME.npy", shown(name)});
+          return Failure(Error{bytes.name, 0, "only arrays, NAME.npy", shown(name)});
         }
         out.arrays_.emplace(name.substr(0, name.size() - 4),
                             KA_TRY(read_npy(std::move(file), bytes.name + ": " + shown(name))));
@@ -61,7 +61,7 @@ Result<const NpyArray*> Npz::find(const std::string& name, std::string_view kind
   if (at == arrays_.end()) return Failure(Error{name_, 0, "an array " + name, "none"});
   const NpyHeader& header = at->second.header;
   if (kinds.find(header.kind) == kinds.npos) {
-    return Failure(Error{name_, 0, fmt::format("values of another kind in {}", name),
+    return Failure(Error{name_, 0, fmt::format("values of another type in {}", name),
                          fmt::format("numpy's '{}'", header.kind)});
   }
   if (!fits(header.shape, shape)) {

@@ -148,13 +148,13 @@ void check_file_name(const std::string& path, const Place& place, std::string_vi
   }
   check_entities(path, *name, check);
   if (name->label("sub") != place.subject) {
-    check.error(path, "sub-" + place.subject + ", as the folder is called",
+    check.error(path, "sub-" + place.subject + ", as in the name of the folder",
                 "sub-" + shown(name->label("sub")));
   }
   if (name->label("ses") != place.session) {
     check.error(path,
-                place.session.empty() ? "no ses, as there is no folder of one"
-                                      : "ses-" + place.session + ", as the folder is called",
+                place.session.empty() ? "no ses, because there is no session folder"
+                                      : "ses-" + place.session + ", as in the name of the folder",
                 "ses-" + shown(name->label("ses")));
   }
   if (type != "motion") return;
@@ -243,7 +243,7 @@ void check_description(BidsCheck& check) {
     check.error(path, "DatasetType raw or derivative", shown(type));
   }
   if (type == "derivative" && !json->contains("GeneratedBy")) {
-    check.error(path, "GeneratedBy, as a derivative has it", "none");
+    check.error(path, "GeneratedBy, which a derivative needs", "none");
   }
   if (const auto authors = json->find("Authors"); authors != json->end() && !authors->is_array()) {
     check.error(path, "an array of Authors", "another value");
@@ -281,7 +281,8 @@ void check_participant_rows(const std::string& path, const TsvTable& table, Bids
       check.error(path, "each participant once", shown(row.front()) + " again", line);
     }
     if (!subjects.contains(row.front())) {
-      check.warning(path, "a folder of each participant", "none of " + shown(row.front()), line);
+      check.warning(path, "a folder of each participant", "no folder of " + shown(row.front()),
+                    line);
     }
   }
   for (const std::string& subject : subjects) {
@@ -325,7 +326,7 @@ void check_scans(const std::string& path, BidsCheck& check) {
       continue;
     }
     if (!check.listing.has(above + row[*file]))
-      check.error(path, "a file that is there", shown(row[*file]), line);
+      check.error(path, "an existing file", shown(row[*file]), line);
     listed.insert(above + row[*file]);
     if (time && row[*time] != "n/a" && !is_acq_time(row[*time])) {
       check.error(path, "acq_time YYYY-MM-DDThh:mm:ss[.000000][Z]", shown(row[*time]), line);
@@ -334,7 +335,7 @@ void check_scans(const std::string& path, BidsCheck& check) {
   for (const std::string& one : check.listing.paths) {
     if (one.starts_with(above + "motion/") && one.ends_with("_motion.tsv") &&
         !listed.contains(one)) {
-      check.warning(path, "a row of each motion.tsv", "none of " + std::string(file_name(one)));
+      check.warning(path, "a row of each motion.tsv", "no row of " + std::string(file_name(one)));
     }
   }
 }
@@ -347,7 +348,7 @@ void check_orphans(const std::string& path, BidsCheck& check) {
       continue;
     const std::string data = path.substr(0, path.size() - ending.size()) + "motion.tsv";
     if (!check.listing.has(data)) {
-      check.error(path, "motion.tsv beside it", "none");
+      check.error(path, "the motion.tsv that belongs to this file", "none");
     }
   }
 }
@@ -371,7 +372,7 @@ std::optional<std::string> BidsCheck::text_of(const std::string& path) {
   const auto read = listing.read(path, [&](std::string_view piece) -> Result<void> {
     text += piece;
     if (text.size() <= largest_text) return {};
-    return Failure(Error{path, 0, "a file of at most 16 MiB", "a larger one"});
+    return Failure(Error{path, 0, "a file of at most 16 MiB", "a larger file"});
   });
   if (read) return text;
   Error what = read.error();

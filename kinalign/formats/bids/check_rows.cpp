@@ -82,16 +82,16 @@ class RowsCheck {
     const auto tell = [&](const Repeated& fault, const std::string& expected) {
       if (fault.times > 0) check.error(path, expected, fault.found(), fault.line);
     };
-    tell(names_, "rows of numbers: motion.tsv has no line of names");
+    tell(names_, "only rows of numbers, without a line of column names");
     tell(blank_, "no empty lines");
-    tell(lengths_, fmt::format("rows of {} cells, as the first has", width_));
+    tell(lengths_, fmt::format("rows of {} cells, like the first row", width_));
     if (!channels_.empty() && width_ > 0 && width_ != channels_.size()) {
-      check.error(path, fmt::format("{} columns, as channels.tsv has rows", channels_.size()),
+      check.error(path, fmt::format("{} columns, one per row of channels.tsv", channels_.size()),
                   std::to_string(width_));
     }
     tell(nan_, "n/a for what is missing");
     tell(no_number_, "a number or n/a");
-    tell(latencies_, "latencies that rise");
+    tell(latencies_, "rising latencies");
     if (quaternion_.times > 0) {
       check.warning(path, "quaternions of length 1", quaternion_.found(), quaternion_.line);
     }

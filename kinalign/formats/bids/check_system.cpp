@@ -51,7 +51,7 @@ void check_columns(const std::string& path, const TsvTable& table, BidsCheck& ch
   }
   const std::set<std::string> names(table.columns.begin(), table.columns.end());
   if (names.size() != table.columns.size())
-    check.error(path, "columns of different names", "one twice", 1);
+    check.error(path, "columns with different names", "a name twice", 1);
 }
 
 /// Checks one row of channels.tsv: type, component and unit.
@@ -133,7 +133,8 @@ std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& chec
     }
     check_channel(path, line, (*channels)[i], check);
     if (!names.insert((*channels)[i].name).second) {
-      check.error(path, "channels of different names", shown((*channels)[i].name) + " again", line);
+      check.error(path, "channels with different names", shown((*channels)[i].name) + " again",
+                  line);
     }
   }
   check_status(path, *table, check);

@@ -83,7 +83,7 @@ Result<Axes> space_of(const BidsSystem& system, const std::string& frame,
                       const StreamOptions& options) {
   const auto axes = axes_of_frame(system, frame);
   if (!axes && options.up.empty()) {
-    return refuse("SpatialAxes of three letters, one of them S or I, or up",
+    return refuse("SpatialAxes of three letters, one of which is S or I; otherwise set up",
                   shown(system.letters.at(frame)));
   }
   return axes_of(axes.value_or(y_up), options);
@@ -127,14 +127,14 @@ class BidsRows {
       line.remove_prefix(tab + 1);
     }
     if (c + 1 == values.size()) return true;
-    return refuse(fmt::format("{} cells, as channels.tsv has rows", values.size()),
+    return refuse(fmt::format("{} cells, one per row of channels.tsv", values.size()),
                   std::to_string(c + 1));
   }
 
   Result<Time> next_stamp() {
     std::int64_t ns = 0;
     if (latency_ && __builtin_add_overflow(onset_ns_, latency_ns_, &ns)) {
-      return refuse("a stamp inside +-4e18 ns", "a later one");
+      return refuse("a stamp inside +-4e18 ns", "a stamp outside");
     }
     return stamps.next(ns);
   }
@@ -162,7 +162,7 @@ class BidsRows {
       return {};
     }
     if (parse_number(cell, values[c]) && std::abs(values[c]) < largest_number) return {};
-    return refuse("a number or n/a; motion.tsv has no line of names", shown(cell));
+    return refuse("a number or n/a (motion.tsv has no line of column names)", shown(cell));
   }
 
   std::vector<bool> wanted_;
@@ -197,7 +197,7 @@ class BidsReader : public Base {
           {Severity::warning,
            Error{file, 0, "n/a for what is missing",
                  fmt::format("{} cells that are empty or nan", rows_.nan_cells)},
-           "they are missing", "write n/a: validators of BIDS refuse others"});
+           "these values are missing", "write n/a: validators of BIDS refuse other marks"});
     }
     report(file);
     return {};
@@ -386,12 +386,12 @@ Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const Stre
   }
   if (nodes.empty()) return refuse("ORNT channels of a quaternion, ACCEL or GYRO channels", "none");
   if (determinant(axes) != 1) {
-    return refuse("orientations in a right-handed space", "SpatialAxes of a left-handed one");
+    return refuse("orientations in a right-handed space", "left-handed SpatialAxes");
   }
   auto reader = std::make_unique<BidsNodeReader>(system, options, file, std::move(nodes), axes);
   const ImuContent& content = reader->content();
   if (content.orientation || content.acceleration || content.angular_velocity) return reader;
-  return refuse("ORNT, ACCEL or GYRO of every node", "nodes that have none in common");
+  return refuse("ORNT, ACCEL or GYRO of every node", "nodes without a common quantity");
 }
 
 }  // namespace

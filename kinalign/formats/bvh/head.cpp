@@ -321,7 +321,7 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
     if (out.joint_names[j] == written) continue;
     findings.push_back(
         {Severity::warning,
-         Error{std::string(name), 0, "joint names that differ", "'" + shown(written) + "' again"},
+         Error{std::string(name), 0, "different joint names", "'" + shown(written) + "' twice"},
          "read as '" + shown(out.joint_names[j]) + "'", ""});
   }
   for (std::size_t j = 0; j < hierarchy.offsets.size(); ++j) {

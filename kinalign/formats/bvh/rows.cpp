@@ -131,7 +131,7 @@ Result<void> BvhRows::strange_word(const char* at, const char* end, Findings& fi
   }
   findings.push_back({Severity::warning,
                       Error{head_.name, head_.line, "the end of the file", "'" + shown(word) + "'"},
-                      "everything from here on was left out", ""});
+                      "all rows from this line on were left out", ""});
   ended_ = true;
   return {};
 }
@@ -152,7 +152,7 @@ Result<void> BvhValues::finish(Findings& findings) {
       {Severity::warning,
        Error{name_, head_.hierarchy.frames_line, fmt::format("{} frames", head_.hierarchy.frames),
              std::to_string(frames_read())},
-       "the frames that are there were read", ""});
+       "the existing frames were read", ""});
   return {};
 }
 

@@ -78,8 +78,8 @@ std::optional<bool> stands(const BvhHierarchy& hierarchy, const Skeleton& skelet
 Finding lying(std::string_view name, const std::string& expected, const std::string& found,
               char other) {
   return {Severity::warning, Error{std::string(name), 0, expected, found},
-          "the person is read as lying",
-          fmt::format("--up {0} (up = \"{0}\" in a manifest) if the person stood", other)};
+          "the person appears to lie",
+          fmt::format("set --up {0} (up = \"{0}\" in a manifest) if the person stood", other)};
 }
 
 }  // namespace
@@ -97,12 +97,13 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
   const auto standing = stands(hierarchy, skeleton, rows, options);
   const std::string_view axes = "xyz";
   if (rest_lies && !standing.value_or(false)) {
-    findings.push_back(lying(name, fmt::format("a rest pose that stands along {}", axes[up]),
-                             fmt::format("one that lies along {}", axes[other]), axes[other]));
+    findings.push_back(lying(name, fmt::format("a rest pose that is upright along {}", axes[up]),
+                             fmt::format("a pose that is upright along {}", axes[other]),
+                             axes[other]));
   } else if (!rest_lies && !standing.value_or(true)) {
     findings.push_back(lying(
-        name, fmt::format("a first frame that stands along {}, as the rest pose does", axes[up]),
-        fmt::format("one that lies along {}", axes[other]), axes[other]));
+        name, fmt::format("a first frame that is upright along {}, like the rest pose", axes[up]),
+        fmt::format("a pose that is upright along {}", axes[other]), axes[other]));
   }
   if (rest_lies) up = other;
   const double hip = -rest.min()[up];
@@ -113,13 +114,12 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
         {Severity::warning,
          Error{std::string(name), 0, "hips 0.6 to 1.3 m above the lowest joint of the rest pose",
                fmt::format("{:.3g} m", hip)},
-         same ? "no other usual unit fits better: a small or large person, or an odd rest pose"
+         same ? "no other usual unit fits better: the person is small or large, or the rest pose "
+                "is unusual"
               : "all lengths may be in another unit",
-         same ? "--metres-per-unit (metres_per_unit in a manifest) if the file's unit is known to "
-                "be "
-                "another"
-              : fmt::format("--metres-per-unit {0} (metres_per_unit = {0} in a manifest) if the "
-                            "file is in {1}",
+         same ? "set --metres-per-unit (metres_per_unit in a manifest) if the file has another unit"
+              : fmt::format("set --metres-per-unit {0} (metres_per_unit = {0} in a manifest) if "
+                            "the file is in {1}",
                             unit.metres, unit.name)});
   }
   return findings;

@@ -136,7 +136,7 @@ Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
     const std::string_view piece = KA_TRY(file.next());
     if (std::exchange(first, false) && !looks_like_bvh(piece)) {
       return Failure(
-          Error{path, 1, "a BVH or a take, which alone can become a BVH", beginning_of(piece)});
+          Error{path, 1, "a BVH or a take (other files can't become a BVH)", beginning_of(piece)});
     }
     if (piece.empty()) break;
     KA_TRY(values.feed(piece, findings));

@@ -218,14 +218,14 @@ class C3dReader final : public PointReader {
     const std::string unit = one("UNITS");
     const double metres = metres_of(unit);
     if (metres == 0.0 && options_.metres_per_unit <= 0.0) {
-      return refuse("POINT:UNITS mm, cm, m or in, or metres_per_unit", shown(unit));
+      return refuse("POINT:UNITS mm, cm, m or in; otherwise set metres_per_unit", shown(unit));
     }
     const std::string up = one("Y_SCREEN");
     const auto axes = axes_with_up(up);
     if (!axes && options_.up.empty()) {
       findings.push_back({Severity::warning,
                           Error{file_, 0, "POINT:Y_SCREEN +X, +Y or +Z", shown(up)},
-                          "z was taken for the axis that points up", "say up = \"y\" or \"z\""});
+                          "z is used as the upward axis", "set up = \"y\" or \"z\""});
     }
     units_ = point_units({axes.value_or(z_up), metres}, options_);
     return {};
@@ -244,7 +244,7 @@ class C3dReader final : public PointReader {
           {Severity::warning,
            Error{file_, 0, fmt::format("POINT:RATE {:g} as in the header", read.rate_hz),
                  fmt::format("{:g}", rate)},
-           "POINT:RATE was believed", "find out which is true"});
+           "POINT:RATE is used", "find out which rate is correct"});
     }
     stamps_ = RowStamps(false, used, options_.start_ns);
     counted = true;
@@ -258,7 +258,7 @@ class C3dReader final : public PointReader {
     findings.push_back({Severity::warning,
                         Error{file_, 0, fmt::format("{} frames as in the header", read.frames()),
                               fmt::format("{} in the parameters", *stated_)},
-                        "the parameters were believed", ""});
+                        "the number in the parameters is used", ""});
   }
 
   /// Takes the points' names. Absent names become numbers, repeated names get #2, #3, ...
@@ -268,7 +268,7 @@ class C3dReader final : public PointReader {
       findings.push_back({Severity::warning,
                           Error{file_, 0, fmt::format("{} names in POINT:LABELS", points_),
                                 std::to_string(names.size())},
-                          "the others are called by their number", ""});
+                          "the other points are named by their numbers", ""});
     }
     names.resize(points_);
     std::map<std::string, std::size_t> seen;
@@ -281,10 +281,10 @@ class C3dReader final : public PointReader {
       names[j] += "#" + std::to_string(times);
     }
     if (repeated > 0) {
-      findings.push_back({Severity::warning,
-                          Error{file_, 0, "names in POINT:LABELS that differ",
-                                fmt::format("{} repeated", repeated)},
-                          "repeated names are name#2, name#3, ...", ""});
+      findings.push_back(
+          {Severity::warning,
+           Error{file_, 0, "different names in POINT:LABELS", fmt::format("{} repeated", repeated)},
+           "repeated names are name#2, name#3, ...", ""});
     }
     header_ = PointHeader{std::move(names)};
   }
@@ -305,7 +305,7 @@ class C3dReader final : public PointReader {
     }
     findings.push_back(
         {Severity::note,
-         Error{file_, 0, "points alone", fmt::format("{} analog channels{}", channels, listed)},
+         Error{file_, 0, "only points", fmt::format("{} analog channels{}", channels, listed)},
          "the analog channels were not read", ""});
   }
 
@@ -376,19 +376,19 @@ class C3dReader final : public PointReader {
       findings.push_back(
           {Severity::warning,
            Error{file_, 0, fmt::format("{} frames", *stated_), std::to_string(stamps_.rows())},
-           "the frames that are there were read", ""});
+           "the existing frames were read", ""});
     }
     if (behind_ > c3d_block) {
       findings.push_back(
           {Severity::warning,
-           Error{file_, 0, fmt::format("the end of the file behind {} frames", *stated_),
+           Error{file_, 0, fmt::format("the end of the file after {} frames", *stated_),
                  fmt::format("{} more bytes", behind_)},
-           "they were not read", "the file may have more frames than it states"});
+           "these bytes were not read", "the file may have more frames than it states"});
     }
     if (no_numbers_ > 0) {
       findings.push_back({Severity::warning,
-                          Error{file_, 0, "coordinates that are numbers below 1e15",
-                                fmt::format("{} points with others", no_numbers_)},
+                          Error{file_, 0, "coordinates below 1e15",
+                                fmt::format("{} points with other values", no_numbers_)},
                           "these points are missing", ""});
     }
   }

@@ -190,7 +190,7 @@ Result<C3dWriter> C3dWriter::begin(const C3dPoints& points, FileSink sink) {
   const std::size_t blocks = parameters_of(points, 0).size() / c3d_block;
   if (blocks > most_blocks) {
     return refuse("names that fit into 130 KB of C3D parameters",
-                  fmt::format("{} names that don't", points.names.size()));
+                  fmt::format("{} names that do not fit", points.names.size()));
   }
   const auto data_block = static_cast<std::uint16_t>(2 + blocks);
   C3dWriter out(points, std::move(sink));
@@ -205,7 +205,7 @@ Result<void> C3dWriter::append(const PointFrames& frames) {
     const auto due = Duration{stamp_at_rate(written_, rate_hz_)};
     const double off = 1e-9 * static_cast<double>((frames.stamps[t] - first_ - due).count());
     if (!(std::abs(off) < 0.5 / rate_hz_)) {
-      return refuse(fmt::format("stamps at an even {:g} Hz, as a C3D has them", rate_hz_),
+      return refuse(fmt::format("evenly spaced stamps at {:g} Hz, as required by C3D", rate_hz_),
                     fmt::format("frame {} off by {:.3g} s", written_ + 1, off));
     }
     for (std::size_t i = t * points_; i < (t + 1) * points_; ++i) {

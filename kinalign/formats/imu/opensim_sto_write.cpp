@@ -22,8 +22,9 @@ OpensimStoWriter::OpensimStoWriter(std::size_t nodes, Time zero, TextOut& out)
     : out_(&out), nodes_(nodes), zero_(zero), z_up_from_ours_(rotation_of(z_up).conjugate()) {}
 
 Result<OpensimStoWriter> OpensimStoWriter::begin(const OpensimStoHead& head, TextOut& out) {
-  if (!head.content.orientation) return refuse("orientations for a .sto", "nodes without any");
-  if (head.names.empty()) return refuse("one node or more for a .sto", "none");
+  if (!head.content.orientation)
+    return refuse("orientations for a .sto", "nodes without orientations");
+  if (head.names.empty()) return refuse("at least one node for a .sto", "none");
   for (const std::string& name : head.names) {
     if (!fits_a_cell(name)) return refuse("names of nodes for a .sto without tabs", shown(name));
   }

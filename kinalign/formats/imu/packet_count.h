@@ -21,7 +21,7 @@ class PacketCount {
   Result<std::int64_t> next(double cell) {
     constexpr double most = 4294967295.0;
     if (!(cell >= 0.0) || cell > most || cell != std::floor(cell)) {
-      return Failure(Error{"", 0, "a whole PacketCounter", std::to_string(cell)});
+      return Failure(Error{"", 0, "a whole number as PacketCounter", std::to_string(cell)});
     }
     const auto counter = static_cast<std::int64_t>(cell);
     if (leapt_ && follows(counter, before_) && !follows(counter, now_)) now_ = before_;

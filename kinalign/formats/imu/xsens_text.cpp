@@ -155,15 +155,15 @@ class XsensReader final : public ImuReader {
       findings.push_back(
           {Severity::note,
            Error{lines_.file(), 0, "every packet", std::to_string(packets_.lost()) + " lost"},
-           "they are gaps", ""});
+           "the missing packets are gaps", ""});
     }
     if (packets_.guessed() > 0) {
-      findings.push_back({Severity::warning,
-                          Error{lines_.file(), 0, "a PacketCounter that goes on",
-                                "one that fell, as if " + std::to_string(packets_.guessed()) +
-                                    " packets were lost"},
-                          "the stamps behind it are right only if they were",
-                          "cut the file there, if the device began anew"});
+      findings.push_back(
+          {Severity::warning,
+           Error{lines_.file(), 0, "a rising PacketCounter",
+                 "a lower one, as if " + std::to_string(packets_.guessed()) + " packets were lost"},
+           "the later stamps are correct only if these packets were lost",
+           "if the device restarted, cut the file there"});
     }
     if (late_.rows() > 0) {
       findings.push_back(
@@ -172,7 +172,7 @@ class XsensReader final : public ImuReader {
                  "every quantity within the first " + std::to_string(patience) + " rows",
                  std::to_string(late_.rows()) +
                      " rows with values that begin later: " + late_.names()},
-           "what begins later was left out", "cut the rows before it from the file"});
+           "quantities that begin later were left out", "remove the earlier rows from the file"});
     }
     samples_.report(lines_.file(), findings);
     return {};
@@ -204,7 +204,7 @@ class XsensReader final : public ImuReader {
     if (!delimiter) return Failure(Error{"", 0, "names of columns", shown(line)});
     columns_ = find_xsens_columns(split_cells(line, *delimiter));
     if (!columns_.counter.there()) {
-      return Failure(Error{"", 0, "a column PacketCounter", "none of that name"});
+      return Failure(Error{"", 0, "a column PacketCounter", "no such column"});
     }
     if (rate_hz_ <= 0.0) {
       return Failure(Error{"", 0, "a line // Update Rate: ... above, or rate_hz", "none"});
@@ -218,7 +218,7 @@ class XsensReader final : public ImuReader {
   Result<void> read_row(std::string_view line, ImuSamples& out) {
     KA_TRY(row_.read(line));
     const bool packet = columns_.counter.whole(row_);
-    if (!packet) return Failure(Error{"", 0, "a whole PacketCounter", "an empty cell"});
+    if (!packet) return Failure(Error{"", 0, "a whole number as PacketCounter", "an empty cell"});
     const ImuContent here = content_of_row();
     // No quantity has been measured yet.
     if (!header_ && waiting_.empty() && !is_any(here)) return {};

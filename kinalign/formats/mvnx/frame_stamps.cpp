@@ -60,21 +60,22 @@ void MvnxStamps::report(const std::string& file, Findings& findings) const {
   if (not_rising_ > 0) {
     findings.push_back(
         {Severity::warning,
-         Error{file, 0, "frames whose index rises", fmt::format("{} others", not_rising_)},
-         "they were left out", ""});
+         Error{file, 0, "frames with a rising index", fmt::format("{} other frames", not_rising_)},
+         "these frames were left out", ""});
   }
   if (missing_ > 0) {
-    findings.push_back({Severity::note,
-                        Error{file, 0, "each frame", fmt::format("{} missing indices", missing_)},
-                        "they are a gap", ""});
+    findings.push_back(
+        {Severity::note,
+         Error{file, 0, "every frame index", fmt::format("{} missing indices", missing_)},
+         "the missing frames are a gap", ""});
   }
   // Milliseconds are rounded, by up to half a millisecond at each end.
   if (largest_off_s_ > 0.001 + 1.5 / std::max(rate_hz_, 1e-3)) {
     findings.push_back({Severity::warning,
                         Error{file, 0, fmt::format("times of frameRate {:g}", rate_hz_),
-                              fmt::format("times off by up to {:.3g} s", largest_off_s_)},
-                        "frames were stamped by their index and the rate",
-                        "find out which is true: gaps and splines go by it"});
+                              fmt::format("times that differ by up to {:.3g} s", largest_off_s_)},
+                        "the stamps are computed from index and rate",
+                        "find out which is correct: gaps and splines depend on it"});
   }
 }
 

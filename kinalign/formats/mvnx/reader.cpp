@@ -110,13 +110,13 @@ class MvnxReader final : public ClipReader {
     if (!header_) {
       return Failure(
           Error{file, 0, "a frame of type normal with all segments",
-                fmt::format("the end of the file behind {} incomplete ones", incomplete_)});
+                fmt::format("the end of the file after {} incomplete frames", incomplete_)});
     }
     if (incomplete_ > 0) {
       findings.push_back({Severity::warning,
                           Error{file, 0, "orientation and position of all segments in each frame",
-                                fmt::format("{} frames without", incomplete_)},
-                          "they were left out", ""});
+                                fmt::format("{} frames without them", incomplete_)},
+                          "these frames were left out", ""});
     }
     stamps_.report(file, findings);
     return {};
@@ -151,7 +151,7 @@ class MvnxReader final : public ClipReader {
 
   /// Makes the skeleton at the first normal frame.
   Result<void> begin(const MvnxHead& head, const GlobalPose& first) {
-    if (head.segments.empty()) return Failure(Error{"", 0, "segments above the frames", "none"});
+    if (head.segments.empty()) return Failure(Error{"", 0, "segments before the frames", "none"});
     Skeleton skeleton;
     skeleton.parents = parents_of(head);
     const GlobalPose& rest = rest_ ? *rest_ : first;

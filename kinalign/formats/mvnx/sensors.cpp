@@ -39,10 +39,11 @@ class MvnxSensorReader final : public ImuReader {
       return Failure(Error{file, 0, "a frame of type normal with sensors", "the end of the file"});
     }
     if (incomplete_ > 0) {
-      findings.push_back({Severity::warning,
-                          Error{file, 0, "what the first frame has of its sensors in each frame",
-                                fmt::format("{} frames without", incomplete_)},
-                          "their samples are invalid", ""});
+      findings.push_back(
+          {Severity::warning,
+           Error{file, 0, "the same sensor values in each frame as in the first frame",
+                 fmt::format("{} frames without them", incomplete_)},
+           "their samples are invalid", ""});
     }
     samples_.report(file, findings);
     stamps_.report(file, findings);
@@ -71,7 +72,7 @@ class MvnxSensorReader final : public ImuReader {
     const bool rate = frame.sensor_angular_velocity.size() == 3 * sensors;
     if (sensors == 0 || !(turn || force || rate)) {
       return Failure(Error{"", 0, "sensors with orientation, acceleration or angular velocity",
-                           "none in the first frame"});
+                           "no such sensors in the first frame"});
     }
     header_ = ImuHeader{head.sensors, {turn, force || free_, rate, !free_}};
     return {};

@@ -85,7 +85,7 @@ MotWriter::MotWriter(MotWriter&&) noexcept = default;
 MotWriter& MotWriter::operator=(MotWriter&&) noexcept = default;
 
 Result<MotWriter> MotWriter::begin(const MotHead& head, TextOut& out) {
-  if (head.skeleton.joints() == 0) return refuse("one joint or more for a .mot", "none");
+  if (head.skeleton.joints() == 0) return refuse("at least one joint for a .mot", "none");
   for (const std::string& name : head.skeleton.joint_names) {
     if (!fits_a_cell(name) || name.find(' ') != std::string::npos) {
       return refuse("names of joints for a .mot without tabs and blanks", "'" + shown(name) + "'");

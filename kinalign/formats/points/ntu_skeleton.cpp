@@ -162,22 +162,22 @@ class NtuReader final : public PointReader {
     const std::string& file = lines_.file();
     if (next_ != Next::bodies) {
       findings.push_back({Severity::warning,
-                          Error{file, lines_.number(), "a whole frame", "the end of the file"},
+                          Error{file, lines_.number(), "a complete frame", "the end of the file"},
                           "the last frame was dropped", ""});
     }
     if (stamps_.rows() != declared_) {
       findings.push_back(
           {Severity::warning,
            Error{file, 1, std::to_string(declared_) + " frames", std::to_string(stamps_.rows())},
-           "the frames that are there were read", ""});
+           "the existing frames were read", ""});
     }
     if (asked_ && frames_with_body_ == 0) {
       findings.push_back({Severity::warning, Error{file, 0, "body " + shown(wanted_), others()},
-                          "all joints are missing", "select one that is there"});
+                          "all joints are missing", "select an existing body"});
     } else if (!asked_ && !others_.empty()) {
-      findings.push_back({Severity::note, Error{file, 0, "one body", "also " + others()},
-                          "body " + shown(wanted_) + ", the first seen, was read",
-                          "select another with body = its id"});
+      findings.push_back({Severity::note, Error{file, 0, "one body", "several: also " + others()},
+                          "body " + shown(wanted_) + ", the first in the file, was read",
+                          "to read another body, set body to its id"});
     }
     mirror_.report(file, findings);
   }

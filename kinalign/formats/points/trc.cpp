@@ -151,22 +151,22 @@ class TrcReader final : public PointReader {
           static_cast<std::size_t>(put_number(declared.data(), declared_, 0) - declared.data()));
       findings.push_back({Severity::warning,
                           Error{file, 3, declared + " frames", std::to_string(stamps_.rows())},
-                          "the frames that are there were read", "correct NumFrames"});
+                          "the existing frames were read", "correct NumFrames"});
     }
     const double seconds = 1e-9 * (static_cast<double>(last_ns_) - static_cast<double>(first_ns_));
     const double rate = static_cast<double>(stamps_.rows() - 1) / seconds;
     if (seconds > 0.0 && data_rate_ > 0.0 && std::abs(rate - data_rate_) > 0.1 * data_rate_) {
       findings.push_back({Severity::warning,
                           Error{file, 3, fmt::format("times of DataRate {:g}", data_rate_),
-                                fmt::format("{:.4g} a second", rate)},
-                          "the times were believed",
-                          "find out which is true: gaps and splines go by it"});
+                                fmt::format("{:.4g} frames per second", rate)},
+                          "the times are used",
+                          "find out which is correct: gaps and splines depend on it"});
     }
     if (behind_the_end_ > 0) {
       findings.push_back({Severity::warning,
-                          Error{file, 0, "nothing behind the blank line that ends the rows",
+                          Error{file, 0, "no rows after a blank line, which ends the data",
                                 std::to_string(behind_the_end_) + " lines"},
-                          "they were not read", "take the blank line out"});
+                          "these rows were not read", "remove the blank line"});
     }
   }
 

@@ -41,7 +41,7 @@ TrcWriter::TrcWriter(const TrcHead& head, TextOut& out)
     : out_(&out), markers_(head.names.size()), frames_(head.frames), zero_(head.zero) {}
 
 Result<TrcWriter> TrcWriter::begin(const TrcHead& head, TextOut& out) {
-  if (head.names.empty()) return refuse("one marker or more for a TRC", "none");
+  if (head.names.empty()) return refuse("at least one marker for a TRC", "none");
   for (const std::string& name : head.names) {
     if (!fits_a_cell(name)) return refuse("names of markers for a TRC without tabs", shown(name));
   }

@@ -148,7 +148,7 @@ class UiPrmdReader final : public PointReader {
     findings.push_back({Severity::warning,
                         Error{file, 0, "as many rows as in " + std::string(file_name(other)),
                               std::to_string(rows) + " more"},
-                        "they were dropped", ""});
+                        "the other rows were dropped", ""});
   }
 
   NamedLines lines_;

@@ -63,15 +63,15 @@ void RowSelection::report(const std::string& file, Findings& findings) const {
     }
     findings.push_back({Severity::error,
                         Error{file, 0, "rows of " + wanted,
-                              "none among " + std::to_string(rows_) + ", which are of " + there},
-                        "the stream is empty", "select values that are there"});
+                              "no such row; " + std::to_string(rows_) + " rows of " + there},
+                        "the stream is empty", "select existing values"});
   }
   if (bodies_.count() > 1) {
     findings.push_back(
         {Severity::warning,
-         Error{file, 0, "one body in the rows taken", body_.column + " " + bodies_.list()},
+         Error{file, 0, "one body in the selected rows", body_.column + " " + bodies_.list()},
          "rows of several bodies are mixed in one stream",
-         "select one: select = { \"" + body_.column + "\" = " + shown(bodies_.first()) +
+         "select one body: select = { \"" + body_.column + "\" = " + shown(bodies_.first()) +
              " } in the manifest, --select \"" + body_.column + "=" + shown(bodies_.first()) +
              "\""});
   }

@@ -85,7 +85,7 @@ class Finder {
   Failure no_column(const std::string& name) const {
     const std::string near = nearest_name(name, known());
     const std::string hint = near.empty() ? "" : " (nearest: " + shown(near) + ")";
-    return Failure(Error{"", 0, "a column " + shown(name), "none of that name" + hint});
+    return Failure(Error{"", 0, "a column " + shown(name), "no such column" + hint});
   }
 
   /// A column that the user selects by: its name or, if the file has no such name, its number.
@@ -109,13 +109,13 @@ class Finder {
     if (place == places_.end()) return no_column(choice.name);
     if (place->second.times == 1) return place->second.column;
     return Failure(Error{"", 0, "one column " + shown(choice.name),
-                         std::to_string(place->second.times) + " of that name"});
+                         std::to_string(place->second.times) + " with this name"});
   }
 
   Result<std::size_t> selected(const std::string& column) const {
     const ColumnChoice choice = choice_of(column);
     if (choice.number != 0 || !named_ || places_.contains(column)) return column_of(choice);
-    return Failure(unknown_name(column, "a column of the file to select by", known()));
+    return Failure(unknown_name(column, "an existing column in select", known()));
   }
 
   /// The columns of a quantity: outer loop over members, inner loop over fields. `missing` gets the
@@ -153,7 +153,7 @@ class Finder {
     found_.*quantity.first = slots_;
     for (const std::size_t column : columns) {
       if (found_.uses[column].slot >= 0) {
-        return Failure(Error{"", 0, "one meaning for column " + std::to_string(column + 1), "two"});
+        return Failure(Error{"", 0, "one use of column " + std::to_string(column + 1), "two"});
       }
       found_.uses[column].slot = slots_++;
     }

@@ -22,7 +22,7 @@ namespace {
 class PointBuilder {
  public:
   using ReaderType = PointReader;
-  static constexpr const char* without = "every joint that has a place counts as tracked";
+  static constexpr const char* without = "every joint with a position counts as tracked";
 
   PointBuilder(const TableLayout& layout, const StreamOptions& options,
                const std::vector<std::string>& joints)
@@ -83,7 +83,7 @@ class PointBuilder {
 class ImuBuilder {
  public:
   using ReaderType = ImuReader;
-  static constexpr const char* without = "the nodes have no such quantity";
+  static constexpr const char* without = "this quantity is missing for all nodes";
 
   ImuBuilder(const TableLayout& layout, const StreamOptions& options,
              const std::vector<std::string>& nodes)
@@ -178,11 +178,12 @@ class TableReader final : public Builder::ReaderType {
           {Severity::note,
            Error{lines_.file(), 0,
                  "a column " + shown(column) + ", as layout " + layout_.name + " says",
-                 "none of that name"},
+                 "no such column"},
            Builder::without,
-           own_layout_ ? "leave it out of the layout if it has to be so"
-                       : fmt::format("call it so, if it is one of the {} columns that are not read",
-                                     columns_.unread)});
+           own_layout_
+               ? "if the file has no such column, remove it from the layout"
+               : fmt::format("if it is one of the {} unread columns, use its name in the layout",
+                             columns_.unread)});
     }
   }
 

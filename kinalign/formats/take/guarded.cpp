@@ -115,7 +115,7 @@ std::string packed(const Step& step, std::string_view what) {
   const GuardSend send_data = [pipe](std::string_view bytes) -> Result<void> {
     for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), message_most))) {
       if (!send(pipe, 'd', bytes.substr(0, message_most))) {
-        return Failure(Error{"", 0, "someone to read the result", "no one"});
+        return Failure(Error{"", 0, "a process that reads the result", "no such process"});
       }
     }
     return {};
@@ -191,16 +191,16 @@ std::string cause(int status, const GuardLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
     if (number == SIGXCPU) {
-      return "one that took more than " + std::to_string(limits.cpu_seconds) +
+      return "a file that took more than " + std::to_string(limits.cpu_seconds) +
              " s of processor time";
     }
-    return "one on which the library crashed (signal " + std::to_string(number) + ")";
+    return "a file on which the library crashed (signal " + std::to_string(number) + ")";
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == no_memory_code) {
-    return "one that needs more than " + std::to_string(limits.memory_bytes >> 20) +
+    return "a file that needs more than " + std::to_string(limits.memory_bytes >> 20) +
            " MiB of memory";
   }
-  return "one that ended the program that read it";
+  return "a file that ended the program that read it";
 }
 
 /// Splits the received bytes into messages.
@@ -296,13 +296,13 @@ Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work
   Inbox inbox(receive, progress);
   if (!KA_TRY(read_until_end(child, limits.wall_seconds, inbox))) {
     const auto seconds = static_cast<std::int64_t>(limits.wall_seconds);
-    return Failure(blamed(blame, "one that took more than " + std::to_string(seconds) + " s"));
+    return Failure(blamed(blame, "a file that took more than " + std::to_string(seconds) + " s"));
   }
   if (inbox.error()) return Failure(*inbox.error());
   if (inbox.done()) return {};
   const int status = child.end();
-  return Failure(blamed(blame, inbox.strange() ? "one that overran the program that read it"
-                                               : cause(status, limits)));
+  return Failure(
+      blamed(blame, inbox.strange() ? "a file whose result was too long" : cause(status, limits)));
 }
 
 }  // namespace
@@ -325,7 +325,7 @@ Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
   const auto keep = [&](std::string_view bytes) -> Result<void> {
     if (text.size() + bytes.size() > limits.output_bytes) {
       return Failure(blamed(
-          blame, "one whose contents exceed " + std::to_string(limits.output_bytes) + " bytes"));
+          blame, "a file whose contents exceed " + std::to_string(limits.output_bytes) + " bytes"));
     }
     text += bytes;
     return {};

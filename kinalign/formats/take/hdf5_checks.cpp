@@ -93,14 +93,14 @@ Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
                  "another layout");
   }
   const auto sizes = sizes_of(space);
-  if (!sizes) return other(name, "an array of at most four dimensions", "another thing");
+  if (!sizes) return other(name, "an array of at most four dimensions", "another rank or no array");
   out.sizes = *sizes;
   const auto length = product(H5Tget_size(out.type.id()), out.sizes);
   if (!length) return other(name, "an array that a file can hold", "sizes " + written(out.sizes));
   if (*length == 0) return out;
   out.at = H5Dget_offset(set.id());
   if (out.at >= bytes_.size || *length > bytes_.size - out.at) {
-    return other(name, "an array inside the file", "one that reaches beyond its end");
+    return other(name, "an array inside the file", "a position beyond its end");
   }
   return out;
 }
@@ -156,12 +156,12 @@ Result<std::vector<std::string>> Checked::text_attributes(hid_t object, const ch
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   const auto sizes = sizes_of(space);
   if (!type.good() || !sizes || sizes->size() > 1 || !fixed_text(type)) {
-    return other(name, "an attribute of text", "another thing");
+    return other(name, "an attribute of text", "something of another kind");
   }
   const std::size_t width = H5Tget_size(type.id());
   const auto length = product(width, *sizes);
   if (!length || *length > bytes_.size) {
-    return other(name, "an attribute inside the file", "one that reaches beyond its end");
+    return other(name, "an attribute inside the file", "a position beyond its end");
   }
   std::string packed(*length, '\0');
   if (!packed.empty() && H5Aread(attribute.id(), type.id(), packed.data()) < 0) {
@@ -180,14 +180,15 @@ Result<std::vector<InputFacts>> Checked::inputs(hid_t group) const {
   const auto names = KA_TRY(text_attributes(group, "input_names"));
   const auto hashes = KA_TRY(text_attributes(group, "input_sha256"));
   std::vector<std::uint64_t> sizes(names.size());
-  if (hashes.size() != names.size()) return other("input_sha256", "one for each name", "others");
+  if (hashes.size() != names.size())
+    return other("input_sha256", "one entry for each name", "others");
   if (!names.empty()) {
     const Handle attribute(H5Aopen(group, "input_bytes", H5P_DEFAULT), H5Aclose);
     const Handle space(H5Aget_space(attribute.id()), H5Sclose);
     const auto found = sizes_of(space);
     if (!found || *found != std::vector<std::uint64_t>{names.size()} ||
         H5Aread(attribute.id(), H5T_NATIVE_UINT64, sizes.data()) < 0) {
-      return other("input_bytes", "one number for each name", "another thing");
+      return other("input_bytes", "one number for each name", "something of another kind");
     }
   }
   std::vector<InputFacts> out;
@@ -201,7 +202,7 @@ Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t f
   const std::span<char> room(static_cast<char*>(to), count * row);
   const std::size_t got = KA_TRY(bytes.input->read_at(source.at + first * row, room));
   if (got == room.size()) return {};
-  return Failure(Error{bytes.path(), 0, "a file that keeps its length", "a shorter one"});
+  return Failure(Error{bytes.path(), 0, "a file that keeps its length", "a shorter file"});
 }
 
 static void widen(std::span<const float> from, double* to) {

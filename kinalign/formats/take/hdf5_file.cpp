@@ -57,12 +57,12 @@ Result<void> check_start(const std::string& path, std::string_view head, std::ui
   if (end && *end <= size) return {};
   if (end) {
     return Failure(
-        Error{path, 0, "a whole HDF5 file",
-              "one cut short: " + std::to_string(size) + " bytes of " + std::to_string(*end)});
+        Error{path, 0, "a complete HDF5 file",
+              "a truncated file: " + std::to_string(size) + " bytes of " + std::to_string(*end)});
   }
   if (head.size() < start_bytes) {
-    return Failure(
-        Error{path, 0, "a whole HDF5 file", "one cut short: " + std::to_string(size) + " bytes"});
+    return Failure(Error{path, 0, "a complete HDF5 file",
+                         "a truncated file: " + std::to_string(size) + " bytes"});
   }
   return {};  // HDF5 itself reports any other fault
 }
@@ -192,7 +192,7 @@ Failure failure(const Bytes& bytes, std::string expected) {
   std::string said;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &said);
   return Failure(Error{bytes.path(), 0, std::move(expected),
-                       said.empty() ? "another thing" : "one of which HDF5 says: " + said});
+                       said.empty() ? "something of another kind" : "an HDF5 error: " + said});
 }
 
 Result<Handle> create(Bytes& bytes) {
@@ -201,7 +201,7 @@ Result<Handle> create(Bytes& bytes) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.id(), 0);
   Handle file(H5Fcreate(bytes.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
-  if (!file.good()) return failure(bytes, "a file that HDF5 can begin");
+  if (!file.good()) return failure(bytes, "a file that HDF5 can create");
   return file;
 }
 

@@ -98,7 +98,7 @@ Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
     }
   }
   if (!out.name.empty()) return out;
-  return Failure(Error{path, 0, "a take with a skeleton's stream", "none"});
+  return Failure(Error{path, 0, "a take with a skeleton", "none"});
 }
 
 /// Findings about everything that the BVH does not hold.
@@ -106,22 +106,23 @@ Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& su
   Findings out;
   if (!chosen.others.empty()) {
     out.push_back({Severity::note,
-                   Error{path, 0, "one skeleton's stream", chosen.name + ", " + chosen.others},
-                   chosen.name + " was written", "convert to .npz holds them all"});
+                   Error{path, 0, "one skeleton", chosen.name + ", " + chosen.others},
+                   chosen.name + " was written", "convert to .npz to keep all of them"});
   }
   if (survey.invalid > 0) {
-    out.push_back({Severity::warning,
-                   Error{path, 0, "valid rows of " + chosen.name,
-                         fmt::format("{} of {} that are not", survey.invalid, survey.rows)},
-                   "they hold the pose of the last valid row: a BVH can't mark them", ""});
+    out.push_back(
+        {Severity::warning,
+         Error{path, 0, "valid rows of " + chosen.name,
+               fmt::format("{} of {} rows that are not valid", survey.invalid, survey.rows)},
+         "these rows have the pose of the last valid row, because a BVH can't mark them", ""});
   }
   const double step = survey.step_s();
   if (survey.rows > 2 && seconds(survey.longest - survey.shortest) > 0.01 * step) {
     out.push_back({Severity::warning,
-                   Error{path, 0, "stamps of one step",
+                   Error{path, 0, "evenly spaced stamps",
                          fmt::format("steps of {:.4g} to {:.4g} ms", 1e3 * seconds(survey.shortest),
                                      1e3 * seconds(survey.longest))},
-                   fmt::format("the frame time is their mean, {:.4g} ms", 1e3 * step), ""});
+                   fmt::format("the frame time is the mean step, {:.4g} ms", 1e3 * step), ""});
   }
   return out;
 }
@@ -139,7 +140,7 @@ Result<void> check_size(const std::string& path, const ClipRows& rows) {
   const auto small = [](double x) { return std::abs(x) < largest; };
   const auto& values = rows.local_positions;
   if (std::all_of(values.begin(), values.end(), small)) return {};
-  return Failure(Error{path, 0, "positions below 1e12 m", "larger ones"});
+  return Failure(Error{path, 0, "positions below 1e12 m", "larger positions"});
 }
 
 /// Results of the first pass: skeleton's channels, rows that are invalid, steps.

@@ -28,7 +28,7 @@ struct Found {
 };
 
 Failure bad_value(const std::string& path, const std::string& expected, const std::string& where) {
-  return Failure(Error{path, 0, expected, "another one in " + where});
+  return Failure(Error{path, 0, expected, "other content in " + where});
 }
 
 bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
@@ -158,7 +158,7 @@ struct TakeReader::State {
     const std::int64_t least = column.name == "time_interval_ns" ? no_interval : 0;
     const bool good =
         std::none_of(values.begin(), values.end(), [least](auto v) { return v < least; });
-    return good ? Result<void>() : bad_value(input.path(), "times from 0 on", column.name);
+    return good ? Result<void>() : bad_value(input.path(), "times of 0 or more", column.name);
   }
   template <class Flag>
   Result<void> check(const Found& column, std::span<const Flag> values) const {
@@ -249,7 +249,7 @@ Result<void> TakeReader::State::read_stamps(std::uint64_t first, std::uint64_t c
   KA_TRY(hdf5::read_rows(bytes, time, first, count, stamps.data()));
   const auto falls = [](Time one, Time next) { return next <= one; };
   if (std::adjacent_find(stamps.begin(), stamps.end(), falls) == stamps.end()) return {};
-  return bad_value(input.path(), "stamps that rise", "time_ns");
+  return bad_value(input.path(), "rising stamps", "time_ns");
 }
 
 /// Reads rows of all streams. A column that the parts leave out becomes empty.
@@ -304,7 +304,7 @@ Result<bool> TakeReader::next(TakeSlab& slab) {
   if (count == 0) return false;
   KA_TRY(s.read_slab(s.rows, count, slab));
   if (slab.stamps.front() <= s.last) {
-    return bad_value(s.input.path(), "stamps that rise", "time_ns");
+    return bad_value(s.input.path(), "rising stamps", "time_ns");
   }
   s.last = slab.stamps.back();
   s.rows += count;

@@ -71,14 +71,14 @@ std::vector<TakeColumn> imu_columns(const ImuGroup& group, Stored number) {
 }
 
 Failure bad_name(const std::string& what, const std::string& name) {
-  return Failure(Error{"", 0, what, name.empty() ? "an empty one" : "\"" + shown(name) + "\""});
+  return Failure(Error{"", 0, what, name.empty() ? "an empty name" : "\"" + shown(name) + "\""});
 }
 
 Result<void> check_names(const std::vector<std::string>& names, const std::string& what) {
   std::set<std::string_view> seen;
   for (const std::string& name : names) {
     if (name.empty() || name.find('\0') != std::string::npos) return bad_name(what, name);
-    if (!seen.insert(name).second) return bad_name(what + ", once only", name);
+    if (!seen.insert(name).second) return bad_name(what + ", only once", name);
   }
   return {};
 }

@@ -158,7 +158,7 @@ Result<void> check_names(const std::vector<NpzArray>& arrays, const std::string&
   for (const NpzArray& array : arrays) {
     if (seen.insert(array.name).second) continue;
     return Failure(Error{path, 0,
-                         "streams whose arrays can be told apart (STREAM_ARRAY.npy): rename one",
+                         "streams whose array names differ (STREAM_ARRAY.npy): rename a stream",
                          "'" + shown(array.name) + "' twice"});
   }
   return {};

@@ -156,7 +156,7 @@ Result<XdfStream> parse_xdf_header(std::uint32_t id, std::string_view xml,
   const auto [behind, error] = std::from_chars(count.data(), end, stream.channel_count);
   if (error != std::errc{} || behind != end) return refused("a channel_count", count);
   const auto format = format_of(words.format);
-  if (!format) return refused("a channel_format that is known", words.format);
+  if (!format) return refused("a known channel_format", words.format);
   stream.format = *format;
   const bool rate = parse_number(words.rate, stream.nominal_rate_hz);
   if (!rate || !(stream.nominal_rate_hz >= 0.0)) {

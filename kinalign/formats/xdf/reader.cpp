@@ -182,7 +182,7 @@ XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> 
     what_is_wrong = Error{"", 0, "as many whole samples in a chunk as it states",
                           fmt::format("{} of {}", samples.size(), *stated)};
   } else if (content.left() > 0) {
-    what_is_wrong = Error{"", 0, "the end of a chunk behind its samples",
+    what_is_wrong = Error{"", 0, "the end of the chunk after its samples",
                           std::to_string(content.left()) + " bytes"};
   }
   return samples;
@@ -207,7 +207,7 @@ Result<void> XdfReader::feed(std::string_view piece, std::vector<XdfItem>& out) 
 Result<bool> XdfReader::begun() {
   if (begun_) return true;
   if (is_gzip(held_)) {
-    return Failure(Error{name_, 0, "an XDF file, unpacked (gzip -d)", "one packed by gzip"});
+    return Failure(Error{name_, 0, "an XDF file, unpacked (gzip -d)", "a file packed by gzip"});
   }
   const std::string_view head = text_of(held_).substr(0, magic.size());
   if (head != magic.substr(0, head.size())) {
@@ -230,7 +230,7 @@ Result<void> XdfReader::finish(std::vector<XdfItem>& out) {
   Chunk chunk;
   const bool whole_head = !lost_ && find_chunk(chunk) == Found::chunk;
   fault(whole_head ? fmt::format("a last chunk of {} bytes", chunk.size)
-                   : std::string("a whole chunk at the end of the file"),
+                   : std::string("a complete chunk at the end of the file"),
         fmt::format("{} bytes", whole_head ? held_.size() - chunk.content : left));
   take(left);
   return {};
@@ -250,7 +250,7 @@ bool XdfReader::step(std::vector<XdfItem>& out) {
   const Found what = find_chunk(found);
   if (what == Found::more) return false;
   if (what == Found::damage) {
-    fault("the length of a chunk", "bytes that are none");
+    fault("the length of a chunk", "other bytes");
     lost_ = true;
     return true;
   }
@@ -262,7 +262,8 @@ bool XdfReader::step(std::vector<XdfItem>& out) {
   const bool is_boundary = inside == head + tag_size && found.size == tag_size + boundary.size() &&
                            little_at<std::uint16_t>(held_, found.content) == 5;
   if (inside && !is_boundary) {
-    fault("a chunk that ends before the next boundary", fmt::format("one of {} bytes", found.size));
+    fault("a chunk that ends before the next boundary",
+          fmt::format("a chunk of {} bytes", found.size));
     lost_ = true;
     return true;
   }
@@ -312,23 +313,23 @@ void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>&
   const auto tag = little_at<std::uint16_t>(bytes, 0);
   const auto content = bytes.subspan(tag_size);
   if (tag == 1 && text_of(content).find("<version>1.0</version>") == std::string_view::npos) {
-    fault("a file header that says version 1.0", "another one");
+    fault("a file header that says version 1.0", "another version");
   }
   if (tag >= 2 && tag <= 4 && content.size() < id_size) {
-    fault("the id of a stream", "a chunk without one");
+    fault("the id of a stream", "a chunk without an id");
     return;
   }
   if (tag == 2) stream_header(content, out);
   if (tag == 3) samples(content, out);
   if (tag == 4) clock_offset(content, out);
-  if (tag == 0 || tag > 6) fault("chunks of kinds 1 to 6", fmt::format("one of kind {}", tag));
+  if (tag == 0 || tag > 6) fault("chunks of kinds 1 to 6", fmt::format("a chunk of kind {}", tag));
 }
 
 /// Parses a stream's header. The samples of a stream with a bad header are skipped.
 void XdfReader::stream_header(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
   const auto id = little_at<std::uint32_t>(content, 0);
   if (streams_.contains(id)) {
-    fault("one header for each stream", fmt::format("a second one for stream {}", id));
+    fault("one header for each stream", fmt::format("a second header for stream {}", id));
     return;
   }
   std::vector<Error> notes;
@@ -350,7 +351,8 @@ void XdfReader::samples(std::span<const std::uint8_t> content, std::vector<XdfIt
   const auto id = little_at<std::uint32_t>(content, 0);
   const auto known = streams_.find(id);
   if (known == streams_.end()) {
-    fault("samples of streams with a header", fmt::format("some of stream {}", id));
+    fault("samples of streams with a header",
+          fmt::format("samples of stream {} without a header", id));
     return;
   }
   if (!known->second) return;  // its header is damaged
@@ -372,7 +374,7 @@ void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<
   };
   const XdfClockOffset offset{little_at<std::uint32_t>(content, 0), number(4), number(12)};
   if (!(std::abs(offset.time) < largest) || !(std::abs(offset.offset) < largest)) {
-    fault("clock offsets that are numbers below 1e15", "others");
+    fault("clock offsets below 1e15", "others");
     return;
   }
   out.emplace_back(offset);
@@ -398,7 +400,7 @@ Findings XdfReader::findings() const {
     findings.push_back({Severity::warning,
                         Error{name_, 0, f.expected,
                               fmt::format("{} at byte {}{}", f.found, f.first_offset, times)},
-                        "what could be read was", ""});
+                        "all readable chunks were read", ""});
   }
   return findings;
 }

@@ -85,7 +85,8 @@ TEST_CASE("an archive above the limits is refused") {
   CHECK(read_all_files(tar, {.entries = 1}) ==
         "a.tar: expected at most 1 entries in the archive, found more");
   CHECK(read_all_files(tar, {.bytes = 11}) ==
-        "a.tar: expected at most 11 bytes in all files in the archive, found more, up to b.txt");
+        "a.tar: expected at most 11 bytes in all files in the archive, found more files, up to "
+        "b.txt");
   CHECK(read_all_files(tar, {.bytes = 12}) == "a.txt:123456;b.txt:123456;");
 }
 

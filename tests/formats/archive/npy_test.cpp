@@ -62,7 +62,7 @@ TEST_CASE("an array has the bytes that its header promises, and never takes memo
         "a.npy: expected 24 bytes of values, found 0");
   CHECK(header_fault(
             "{'descr': '<f8', 'fortran_order': False, 'shape': (4294967296, 4294967296), }") ==
-        "a.npy: expected an array below 2^40 bytes, found a larger one");
+        "a.npy: expected an array below 2^40 bytes, found a larger array");
   CHECK(header_fault("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 99999999999999), }") ==
         "a.npy: expected an NPY of numbers or texts, little-endian, in C order, found "
         "{'descr': '<f8', 'fortran_order': False,...");

@@ -95,18 +95,19 @@ TEST_CASE("rows that do not fit the channels are found, which the official valid
           set[rows] = names + "\n" + set[rows];
         }) ==
         Texts{"error " + rows +
-              ":1: expected rows of numbers: motion.tsv has no line of names, found column0"});
+              ":1: expected only rows of numbers, without a line of column names, found column0"});
   CHECK(found_when([&](DataSet& set) {
           std::string& text = set[rows];
           for (std::size_t at = text.find('\n'); at != std::string::npos;
                at = text.find('\n', at + 3)) {
             text.insert(at, "\t1");
           }
-        }) == Texts{"error " + rows + ": expected 22 columns, as channels.tsv has rows, found 23"});
+        }) ==
+        Texts{"error " + rows + ": expected 22 columns, one per row of channels.tsv, found 23"});
   CHECK(found_when([&](DataSet& set) { put(set, rows, "\n", "\t1\n"); }) ==
         Texts{"error " + rows +
-                  ":2: expected rows of 23 cells, as the first has, found 22, and 58 more",
-              "error " + rows + ": expected 22 columns, as channels.tsv has rows, found 23"});
+                  ":2: expected rows of 23 cells, like the first row, found 22, and 58 more",
+              "error " + rows + ": expected 22 columns, one per row of channels.tsv, found 23"});
   CHECK(found_when([&](DataSet& set) { put(set, rows, "\n", "\n\n"); }) ==
         Texts{"error " + rows + ":2: expected no empty lines, found an empty line"});
   CHECK(found_when([&](DataSet& set) { set[rows] = ""; })[0] ==
@@ -129,7 +130,7 @@ TEST_CASE("latencies that do not rise and quaternions of another length are foun
           const std::size_t second = set[rows].find('\n') + 1;
           const std::size_t tab = set[rows].find('\t', second);
           set[rows].replace(second, tab - second, "0");
-        }) == Texts{"error " + rows + ":2: expected latencies that rise, found 0"});
+        }) == Texts{"error " + rows + ":2: expected rising latencies, found 0"});
 }
 
 TEST_CASE("channels that BIDS does not know are found") {
@@ -156,7 +157,7 @@ TEST_CASE("channels that BIDS does not know are found") {
   CHECK(with("ORNT_quat_w\tquat_w\tORNT\tHips\tn/a", "ORNT_quat_w\tquat_w\tORNT\tHips\trad") ==
         "warning " + path + ":6: expected the unit n/a of a quaternion, found rad");
   CHECK(with("Hips_POS_y", "Hips_POS_x") ==
-        "error " + path + ":4: expected channels of different names, found Hips_POS_x again");
+        "error " + path + ":4: expected channels with different names, found Hips_POS_x again");
   CHECK(with("Hips_ORNT_quat_w\tquat_w", "Hips_ORNT_quat_w\tquat_x") ==
         "error " + path + ": expected all four parts of the quaternion of Hips, found 3");
   CHECK(with("Hips_POS_x\tx\tPOS", "Hips_POS_x\tn/a\tMISC") ==
@@ -227,19 +228,17 @@ TEST_CASE("names and places that BIDS does not know are found") {
               "ses, task, "
               "tracksys, acq, run in this order, found task"});
   CHECK(moved("sub-03/motion/sub-04_task-a_tracksys-k_channels.json") ==
-        Texts{"error sub-03/motion/sub-04_task-a_tracksys-k_channels.json: expected sub-03, as the "
-              "folder is "
-              "called, found sub-04"});
+        Texts{"error sub-03/motion/sub-04_task-a_tracksys-k_channels.json: expected sub-03, as in "
+              "the name of the folder, found sub-04"});
   CHECK(moved("sub-03/motion/sub-03_ses-a_task-a_tracksys-k_channels.json") ==
         Texts{"error sub-03/motion/sub-03_ses-a_task-a_tracksys-k_channels.json: expected no ses, "
-              "as there is "
-              "no folder of one, found ses-a"});
+              "because there is no session folder, found ses-a"});
   CHECK(moved("sub-03/motion/sub-03_task-a_tracksys-k_run-b_channels.json") ==
         Texts{"error sub-03/motion/sub-03_task-a_tracksys-k_run-b_channels.json: expected digits "
               "for run, found b"});
   CHECK(moved("sub-03/motion/sub-03_task-a_tracksys-k_motion.json") ==
-        Texts{"error sub-03/motion/sub-03_task-a_tracksys-k_motion.json: expected motion.tsv "
-              "beside it, found none"});
+        Texts{"error sub-03/motion/sub-03_task-a_tracksys-k_motion.json: expected the motion.tsv "
+              "that belongs to this file, found none"});
 }
 
 TEST_CASE("what .bidsignore names is passed over") {
@@ -265,26 +264,26 @@ TEST_CASE("tables about the whole set are checked") {
         }) == Texts{"error dataset_description.json: expected a text Name, found none"});
   CHECK(found_when([](DataSet& set) {
           put(set, "dataset_description.json", "\"raw\"", "\"derivative\"");
-        }) == Texts{"error dataset_description.json: expected GeneratedBy, as a derivative has it, "
-                    "found none"});
+        }) ==
+        Texts{"error dataset_description.json: expected GeneratedBy, which a derivative needs, "
+              "found none"});
   CHECK(found_when([](DataSet& set) { set.erase("README"); }) ==
         Texts{"warning README: expected this file, found none"});
   CHECK(found_when([](DataSet& set) { set.erase("participants.json"); }) ==
         Texts{"warning participants.json: expected a description of the column age, found none",
               "warning participants.json: expected a description of the column sex, found none"});
-  CHECK(
-      found_when([](DataSet& set) { put(set, "participants.tsv", "sub-03", "sub-3"); }) ==
-      Texts{
-          "warning participants.tsv:2: expected a folder of each participant, found none of sub-3",
-          "error participants.tsv: expected a row of sub-03, found none"});
+  CHECK(found_when([](DataSet& set) { put(set, "participants.tsv", "sub-03", "sub-3"); }) ==
+        Texts{"warning participants.tsv:2: expected a folder of each participant, found no folder "
+              "of sub-3",
+              "error participants.tsv: expected a row of sub-03, found none"});
   CHECK(found_when([](DataSet& set) { put(set, "participants.tsv", "participant_id", "id"); }) ==
         Texts{"error participants.tsv:1: expected participant_id as the first column, found id"});
   CHECK(found_when([](DataSet& set) { put(set, scans, "tracksys-imu", "tracksys-i"); }) ==
         Texts{"error " + scans +
-                  ":4: expected a file that is there, found "
+                  ":4: expected an existing file, found "
                   "motion/sub-03_task-Walk_tracksys-i_motio...",
               "warning " + scans +
-                  ": expected a row of each motion.tsv, found none of "
+                  ": expected a row of each motion.tsv, found no row of "
                   "sub-03_task-Walk_tracksys-imu_motion.tsv"});
   CHECK(found_when([](DataSet& set) { put(set, scans, "2026-09-21T", "2026-9-21 "); }) ==
         Texts{"error " + scans +
@@ -325,7 +324,7 @@ TEST_CASE("a published data set without signals has the findings that it should 
   // empty lines there.
   std::size_t missing = 0, empty = 0;
   for (const std::string& error : errors) {
-    missing += error.find("expected a file that is there") != std::string::npos ? 1 : 0;
+    missing += error.find("expected an existing file") != std::string::npos ? 1 : 0;
     empty += error.find("expected no empty lines") != std::string::npos ||
                      error.find("expected rows of samples") != std::string::npos
                  ? 1

@@ -233,9 +233,9 @@ TEST_CASE("what can't be read is an error with its place") {
   const std::string places = head + "a\tx\tPOS\tP\tm\tg\nb\ty\tPOS\tP\tm\tg\nc\tz\tPOS\tP\tm\tg\n";
   CHECK(error_of(places, good, "LSA", "1\t2\t3\n") == "");
   CHECK(error_of(places, good, "LSA", "1\t2\n1\t2\t3\n") ==
-        "motion.tsv:1: expected 3 cells, as channels.tsv has rows, found 2");
+        "motion.tsv:1: expected 3 cells, one per row of channels.tsv, found 2");
   CHECK(error_of(places, good, "LSA", "a\tb\tc\n1\t2\t3\n") ==
-        "motion.tsv:1: expected a number or n/a; motion.tsv has no line of names, found a");
+        "motion.tsv:1: expected a number or n/a (motion.tsv has no line of column names), found a");
   CHECK(error_of(places, "{}", "LSA", "") ==
         "motion.json: expected a SamplingFrequency of 0.001 to 1,000,000, found none");
   CHECK(error_of(places, "[]", "LSA", "") ==
@@ -243,7 +243,8 @@ TEST_CASE("what can't be read is an error with its place") {
   CHECK(error_of(places, "{", "LSA", "") ==
         "motion.json: expected a JSON object, found text that is no JSON");
   CHECK(error_of(places, good, "ABC", "") ==
-        "motion.tsv: expected SpatialAxes of three letters, one of them S or I, or up, found ABC");
+        "motion.tsv: expected SpatialAxes of three letters, one of which is S or I; otherwise set "
+        "up, found ABC");
   CHECK(error_of("name\n", good, "LSA", "") ==
         "channels.tsv:1: expected a column component, found none");
   CHECK(error_of(head + "a\tx\tPOS\tP\tm\tg\n", good, "LSA", "") ==
@@ -254,7 +255,6 @@ TEST_CASE("what can't be read is an error with its place") {
                             "a\tquat_w\tORNT\tP\tn/a\tg\nb\tquat_x\tORNT\tP\tn/a\tg\n"
                             "c\tquat_y\tORNT\tP\tn/a\tg\nd\tquat_z\tORNT\tP\tn/a\tg\n";
   CHECK(error_of(turns, good, "ARS", "") ==
-        "motion.tsv: expected orientations in a right-handed space, found SpatialAxes of a "
-        "left-handed one");
+        "motion.tsv: expected orientations in a right-handed space, found left-handed SpatialAxes");
   CHECK(error_of(turns, good, "ALS", "1\t0\t0\t0\n") == "");
 }

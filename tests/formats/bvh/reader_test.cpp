@@ -44,7 +44,7 @@ TEST_CASE("an incomplete last frame is dropped with a finding") {
   // The 0 may have been 0.5 before the file was cut.
   CHECK(file->findings[0].severity == Severity::note);
   CHECK(to_string(file->findings[0].what) ==
-        "walk.bvh:15: expected a line end behind the last value, found the end of the file");
+        "walk.bvh:15: expected a line end after the last value, found the end of the file");
   CHECK(to_string(file->findings[1].what) ==
         "walk.bvh:15: expected 6 values in the frame, found 4");
 }

@@ -40,7 +40,7 @@ Findings judged(const std::string& text, double metres_per_unit, bool z_up) {
 }
 
 const std::string same_unit =
-    "--metres-per-unit (metres_per_unit in a manifest) if the file's unit is known to be another";
+    "set --metres-per-unit (metres_per_unit in a manifest) if the file has another unit";
 
 std::string other_unit(const std::string& metres, const std::string& name) {
   return "--metres-per-unit " + metres + " (metres_per_unit = " + metres +
@@ -78,12 +78,13 @@ TEST_CASE("a rest pose that lies is a finding that proposes the other axis, eith
   const Findings z_as_y = judged(person(90, "z"), 0.01, false);
   // And no unit: the unit is judged along the axis on which the person stands.
   REQUIRE(z_as_y.size() == 1);
-  CHECK(to_string(z_as_y[0].what) ==
-        "p.bvh: expected a rest pose that stands along y, found one that lies along z");
-  CHECK(z_as_y[0].repair == "--up z (up = \"z\" in a manifest) if the person stood");
+  CHECK(
+      to_string(z_as_y[0].what) ==
+      "p.bvh: expected a rest pose that is upright along y, found a pose that is upright along z");
+  CHECK(z_as_y[0].repair == "set --up z (up = \"z\" in a manifest) if the person stood");
   const Findings y_as_z = judged(person(90, "y"), 0.01, true);
   REQUIRE(y_as_z.size() == 1);
-  CHECK(y_as_z[0].repair == "--up y (up = \"y\" in a manifest) if the person stood");
+  CHECK(y_as_z[0].repair == "set --up y (up = \"y\" in a manifest) if the person stood");
   CHECK(judged(person(90, "z"), 0.01, true).empty());
   CHECK(judged(person(900, "z"), 0.01, false).size() == 2);
 }
@@ -187,10 +188,10 @@ TEST_CASE("where rest pose and first frame stand along different axes, the frame
   const Findings findings = judged(text, 0.01, false);
   REQUIRE(findings.size() == 1);
   CHECK(to_string(findings[0].what) ==
-        "p.bvh: expected a first frame that stands along y, as the rest pose does, found one that "
-        "lies along z");
-  CHECK(findings[0].meaning == "the person is read as lying");
-  CHECK(findings[0].repair == "--up z (up = \"z\" in a manifest) if the person stood");
+        "p.bvh: expected a first frame that is upright along y, like the rest pose, found a pose "
+        "that is upright along z");
+  CHECK(findings[0].meaning == "the person appears to lie");
+  CHECK(findings[0].repair == "set --up z (up = \"z\" in a manifest) if the person stood");
 }
 
 TEST_CASE("a survey judges a BVH as reading does, also by a frame without a line end") {
@@ -205,5 +206,5 @@ TEST_CASE("a survey judges a BVH as reading does, also by a frame without a line
   REQUIRE(streams);
   const Findings& findings = streams->streams.front().findings;
   REQUIRE(!findings.empty());
-  CHECK(findings.back().what.found == "one that lies along z");
+  CHECK(findings.back().what.found == "a pose that is upright along z");
 }

@@ -83,7 +83,7 @@ TEST_CASE("a BVH that lost its end is copied with the frames that are there, and
   CHECK(made.text.find("Frames: 1\n") != std::string::npos);
   CHECK(copied(folder.write("a.csv", "t,x\n1,2\n")).error ==
         (folder / "a.csv") +
-            ":1: expected a BVH or a take, which alone can become a BVH, found "
+            ":1: expected a BVH or a take (other files can't become a BVH), found "
             "'t,x'");
 }
 

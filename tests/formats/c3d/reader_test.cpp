@@ -108,7 +108,7 @@ TEST_CASE("points of Intel, DEC and MIPS are read as an independent writer meant
     REQUIRE(read.findings.size() == 1);
     CHECK(read.findings[0].severity == Severity::note);
     CHECK(text_of(read.findings[0]) ==
-          "walk.c3d: expected points alone, found 3 analog channels: Fx, Fy, EMG 1");
+          "walk.c3d: expected only points, found 3 analog channels: Fx, Fy, EMG 1");
   }
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("unit, up, rate and start are those of the user where they are said") 
         std::vector<double>{0, -3000, 2000});
   const std::string furlongs = patched(file, values_of(file, "UNITS", 1), "fu");
   CHECK(read_c3d(furlongs).error ==
-        "walk.c3d: expected POINT:UNITS mm, cm, m or in, or metres_per_unit, found fu");
+        "walk.c3d: expected POINT:UNITS mm, cm, m or in; otherwise set metres_per_unit, found fu");
   CHECK(read_c3d(furlongs, options).error == "");
 }
 
@@ -185,7 +185,7 @@ TEST_CASE("a C3D that is cut, or longer than it states, gives its frames with a 
         std::vector<std::string>{"walk.c3d: expected 3 frames, found 2"});
   CHECK(found_in(file + std::string(512, 'x')) ==
         std::vector<std::string>{
-            "walk.c3d: expected the end of the file behind 3 frames, found 928 more bytes"});
+            "walk.c3d: expected the end of the file after 3 frames, found 928 more bytes"});
   CHECK(found_in(patched(file, 8, std::string("\x02\0", 2))) ==
         std::vector<std::string>{
             "walk.c3d: expected 2 frames as in the header, found 3 in the parameters"});
@@ -200,7 +200,7 @@ TEST_CASE("names that are missing or repeated are told") {
   CHECK(repeated.header.joint_names == std::vector<std::string>{"LASI", "LASI#2"});
   REQUIRE(repeated.findings.size() == 1);
   CHECK(text_of(repeated.findings[0]) ==
-        "walk.c3d: expected names in POINT:LABELS that differ, found 1 repeated");
+        "walk.c3d: expected different names in POINT:LABELS, found 1 repeated");
   const auto missing = read_c3d(patched(file, at, "LASI    "));
   CHECK(missing.header.joint_names == std::vector<std::string>{"LASI", "point2"});
   const auto nameless = read_c3d(patched(file, file.find("LABELS"), "LABELZ"));
@@ -217,7 +217,7 @@ TEST_CASE("a coordinate that is no number makes its point missing, with a findin
   CHECK(read.rows.positions.front() == 0.0);
   REQUIRE(read.findings.size() == 1);
   CHECK(text_of(read.findings[0]) ==
-        "walk.c3d: expected coordinates that are numbers below 1e15, found 1 points with others");
+        "walk.c3d: expected coordinates below 1e15, found 1 points with other values");
 }
 
 TEST_CASE("a head of a C3D that can't be understood is an error with its byte") {

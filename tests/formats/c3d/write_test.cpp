@@ -112,7 +112,8 @@ TEST_CASE("what a C3D can't hold is refused") {
         "expected at most 2^31 - 1 frames for a C3D, found 2147483648");
   stream.frames.stamps[2] += Duration{9'000'000};
   CHECK(error_of(stream, 3) ==
-        "expected stamps at an even 59.94 Hz, as a C3D has them, found frame 3 off by 0.009 s");
+        "expected evenly spaced stamps at 59.94 Hz, as required by C3D, found frame 3 off by 0.009 "
+        "s");
   stream.joint_names[0] = std::string(121, 'x');
   CHECK(
       error_of(stream, 3).starts_with("expected names of at most 120 bytes for a C3D, found xxx"));
@@ -120,7 +121,7 @@ TEST_CASE("what a C3D can't hold is refused") {
   stream = any_points(20'000, 0, rate_hz, start_ns, random);
   for (std::string& name : stream.joint_names) name += "_of_the_left_hand";
   CHECK(error_of(stream, 0) ==
-        "expected names that fit into 130 KB of C3D parameters, found 20000 names that don't");
+        "expected names that fit into 130 KB of C3D parameters, found 20000 names that do not fit");
 }
 
 TEST_CASE("a disk that refuses is told") {

@@ -77,7 +77,7 @@ TEST_CASE("a node without an orientation in a row is invalid there, the others a
   REQUIRE(read.findings.size() == 1);
   CHECK(read.findings[0].severity == Severity::note);
   CHECK(text_of(read.findings[0]) ==
-        "a.sto: expected quaternions of length 1, found 1 of 6 samples with a zero one");
+        "a.sto: expected quaternions of length 1, found 1 of 6 samples with length 0");
   CHECK(read.findings[0].meaning == "these samples are invalid");
 }
 
@@ -85,10 +85,11 @@ TEST_CASE("quaternions of another length are brought to 1, with a finding from t
   const auto read = read_sto(head + "1\t2,0,0,0\t1.019,0,0,0\n2\t0,0.97,0,0\t0,0,0,1e-7\n");
   REQUIRE(read.findings.size() == 2);
   CHECK(read.findings[1].severity == Severity::warning);
-  CHECK(text_of(read.findings[1]) ==
-        "a.sto: expected quaternions of length 1, found 2 of 4 off by more than 2 %");
-  CHECK(read.findings[1].meaning == "they were brought to length 1");
-  CHECK(read.findings[1].repair == "check that the layout names the right columns");
+  CHECK(
+      text_of(read.findings[1]) ==
+      "a.sto: expected quaternions of length 1, found 2 of 4 samples that differ by more than 2 %");
+  CHECK(read.findings[1].meaning == "these quaternions were normalised");
+  CHECK(read.findings[1].repair == "check the columns in the layout");
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
     CHECK(quat(read.rows.orientation, i).norm() == doctest::Approx(1.0).epsilon(1e-15));
   }

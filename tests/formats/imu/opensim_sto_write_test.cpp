@@ -112,7 +112,7 @@ TEST_CASE("what a .sto can't hold is refused") {
   stream.node_names[1] = "left\tarm";
   CHECK(refusal(stream) == "expected names of nodes for a .sto without tabs, found left?arm");
   stream.node_names.clear();
-  CHECK(refusal(stream) == "expected one node or more for a .sto, found none");
+  CHECK(refusal(stream) == "expected at least one node for a .sto, found none");
   stream.content.orientation = false;
-  CHECK(refusal(stream) == "expected orientations for a .sto, found nodes without any");
+  CHECK(refusal(stream) == "expected orientations for a .sto, found nodes without orientations");
 }

@@ -98,7 +98,7 @@ TEST_CASE("stamps come from index and rate, and begin at start_ns where that is 
   CHECK(read.error == "");
   CHECK(read.rows.stamps == std::vector<Time>{utc_time(1000), utc_time(60'001'000)});
   CHECK(texts_of(read.findings) ==
-        std::vector<std::string>{"a.mvnx: expected each frame, found 2 missing indices"});
+        std::vector<std::string>{"a.mvnx: expected every frame index, found 2 missing indices"});
   CHECK(std::vector<double>(read.rows.local_positions.begin(),
                             read.rows.local_positions.begin() + 3) == std::vector<double>{2, 0, 2});
   CHECK(read_mvnx(mvnx_of(two_frames, "none")).error ==
@@ -118,12 +118,11 @@ TEST_CASE("frames that lack a segment or step back are left out, with a finding"
   const std::string back = upright("index=\"1\" type=\"normal\"", "9");
   const auto read = read_mvnx(mvnx_of(two_frames + lacking + zero + no_number + back));
   CHECK(read.rows.size() == 2);
-  CHECK(
-      texts_of(read.findings) ==
-      std::vector<std::string>{
-          "a.mvnx: expected orientation and position of all segments in each frame, found 3 frames "
-          "without",
-          "a.mvnx: expected frames whose index rises, found 1 others"});
+  CHECK(texts_of(read.findings) ==
+        std::vector<std::string>{
+            "a.mvnx: expected orientation and position of all segments in "
+            "each frame, found 3 frames without them",
+            "a.mvnx: expected frames with a rising index, found 1 other frames"});
 }
 
 TEST_CASE("times that are not those of the frame rate are a finding") {
@@ -133,7 +132,7 @@ TEST_CASE("times that are not those of the frame rate are a finding") {
       read_mvnx(mvnx_of(two_frames + upright("time=\"90\" index=\"2\" type=\"normal\"", "0")));
   CHECK(texts_of(later.findings) ==
         std::vector<std::string>{
-            "a.mvnx: expected times of frameRate 100, found times off by up to 0.07 s"});
+            "a.mvnx: expected times of frameRate 100, found times that differ by up to 0.07 s"});
 }
 
 TEST_CASE("a packed file is read as the plain one, and rows do not depend on the pieces") {
@@ -186,10 +185,9 @@ TEST_CASE("a fault in the last bytes of a file is an error, in whatever pieces t
 TEST_CASE("what is no motion of segments is an error with its line") {
   CHECK(read_mvnx("").error == "a.mvnx:1: expected well-formed XML, found no element found");
   CHECK(read_mvnx("<html/>").error == "a.mvnx:1: expected the element mvnx, found html");
-  CHECK(
-      read_mvnx(mvnx_of("")).error ==
-      "a.mvnx: expected a frame of type normal with all segments, found the end of the file behind "
-      "0 incomplete ones");
+  CHECK(read_mvnx(mvnx_of("")).error ==
+        "a.mvnx: expected a frame of type normal with all segments, found the end of the file "
+        "after 0 incomplete frames");
   CHECK(read_mvnx(mvnx_of(two_frames, "100",
                           "<points><point label=\"x\"><pos_b>1 2</pos_b>"
                           "</point></points>"))
@@ -230,8 +228,8 @@ TEST_CASE("sensors become nodes: free acceleration is turned into the sensor's s
   CHECK((Vec3(vec3(read.rows.acceleration, 1)) - Vec3(0, -1, 0)).norm() < 1e-7);
   CHECK((quat(read.rows.orientation, 0) * Vec3(0, 0, 1) - Vec3(0, 1, 0)).norm() < 1e-15);
   CHECK(texts_of(read.findings) ==
-        std::vector<std::string>{"a.mvnx: expected what the first frame has of its sensors in each "
-                                 "frame, found 1 frames without"});
+        std::vector<std::string>{"a.mvnx: expected the same sensor values in each frame as in the "
+                                 "first frame, found 1 frames without them"});
 }
 
 TEST_CASE("accelerations with gravity and angular velocities of sensors are taken as they are") {
@@ -244,6 +242,5 @@ TEST_CASE("accelerations with gravity and angular velocities of sensors are take
   CHECK(read.rows.angular_velocity == std::vector<double>{1, 2, 3, 4, 5, 6});
   CHECK(read_sensors(mvnx_of(two_frames)).error ==
         "a.mvnx:9: expected sensors with orientation, acceleration or angular velocity, found "
-        "none in "
-        "the first frame");
+        "no such sensors in the first frame");
 }

@@ -115,5 +115,5 @@ TEST_CASE("what a .mot can't hold is refused") {
   clip.skeleton.joint_names[1] = "Left Arm";
   CHECK(refusal(clip, 1) ==
         "expected names of joints for a .mot without tabs and blanks, found 'Left Arm'");
-  CHECK(refusal({}, 0) == "expected one joint or more for a .mot, found none");
+  CHECK(refusal({}, 0) == "expected at least one joint for a .mot, found none");
 }

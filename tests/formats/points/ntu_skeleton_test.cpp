@@ -44,7 +44,7 @@ TEST_CASE("the first body seen is read and the others are named") {
   CHECK(to_ns(read.rows.stamps[1]) == 33'333'333);
   REQUIRE(read.findings.size() == 1);
   CHECK(text_of(read.findings[0]) ==
-        "S001.skeleton: expected one body, found also 72057594037931368");
+        "S001.skeleton: expected one body, found several: also 72057594037931368");
 }
 
 TEST_CASE("a body is selected by its id") {
@@ -68,7 +68,7 @@ TEST_CASE("a skeleton file that ends early keeps its whole frames") {
   CHECK(read.rows.size() == 1);
   REQUIRE(read.findings.size() == 3);
   CHECK(text_of(read.findings[1]) ==
-        "S001.skeleton:35: expected a whole frame, found the end of the file");
+        "S001.skeleton:35: expected a complete frame, found the end of the file");
   CHECK(text_of(read.findings[2]) == "S001.skeleton:1: expected 3 frames, found 1");
 }
 
@@ -127,7 +127,7 @@ TEST_CASE("a promise of more frames than there are is a finding, however large")
   REQUIRE(read.findings.size() == 1);
   CHECK(text_of(read.findings[0]) ==
         "S001.skeleton:1: expected 18446744073709551615 frames, found 1");
-  CHECK(read.findings[0].meaning == "the frames that are there were read");
+  CHECK(read.findings[0].meaning == "the existing frames were read");
 }
 
 TEST_CASE("a body that leaves and comes back is one stream, its absence missing joints") {
@@ -139,9 +139,9 @@ TEST_CASE("a body that leaves and comes back is one stream, its absence missing 
   CHECK(read.rows.positions[75] == 0.0);
   CHECK(read.rows.positions[150] == 9.0);
   REQUIRE(!read.findings.empty());
-  CHECK(text_of(read.findings[0]) == "S001.skeleton: expected one body, found also 8");
-  CHECK(read.findings[0].meaning == "body 7, the first seen, was read");
-  CHECK(read.findings[0].repair == "select another with body = its id");
+  CHECK(text_of(read.findings[0]) == "S001.skeleton: expected one body, found several: also 8");
+  CHECK(read.findings[0].meaning == "body 7, the first in the file, was read");
+  CHECK(read.findings[0].repair == "to read another body, set body to its id");
 }
 
 TEST_CASE("rate, start, unit and axis of a skeleton file are the user's where given") {

@@ -55,7 +55,8 @@ TEST_CASE("times that are not those of the DataRate are a finding") {
   };
   CHECK(said("0.01", "0.02").empty());
   CHECK(said("0.0109", "0.0218").empty());
-  CHECK(said("0.04", "0.08") == "walk.trc:3: expected times of DataRate 100, found 25 a second");
+  CHECK(said("0.04", "0.08") ==
+        "walk.trc:3: expected times of DataRate 100, found 25 frames per second");
 }
 
 TEST_CASE("a blank line ends the rows of a TRC file") {
@@ -63,7 +64,7 @@ TEST_CASE("a blank line ends the rows of a TRC file") {
   CHECK(read.rows.size() == 1);
   REQUIRE(read.findings.size() == 1);
   CHECK(text_of(read.findings[0]) ==
-        "walk.trc: expected nothing behind the blank line that ends the rows, found 1 lines");
+        "walk.trc: expected no rows after a blank line, which ends the data, found 1 lines");
 }
 
 TEST_CASE("a head of a TRC file that can't be understood is an error with its line") {
@@ -142,7 +143,7 @@ TEST_CASE("a TRC file that was cut off ends with its last whole line") {
   CHECK(unsure.rows.size() == 1);
   REQUIRE(unsure.findings.size() == 1);
   CHECK(text_of(unsure.findings[0]) ==
-        "walk.trc:7: expected a line end behind the last value, found the end of the file");
+        "walk.trc:7: expected a line end after the last value, found the end of the file");
 }
 
 TEST_CASE("a TRC file whose time stands still is said, and stamped by a rate where one is known") {
@@ -151,7 +152,7 @@ TEST_CASE("a TRC file whose time stands still is said, and stamped by a rate whe
   const auto stuck = read_trc(text);
   REQUIRE(stuck.findings.size() == 1);
   CHECK(text_of(stuck.findings[0]) ==
-        "walk.trc: expected stamps that move, found the same stamp in the first 3 rows");
+        "walk.trc: expected stamps that change, found the same stamp in the first 3 rows");
   StreamOptions options;
   options.rate_hz = 100;
   CHECK(read_trc(text, options).rows.stamps == std::vector<Time>{utc_time(4'000'000'000),

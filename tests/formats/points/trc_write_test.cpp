@@ -93,7 +93,7 @@ TEST_CASE("a real TRC is written again with the same values" * doctest::skip(!sh
       trc_of(stream, {stream.joint_names, 250.0, first.rows.size(), "again", {}}).value());
   REQUIRE(again.findings.size() == 1);  // the file's times do not fit its DataRate
   CHECK(text_of(again.findings[0]) ==
-        "written.trc:3: expected times of DataRate 250, found 25.04 a second");
+        "written.trc:3: expected times of DataRate 250, found 25.04 frames per second");
   CHECK(again.rows.stamps == first.rows.stamps);
   CHECK(again.rows.state == first.rows.state);
   CHECK(largest_difference(again.rows.positions, first.rows.positions) <= 5.1e-9);
@@ -106,6 +106,6 @@ TEST_CASE("what a TRC can't hold is refused") {
   CHECK(refusal(stream, {{"A", "B\tC"}, 100.0, 3, "", {}}) ==
         "expected names of markers for a TRC without tabs, found B?C");
   CHECK(refusal(stream, {{}, 100.0, 3, "", {}}) ==
-        "expected one marker or more for a TRC, found none");
+        "expected at least one marker for a TRC, found none");
   CHECK(refusal(stream, {{"A", "B"}, 0.0, 3, "", {}}) == "expected a rate for a TRC, found 0");
 }

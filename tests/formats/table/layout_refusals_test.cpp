@@ -125,11 +125,11 @@ TEST_CASE("a file has the columns that its layout names, each once, each with on
       "name = 'n'\nrate_hz = 1\n[joints]\nnames = ['A']\nfields = { x = 'u', y = 'v', z = '";
   CHECK(fault_of_file(by_name + "w' }\n", "u,v,w\n1,2,3\n") == "");
   CHECK(fault_of_file(by_name + "w' }\n", "u,v\n1,2\n") ==
-        "p.csv:1: expected a column w, found none of that name (nearest: u)");
+        "p.csv:1: expected a column w, found no such column (nearest: u)");
   CHECK(fault_of_file(by_name + "w' }\n", "u,v,w,w\n1,2,3,4\n") ==
-        "p.csv:1: expected one column w, found 2 of that name");
+        "p.csv:1: expected one column w, found 2 with this name");
   CHECK(fault_of_file(by_name + "u' }\n", "u,v\n1,2\n") ==
-        "p.csv:1: expected one meaning for column 1, found two");
+        "p.csv:1: expected one use of column 1, found two");
   const std::string numbered =
       "name = 'n'\nheader = false\ncolumns = 4\n[time]\ncolumn = 9\n" + joints;
   CHECK(fault_of_file(numbered, "1,2,3,4\n") == "p.csv:1: expected a column 9, found 4 columns");

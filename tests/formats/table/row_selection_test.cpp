@@ -33,7 +33,7 @@ TEST_CASE("rows are selected by a column, numbers by their value") {
   CHECK(read_point(layout, text, options).rows.size() == 2);
   options.select = {{"whom", "bob"}};
   CHECK(read_point(layout, text, options).error ==
-        "p.csv:1: expected a column of the file to select by (nearest: who), found \"whom\"");
+        "p.csv:1: expected an existing column in select (nearest: who), found \"whom\"");
 }
 
 TEST_CASE("what a wrong selection means and what mends it is said with it") {
@@ -45,9 +45,9 @@ TEST_CASE("what a wrong selection means and what mends it is said with it") {
   const auto none = read_point(layout, text, options);
   REQUIRE(none.findings.size() == 1);
   CHECK(text_of(none.findings[0]) ==
-        "p.csv: expected rows of id 9, found none among 2, which are of id 7, nothing");
+        "p.csv: expected rows of id 9, found no such row; 2 rows of id 7, nothing");
   CHECK(none.findings[0].meaning == "the stream is empty");
-  CHECK(none.findings[0].repair == "select values that are there");
+  CHECK(none.findings[0].repair == "select existing values");
   const auto mixed = read_point(layout, text, {});
   REQUIRE(mixed.findings.size() == 1);
   CHECK(mixed.findings[0].severity == Severity::warning);
@@ -65,7 +65,7 @@ TEST_CASE("a selection that takes no row is an error that names what is there") 
   REQUIRE(read.findings.size() == 1);
   CHECK(read.findings[0].severity == Severity::error);
   CHECK(text_of(read.findings[0]) ==
-        "p.csv: expected rows of id 1, who bob, found none among 3, which are of id 1, 2, who ann, "
+        "p.csv: expected rows of id 1, who bob, found no such row; 3 rows of id 1, 2, who ann, "
         "bob");
   for (int id = 3; id < 20; ++id) text += std::to_string(id) + ",eve,1,0,0\n";
   options.select = {{"id", "100"}};
@@ -81,9 +81,10 @@ TEST_CASE("two bodies in one stream are a finding that proposes a selection") {
   const auto mixed = read_point(layout, text, {});
   CHECK(mixed.rows.size() == 3);
   REQUIRE(mixed.findings.size() == 1);
-  CHECK(text_of(mixed.findings[0]) == "p.csv: expected one body in the rows taken, found id 1, 2");
+  CHECK(text_of(mixed.findings[0]) ==
+        "p.csv: expected one body in the selected rows, found id 1, 2");
   CHECK(mixed.findings[0].repair ==
-        "select one: select = { \"id\" = 1 } in the manifest, --select \"id=1\"");
+        "select one body: select = { \"id\" = 1 } in the manifest, --select \"id=1\"");
   StreamOptions options;
   options.select = {{"id", "2"}};
   CHECK(read_point(layout, text, options).findings.empty());

@@ -71,10 +71,10 @@ fields = { x = "{joint}_x", y = "{joint}_y", z = "{joint}_z", state = "{joint}_s
                    "A_x,A_y,A_z\n1,2,3\n")
             .rows.state == std::vector<Tracking>{Tracking::tracked});
   CHECK(read_all(two_reader(), "t,ShoulderLeft_x\n").error ==
-        "k.csv:1: expected a column ShoulderLeft_y, found none of that name (nearest: "
+        "k.csv:1: expected a column ShoulderLeft_y, found no such column (nearest: "
         "ShoulderLeft_x)");
   CHECK(read_all(two_reader(), "t,t," + head).error ==
-        "k.csv:1: expected one column t, found 3 of that name");
+        "k.csv:1: expected one column t, found 3 with this name");
 }
 
 TEST_CASE("empty and nan cells, a state of 0 and the layout's missing point are missing joints") {
@@ -124,7 +124,7 @@ TEST_CASE("an incomplete last line is dropped with a finding") {
   REQUIRE(unended.findings.size() == 1);  // the 6 may have been 6.5 before the file was cut
   CHECK(unended.findings[0].severity == Severity::note);
   CHECK(text_of(unended.findings[0]) ==
-        "p.csv:2: expected a line end behind the last value, found the end of the file");
+        "p.csv:2: expected a line end after the last value, found the end of the file");
   CHECK(read_point(one_point, "1,2").error == "p.csv:1: expected 3 cells, found 2");
 }
 
@@ -167,8 +167,8 @@ TEST_CASE("stamps that never move are a finding and give way to a rate") {
   CHECK(stuck.error == "");
   REQUIRE(stuck.findings.size() == 1);
   CHECK(text_of(stuck.findings[0]) ==
-        "k.csv: expected stamps that move, found the same stamp in the first 32 rows");
-  CHECK(stuck.findings[0].repair == "say rate_hz, the rate at which the device wrote");
+        "k.csv: expected stamps that change, found the same stamp in the first 32 rows");
+  CHECK(stuck.findings[0].repair == "set rate_hz to the rate of the device");
   CHECK(stuck.rows.stamps.back() == utc_time(1'594'038'000'000'000'000));
   StreamOptions options;
   options.rate_hz = 10;
@@ -241,9 +241,10 @@ fields = { qw="w", qx="x", qy="y", qz="z", ax="ax", ay="ay", az="az", gx="gx", g
   CHECK(read.rows.orientation[4] == 0.0);
   REQUIRE(read.findings.size() == 2);
   CHECK(text_of(read.findings[0]) ==
-        "data/waist.csv: expected quaternions of length 1, found 1 of 2 samples with a zero one");
+        "data/waist.csv: expected quaternions of length 1, found 1 of 2 samples with length 0");
   CHECK(text_of(read.findings[1]) ==
-        "data/waist.csv: expected quaternions of length 1, found 1 of 2 off by more than 2 %");
+        "data/waist.csv: expected quaternions of length 1, found 1 of 2 samples that differ by "
+        "more than 2 %");
 }
 
 TEST_CASE("quantities whose columns are absent are absent") {
@@ -256,7 +257,7 @@ TEST_CASE("quantities whose columns are absent are absent") {
   CHECK(read.rows.angular_velocity == std::vector<double>{1, 2, 3});
   CHECK(read.rows.stamps == std::vector<Time>{utc_time(1'642'700'848'752'000'001)});
   CHECK(read_all(make_imu_table_reader(builtin("imu"), {}, "w.csv", "waist"), "time_ns,gx,gy\n")
-            .error == "w.csv:1: expected a column gz, found none of that name (nearest: gx)");
+            .error == "w.csv:1: expected a column gz, found no such column (nearest: gx)");
 }
 
 TEST_CASE("rows do not depend on where the file is cut into pieces") {
@@ -316,19 +317,19 @@ TEST_CASE("a column that a user's own layout names and the file lacks is noted")
       "fields = { x = \"{joint}_x\", y = \"{joint}_y\", z = \"{joint}_z\", state = "
       "\"{joint}_status\" }");
   CHECK(noted(make_point_table_reader(points, own, "k.csv")) ==
-        "k.csv: expected a column a_status, as layout mine says, found none of that name; every "
-        "joint that has a place counts as tracked");
+        "k.csv: expected a column a_status, as layout mine says, found no such column; every joint "
+        "with a position counts as tracked");
   // Names of a built-in layout, with or without states.
   const std::string theirs = "t,a_x,a_y,a_z\n1,1,2,3\n2,1,2,3\n";
   CHECK(read_all(make_point_table_reader(points, {}, "k.csv"), theirs).findings.empty());
   const auto built_in = read_all(make_point_table_reader(points, {}, "k.csv"), text).findings;
   REQUIRE(built_in.size() == 1);  // unless it has another name
-  CHECK(built_in[0].repair == "call it so, if it is one of the 3 columns that are not read");
+  CHECK(built_in[0].repair == "if it is one of the 3 unread columns, use its name in the layout");
   const TableLayout nodes = layout_of(
       "name = \"mine\"\nkind = \"imu\"\n[time]\ncolumn = \"t\"\n[nodes]\nnames = [\"w\"]\n"
       "fields = { ax = \"{node}_ax\", ay = \"{node}_ay\", az = \"{node}_az\", gx = \"{node}_gx\", "
       "gy = \"{node}_gy\", gz = \"{node}_gz\" }");
   CHECK(noted(make_imu_table_reader(nodes, own, "w.csv", "")) ==
-        "w.csv: expected a column w_gx, as layout mine says, found none of that name; the nodes "
-        "have no such quantity");
+        "w.csv: expected a column w_gx, as layout mine says, found no such column; this quantity "
+        "is missing for all nodes");
 }

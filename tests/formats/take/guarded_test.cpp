@@ -66,11 +66,11 @@ TEST_CASE("a crash in a child is an error") {
                   std::raise(SIGSEGV);
                   return std::string();
                 }) ==
-        "take.h5: expected a take that HDF5 can read, found one on which the library crashed "
+        "take.h5: expected a take that HDF5 can read, found a file on which the library crashed "
         "(signal 11)");
   CHECK(outcome({}, []() -> Result<std::string> { std::_Exit(0); }) ==
-        "take.h5: expected a take that HDF5 can read, found one that ended the program that read "
-        "it");
+        "take.h5: expected a take that HDF5 can read, found a file that ended the program that "
+        "read it");
 }
 
 TEST_CASE("an endless loop in a child is ended by processor time or by the clock") {
@@ -80,13 +80,13 @@ TEST_CASE("an endless loop in a child is ended by processor time or by the clock
     for (;;) std::atomic_signal_fence(std::memory_order_seq_cst);
   };
   CHECK(outcome(limits, spin) ==
-        "take.h5: expected a take that HDF5 can read, found one that took more than 1 s of "
+        "take.h5: expected a take that HDF5 can read, found a file that took more than 1 s of "
         "processor time");
   limits.cpu_seconds = 600;
   limits.wall_seconds = 1;
   CHECK(outcome(limits, []() -> Result<std::string> {
           for (;;) ::pause();
-        }) == "take.h5: expected a take that HDF5 can read, found one that took more than 1 s");
+        }) == "take.h5: expected a take that HDF5 can read, found a file that took more than 1 s");
 }
 
 TEST_CASE("a child that wants too much memory is an error" * doctest::skip(sanitized) *
@@ -98,7 +98,7 @@ TEST_CASE("a child that wants too much memory is an error" * doctest::skip(sanit
                   std::vector<std::string> hoard;
                   for (;;) hoard.emplace_back(1 << 20, 'x');
                 }) ==
-        "take.h5: expected a take that HDF5 can read, found one that needs more than 256 MiB of "
+        "take.h5: expected a take that HDF5 can read, found a file that needs more than 256 MiB of "
         "memory");
 }
 
@@ -118,15 +118,15 @@ TEST_CASE("a child that sends what no child of ours sends is ended, though it wo
   GuardLimits limits;
   limits.wall_seconds = 20;
   CHECK(outcome(limits, babble) ==
-        "take.h5: expected a take that HDF5 can read, found one that overran the program that read "
-        "it");
+        "take.h5: expected a take that HDF5 can read, found a file whose result was too long");
 }
 
 TEST_CASE("more output than wanted ends the child") {
   GuardLimits limits;
   limits.output_bytes = 1000;
-  CHECK(outcome(limits, []() -> Result<std::string> { return std::string(1 << 24, 'x'); }) ==
-        "take.h5: expected a take that HDF5 can read, found one whose contents exceed 1000 bytes");
+  CHECK(
+      outcome(limits, []() -> Result<std::string> { return std::string(1 << 24, 'x'); }) ==
+      "take.h5: expected a take that HDF5 can read, found a file whose contents exceed 1000 bytes");
 }
 
 TEST_CASE("what a child sends arrives in order, piece by piece") {

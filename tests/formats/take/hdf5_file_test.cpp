@@ -46,10 +46,10 @@ TEST_CASE("HDF5 of another program is told from a take, whatever version wrote i
     const auto cut = opened(folder.write("cut.h5", whole.substr(0, whole.size() - 1)));
     REQUIRE_FALSE(cut);
     CHECK(to_string(cut.error()) ==
-          (folder / "cut.h5") + ": expected a whole HDF5 file, found one cut short: " +
+          (folder / "cut.h5") + ": expected a complete HDF5 file, found a truncated file: " +
               std::to_string(whole.size() - 1) + " bytes of " + std::to_string(whole.size()));
     const auto stump = opened(folder.write("cut.h5", whole.substr(0, 20)));
     REQUIRE_FALSE(stump);
-    CHECK(stump.error().found == "one cut short: 20 bytes");
+    CHECK(stump.error().found == "a truncated file: 20 bytes");
   }
 }

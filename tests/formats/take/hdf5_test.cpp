@@ -238,7 +238,7 @@ TEST_CASE("streams that can't be told apart are refused") {
   take.header.groups[1].name = "mocap";
   const auto twice = write(files, folder / "take.h5", take);
   REQUIRE_FALSE(twice);
-  CHECK(to_string(twice.error()) == "expected a name for each stream, once only, found \"mocap\"");
+  CHECK(to_string(twice.error()) == "expected a name for each stream, only once, found \"mocap\"");
   take.header.groups[1].name = "time_ns";
   const auto taken = write(files, folder / "take.h5", take);
   REQUIRE_FALSE(taken);
@@ -253,12 +253,12 @@ TEST_CASE("a take whose skeleton is not finite is refused") {
   skeleton.rest_offsets[1][2] = std::numeric_limits<double>::infinity();
   write_or_fail(folder / "a.h5", take);
   CHECK(to_string(read_through(folder / "a.h5").error()) ==
-        (folder / "a.h5") + ": expected finite numbers, found another one in rest_offsets");
+        (folder / "a.h5") + ": expected finite numbers, found other content in rest_offsets");
   skeleton.rest_offsets[1][2] = 0.0;
   skeleton.end_sites[0].offset[0] = std::numeric_limits<double>::quiet_NaN();
   write_or_fail(folder / "b.h5", take);
   CHECK(to_string(read_through(folder / "b.h5").error()) ==
-        (folder / "b.h5") + ": expected finite numbers, found another one in end_sites");
+        (folder / "b.h5") + ": expected finite numbers, found other content in end_sites");
 }
 
 namespace {

@@ -58,19 +58,19 @@ TEST_CASE("a stream's name can be a group beside what else stands in a take") {
           "expected a stream's name that can be a group of the take, found \"" + name + "\"");
   }
   CHECK(fault_of(of({points("")})) ==
-        "expected a stream's name that can be a group of the take, found an empty one");
+        "expected a stream's name that can be a group of the take, found an empty name");
   CHECK(fault_of(of({points("kinect"), points("kinect")})) ==
-        "expected a name for each stream, once only, found \"kinect\"");
+        "expected a name for each stream, only once, found \"kinect\"");
   CHECK(fault_of(of({points("kinect"), points("Kinect"), points("3 k#")})) == "none");
 }
 
 TEST_CASE("joints and nodes have names that differ, none empty, none with a NUL in it") {
   CHECK(fault_of(of({points("k", {"Head", "Head"})})) ==
-        "expected a name for each joint, once only, found \"Head\"");
+        "expected a name for each joint, only once, found \"Head\"");
   CHECK(fault_of(of({points("k", {"Head", std::string("a\0b", 3)})}))
             .starts_with("expected a name for each joint, found \"a"));
   const TakeGroup nodes{"imu", ImuGroup{{"waist", "waist"}, {}, ""}, true, false, {}, "take"};
-  CHECK(fault_of(of({nodes})) == "expected a name for each node, once only, found \"waist\"");
+  CHECK(fault_of(of({nodes})) == "expected a name for each node, only once, found \"waist\"");
   Skeleton backward = skeleton;
   backward.parents = {1, -1};
   CHECK(fault_of(of({{"mocap", ClipGroup{backward}, false, false, {}, "take"}})) ==

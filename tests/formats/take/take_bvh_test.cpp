@@ -89,7 +89,7 @@ TEST_CASE("of a take, rows that are not valid hold the last valid pose, with a f
   CHECK(made.findings[0].what.found == "mocap, suit");
   CHECK(made.findings[0].meaning == "mocap was written");
   CHECK(made.findings[1].what.expected == "valid rows of mocap");
-  CHECK(made.findings[1].what.found == "5 of 9000 that are not");
+  CHECK(made.findings[1].what.found == "5 of 9000 rows that are not valid");
 }
 
 TEST_CASE("of a take whose rows are all invalid no BVH is made") {
@@ -105,11 +105,11 @@ TEST_CASE("of a take that holds no skeleton's stream, or places beyond measure, 
   points.all.rows = {
       PointRows{std::vector<double>(6, 1.0), {Tracking::tracked, Tracking::tracked}, {1, 1}, {}}};
   CHECK(converted(written(folder, points)).error ==
-        (folder / "take.h5") + ": expected a take with a skeleton's stream, found none");
+        (folder / "take.h5") + ": expected a take with a skeleton, found none");
   Take far = take_of({1, 1}, {10'000'000});
   std::get<ClipRows>(far.all.rows[0]).local_positions[7] = -1e12;
   CHECK(converted(written(folder, far)).error ==
-        (folder / "take.h5") + ": expected positions below 1e12 m, found larger ones");
+        (folder / "take.h5") + ": expected positions below 1e12 m, found larger positions");
 }
 
 TEST_CASE("of several skeletons the first is written, and the note says what holds them all") {
@@ -118,9 +118,9 @@ TEST_CASE("of several skeletons the first is written, and the note says what hol
   REQUIRE(made.findings.size() == 1);
   CHECK(made.findings[0].severity == Severity::note);
   CHECK(to_string(made.findings[0].what) ==
-        (folder / "take.h5") + ": expected one skeleton's stream, found mocap, suit");
+        (folder / "take.h5") + ": expected one skeleton, found mocap, suit");
   CHECK(made.findings[0].meaning == "mocap was written");
-  CHECK(made.findings[0].repair == "convert to .npz holds them all");
+  CHECK(made.findings[0].repair == "convert to .npz to keep all of them");
 }
 
 TEST_CASE("stamps that no fixed step has are a finding") {
@@ -128,5 +128,5 @@ TEST_CASE("stamps that no fixed step has are a finding") {
   const auto made = converted(written(folder, take_of({1, 1, 1, 1, 1}, {30'000'000, 36'000'000})));
   REQUIRE(made.findings.size() == 2);
   CHECK(made.findings[1].what.found == "steps of 30 to 36 ms");
-  CHECK(made.findings[1].meaning == "the frame time is their mean, 33 ms");
+  CHECK(made.findings[1].meaning == "the frame time is the mean step, 33 ms");
 }

@@ -171,7 +171,7 @@ TEST_CASE("streams whose arrays would share a name in the file are refused") {
   REQUIRE(!written);
   CHECK(to_string(written.error()) ==
         (folder / "a.npz") +
-            ": expected streams whose arrays can be told apart (STREAM_ARRAY.npy): rename one, "
+            ": expected streams whose array names differ (STREAM_ARRAY.npy): rename a stream, "
             "found 'mocap_local_positions' twice");
   CHECK(folder.empty());
 }

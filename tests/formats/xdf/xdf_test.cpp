@@ -289,7 +289,7 @@ TEST_CASE("xdf: headers that can't be used are named, and their samples are none
             "expected a channel_count in the header of stream 1, found '-1': its samples can't be "
             "read"},
            {"<info><channel_count>1</channel_count><channel_format>int7</channel_format></info>",
-            "expected a channel_format that is known in the header of stream 1, found 'int7': its "
+            "expected a known channel_format in the header of stream 1, found 'int7': its "
             "samples can't be read"}}) {
     const auto read = read_xdf(xdf_begin + xdf_chunk(2, little_text(1U) + xml) +
                                xdf_samples(1, 1, xdf_sample(1.0, "a")));
@@ -313,7 +313,7 @@ TEST_CASE("xdf: what breaks a rule and can be read all the same is counted") {
   CHECK(integers(read, 1) == Integers{'a'});
   CHECK(read.offsets.empty());
   REQUIRE(read.findings.size() == 5);
-  CHECK(read.findings[1].find("expected chunks of kinds 1 to 6, found one of kind 9 at byte") !=
+  CHECK(read.findings[1].find("expected chunks of kinds 1 to 6, found a chunk of kind 9 at byte") !=
         std::string::npos);
   CHECK(read.findings[1].ends_with(", 2 times"));
 }
@@ -323,7 +323,7 @@ TEST_CASE("xdf: other files are refused, packed ones with what to do") {
   CHECK(read_xdf("XD").error ==
         "rec.xdf: expected XDF: at the beginning, found the end of the file");
   CHECK(read_xdf("\x1f\x8b\x08").error ==
-        "rec.xdf: expected an XDF file, unpacked (gzip -d), found one packed by gzip");
+        "rec.xdf: expected an XDF file, unpacked (gzip -d), found a file packed by gzip");
   CHECK(looks_like_xdf("XDF:..."));
   CHECK(!looks_like_xdf("XD"));
 }
