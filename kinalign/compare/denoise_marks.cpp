@@ -108,7 +108,7 @@ Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
   }
   if (out.there_.size() < least_marked_joints) {
     return Failure(
-        Error{"", 0, "12 of the 18 joints that a Kinect and a truth share",
+        Error{"", 0, "at least 12 of the 18 joints that the Kinect and the truth have in common",
               std::to_string(out.there_.size()) + " among " + std::to_string(names.size())});
   }
   for (const SharedBone& bone : limb_bones) {

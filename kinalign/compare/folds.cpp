@@ -71,7 +71,7 @@ Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<Fo
   }
   for (const Fold& fold : out) {
     if (!fold.learnt.empty() && !fold.tested.empty()) continue;
-    return Failure(Error{"", 0, "takes to learn from and to test in every fold",
+    return Failure(Error{"", 0, "takes for training and for the test in every fold",
                          fold.name + ": " + std::to_string(fold.learnt.size()) + " and " +
                              std::to_string(fold.tested.size())});
   }

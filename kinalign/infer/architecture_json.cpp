@@ -114,7 +114,8 @@ class Reader {
     const auto kind = json["kind"].get<std::string>();
     const auto* const row = std::find_if(kind_rows.begin(), kind_rows.end(),
                                          [&](const KindRow& r) { return r.name == kind; });
-    if (row == kind_rows.end()) return wrong(at, "a known kind", "\"" + shown(kind) + "\"");
+    if (row == kind_rows.end())
+      return wrong(at, "a known kind of layer", "\"" + shown(kind) + "\"");
     Layer out;
     out.kind = row->kind;
     for (const auto& [key, value] : json.items()) {

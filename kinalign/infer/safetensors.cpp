@@ -114,7 +114,7 @@ Result<void> check_places(std::vector<Entry>& entries, std::size_t bytes, const 
     at = entry.end;
   }
   if (at == bytes) return {};
-  return wrong(file, std::to_string(at) + " bytes of tensors behind the header",
+  return wrong(file, std::to_string(at) + " bytes of tensors after the header",
                std::to_string(bytes));
 }
 

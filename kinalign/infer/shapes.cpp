@@ -182,10 +182,10 @@ class Check {
     if (all.size() != 1) return wrong(path, "one branch", std::to_string(all.size()));
     const std::size_t found = KA_TRY(branches(layer, layer.window, path, depth));
     if (!std::all_of(all.front().begin(), all.front().end(), is_row_by_row)) {
-      return wrong(path, "a branch whose layers take each row by itself", "others");
+      return wrong(path, "a branch whose layers process each row separately", "others");
     }
     if (found == layer.window) return inputs;
-    return wrong(path, counted(layer.window, "channels behind the branch"), std::to_string(found));
+    return wrong(path, counted(layer.window, "channels after the branch"), std::to_string(found));
   }
 
   std::size_t layers_ = 0, parameters_ = 0, kept_ = 0;

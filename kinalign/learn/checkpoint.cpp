@@ -132,7 +132,7 @@ Result<TrainingState> read_checkpoint(std::string_view bytes, const std::string&
   const Json json =
       text == file.metadata.end() ? Json() : Json::parse(text->second, nullptr, false);
   if (!json.is_object()) {
-    return Failure(Error{name, 0, "a training run to go on with", "another file"});
+    return Failure(Error{name, 0, "a training run to continue", "a file of another kind"});
   }
   TrainingState out;
   try {
@@ -141,7 +141,7 @@ Result<TrainingState> read_checkpoint(std::string_view bytes, const std::string&
     }
     read_numbers(json, out);
   } catch (const Json::exception& fault) {
-    return Failure(Error{name, 0, "a whole training run", shown(fault.what())});
+    return Failure(Error{name, 0, "a complete training run", shown(fault.what())});
   }
   for_each_map(out, [&](const char* prefix, NamedTensors& tensors) {
     const std::string begin(prefix);

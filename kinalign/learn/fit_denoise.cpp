@@ -54,7 +54,8 @@ Result<void> take_tensors(const std::map<std::string, Tensor>& tensors, const st
     const bool fits =
         found != tensors.end() && to_torch(found->second).sizes().vec() == tensor.sizes().vec();
     if (!fits) {
-      return Failure(Error{"", 0, "a model of this method's network", "another one at " + name});
+      return Failure(
+          Error{"", 0, "a model of this method's network", "another network at " + name});
     }
     tensor.copy_(to_torch(found->second));
   }

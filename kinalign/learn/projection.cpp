@@ -221,8 +221,8 @@ bool has_hidden_space(const DenoiseModel& model) {
 Result<Projected> project(const DenoiseModel& model, const JointFrames& body,
                           const ProjectionOptions& options) {
   if (!has_hidden_space(model)) {
-    return Failure(Error{"", 0, "a model whose network has a hidden space, such as one of cnn",
-                         "one of " + shown(model.facts.method)});
+    return Failure(Error{"", 0, "a model whose network has a hidden space, such as a cnn model",
+                         "a model of " + shown(model.facts.method)});
   }
   const DenoiseFeatures features = denoise_features(model.layout, body);
   const Autoencoder autoencoder(model, features);

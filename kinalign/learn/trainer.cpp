@@ -161,8 +161,8 @@ std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
 }
 
 Failure lost_process() {
-  return Failure(Error{"", 0, "all processes of the training to go on to its end",
-                       "one that ended before (its own message says why)",
+  return Failure(Error{"", 0, "all processes of the training to run to the end",
+                       "a process that ended early (its own message says why)",
                        ErrorKind::lost_process});
 }
 
@@ -191,8 +191,8 @@ Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
     if (task.share().is_broken()) return lost_process();
     failures = norm ? 0 : failures + 1;
     if (failures == most_failures) {
-      return Failure(Error{"", 0, "a loss that is a number",
-                           "none at steps up to " + std::to_string(state.step)});
+      return Failure(Error{"", 0, "a finite loss",
+                           "NaN or infinity at steps up to " + std::to_string(state.step)});
     }
     if (norm) step_weights(network, options, *norm, state);
     ++state.step;

@@ -46,7 +46,8 @@ Result<Denoiser> Denoiser::make(DenoiseModel model) {
     };
     // Branches keep the number of frames by themselves (validate() of infer/shapes.h).
     if (count(LayerKind::max_pool) != count(LayerKind::unpool)) {
-      return Failure(Error{"", 0, "a network with as many frames out as in", "a max_pool alone"});
+      return Failure(
+          Error{"", 0, "a network with as many frames out as in", "a max_pool without unpool"});
     }
     if (one.inputs() == in && one.outputs() == out) return {};
     return Failure(Error{"", 0,

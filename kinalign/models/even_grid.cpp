@@ -40,12 +40,11 @@ double usual_step(const std::vector<Time>& stamps) {
 /// Fails if the stamps can't be brought onto a grid of that rate.
 Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
   if (stamps.size() < 2) {
-    return Failure(Error{"", 0, "two frames at least", std::to_string(stamps.size())});
+    return Failure(Error{"", 0, "at least two frames", std::to_string(stamps.size())});
   }
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] < stamps[i - 1]) {
-      return Failure(
-          Error{"", 0, "stamps that rise", "frame " + std::to_string(i) + " is earlier"});
+      return Failure(Error{"", 0, "rising stamps", "frame " + std::to_string(i) + " is earlier"});
     }
   }
   const double step = usual_step(stamps);
@@ -72,7 +71,7 @@ Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std:
   for (const std::size_t j : joints) {
     if (out[j]) continue;
     return Failure(Error{"", 0, "a joint \"" + wanted[j] + "\", which the model needs",
-                         "none of that name", ErrorKind::no_such_joint});
+                         "no such joint", ErrorKind::no_such_joint});
   }
   return out;
 }
@@ -119,9 +118,9 @@ Result<void> check_upright(const Upright& joints, const JointFrames& body) {
     if (body.positions[3 * head + 1] < body.positions[3 * root + 1] - least_below) ++below;
   }
   if (frames == 0 || 10 * below <= 9 * frames) return {};
-  return Failure(Error{
-      "", 0, "y up: a head above the hips",
-      "one below them in " + std::to_string(below) + " of " + std::to_string(frames) + " frames"});
+  return Failure(Error{"", 0, "y up: a head above the hips",
+                       "a head below the hips in " + std::to_string(below) + " of " +
+                           std::to_string(frames) + " frames"});
 }
 
 float gap_between(const float* a, const float* b) {

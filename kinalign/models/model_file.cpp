@@ -50,7 +50,8 @@ Result<ModelHeader> read_model_header(const TensorFile& file, const std::string&
   const bool is_ours =
       header.is_object() && header.contains("schema") && header.at("schema") == model_schema;
   if (!is_ours) {
-    return Failure(Error{name, 0, "a model of kinalign (schema kinalign.model/1)", "another file"});
+    return Failure(
+        Error{name, 0, "a model of kinalign (schema kinalign.model/1)", "a file of another kind"});
   }
   return header;
 }
@@ -70,7 +71,7 @@ ModelFacts facts_of(const ModelHeader& header) {
 }
 
 Failure broken_header(const std::string& name, const std::exception& fault) {
-  return Failure(Error{name, 0, "a whole header of a model", shown(fault.what())});
+  return Failure(Error{name, 0, "a complete header of a model", shown(fault.what())});
 }
 
 Result<Architecture> network_of(const ModelHeader& header, const std::string& key,

@@ -83,7 +83,7 @@ std::optional<std::size_t> find_end(const Bytes& bytes) {
 /// Reads the ZIP's central directory.
 Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& name) {
   const auto end = find_end(bytes);
-  if (!end) return broken(name, "an NPZ (numpy.savez)", "no end of a ZIP");
+  if (!end) return broken(name, "an NPZ (numpy.savez)", "no ZIP directory at the end");
   std::uint64_t count = bytes.number(*end + 10, 2), at = bytes.number(*end + 16, 4);
   if ((count == 0xffff || at == 0xffffffff) && *end >= 20) {
     const std::uint64_t end64 = bytes.number(*end - 12, 8);
@@ -95,11 +95,12 @@ Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& nam
   std::vector<Entry> out;
   for (std::uint64_t i = 0; i < count; ++i) {
     if (!bytes.holds(at, entry_size) || bytes.number(at, 4) != entry_mark) {
-      return broken(name, "an entry of the ZIP's list", "none at byte " + std::to_string(at));
+      return broken(name, "an entry of the ZIP directory",
+                    "no entry at byte " + std::to_string(at));
     }
     const std::size_t length = bytes.number(at + 28, 2), extra = bytes.number(at + 30, 2);
     if (!bytes.holds(at + entry_size, length + extra)) {
-      return broken(name, "a whole entry", "the end of the file");
+      return broken(name, "a complete entry", "the end of the file");
     }
     Entry entry{std::string(bytes.piece(at + entry_size, length)), bytes.number(at + 24, 4),
                 bytes.number(at + 42, 4)};
@@ -161,9 +162,9 @@ Result<StoredArray> read_array(std::string_view npy, const std::string& what) {
   }
   const bool wide = npy[6] > 1;
   const std::size_t begin = wide ? 12 : 10, length = bytes.number(8, wide ? 4 : 2);
-  if (!bytes.holds(begin, length)) return broken(what, "a whole header", "the end of the array");
+  if (!bytes.holds(begin, length)) return broken(what, "a complete header", "the end of the array");
   auto array = read_header(npy.substr(begin, length));
-  if (!array) return broken(what, "a header of NumPy, rows first", "another one");
+  if (!array) return broken(what, "a header of NumPy, in C order", "another header");
   std::size_t size = value_size(array->type);
   const std::size_t there = npy.size() - begin - length;
   for (const std::size_t one : array->shape) {
@@ -263,7 +264,7 @@ WindowsFacts::Stream stream_of(const nlohmann::json& json) {
 Result<WindowsFacts> read_facts(const std::string& text, const std::string& name) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("schema") || json.at("schema") != "kinalign.windows/1") {
-    return broken(name, "a manifest of schema kinalign.windows/1", "another one");
+    return broken(name, "a manifest of schema kinalign.windows/1", "another schema");
   }
   WindowsFacts out;
   try {
@@ -278,7 +279,7 @@ Result<WindowsFacts> read_facts(const std::string& text, const std::string& name
     }
     for (const auto& stream : json.at("streams")) out.streams.push_back(stream_of(stream));
   } catch (const nlohmann::json::exception& fault) {
-    return broken(name, "a whole manifest", shown(fault.what()));
+    return broken(name, "a complete manifest", shown(fault.what()));
   }
   return out;
 }
@@ -401,7 +402,7 @@ Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
   std::map<std::string, StoredArray> out;
   for (const Entry& entry : KA_TRY(entries_of(bytes, name))) {
     if (!bytes.holds(entry.at, local_size) || bytes.number(entry.at, 4) != local_mark) {
-      return broken(name, entry.name + " where the list says", "something else");
+      return broken(name, entry.name + " where the ZIP directory says", "another entry");
     }
     const std::size_t begin =
         entry.at + local_size + bytes.number(entry.at + 26, 2) + bytes.number(entry.at + 28, 2);

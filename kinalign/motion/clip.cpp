@@ -21,14 +21,14 @@ Result<void> validate(const Skeleton& skeleton) {
                            "joint '" + shown(skeleton.joint_names[j]) + "'"});
     }
     if (!names.insert(skeleton.joint_names[j]).second) {
-      return Failure(Error{"", 0, "joint names that differ",
-                           "'" + shown(skeleton.joint_names[j]) + "' twice"});
+      return Failure(
+          Error{"", 0, "different joint names", "'" + shown(skeleton.joint_names[j]) + "' twice"});
     }
   }
   for (const EndSite& end : skeleton.end_sites) {
     if (end.parent < 0 || end.parent >= static_cast<int>(joints)) {
       return Failure(Error{"", 0, "end sites on joints of the skeleton",
-                           "one on joint " + std::to_string(end.parent)});
+                           "an end site on joint " + std::to_string(end.parent)});
     }
   }
   return {};

@@ -135,7 +135,7 @@ Result<KinectMap> kinect_map(const Skeleton& skeleton) {
     best_name = name;
   }
   if (best->missing.empty()) return best->map;
-  std::string found = "none called ";
+  std::string found = "no joint called ";
   for (std::size_t i = 0; i < best->missing.size(); ++i) {
     found += (i == 0 ? "" : ", ") + best->missing[i];
   }

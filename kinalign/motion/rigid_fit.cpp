@@ -40,7 +40,7 @@ Result<RigidTransform> fit_rigid(const PairMoments& m) {
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& sizes = svd.singularValues();
   if (!(sizes[1] > 1e-9 * sizes[0])) {
-    return Failure(Error{"", 0, "points that do not lie on one line", "a line"});
+    return Failure(Error{"", 0, "points that are not on one line", "a line"});
   }
   Vec3 signs(1.0, 1.0, 1.0);
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs[2] = -1.0;

@@ -96,7 +96,8 @@ TEST_CASE("a truth of too few shared joints is refused with their number") {
   const auto marker = DenoiseMarker::make(layout_of(names), {});
   REQUIRE_FALSE(marker);
   CHECK(to_string(marker.error()) ==
-        "expected 12 of the 18 joints that a Kinect and a truth share, found 4 among 5");
+        "expected at least 12 of the 18 joints that the Kinect and the truth have in common, found "
+        "4 among 5");
 }
 
 TEST_CASE("wrists and standing feet have marks of their own") {

@@ -42,7 +42,7 @@ TEST_CASE("members left out have the defaults of Layer, but out and branches") {
 
 TEST_CASE("an error names the layer") {
   CHECK(message(layers(R"({"kind":"sum","branches":[[],[{"kind":"relu"},{"kind":"rely"}]]})")) ==
-        "m: expected a known kind in layer 0.1.1, found \"rely\"");
+        "m: expected a known kind of layer in layer 0.1.1, found \"rely\"");
   CHECK(message(layers(R"({"kind":"relu","slope":1})")) ==
         "m: expected members of relu in layer 0, found \"slope\"");
   CHECK(message(layers(R"({"kind":"linear","out":-1})")) ==

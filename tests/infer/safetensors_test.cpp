@@ -109,9 +109,9 @@ TEST_CASE("tensors lie one behind the other up to the end of the file") {
   CHECK(message(file_of(one(R"("F32")", "[2]", "[0,4]"), "1234")) ==
         "m.safetensors: expected 8 bytes of tensor \"a\", found bytes 0 to 4");
   CHECK(message(file_of(one(R"("F32")", "[1]", "[0,4]"), "12345")) ==
-        "m.safetensors: expected 4 bytes of tensors behind the header, found 5");
+        "m.safetensors: expected 4 bytes of tensors after the header, found 5");
   CHECK(message(file_of(one(R"("F32")", "[1]", "[0,4]"), "123")) ==
-        "m.safetensors: expected 4 bytes of tensors behind the header, found 3");
+        "m.safetensors: expected 4 bytes of tensors after the header, found 3");
   CHECK(message(file_of(one(R"("F32")", "[4611686018427387904]", "[0,0]"))) ==
         "m.safetensors: expected more than 2^64 bytes of tensor \"a\", found bytes 0 to 0");
 }

@@ -83,12 +83,12 @@ TEST_CASE("a layer that does not fit is named") {
   CHECK(along_time({{}}) == "no error");
   CHECK(along_time({}) == "expected one branch in layer 0, found 0");
   CHECK(along_time({{{.kind = LayerKind::linear, .out = 3}}}) ==
-        "expected 8 channels behind the branch in layer 0, found 3");
+        "expected 8 channels after the branch in layer 0, found 3");
   CHECK(along_time({{{.kind = LayerKind::gru, .out = 8}}}) ==
-        "expected a branch whose layers take each row by itself in layer 0, found others");
+        "expected a branch whose layers process each row separately in layer 0, found others");
   CHECK(along_time(
             {{{.kind = LayerKind::sum, .branches = {{{.kind = LayerKind::conv, .out = 8}}}}}}) ==
-        "expected a branch whose layers take each row by itself in layer 0, found others");
+        "expected a branch whose layers process each row separately in layer 0, found others");
   CHECK(message({{.kind = LayerKind::concat}}) ==
         "expected 1 to 1000 branches in layer 0, found 0");
 }

@@ -324,5 +324,5 @@ TEST_CASE("fit: a model goes on from another one, with its scales, and begins wh
       fit_denoise(cnn_method(), pairs_about(), {{one_pair(61)}, {}}, none, {}, {}, &first->model);
   REQUIRE_FALSE(other);
   CHECK(to_string(other.error())
-            .starts_with("expected a model of this method's network, found another one at "));
+            .starts_with("expected a model of this method's network, found another network at "));
 }

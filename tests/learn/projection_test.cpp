@@ -129,7 +129,7 @@ TEST_CASE("projection: one frame has nothing to slide, a network without a code 
   CHECK(project(model, standing(1))->answer.positions.size() == 63);
   const auto refused = project(hasty_model(refine_method()), standing(10));
   REQUIRE_FALSE(refused);
-  CHECK(
-      to_string(refused.error()) ==
-      "expected a model whose network has a hidden space, such as one of cnn, found one of refine");
+  CHECK(to_string(refused.error()) ==
+        "expected a model whose network has a hidden space, such as a cnn model, found a model of "
+        "refine");
 }

@@ -180,7 +180,7 @@ TEST_CASE("trainer: a loss that is no number five times in a row is refused") {
   TorchNetwork network = line_network(1);
   const auto out = train(network, task, {.steps = 100}, {}, {});
   REQUIRE_FALSE(out);
-  CHECK(to_string(out.error()) == "expected a loss that is a number, found none at steps up to 4");
+  CHECK(to_string(out.error()) == "expected a finite loss, found NaN or infinity at steps up to 4");
 }
 
 TEST_CASE("trainer: it stops where it is told to") {
@@ -193,7 +193,7 @@ TEST_CASE("trainer: it stops where it is told to") {
   CHECK(out.error().kind == ErrorKind::interrupted);
 }
 
-TEST_CASE("checkpoint: another job, another file and a cut one are refused") {
+TEST_CASE("checkpoint: another job, a file of another kind and a cut one are refused") {
   LineTask task;
   TorchNetwork network = line_network(1);
   const std::string bytes = write_checkpoint(trained(network, task, {.steps = 3}), "job");
@@ -204,7 +204,7 @@ TEST_CASE("checkpoint: another job, another file and a cut one are refused") {
   CHECK(refusal(read_checkpoint(bytes, "other", "c")) ==
         "c: expected the run of this method, data and settings, found another run");
   CHECK(refusal(read_checkpoint(write_safetensors({}), "job", "c")) ==
-        "c: expected a training run to go on with, found another file");
+        "c: expected a training run to continue, found a file of another kind");
   for (std::size_t size = 0; size < bytes.size(); size += 50) {
     CHECK_FALSE(read_checkpoint(bytes.substr(0, size), "job", "c"));
   }

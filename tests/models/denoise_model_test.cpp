@@ -93,9 +93,9 @@ TEST_CASE("model file: write, read, the same") {
   CHECK(again->input_scale == model.input_scale);
 }
 
-TEST_CASE("model file: another file is refused") {
+TEST_CASE("model file: a file of another kind is refused") {
   const std::string other =
-      "m: expected a model of kinalign (schema kinalign.model/1), found another file";
+      "m: expected a model of kinalign (schema kinalign.model/1), found a file of another kind";
   CHECK_FALSE(read_denoise_model("", "m"));
   CHECK(refusal(write_safetensors({})) == other);
   CHECK(header_refusal([](Json& h) { h["schema"] = "kinalign.model/2"; }) == other);
@@ -153,10 +153,12 @@ TEST_CASE("model file: members of another type or name are refused") {
   for (const char* key :
        {"task", "method", "rate_hz", "input", "output", "steadying", "networks"}) {
     CAPTURE(key);
-    CHECK(header_refusal([&](Json& h) { h.erase(key); }).starts_with("m: expected a whole header"));
+    CHECK(header_refusal([&](Json& h) {
+            h.erase(key);
+          }).starts_with("m: expected a complete header"));
     CHECK(header_refusal([&](Json& h) {
             h[key] = Json::array({true});
-          }).starts_with("m: expected a whole header"));
+          }).starts_with("m: expected a complete header"));
   }
   CHECK(header_refusal([](Json& h) { h["networks"]["net"]["layers"][0]["kind"] = "magic"; }) !=
         "no error");
@@ -172,7 +174,7 @@ TEST_CASE("model: networks must fit the joints") {
         }) == "expected 15 channels in and 15 out, found 15 and 14");
   CHECK(model_refusal([](DenoiseModel& m) {
           m.architecture.layers.push_back(layer(LayerKind::max_pool));
-        }) == "expected a network with as many frames out as in, found a max_pool alone");
+        }) == "expected a network with as many frames out as in, found a max_pool without unpool");
 }
 
 TEST_CASE("model file: each byte of the header changed is refused or a sound model") {

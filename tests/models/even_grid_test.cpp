@@ -119,10 +119,10 @@ TEST_CASE("even grid: a joint that the device does not have is missing") {
 }
 
 TEST_CASE("even grid: what can't be cleaned is refused") {
-  CHECK(refusal(even(walking({}))) == "expected two frames at least, found 0");
-  CHECK(refusal(even(walking({0}))) == "expected two frames at least, found 1");
+  CHECK(refusal(even(walking({}))) == "expected at least two frames, found 0");
+  CHECK(refusal(even(walking({0}))) == "expected at least two frames, found 1");
   CHECK(refusal(even(walking({0, 33, 20, 66}))) ==
-        "expected stamps that rise, found frame 2 is earlier");
+        "expected rising stamps, found frame 2 is earlier");
   CHECK(refusal(even(walking(steps(30, 100)))) ==
         "expected about 30 frames a second, found 10 frames a second");
   CHECK(refusal(even(walking(steps(30, 5)))) ==
@@ -130,7 +130,7 @@ TEST_CASE("even grid: what can't be cleaned is refused") {
   auto names = body_joint_names();
   names[12] = "Tail";  // the left hip
   CHECK(refusal(even_frames(body_joint_names(), names, walking(steps(30, 33)), {rate, gap})) ==
-        "expected a joint \"HipLeft\", which the model needs, found none of that name");
+        "expected a joint \"HipLeft\", which the model needs, found no such joint");
 }
 
 TEST_CASE("even grid: a body that is no person's size is refused") {

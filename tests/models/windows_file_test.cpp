@@ -142,7 +142,7 @@ TEST_CASE("windows file: a window that neither overlaps nor follows begins a str
 }
 
 TEST_CASE("windows file: what is damaged is refused") {
-  CHECK(refusal("") == "w.npz: expected an NPZ (numpy.savez), found no end of a ZIP");
+  CHECK(refusal("") == "w.npz: expected an NPZ (numpy.savez), found no ZIP directory at the end");
   Arrays arrays;
   arrays.all.erase("time_ns");
   CHECK(refusal(arrays.written()) == "w.npz: expected an array time_ns, found none");
@@ -152,9 +152,9 @@ TEST_CASE("windows file: what is damaged is refused") {
         "w.npz: expected a file of kinalign dataset windows, found no array manifest");
   arrays.put_manifest(R"({"schema":"kinalign.windows/2"})");
   CHECK(refusal(arrays.written()) ==
-        "w.npz: expected a manifest of schema kinalign.windows/1, found another one");
+        "w.npz: expected a manifest of schema kinalign.windows/1, found another schema");
   arrays.put_manifest(R"({"schema":"kinalign.windows/1","rate_hz":"fast"})");
-  CHECK(refusal(arrays.written()).starts_with("w.npz: expected a whole manifest"));
+  CHECK(refusal(arrays.written()).starts_with("w.npz: expected a complete manifest"));
   arrays = {};
   arrays.put<std::int32_t>("rows", 2, 5);  // a window has 4
   CHECK(refusal(arrays.written()).ends_with("with a row for each, found fewer"));

@@ -37,12 +37,12 @@ TEST_CASE("a skeleton's faults are named") {
   CHECK(refusal(s) == "expected each parent before its children, found joint 'Elbow'");
   s = arm();
   s.joint_names[2] = "Elbow";
-  CHECK(refusal(s) == "expected joint names that differ, found 'Elbow' twice");
+  CHECK(refusal(s) == "expected different joint names, found 'Elbow' twice");
   s = arm();
   s.rest_offsets.pop_back();
   CHECK(refusal(s) ==
         "expected a name, a parent and an offset for each joint, found different numbers");
   s = arm();
   s.end_sites.push_back({3, Vec3::Zero()});
-  CHECK(refusal(s) == "expected end sites on joints of the skeleton, found one on joint 3");
+  CHECK(refusal(s) == "expected end sites on joints of the skeleton, found an end site on joint 3");
 }

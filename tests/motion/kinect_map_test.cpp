@@ -166,6 +166,6 @@ TEST_CASE("what is missing is named, against the nearest skeleton that we know")
   CHECK(
       to_string(map.error()) ==
       "expected a skeleton with the joints of Perception Neuron, Axis Studio or CMU, here nearest "
-      "to Perception Neuron's, found none called an end site of Head, LeftHandThumb2");
+      "to Perception Neuron's, found no joint called an end site of Head, LeftHandThumb2");
   CHECK_FALSE(kinect_map(Skeleton{}));
 }

@@ -98,7 +98,7 @@ TEST_CASE("points on a line, or fewer than three pairs, have no fit") {
   for (int i = 0; i < 10; ++i) line.add(Vec3(i, 2 * i, 5), Vec3(0, i, 3 * i));
   const auto on_line = fit_rigid(line);
   REQUIRE(!on_line);
-  CHECK(to_string(on_line.error()) == "expected points that do not lie on one line, found a line");
+  CHECK(to_string(on_line.error()) == "expected points that are not on one line, found a line");
   PairMoments two;
   two.add(Vec3(0, 0, 0), Vec3(0, 0, 0));
   two.add(Vec3(1, 0, 0), Vec3(1, 0, 0));

@@ -56,7 +56,7 @@ Architecture gated_online_architecture(const FuseLayout& layout) {
 
 FuseMethod gated_method() {
   return {.name = "gated",
-          .summary = "ours: a branch for each device, weighed by what each shows",
+          .summary = "ours: a branch for each device, weighted by what each device measures",
           .source = "kinalign",
           .architecture = gated_architecture,
           .training = {},

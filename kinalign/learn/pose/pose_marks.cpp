@@ -35,7 +35,8 @@ Result<std::vector<PoseMark>> pose_marks(PoseSolver& solver, const PoseData& dat
                                          std::size_t lost) {
   const PoseLayout& layout = solver.model().layout;
   if (layout.nodes != data.nodes || layout.bones != data.body.bones) {
-    return Failure(Error{"", 0, "a model of the data's nodes and bones", "another one"});
+    return Failure(
+        Error{"", 0, "a model of the data's nodes and bones", "a model of other nodes or bones"});
   }
   if (data.tested.empty()) return Failure(Error{"", 0, "people of a test part", "none"});
   std::vector<PoseMark> out;

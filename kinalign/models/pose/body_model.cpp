@@ -42,12 +42,12 @@ void read_body(const ModelHeader& output, BodyModel& out) {
 
 Result<void> check_body(const PoseBody& body) {
   if (body.skeleton.joints() > most_body_joints) {
-    return Failure(Error{"", 0, "1000 joints at most", std::to_string(body.skeleton.joints())});
+    return Failure(Error{"", 0, "at most 1000 joints", std::to_string(body.skeleton.joints())});
   }
   KA_TRY(validate(body));
   for (const Vec3& offset : body.skeleton.rest_offsets) {
     if (!(offset.norm() <= longest_bone_m)) {
-      return Failure(Error{"", 0, "bones of at most 100 m", "another length"});
+      return Failure(Error{"", 0, "bones of at most 100 m", "a longer bone"});
     }
   }
   return {};

@@ -137,7 +137,7 @@ Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_h
   const std::vector<Time>& root = tracks.back().stamps;
   if (root.size() < 2) {
     return Failure(
-        Error{"", 0, "two samples of the root's node at least", std::to_string(root.size())});
+        Error{"", 0, "at least two samples of the root's node", std::to_string(root.size())});
   }
   const double steps = seconds_between(root.front(), root.back()) * rate_hz;
   if (steps >= most_node_frames) {

@@ -144,14 +144,14 @@ std::optional<std::string> LiveWorn::fault_of(const NodeCalibration& found) cons
   const auto sent = std::count_if(found.nodes.begin(), found.nodes.end(),
                                   [](const auto& node) { return node.has_value(); });
   if (sent < static_cast<std::ptrdiff_t>(least_nodes)) {
-    return "fewer than three nodes sent in it";
+    return "fewer than three nodes have samples in it";
   }
   if (!marked_ && options_.t_pose) return std::nullopt;
   const std::string* const arm = hanging_arm(*layout_, found);
   if (arm != nullptr) return *arm + " is not in a T-pose";
   for (std::size_t n = 0; n < layout_->nodes.size() && calibration_; ++n) {
     const bool was_there = calibration_->nodes.nodes[n].has_value();
-    if (was_there && !found.nodes[n]) return layout_->nodes[n] + " sent nothing in it";
+    if (was_there && !found.nodes[n]) return layout_->nodes[n] + " has no samples in it";
   }
   return std::nullopt;
 }
@@ -163,7 +163,7 @@ bool LiveWorn::take_t_pose(const TPose& t_pose) {
   const double fastest = fastest_turn_deg(recent_, t_pose);
   if (marked_ && fastest > most_turn_deg_s) {
     refusal_ = "a node turned at " + std::to_string(std::lround(fastest)) +
-               " deg/s: it was not held still";
+               " deg/s: the person did not hold still";
     forget_t_pose(t_pose);
     return false;
   }

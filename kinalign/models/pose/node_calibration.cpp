@@ -170,8 +170,8 @@ Result<double> heading_by_arms(const PoseLayout& layout, const WornFrames& worn,
     if (one) headings.push_back(*one);
   }
   if (!headings.empty()) return mean_angle(headings).angle;
-  return Failure(Error{"", 0, "nodes that are worn as docs/pose.md says, or arms that come down",
-                       "neither: where the person faces is not seen"});
+  return Failure(Error{"", 0, "nodes worn as described in docs/pose.md, or arms that come down",
+                       "neither, so the direction of the person is unknown"});
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ Result<std::vector<Quat>> t_pose_rotations(const PoseLayout& layout, const Skele
   for (const std::string& node : layout.nodes) {
     const WornPlace* place = worn_place(node);
     if (place == nullptr) {
-      return Failure(Error{"", 0, "a model for nodes whose place is known", shown(node)});
+      return Failure(Error{"", 0, "a model for nodes on known places of the body", shown(node)});
     }
     const Vec3 direction = vec3_of(place->t_pose);
     if (direction.isZero()) {

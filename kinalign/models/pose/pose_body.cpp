@@ -54,13 +54,13 @@ Result<void> validate(const PoseBody& body) {
   const std::size_t joints = body.skeleton.joints();
   if (joints == 0 ||
       std::count(body.skeleton.parents.begin(), body.skeleton.parents.end(), -1) != 1) {
-    return Failure(Error{"", 0, "a body with one root", "none or several"});
+    return Failure(Error{"", 0, "a body with one root", "no root, or several"});
   }
   const bool fits = std::all_of(body.turned_by.begin(), body.turned_by.end(), [&](int bone) {
     return bone >= -1 && bone < static_cast<int>(body.bones.size());
   });
   if (body.turned_by.size() != joints || !fits || body.turned_by[0] != -1) {
-    return Failure(Error{"", 0, "a bone for each joint below the root", "another list"});
+    return Failure(Error{"", 0, "a bone for each joint below the root", "another list of bones"});
   }
   return {};
 }

@@ -71,8 +71,8 @@ Result<void> validate(const PoseLayout& layout) {
     return Failure(Error{"", 0, "3 to 6 nodes", std::to_string(n)});
   }
   const std::set<std::string> names(layout.nodes.begin(), layout.nodes.end());
-  if (names.size() != n) return Failure(Error{"", 0, "nodes of different names", "a name twice"});
-  if (layout.bones.empty()) return Failure(Error{"", 0, "bones to answer", "none"});
+  if (names.size() != n) return Failure(Error{"", 0, "nodes with different names", "a name twice"});
+  if (layout.bones.empty()) return Failure(Error{"", 0, "bones in the answer", "none"});
   if (!(layout.rate_hz >= 0.1 && layout.rate_hz <= 10'000.0)) {
     return Failure(Error{"", 0, "0.1 to 10,000 frames a second", std::to_string(layout.rate_hz)});
   }

@@ -81,7 +81,7 @@ Result<std::size_t> any_of_names(const std::vector<std::string>& names, const Ot
     if (const auto at = index_of(names, name)) return *at;
   }
   return Failure(Error{"", 0, "a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur)",
-                       "none named " + std::string(wanted[0])});
+                       "no joint " + std::string(wanted[0])});
 }
 
 /// Finds, for each joint of the body, the joints of a suit's skeleton from which it is made.

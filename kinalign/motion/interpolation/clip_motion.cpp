@@ -131,13 +131,13 @@ Result<void> check(const Clip& clip) {
   }
   for (std::size_t i = 1; i < frames; ++i) {
     if (clip.frames.stamps[i] > clip.frames.stamps[i - 1]) continue;
-    return Failure(Error{"", 0, "stamps that rise", "frame " + std::to_string(i) + " does not"});
+    return Failure(Error{"", 0, "rising stamps", "frame " + std::to_string(i) + " does not rise"});
   }
   for (const auto* numbers : {&clip.frames.local_positions, &clip.frames.local_rotations}) {
     if (std::all_of(numbers->begin(), numbers->end(), [](double x) { return std::isfinite(x); })) {
       continue;
     }
-    return Failure(Error{"", 0, "finite positions and rotations", "one that is not"});
+    return Failure(Error{"", 0, "finite positions and rotations", "NaN or infinity"});
   }
   return {};
 }

@@ -43,7 +43,7 @@ std::optional<std::size_t> find_joint(const Skeleton& skeleton, std::string_view
 Result<std::size_t> needed_joint(const Skeleton& skeleton, std::string_view name) {
   if (const auto joint = find_joint(skeleton, name)) return *joint;
   return Failure(Error{"", 0, "a skeleton with a joint " + std::string(name) + " to wear a node on",
-                       "none of that name"});
+                       "no such joint"});
 }
 
 /// The bone on which a node is worn.

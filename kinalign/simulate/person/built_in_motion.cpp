@@ -16,8 +16,7 @@ Result<Motion> built_in_motion(const BuiltInOptions& options) {
     length = piece.length_s >= 0.0 ? length + piece.length_s : -1e9;
   }
   if (!(length >= 0.0 && length <= 1e6)) {
-    return Failure(
-        Error{"", 0, "pieces that last 0 s or more, 1000000 s at the most in all", "others"});
+    return Failure(Error{"", 0, "pieces of 0 s or more, together at most 1000000 s", "others"});
   }
   const Programme programme = options.programme.empty()
                                   ? default_programme(options.length_s, options.seed)

@@ -181,13 +181,13 @@ Result<Motion> carried_over(Motion source, Skeleton body) {
     const double length_s = source.length_s;
     const Carrier carrier(std::move(source), *joints, std::move(body));
     if (!carrier.is_sound()) {
-      return Failure(Error{"", 0, "a skeleton with legs", "legs of no length"});
+      return Failure(Error{"", 0, "a skeleton with legs", "legs of length 0"});
     }
     Skeleton skeleton = carrier.body();
     return Motion{std::move(skeleton), length_s,
                   [carrier](double t, Pose& pose) { carrier.pose_at(t, pose); }};
   }
-  return Failure(Error{"", 0, "joints named as Perception Neuron's or CMU's",
+  return Failure(Error{"", 0, "joint names of Perception Neuron or CMU",
                        std::to_string(source.skeleton.joints()) + " others"});
 }
 

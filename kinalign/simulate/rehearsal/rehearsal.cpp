@@ -161,7 +161,7 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
 Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options) {
   if (!(motion.length_s >= least_rehearsal_s)) {
     return Failure(
-        Error{"", 0, "a motion of 3 s at least", std::to_string(motion.length_s) + " s"});
+        Error{"", 0, "a motion of at least 3 s", std::to_string(motion.length_s) + " s"});
   }
   const std::uint64_t seed = options.seed;
   Rehearsal done;

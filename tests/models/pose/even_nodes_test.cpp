@@ -133,5 +133,5 @@ TEST_CASE("nodes of which no orientation can be made are refused") {
         "expected nodes with orientation, or with angular velocity and gravity in the "
         "acceleration, found neither");
   CHECK(to_string(even_nodes({turning_node(10.0), NodeTrack{}}, 30.0).error()) ==
-        "expected two samples of the root's node at least, found 0");
+        "expected at least two samples of the root's node, found 0");
 }

@@ -85,7 +85,7 @@ TEST_CASE("a person who moves in a marked T-pose is refused, and the calibration
     return out;
   });
   CHECK(run.refusals ==
-        std::vector<std::string>{"a node turned at 57 deg/s: it was not held still"});
+        std::vector<std::string>{"a node turned at 57 deg/s: the person did not hold still"});
   CHECK(run.worn.calibration()->first == 0);
   CHECK(run.shank_off(270) == doctest::Approx(0.4).epsilon(0.01));
 }
@@ -105,7 +105,7 @@ TEST_CASE("a node that is silent in a marked T-pose keeps its calibration") {
     if (node == ankle && s > 5.5 && s < 8.5) return std::nullopt;
     return Doing{};
   });
-  CHECK(run.refusals == std::vector<std::string>{"ankle_left sent nothing in it"});
+  CHECK(run.refusals == std::vector<std::string>{"ankle_left has no samples in it"});
   CHECK(run.worn.calibration()->first == 0);
   CHECK(run.frames.at(280).nodes.valid[ankle] == 1);
 }
@@ -116,6 +116,6 @@ TEST_CASE("two nodes are no T-pose") {
     return Doing{};
   });
   REQUIRE(!run.refusals.empty());
-  CHECK(run.refusals.front() == "fewer than three nodes sent in it");
+  CHECK(run.refusals.front() == "fewer than three nodes have samples in it");
   CHECK(!run.worn.calibration());
 }

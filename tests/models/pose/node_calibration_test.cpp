@@ -250,8 +250,8 @@ TEST_CASE("where neither wearing nor arms show it, nobody knows where the person
   const auto none = calibrate(test_layout(), pose_body(test_offsets()).skeleton, frames_said,
                               {.t_pose = {0, t_pose_frames}});
   CHECK(to_string(none.error()) ==
-        "expected nodes that are worn as docs/pose.md says, or arms that come down, found neither: "
-        "where the person faces is not seen");
+        "expected nodes worn as described in docs/pose.md, or arms that come down, found neither, "
+        "so the direction of the person is unknown");
 }
 
 TEST_CASE("a stated wearing stands in place of the told one") {

@@ -63,7 +63,7 @@ TEST_CASE("a node without a known place, and a body without its bone, are refuse
   PoseLayout layout = test_layout();
   layout.nodes[0] = "knee";
   CHECK(to_string(t_pose_rotations(layout, body).error()) ==
-        "expected a model for nodes whose place is known, found knee");
+        "expected a model for nodes on known places of the body, found knee");
   Skeleton other = body;
   other.joint_names[2] = "shin";
   CHECK(to_string(t_pose_rotations(test_layout(), other).error()) ==

@@ -56,6 +56,6 @@ TEST_CASE("a skeleton that is no person's is refused") {
   const auto own = with_lengths_of(other_body(), suit);
   REQUIRE_FALSE(own);
   CHECK(to_string(own.error()) ==
-        "expected a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur), found none "
-        "named RightUpLeg");
+        "expected a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur), found no "
+        "joint RightUpLeg");
 }

@@ -34,7 +34,7 @@ TEST_CASE("a body's bones and joints fit together") {
   PoseBody other = body;
   other.turned_by[3] = 15;
   CHECK(to_string(validate(other).error()) ==
-        "expected a bone for each joint below the root, found another list");
+        "expected a bone for each joint below the root, found another list of bones");
 }
 
 TEST_CASE("positions are those of forward kinematics, and the lowest joint stands on the floor") {

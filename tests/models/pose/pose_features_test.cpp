@@ -116,12 +116,12 @@ TEST_CASE("the root's last orientation holds while its node is silent") {
   CHECK(root[2].isApprox(root[1]));
 }
 
-TEST_CASE("a layout has 3 to 6 nodes of different names") {
+TEST_CASE("a layout has 3 to 6 nodes with different names") {
   PoseLayout layout = test_layout();
   CHECK(validate(layout));
   layout.nodes = {"waist", "head"};
   CHECK(to_string(validate(layout).error()) == "expected 3 to 6 nodes, found 2");
   layout.nodes = {"head", "waist", "head"};
   CHECK(to_string(validate(layout).error()) ==
-        "expected nodes of different names, found a name twice");
+        "expected nodes with different names, found a name twice");
 }

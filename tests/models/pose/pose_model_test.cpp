@@ -79,7 +79,7 @@ TEST_CASE("a model whose parts do not fit is refused") {
   other = model;
   other.body.skeleton.rest_offsets[3].x() = 1e30;
   CHECK(refusal(write_pose_model(other)) ==
-        "m: expected bones of at most 100 m, found another length");
+        "m: expected bones of at most 100 m, found a longer bone");
   other = model;
   other.body.skeleton.parents[2] = 9;
   CHECK(refusal(write_pose_model(other)) != "none");
@@ -87,7 +87,7 @@ TEST_CASE("a model whose parts do not fit is refused") {
   other.layout.bones.pop_back();
   other.body.bones.pop_back();
   CHECK(refusal(write_pose_model(other)) ==
-        "m: expected a bone for each joint below the root, found another list");
+        "m: expected a bone for each joint below the root, found another list of bones");
   CHECK(refusal("no model") != "none");
 }
 

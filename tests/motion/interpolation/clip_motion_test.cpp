@@ -166,10 +166,10 @@ TEST_CASE("what is no motion is refused with what is wrong") {
   CHECK(message({}) == "expected a clip with joints and frames, found 0 joints, 0 frames");
   Clip clip = swing(10.0, 1.0);
   clip.frames.stamps[4] = clip.frames.stamps[3];
-  CHECK(message(clip) == "expected stamps that rise, found frame 4 does not");
+  CHECK(message(clip) == "expected rising stamps, found frame 4 does not rise");
   clip = swing(10.0, 1.0);
   clip.frames.local_positions[7] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(message(clip) == "expected finite positions and rotations, found one that is not");
+  CHECK(message(clip) == "expected finite positions and rotations, found NaN or infinity");
   clip = swing(10.0, 1.0);
   clip.frames.local_rotations.pop_back();
   CHECK(

@@ -97,7 +97,7 @@ TEST_CASE("a skeleton without a shank can't wear a node on it") {
   const auto nodes = five_nodes(skeleton, 1);
   REQUIRE_FALSE(nodes);
   CHECK(to_string(nodes.error()) ==
-        "expected a skeleton with a joint RightLeg to wear a node on, found none of that name");
+        "expected a skeleton with a joint RightLeg to wear a node on, found no such joint");
 }
 
 TEST_CASE("samples come at the node's rate, and their stamps name when they were taken") {

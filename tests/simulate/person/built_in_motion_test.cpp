@@ -428,7 +428,7 @@ TEST_CASE("what is no person or no time is refused") {
   CHECK(message({.height_m = 3.0}) == "expected a height of 0.5 to 2.5 m, found 3 m");
   CHECK(message({.height_m = none}) == "expected a height of 0.5 to 2.5 m, found nan m");
   const std::string lengths =
-      "expected pieces that last 0 s or more, 1000000 s at the most in all, found others";
+      "expected pieces of 0 s or more, together at most 1000000 s, found others";
   CHECK(message({.length_s = none}) == lengths);
   CHECK(message({.length_s = 2e6}) == lengths);
   CHECK(message({.programme = {{Piece::walk, 20.0}, {Piece::wave, -5.0}}}) == lengths);

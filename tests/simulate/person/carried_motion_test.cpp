@@ -140,7 +140,7 @@ TEST_CASE("a skeleton of other names is refused") {
   const auto carried = carried_over(source, perception_neuron(1.75, 3));
   REQUIRE_FALSE(carried);
   CHECK(to_string(carried.error()) ==
-        "expected joints named as Perception Neuron's or CMU's, found 22 others");
+        "expected joint names of Perception Neuron or CMU, found 22 others");
 }
 
 TEST_CASE("there and back stays within the motion, never faster than it, without a jump") {

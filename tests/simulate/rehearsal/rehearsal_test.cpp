@@ -146,7 +146,7 @@ TEST_CASE("samples stamped by their arrival are the node's, later by the radio's
 TEST_CASE("a motion that is too short, or of no body that we know, is refused") {
   const auto short_one = rehearse(person(1, 2.0), {});
   REQUIRE(!short_one);
-  CHECK(short_one.error().expected == "a motion of 3 s at least");
+  CHECK(short_one.error().expected == "a motion of at least 3 s");
   Motion stick;
   stick.length_s = 10.0;
   stick.skeleton = {{"Root"}, {-1}, {Vec3::Zero()}, {}};
