@@ -144,7 +144,8 @@ Result<std::size_t> InputFile::read_at(std::uint64_t at, std::span<char> to) con
 
 Result<void> make_new_folder(const std::string& path) {
   if (::mkdir(path.c_str(), 0777) == 0) return {};
-  if (errno == EEXIST) return Failure(Error{path, 0, "no file or folder of that name", "one"});
+  if (errno == EEXIST)
+    return Failure(Error{path, 0, "no file or folder of that name", "an existing one"});
   return Failure(Error{path, 0, "a folder that can be made", std::strerror(errno)});
 }
 
@@ -186,14 +187,16 @@ Result<void> copy_file(FileSystem& files, const std::string& from, const std::st
 }
 
 Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overwrite overwrite) {
-  if (file_name(path).empty()) return Failure(Error{path, 0, "the name of a file", "a folder's"});
+  if (file_name(path).empty())
+    return Failure(Error{path, 0, "the name of a file", "the name of a folder"});
   struct stat status {};
   if (::lstat(path.c_str(), &status) == 0) {
     if (!S_ISREG(status.st_mode)) {
-      return Failure(Error{path, 0, "a regular file or none", kind_of(status.st_mode)});
+      return Failure(Error{path, 0, "a regular file or no file", kind_of(status.st_mode)});
     }
     if (overwrite == Overwrite::no) {
-      return Failure(Error{path, 0, "no file of that name (--force overwrites)", "one"});
+      return Failure(
+          Error{path, 0, "no file of that name (--force overwrites)", "an existing file"});
     }
   }
   OutputFile file(files, std::move(path), overwrite);
@@ -284,7 +287,8 @@ Result<void> OutputFile::place() {
   if (files_->link(from.c_str(), path_.c_str()) == 0) return {};
   if (errno != EEXIST) return failed(path_, "a folder that can be written", errno);
   if (overwrite_ == Overwrite::no) {
-    return Failure(Error{path_, 0, "no file of that name (--force overwrites)", "one"});
+    return Failure(
+        Error{path_, 0, "no file of that name (--force overwrites)", "an existing file"});
   }
   if (beside_.empty()) {
     // A nameless file can only be linked to a free name. It is linked to a temporary name, which is

@@ -10,13 +10,14 @@
 namespace kinalign {
 
 Result<GrowingFile> GrowingFile::create(FileSystem& files, std::string path) {
-  if (file_name(path).empty()) return Failure(Error{path, 0, "the name of a file", "a folder's"});
+  if (file_name(path).empty())
+    return Failure(Error{path, 0, "the name of a file", "the name of a folder"});
   int fd = -1;
   do {
     fd = files.open(path.c_str(), O_RDWR | O_CREAT | O_EXCL, 0644);
   } while (fd < 0 && errno == EINTR);
   if (fd < 0) {
-    if (errno == EEXIST) return Failure(Error{path, 0, "no file of that name", "one"});
+    if (errno == EEXIST) return Failure(Error{path, 0, "no file of that name", "an existing file"});
     return failed(path, "a folder that can be written", errno);
   }
   return GrowingFile(files, std::move(path), fd);
@@ -58,7 +59,7 @@ Result<void> GrowingFile::append(std::string_view bytes) {
 
 Result<void> GrowingFile::cut(std::uint64_t size) {
   while (files_->truncate(fd_, static_cast<off_t>(size)) != 0) {
-    if (errno != EINTR) return failed(path_, "a file that can be cut off", errno);
+    if (errno != EINTR) return failed(path_, "a file that can be truncated", errno);
   }
   size_ = size;
   ragged_ = false;
@@ -80,7 +81,8 @@ Result<void> GrowingFile::sync() const {
   struct stat status {};
   const bool removed =
       ::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;
-  if (removed) return Failure(Error{path_, 0, "a file that stays", "none: it was removed"});
+  if (removed)
+    return Failure(Error{path_, 0, "a file that exists until the end", "no file: it was removed"});
   return {};
 }
 

@@ -62,7 +62,7 @@ class LineSplitter {
 
   Result<void> too_long() const {
     return Failure(Error{"", number_ + 1, "a line of at most " + std::to_string(longest) + " bytes",
-                         "a longer one"});
+                         "a longer line"});
   }
 
   std::string carry_;

@@ -13,7 +13,7 @@ namespace kinalign {
 /// Fails if the file at `path` no longer has the version `version`.
 inline Result<void> unchanged(const std::string& path, const std::optional<FileVersion>& version) {
   if (version_of(path) == version) return {};
-  return Failure(Error{path, 0, "a file that stays as it is while it is read", "one that changed"});
+  return Failure(Error{path, 0, "a file that does not change while it is read", "a changed file"});
 }
 
 }  // namespace kinalign

@@ -27,7 +27,7 @@ Result<std::int64_t> parse_port(const std::string& text) {
   if (fault == std::errc() && end == text.data() + text.size() && port >= 0 && port <= 65535) {
     return port;
   }
-  return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "none" : shown(text)});
+  return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "nothing" : shown(text)});
 }
 
 /// The failure of a device with another value than expected.
@@ -57,13 +57,13 @@ Result<void> check_place(const DeviceOptions& device, const ProtocolRow& row) {
                  device.transport);
   }
   if (connects(device) && (device.address.empty() || device.port <= 0)) {
-    return wrong(device, "an address and a port to connect to", "none");
+    return wrong(device, "an address and a port to connect to", "no address or no port");
   }
   if (!device.address.empty() && !is_ip_address(device.address)) {
-    return wrong(device, "an IP address (getent hosts NAME says that of a host)",
+    return wrong(device, "an IP address (getent hosts NAME shows the address of a host)",
                  shown(device.address));
   }
-  if (device.port < 0) return wrong(device, "port, where it is heard (0: any free one)", "none");
+  if (device.port < 0) return wrong(device, "port to receive on (0: any free port)", "no port");
   return {};
 }
 
@@ -74,11 +74,11 @@ bool is_every(const std::string& address) {
 /// Fails if two devices have one name, one port, or are both devices of nodes.
 Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other) {
   if (other.name == device.name) {
-    return wrong(device, "each name once", device.name + " twice");
+    return wrong(device, "a different name for each device", device.name + " twice");
   }
   const auto protocol = find_protocol(device.protocol);
   if (protocol && row_of(*protocol).has_node_ids && other.protocol == device.protocol) {
-    return wrong(device, "one device for all nodes", other.name + " beside it");
+    return wrong(device, "one device for all nodes", other.name + " as well");
   }
   const bool serves = !connects(device);  // an address left out means every one
   const bool same_place = other.address == device.address ||
@@ -104,7 +104,7 @@ Result<void> check_places(const DeviceOptions& device) {
                    shown(place) + " of nodes " + other->second + " and " + id);
     }
     if (place != id && is_number(place)) {
-      return wrong(device, "a place by name, as waist: a number is another node's id",
+      return wrong(device, "the name of a place, such as waist: a number may be another node's id",
                    shown(place) + " of node " + id);
     }
   }
@@ -114,21 +114,21 @@ Result<void> check_places(const DeviceOptions& device) {
 /// Fails if an option of the device has no meaning for its protocol.
 Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   if (!device.skeleton.empty() && !row.needs_skeleton) {
-    return wrong(device, "skeleton of noitom alone", "of " + device.protocol);
+    return wrong(device, "skeleton only for protocol noitom", "protocol " + device.protocol);
   }
   if (!row.has_node_ids) {
     if (!device.lab_key.empty())
-      return wrong(device, "lab_key of nodes alone", "of " + device.protocol);
+      return wrong(device, "lab_key only for protocol nodes", "protocol " + device.protocol);
     if (!device.nodes.empty())
-      return wrong(device, "nodes of nodes alone", "of " + device.protocol);
+      return wrong(device, "nodes only for protocol nodes", "protocol " + device.protocol);
   }
   for (const auto& [id, place] : device.nodes) {
     std::uint32_t number = 0;
     const auto [end, fault] = std::from_chars(id.data(), id.data() + id.size(), number);
     if (fault != std::errc() || end != id.data() + id.size() || std::to_string(number) != id) {
-      return wrong(device, "a node's id, a whole number, as the key in nodes", shown(id));
+      return wrong(device, "a node's id, a whole number, as each key of nodes", shown(id));
     }
-    if (place.empty()) return wrong(device, "where node " + id + " is worn", "nothing");
+    if (place.empty()) return wrong(device, "the place of node " + id, "nothing");
   }
   return check_places(device);
 }
@@ -147,7 +147,7 @@ Result<void> check_name(const DeviceOptions& device) {
 
 /// The address may contain colons (IPv6), so the port is taken from the end first.
 Result<DeviceOptions> parse_device(const std::string& text) {
-  const Failure unlike(Error{"", 0, "NAME=PROTOCOL:PORT, as in imu=nodes:5005", shown(text)});
+  const Failure unlike(Error{"", 0, "NAME=PROTOCOL:PORT, such as imu=nodes:5005", shown(text)});
   const auto equals = text.find('=');
   const auto last = text.rfind(':');
   if (equals == std::string::npos || last == std::string::npos || last < equals) return unlike;
@@ -189,7 +189,7 @@ Result<void> validate(const Lab& lab) {
     KA_TRY(check_stream_name(device.name));
     KA_TRY(check_name(device));
     const auto protocol = find_protocol(device.protocol);
-    if (!protocol) return wrong(device, "protocol, what the device speaks", "none");
+    if (!protocol) return wrong(device, "a protocol", "none");
     KA_TRY(check_use(device, row_of(*protocol)));
     KA_TRY(check_place(device, row_of(*protocol)));
     for (std::size_t k = 0; k < i; ++k) KA_TRY(check_pair(device, lab.devices[k]));
@@ -205,13 +205,18 @@ double nominal_rate_hz(const DeviceOptions& device) {
 
 Fields describe(DeviceOptions& o) {
   return {
-      {"protocol", "what the device speaks", &o.protocol, -unlimited, unlimited, protocol_names()},
+      {"protocol", "protocol of the device", &o.protocol, -unlimited, unlimited, protocol_names()},
       {"transport", "udp; tcp: we connect to the device; tcp-listen: it connects to us",
        &o.transport, -unlimited, unlimited, transport_names()},
-      {"address", "of the device to connect to; else ours to listen on (all)", &o.address},
-      {"port", "its port to connect to; else ours", &o.port, 0.0, 65535.0},
-      {"skeleton", "of noitom: a BVH file with the header that the stream lacks", &o.skeleton},
-      {"rate_hz", "nominal rate; 0: as usual for the protocol", &o.rate_hz, 0.0, 10'000.0},
+      {"address",
+       "transport tcp: address of the device; others: address of this machine to receive on "
+       "(default: all)",
+       &o.address},
+      {"port", "transport tcp: port of the device; others: port to receive on", &o.port, 0.0,
+       65535.0},
+      {"skeleton", "protocol noitom: a BVH file with the header that the stream does not contain",
+       &o.skeleton},
+      {"rate_hz", "nominal rate; 0: the usual rate of the protocol", &o.rate_hz, 0.0, 10'000.0},
       {"required", "whether a take needs it: red while it is missing", &o.required},
       {"lab_key", "of nodes: the file of the lab's key", &o.lab_key},
       {"nodes", "of nodes: the place of each node by its id", &o.nodes},
@@ -220,9 +225,10 @@ Fields describe(DeviceOptions& o) {
 
 Fields describe(RecordOptions& o) {
   return {
-      {"pre_roll_s", "seconds before a take that it begins with", &o.pre_roll_s, 0.0, 600.0},
+      {"pre_roll_s", "seconds before the start mark that a take also contains", &o.pre_roll_s, 0.0,
+       600.0},
       {"compression",
-       "of the file's chunks",
+       "compression of the file's chunks",
        &o.compression,
        -unlimited,
        unlimited,

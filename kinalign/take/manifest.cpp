@@ -42,7 +42,7 @@ Result<void> check_stream_name(const std::string& name) {
                     std::find(taken.begin(), taken.end(), name) == taken.end();
   if (good) return {};
   return Failure(Error{"", 0, "a stream's name that can be a group of the take",
-                       name.empty() ? "an empty one" : "\"" + shown(name) + "\""});
+                       name.empty() ? "an empty name" : "\"" + shown(name) + "\""});
 }
 
 Fields describe(Manifest& o) {
@@ -79,7 +79,7 @@ Fields describe(StreamOptions& o) {
        .value = &o.up,
        .choices = {"", "y", "z"}},
       {"rate_hz",
-       "nominal sampling rate: stamps files without any, and tells what a gap is in others",
+       "nominal sampling rate: gives stamps to files without stamps, and defines a gap in others",
        &o.rate_hz, 0.0, 1e6},
       {"start_ns", "stamp of the first frame (BVH: of the click on record), ns", &o.start_ns, -4e18,
        4e18},
@@ -91,11 +91,11 @@ Fields describe(StreamOptions& o) {
        .value = &o.clock,
        .choices = {"shared", "unknown"}},
       {"offset_ms", "added to the stream's stamps, ms", &o.offset_ms, -1e12, 1e12},
-      {"drift_ppm", "rate added to the stream's stamps from the first one on, ppm", &o.drift_ppm,
+      {"drift_ppm", "rate added to the stream's stamps from the first stamp on, ppm", &o.drift_ppm,
        -1e5, 1e5},
       {"interval_ms", "half-width of the interval that holds a stamp's true time, ms",
        &o.interval_ms, 1e-6, day_ms},
-      {"root_node", "node into whose space all nodes are brought (default: the world's)",
+      {"root_node", "node whose space all nodes are moved into (default: the world's)",
        &o.root_node},
   };
 }
@@ -108,7 +108,7 @@ Fields describe(SpaceOptions& o) {
            "transform by least squares; given",
        .value = &o.method,
        .choices = {"none", "paper", "fit", "given"}},
-      {"onto", "stream that gives the space (default: the reference)", &o.onto},
+      {"onto", "stream whose space is used (default: the reference)", &o.onto},
       {"rotation_y_deg", "paper: turn about the y axis, counter-clockwise seen from above, degrees",
        &o.rotation_y_deg, -360.0, 360.0},
       {"magnification", "paper: m, a ratio of sizes", &o.magnification, 1e-6, 1e6},

@@ -127,10 +127,11 @@ Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std:
   done.findings = KA_TRY(
       read_xdf(files, from, progress, [&](const XdfItem& item) { return channels.take(item); }));
   if (channels.timeless > 0) {
-    done.findings.push_back({Severity::warning,
-                             Error{from, 0, "stamps from 0 to 4e9 s",
-                                   std::to_string(channels.timeless) + " samples of others"},
-                             "these samples were left out", ""});
+    done.findings.push_back(
+        {Severity::warning,
+         Error{from, 0, "stamps from 0 to 4e9 s",
+               std::to_string(channels.timeless) + " samples with other stamps"},
+         "these samples were left out", ""});
   }
   KA_TRY(shown.finish());
   KA_TRY(file.commit());

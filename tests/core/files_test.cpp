@@ -150,7 +150,7 @@ TEST_CASE("an existing file is overwritten only when asked for") {
   PosixFiles files;
   folder.write("out", "old");
   CHECK(refusal_in(folder, write_file(files, folder / "out", Overwrite::no)) ==
-        "out: expected no file of that name (--force overwrites), found one");
+        "out: expected no file of that name (--force overwrites), found an existing file");
   CHECK(folder.read("out") == "old");
   CHECK(refusal(write_file(files, folder / "out", Overwrite::yes)).empty());
   CHECK(folder.read("out") == "new text");
@@ -167,7 +167,7 @@ TEST_CASE("a name taken while a file is written is not overwritten") {
     REQUIRE(file);
     folder.write("out", "theirs");
     CHECK(refusal_in(folder, file->commit()) ==
-          "out: expected no file of that name (--force overwrites), found one");
+          "out: expected no file of that name (--force overwrites), found an existing file");
     file = Failure(Error{});
     CHECK(folder.read("out") == "theirs");
     CHECK(folder.names().size() == 1);
@@ -181,13 +181,13 @@ TEST_CASE("what is no regular file is not overwritten") {
   REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
   REQUIRE(::symlink("elsewhere", (folder / "link").c_str()) == 0);
   CHECK(refusal_in(folder, write_file(files, folder / "sub", Overwrite::yes)) ==
-        "sub: expected a regular file or none, found a directory");
+        "sub: expected a regular file or no file, found a directory");
   CHECK(refusal_in(folder, write_file(files, folder / "pipe", Overwrite::yes)) ==
-        "pipe: expected a regular file or none, found a pipe; save it to a file first");
+        "pipe: expected a regular file or no file, found a pipe; save it to a file first");
   CHECK(refusal_in(folder, write_file(files, folder / "link", Overwrite::yes)) ==
-        "link: expected a regular file or none, found a symbolic link");
+        "link: expected a regular file or no file, found a symbolic link");
   CHECK(refusal_in(folder, write_file(files, folder / "sub/", Overwrite::yes)) ==
-        "sub/: expected the name of a file, found a folder's");
+        "sub/: expected the name of a file, found the name of a folder");
   CHECK(refusal_in(folder, write_file(files, folder / "none/out", Overwrite::no)) ==
         "none/out: expected a folder that can be written, found No such file or directory");
 }

@@ -33,7 +33,8 @@ TEST_CASE("a growing file never takes the place of another") {
   PosixFiles files;
   const auto file = GrowingFile::create(files, folder / "a");
   REQUIRE(!file);
-  CHECK(to_string(file.error()) == (folder / "a") + ": expected no file of that name, found one");
+  CHECK(to_string(file.error()) ==
+        (folder / "a") + ": expected no file of that name, found an existing file");
   CHECK(folder.read("a") == "kept");
 }
 

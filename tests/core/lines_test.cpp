@@ -62,7 +62,7 @@ TEST_CASE("a line longer than the longest is refused before it is held") {
   const auto more = splitter.feed("x", use);
   REQUIRE(!more);
   CHECK(to_string(more.error()) ==
-        "line 2: expected a line of at most 1048576 bytes, found a longer one");
+        "line 2: expected a line of at most 1048576 bytes, found a longer line");
   LineSplitter another;
   CHECK(another.feed(std::string(LineSplitter::longest, 'x') + "\n", use));
   CHECK(!another.feed(std::string(LineSplitter::longest + 1, 'x') + "\n", use));

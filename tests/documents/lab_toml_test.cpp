@@ -65,34 +65,34 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
   CHECK(error_of("[device.a]\nprotocol = \"node\"\n") ==
         "labs/lab.toml:2: expected protocol as one of nodes, noitom, xsens, kinect, slimevr, found "
         "\"node\"");
-  CHECK(error_of("[device.a]\nport = 1\n") ==
-        "labs/lab.toml:1: expected protocol, what the device speaks, found none");
+  CHECK(error_of("[device.a]\nport = 1\n") == "labs/lab.toml:1: expected a protocol, found none");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nport = 70000\n") ==
         "labs/lab.toml:3: expected port as a whole number from 0 to 65535, found 70000");
   CHECK(error_of(mocap + "[device.b]\nprotocol = \"xsens\"\nport = 7012\n") ==
         "labs/lab.toml:4: expected a port of its own, found 7012, as mocap");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\n") ==
-        "labs/lab.toml:1: expected port, where it is heard (0: any free one), found none");
+        "labs/lab.toml:1: expected port to receive on (0: any free port), found no port");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nport = 1\n[device.b]\nprotocol = "
                  "\"nodes\"\nport = 2\n") ==
         "labs/lab.toml:4: expected one device for all nodes, found a beside it");
   CHECK(error_of(mocap + "nodes = { \"1\" = \"Hips\" }\n") ==
-        "labs/lab.toml:1: expected nodes of nodes alone, found of noitom");
+        "labs/lab.toml:1: expected nodes only for protocol nodes, found protocol noitom");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nnodes = { waist = \"Hips\" }\n") ==
-        "labs/lab.toml:1: expected a node's id, a whole number, as the key in nodes, found waist");
+        "labs/lab.toml:1: expected a node's id, a whole number, as each key of nodes, found waist");
   const std::string nodes = "[device.a]\nprotocol = \"nodes\"\nport = 1\nnodes = ";
   CHECK(error_of(nodes + "{ \"1\" = \"Hips\", \"2\" = \"Hips\" }\n") ==
         "labs/lab.toml:1: expected a place of its own for each node, found Hips of nodes 1 and 2");
   CHECK(error_of(nodes + "{ \"1\" = \"2\", \"2\" = \"Hips\" }\n") ==
-        "labs/lab.toml:1: expected a place by name, as waist: a number is another node's id, found "
+        "labs/lab.toml:1: expected the name of a place, such as waist: a number may be another "
+        "node's id, found "
         "2 of node 1");
   CHECK(error_of(nodes + "{ \"1\" = \"02\" }\n")  // a node without a place too
             .ends_with("a number is another node's id, found 02 of node 1"));
   CHECK(error_of(nodes + "{ \"1\" = \"1\", \"2\" = \"2nd\" }\n") == "none");
   CHECK(error_of("[device.a]\nprotocol = \"kinect\"\nskeleton = \"a.bvh\"\n") ==
-        "labs/lab.toml:1: expected skeleton of noitom alone, found of kinect");
+        "labs/lab.toml:1: expected skeleton only for protocol noitom, found protocol kinect");
   CHECK(error_of("[device.a]\nprotocol = \"xsens\"\nskeleton = \"a.bvh\"\n") ==
-        "labs/lab.toml:1: expected skeleton of noitom alone, found of xsens");
+        "labs/lab.toml:1: expected skeleton only for protocol noitom, found protocol xsens");
   CHECK(error_of("[device]\nport = 7012\n") ==
         "labs/lab.toml:2: expected [device.NAME], a table of its own for each, found port, "
         "7012");
@@ -106,10 +106,10 @@ TEST_CASE("a device is found by an IP address, never by a host's name") {
   };
   for (const char* good : {"192.168.7.5", "fd00::1", "fe80::1%eth0"}) CHECK(at(good) == "none");
   for (const std::string bad : {"mocap-pc", "localhost", "192.168.7", "1.2.3.4%eth0", "[::1]"}) {
-    CHECK(
-        at(bad) ==
-        "labs/lab.toml:2: expected an IP address (getent hosts NAME says that of a host), found " +
-            bad);
+    CHECK(at(bad) ==
+          "labs/lab.toml:2: expected an IP address (getent hosts NAME shows the address of a "
+          "host), found " +
+              bad);
   }
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("UI-PRMD's file of angles has to stay as it was when it was found") {
   const auto again = format->make();
   REQUIRE_FALSE(again);
   CHECK(to_string(again.error()) ==
-        angles + ": expected a file that stays as it is while it is read, found one that changed");
+        angles + ": expected a file that does not change while it is read, found a changed file");
 }
 
 TEST_CASE("numbers that could be UI-PRMD's are not, where no other file holds the angles") {
@@ -75,7 +75,8 @@ TEST_CASE("numbers that could be UI-PRMD's are not, where no other file holds th
   CHECK(found(lone).error.find("write a layout (docs/formats/layouts.md: ") != std::string::npos);
   CHECK(found(lone, "ui_prmd_kinect").error ==
         lone +
-            ": expected UI-PRMD's file of positions, ..._positions.txt; it leads to the angles, "
+            ": expected UI-PRMD's file of positions, ..._positions.txt; the file of angles is "
+            "found by its name, "
             "found another name");
 }
 
@@ -84,10 +85,10 @@ TEST_CASE("UI-PRMD's file of angles by itself is refused, the Kinect's and the o
   for (const int cells : {66, 117}) {
     CAPTURE(cells);
     const std::string angles = folder.write("m1_angles.txt", numbers(cells, ','));
-    CHECK(found(angles).error ==
-          angles +
-              ": expected UI-PRMD's file of positions, ..._positions.txt; it leads to the angles, "
-              "found the file of angles");
+    CHECK(found(angles).error == angles +
+                                     ": expected UI-PRMD's file of positions, ..._positions.txt; "
+                                     "the file of angles is found by its name, "
+                                     "found the file of angles");
   }
   CHECK(found(folder.write("m1_positions.txt", numbers(117, ','))).name == "ui_prmd_vicon");
 }

@@ -73,7 +73,7 @@ TEST_CASE("a user's layout has to stay as it was when it was read") {
   const auto again = passes();
   REQUIRE_FALSE(again);
   CHECK(to_string(again.error()) ==
-        layout + ": expected a file that stays as it is while it is read, found one that changed");
+        layout + ": expected a file that does not change while it is read, found a changed file");
 }
 
 TEST_CASE("a stream says what it was read as, and whether its stamps are counted") {

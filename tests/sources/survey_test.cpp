@@ -84,7 +84,7 @@ TEST_CASE("a file that changed since its hash was taken is not read again") {
   const auto again = pass_over(stream);
   REQUIRE_FALSE(again);
   CHECK(to_string(again.error()) ==
-        path + ": expected a file that stays as it is while it is read, found one that changed");
+        path + ": expected a file that does not change while it is read, found a changed file");
 }
 
 TEST_CASE("what is known of a clock comes from the options, counted from the first stamp") {

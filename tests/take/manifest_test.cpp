@@ -103,7 +103,7 @@ TEST_CASE("a stream may have any name but those that are no group, or another th
     return result ? "" : to_string(result.error());
   };
   const std::string expected = "expected a stream's name that can be a group of the take, found ";
-  CHECK(refusal("") == expected + "an empty one");
+  CHECK(refusal("") == expected + "an empty name");
   for (const std::string name : {"time_ns", "seconds", "t0_ns", "report_json", "parameters_json",
                                  ".", "..", "a/b", "/", "/mocap"}) {
     CHECK(refusal(name) == expected + "\"" + name + "\"");

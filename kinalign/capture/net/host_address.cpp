@@ -52,7 +52,7 @@ Result<AddressBlock> parse_network(const std::string& text) {
   const auto bits =
       slash == std::string::npos ? std::optional(most) : parse_bits(text.substr(slash + 1), most);
   if (!address || !bits) {
-    return Failure(Error{"", 0, "an address or a network as 192.168.7.0/24", shown(text)});
+    return Failure(Error{"", 0, "an address or a network, such as 192.168.7.0/24", shown(text)});
   }
   return AddressBlock{*address, four ? *bits + 96 : *bits};
 }

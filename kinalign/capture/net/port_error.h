@@ -10,8 +10,8 @@
 
 namespace kinalign {
 
-/// Example: "mocap: expected a UDP port to serve on at 0.0.0.0:7012, found another program on it".
-/// The device's name replaces the address and port at the beginning.
+/// Example: "mocap: expected a UDP port to serve on at 0.0.0.0:7012, found a port that another
+/// program uses". The device's name replaces the address and port at the beginning.
 template <class T>
 Result<T> told_of(const std::string& name, Result<T> opened) {
   return std::move(opened).map_error([&name](Error error) {

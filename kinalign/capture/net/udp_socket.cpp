@@ -63,13 +63,13 @@ struct Socket {
 Error no_port(std::string at, std::string expected, int code, std::uint16_t port) {
   Error error{std::move(at), 0, std::move(expected), std::strerror(code)};
   if (code == EADDRINUSE) {
-    error.found = "another program on it";
+    error.found = "a port that another program uses";
     error.kind = ErrorKind::port_taken;
   } else if (code == EACCES || code == EPERM) {
     error.found = port < 1024 ? "no permission for a port below 1024" : "no permission";
     error.kind = ErrorKind::port_forbidden;
   } else if (code == EADDRNOTAVAIL) {
-    error.found = "no interface that has it";
+    error.found = "no network interface with this address";
     error.kind = ErrorKind::address_elsewhere;
   }
   return error;
@@ -120,7 +120,7 @@ Result<UdpSocket> UdpSocket::connected(const HostAddress& own, std::uint16_t por
     return socket;
   }
   return Failure(
-      no_port(endpoint_text(to_string(peer), peer_port), "a UDP socket for it alone", errno, port));
+      no_port(endpoint_text(to_string(peer), peer_port), "a UDP socket of its own", errno, port));
 }
 
 UdpSocket::UdpSocket(UdpSocket&& other) noexcept

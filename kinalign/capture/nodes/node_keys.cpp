@@ -54,19 +54,19 @@ Result<void> check_mode(int fd, const std::string& path) {
   if (::fstat(fd, &found) != 0) return no_key(path, "a key file", std::strerror(errno));
   if (!S_ISREG(found.st_mode)) return no_key(path, "a key file", "no regular file");
   if ((found.st_mode & 077U) == 0) return {};
-  return no_key(path, "a key that nobody else may read (chmod 600)", octal(found.st_mode),
+  return no_key(path, "a key file that only you can read (chmod 600)", octal(found.st_mode),
                 ErrorKind::exposed_key);
 }
 
 /// The message for a file that may not be read. It names the file's owner and mode if they are
 /// known.
 std::string forbidden(const std::string& path) {
-  std::string text = "no permission to read it";
+  std::string text = "no permission to read this file";
   struct stat found {};
   if (::stat(path.c_str(), &found) != 0) return text;
   const passwd* owner = ::getpwuid(found.st_uid);
   const std::string name = owner != nullptr ? owner->pw_name : std::to_string(found.st_uid);
-  return text + ": it is " + name + "'s, " + octal(found.st_mode);
+  return text + ": it belongs to " + name + ", " + octal(found.st_mode);
 }
 
 /// The error for a lab key file that could not be opened.
@@ -89,7 +89,7 @@ template <class Key>
 Result<Key> drawn() {
   Key key{};
   if (::getrandom(key.data(), key.size(), 0) == static_cast<ssize_t>(key.size())) return key;
-  return Failure(Error{"", 0, "random numbers from the system", "none"});
+  return Failure(Error{"", 0, "random numbers from the system", "an error"});
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   MacKey node{};
   const bool is_node_key = take_hex(digits, node);
   return no_key(path, "a lab key of 64 hexadecimal digits",
-                is_node_key ? "32 digits, a node's key" : "something else");
+                is_node_key ? "32 digits, a node's key" : "other text");
 }
 
 Result<void> write_key(FileSystem& files, const std::string& path,
@@ -142,7 +142,7 @@ Result<void> write_key(FileSystem& files, const std::string& path,
   if (file.fd() < 0) {
     const bool there = errno == EEXIST;
     return no_key(path, "a place for a new key file",
-                  there ? "a file, which stays as it is" : no_place(path, errno));
+                  there ? "an existing file, which is not overwritten" : no_place(path, errno));
   }
   const std::string text = key_text(key) + '\n';
   const bool written =

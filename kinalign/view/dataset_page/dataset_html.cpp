@@ -125,7 +125,7 @@ std::string about_list(const DatasetPage& page) {
   std::string out;
   for (const auto& [title, text] : texts) {
     out += fmt::format("<dt>{}</dt><dd>{}</dd>", title,
-                       text->empty() ? "not said in dataset.toml" : escaped(*text));
+                       text->empty() ? "not stated in dataset.toml" : escaped(*text));
   }
   return out;
 }
@@ -134,8 +134,7 @@ std::string about_list(const DatasetPage& page) {
 std::string cut_of(const DatasetPage& page) {
   if (page.worst.size() == page.takes) return "";
   return fmt::format(
-      "The table has the {} worst of {} takes; <code>kinalign dataset list {}</code> "
-      "has all. ",
+      "The table has the {} worst of {} takes; <code>kinalign dataset list {}</code> lists all. ",
       grouped(page.worst.size()), grouped(page.takes), escaped(page.folder));
 }
 

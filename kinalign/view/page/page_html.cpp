@@ -112,7 +112,7 @@ std::string escaped(std::string_view text) {
 Result<std::string> page_html(const TakePage& page) {
   if (!page_parts_missing().empty()) {
     return Failure(Error{"", 0, "a kinalign that was built with esbuild, libjs-three and node-d3",
-                         "one without " + std::string(page_parts_missing())});
+                         "a kinalign without " + std::string(page_parts_missing())});
   }
   PageParts parts = parts_of(page);
   put_flags(page, parts);

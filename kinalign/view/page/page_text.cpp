@@ -259,13 +259,14 @@ std::string time_table(const TakePage& page) {
              reference ? ""
                        : fmt::format("{:.1f} ms", 1e-6 * static_cast<double>(s.worst_nearest_ns))});
   }
-  return table({"stream", "=clock", "real rate", "samples", "lost", "left out", "gaps", "invalid",
-                "interpolated over loss", "nearest sample within"},
-               rows,
-               "What each device sent, and what became of it. Real rate: the mean over the whole "
-               "stream. Lost: what the steps longer than 1.5 usual ones leave room for. Left out: "
-               "samples with stamps that repeat, step back or leap ahead, and delayed ones. Gaps, "
-               "invalid: within the take.");
+  return table(
+      {"stream", "=clock", "real rate", "samples", "lost", "left out", "gaps", "invalid",
+       "interpolated over loss", "nearest sample within"},
+      rows,
+      "What each device sent, and how it was used. Real rate: the mean over the whole stream. "
+      "Lost: the samples missing in steps longer than 1.5 usual steps. Left out: "
+      "samples with stamps that repeat, step back or jump ahead, and delayed samples. Gaps, "
+      "invalid: within the take.");
 }
 
 /// The caption of figure 7. Without raw samples, the rows nearest to one stand for them.
@@ -284,7 +285,7 @@ std::string detail_caption(const TakePage& page) {
                 "since the inputs were not read (<code>--inputs FOLDER</code>); hollow: "
                 "inferred by the device.",
                 1e3 * static_cast<double>(detail.near_s));
-  text += " Grey: no value, nothing is invented there.";
+  text += " Grey: no value; no value is made up.";
   if (!page.spaces.empty()) text += " Thin: the joint's counterpart in the reference.";
   const double length = seconds(page.report.end - page.report.begin);
   if (detail.end_s < length || detail.begin_s > 0.0) {
@@ -300,7 +301,7 @@ std::string space_text(const TakePage& page) {
   for (const PageSpace& space : page.spaces) {
     const Eigen::AngleAxisd turn(space.report.transform.rotation);
     out += fmt::format(
-        "<p>{} was moved onto {} {}: {} cm rms from it, {} before; turned by {:.1f}°.</p>",
+        "<p>{} was moved onto {} {}: distance {} cm rms, before {}; rotated by {:.1f}°.</p>",
         escaped(space.report.stream), escaped(space.report.onto), how_moved(space),
         cm(space.report.after_m), cm(space.report.before_m), turn.angle() * degrees);
   }
@@ -317,15 +318,15 @@ std::string table5_caption(const TakePage& page) {
   if (page.spaces.empty()) return "";
   const PageSpace& space = page.spaces.front();
   const bool several = page.spaces.size() > 1;
-  std::string text =
-      several ? "The paper's table 5: the chosen stream (green) and the one that it was moved onto "
-                "(red) "
-              : fmt::format("The paper's table 5: {} (green) and {} (red) ",
-                            escaped(space.report.stream), escaped(space.report.onto));
+  std::string text = several
+                         ? "The paper's table 5: the chosen stream (green) and the stream that it "
+                           "was moved onto (red) "
+                         : fmt::format("The paper's table 5: {} (green) and {} (red) ",
+                                       escaped(space.report.stream), escaped(space.report.onto));
   text += space.once_per_take || several
               ? "before and after the first was moved."
-              : "after the first was moved. Before is not shown: the transform differs from frame "
-                "to frame and the take holds its result.";
+              : "after the first was moved. The state before is not shown: the transform differs "
+                "from frame to frame, and the take contains only the result.";
   return text + " Each panel has its own scale. Dashed bones and hollow joints: inferred.";
 }
 
@@ -336,17 +337,18 @@ std::string residual_caption(const TakePage& page) {
   const bool several = page.spaces.size() > 1;
   return fmt::format(
       "Distance of each joint of {} from its counterpart{}, rms over the rows in which it is "
-      "tracked. The two skeletons do not mean quite the same places by one name, so a part of it "
-      "is not noise.",
+      "tracked. Joints of the same name are not at exactly the same place in both skeletons, so a "
+      "part of this distance is not noise.",
       several ? "the stream chosen in figure 5" : escaped(report.stream),
       several ? "" : " in " + escaped(report.onto));
 }
 
 /// The caption of the floor, with the zones if the Kinect's place is known.
 std::string floor_caption(const TakePage& page) {
-  std::string text = "The floor from above: the ways of the root joints, and where they are now.";
+  std::string text =
+      "The floor from above: the paths of the root joints, and their present positions.";
   if (page.floors.empty()) {
-    return text + " Where the Kinect stands is not known: no one transform holds for the take.";
+    return text + " The position of the Kinect is unknown: the take has no single transform.";
   }
   return text + fmt::format(
                     " The Kinect's zones are those of the paper: {} to {} m best (filled), "
@@ -369,16 +371,17 @@ std::string zone_table(const TakePage& page) {
   }
   rows += row("td", {"place unknown", share_or_zero(floor.missing, all), ""});
   return table({"zone", "of all joints", "inferred there"}, rows,
-               "Joints by the zone of the floor that they were in, over all rows.");
+               "Joints by the floor zone they were in, over all rows.");
 }
 
 /// The caption of the bones' constancy; empty without bones.
 std::string bones_caption(const TakePage& page) {
   if (page.bones.empty()) return "";
   return fmt::format(
-      "How constant the bones of {} are, which should not change: one deviation to each side "
-      "(bar), shortest and longest (line, cut at three deviations of the worst bone), each bone by "
-      "the joint at its end, over the rows in which both ends are tracked. A mocap skeleton's "
+      "Lengths of the bones of {}, which should be constant: one deviation to each side (bar), "
+      "shortest and longest (line, cut at three deviations of the worst bone). Each bone has the "
+      "name of the joint at its end. Only rows in which both ends are tracked count. A mocap "
+      "skeleton's "
       "bones "
       "are constant by construction.",
       bodies_with_bones(page));
@@ -387,15 +390,15 @@ std::string bones_caption(const TakePage& page) {
 /// The text about nodes, with a paragraph for each whose bone was not found by its name.
 std::string node_text(const TakePage& page) {
   std::string out =
-      "<p>What each node measured against what the mocap says that its bone did. A node is "
-      "strapped "
-      "on at an unknown angle and its world has an unknown heading: both are fitted once for the "
-      "take, by the values themselves. What is left is noise, drift, lag and slip.</p>";
+      "<p>Each node's measurements, compared with the motion of its bone in the mocap. A node is "
+      "worn at an unknown angle and its world has an unknown heading: both are fitted once for the "
+      "take, from the values themselves. The remaining difference is noise, drift, lag and "
+      "slip.</p>";
   for (const NodeFigures& node : page.nodes) {
     if (node.joint_by_name) continue;
     out += fmt::format(
-        "<p>The name {} says no bone: it is compared with {}, which turns most like "
-        "it.</p>",
+        "<p>The name {} is not the name of a bone: the node is compared with {}, whose rotation is "
+        "most similar.</p>",
         escaped(node.node), escaped(node.joint));
   }
   return out;
@@ -420,8 +423,8 @@ std::string node_table(const TakePage& page) {
                 "acceleration, rms / m/s²", "its correlation", "orientation, rms / °"},
                rows,
                "Differences between a node and its bone after the best constant rotation, over the "
-               "rows kept on this page. Correlations are of the magnitudes. Lag: by which the node "
-               "is late, where its rates agree best.");
+               "rows kept on this page. Correlations are of the magnitudes. Lag: the delay of the "
+               "node at which its rates agree best.");
 }
 
 std::string raw_nodes_text(const TakePage& page) {
@@ -430,13 +433,13 @@ std::string raw_nodes_text(const TakePage& page) {
   if (!any) return "";
   return fmt::format(
       " Dots: the node's raw samples, read from the take's inputs, of {:.0f} to {:.0f} s; they are "
-      "drawn where at most one stands on every second pixel.",
+      "drawn if there is at most one per two pixels.",
       page.raw_nodes_begin_s, page.raw_nodes_end_s);
 }
 
 /// The findings as a list.
 std::string findings_list(const TakePage& page) {
-  if (page.report.findings.empty()) return "<p>Alignment found nothing.</p>";
+  if (page.report.findings.empty()) return "<p>Alignment found no problems.</p>";
   std::string out = "<ul class=\"findings\">";
   for (const Finding& finding : page.report.findings) {
     const std::string_view mark = finding.severity == Severity::error
@@ -472,7 +475,7 @@ std::string thinning_text(const TakePage& page) {
   return fmt::format(
       "The page holds every {}th row of the take ({} of {}), so that it stays small. Tables, "
       "bones, "
-      "zones and figures 2 and 3 count all rows. The player moves straight from row to row.",
+      "zones and figures 2 and 3 count all rows. The player interpolates linearly between rows.",
       page.stride, grouped(page.seconds.size()), grouped(page.report.frames));
 }
 

@@ -48,7 +48,7 @@ TEST_CASE("what is no network is refused with what stood there") {
                                  "1.2.3.4/x", "1.2.3.4/-1", "1.2.3.4/8 ", "fd00::/8/8"}) {
     const auto network = parse_network(text);
     REQUIRE(!network);
-    CHECK(to_string(network.error()) == "expected an address or a network as 192.168.7.0/24" +
+    CHECK(to_string(network.error()) == "expected an address or a network, such as 192.168.7.0/24" +
                                             (text.empty() ? "" : ", found " + text));
   }
 }

@@ -55,7 +55,7 @@ TEST_CASE("port 0 is any free one, and a port that is taken is named") {
   CHECK(first->port() > 0);
   const std::string place = "127.0.0.1:" + std::to_string(first->port());
   CHECK(message(UdpSocket::open("127.0.0.1", first->port())) ==
-        place + ": expected a UDP port to serve on, found another program on it");
+        place + ": expected a UDP port to serve on, found a port that another program uses");
   CHECK(message(UdpSocket::open("127.0.0.2", first->port())) == "opened");
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("who is followed has a socket of its own, and the port is no other pro
       return UdpSocket::connected(from.to, open->port(), from.from, from.from_port);
     };
     CHECK(message(follow()).ends_with(
-        "expected a UDP socket for it alone, found another program on it"));
+        "expected a UDP socket of its own, found a port that another program uses"));
     REQUIRE(open->share_port());
     const auto line = follow();
     REQUIRE(line);
@@ -98,7 +98,8 @@ TEST_CASE("who is followed has a socket of its own, and the port is no other pro
 
 TEST_CASE("an address that this host has not, or that is none, is named") {
   CHECK(message(UdpSocket::open("192.0.2.77", 0)) ==
-        "192.0.2.77:0: expected a UDP port to serve on, found no interface that has it");
+        "192.0.2.77:0: expected a UDP port to serve on, found no network interface with this "
+        "address");
   for (const std::string text : {"lab", "::1::", "1.2.3.4.5", ""}) {
     const std::string found = text.empty() ? "" : ", found " + text;
     CHECK(message(UdpSocket::open(text, 0)) == "expected an IPv4 or IPv6 address" + found);
@@ -113,10 +114,11 @@ TEST_CASE("what stands in the way of a port is said in words and as the error's 
     return std::pair(error.kind, error.found);
   };
   using Said = std::pair<ErrorKind, std::string>;
-  CHECK(said(EADDRINUSE, 80) == Said(ErrorKind::port_taken, "another program on it"));
+  CHECK(said(EADDRINUSE, 80) == Said(ErrorKind::port_taken, "a port that another program uses"));
   CHECK(said(EACCES, 80) == Said(ErrorKind::port_forbidden, "no permission for a port below 1024"));
   CHECK(said(EPERM, 1024) == Said(ErrorKind::port_forbidden, "no permission"));
-  CHECK(said(EADDRNOTAVAIL, 80) == Said(ErrorKind::address_elsewhere, "no interface that has it"));
+  CHECK(said(EADDRNOTAVAIL, 80) ==
+        Said(ErrorKind::address_elsewhere, "no network interface with this address"));
   CHECK(said(EMFILE, 80) == Said(ErrorKind::other, "Too many open files"));
 }
 

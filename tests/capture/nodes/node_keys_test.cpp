@@ -59,7 +59,7 @@ TEST_CASE("a lab key is read from a file that its owner alone may read") {
     const std::string path = folder.file(digits, mode);
     const auto key = read_lab_key(files, path);
     REQUIRE_FALSE(key);
-    CHECK(key.error().expected == "a key that nobody else may read (chmod 600)");
+    CHECK(key.error().expected == "a key file that only you can read (chmod 600)");
     CHECK(key.error().found.starts_with("mode 0"));
   }
   CHECK(read_lab_key(files, folder.file(digits, 0640)).error().found == "mode 0640");
@@ -79,7 +79,7 @@ TEST_CASE("what is no lab key is refused, and no byte of it is shown") {
     const auto key = read_lab_key(files, path);
     REQUIRE_FALSE(key);
     CHECK(to_string(key.error()) ==
-          path + ": expected a lab key of 64 hexadecimal digits, found something else");
+          path + ": expected a lab key of 64 hexadecimal digits, found other text");
   }
   const std::string node_key_file = folder.file(digits.substr(0, 32) + "\n", 0600);
   CHECK(read_lab_key(files, node_key_file).error().found == "32 digits, a node's key");
@@ -100,7 +100,7 @@ TEST_CASE("a key is written for its owner alone, and never over anything") {
   CHECK(*read_lab_key(files, path) == *key);
   const auto again = write_key(files, path, LabKey{});
   REQUIRE_FALSE(again);
-  CHECK(again.error().found == "a file, which stays as it is");
+  CHECK(again.error().found == "an existing file, which is not overwritten");
   CHECK(*read_lab_key(files, path) == *key);
 }
 
@@ -115,8 +115,9 @@ TEST_CASE("a lab key of another user's is told with whose it is") {
   const passwd* me = ::getpwuid(::getuid());
   const std::string owner = me != nullptr ? me->pw_name : std::to_string(::getuid());
   CHECK(read_lab_key(files, folder.file(digits, 0400)).error().found ==
-        "no permission to read it: it is " + owner + "'s, mode 0400");
-  CHECK(read_lab_key(files, folder.path + "/none").error().found == "no permission to read it");
+        "no permission to read this file: it is " + owner + "'s, mode 0400");
+  CHECK(read_lab_key(files, folder.path + "/none").error().found ==
+        "no permission to read this file");
 }
 
 TEST_CASE("why a lab key could not be read stands in the error's kind") {

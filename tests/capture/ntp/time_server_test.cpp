@@ -99,7 +99,7 @@ TEST_CASE("an address that is not this host's is refused before anything is serv
   options.port = 0;
   const auto server = TimeServer::open(options);
   REQUIRE(!server);
-  CHECK(server.error().found == "no interface that has it");
+  CHECK(server.error().found == "no network interface with this address");
 }
 
 TEST_CASE("several addresses share one port") {

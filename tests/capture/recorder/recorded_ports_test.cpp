@@ -337,18 +337,18 @@ TEST_CASE("a port that can't be opened is told by whose it is") {
     REQUIRE(!session);
     return to_string(session.error());
   };
-  const std::string why =
-      ": expected a UDP port to serve on at 127.0.0.1:" + port + ", found another program on it";
+  const std::string why = ": expected a UDP port to serve on at 127.0.0.1:" + port +
+                          ", found a port that another program uses";
   CHECK(error_of("mocap=noitom:udp:127.0.0.1:" + port, std::nullopt) == "mocap" + why);
   CHECK(error_of("imu=nodes:udp:127.0.0.1:" + port, std::nullopt) == "imu" + why);
   CHECK(error_of("mocap=noitom:udp:127.0.0.1:0", taken.port()) ==
         "marks: expected a UDP port to serve on at 0.0.0.0:" + port +
-            ", found another program on it");
+            ", found a port that another program uses");
   const TcpPieces listening = *TcpPieces::listen("127.0.0.1", 0);
   const std::string tcp = std::to_string(listening.port());
   CHECK(error_of("mocap=noitom:tcp-listen:127.0.0.1:" + tcp, std::nullopt) ==
         "mocap: expected a TCP port to serve on at 127.0.0.1:" + tcp +
-            ", found another program on it");
+            ", found a port that another program uses");
 }
 
 TEST_CASE("a mark before a take stands in its pre-roll") {
