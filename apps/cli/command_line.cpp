@@ -91,8 +91,8 @@ class Walk {
   Result<void> set_bare(const Field& field, const std::string& flag) {
     if (is_switch(field)) return set(field, flag, "true");
     if (at_ + 1 == words_.size() || looks_like_a_flag(words_[at_ + 1])) {
-      return wrong(flag, "a value behind it (" + placeholder(field) + ")",
-                   at_ + 1 == words_.size() ? "the end" : shown(words_[at_ + 1]));
+      return wrong(flag, "a value after it (" + placeholder(field) + ")",
+                   at_ + 1 == words_.size() ? "nothing after it" : shown(words_[at_ + 1]));
     }
     return set(field, flag, words_[++at_]);
   }
@@ -102,7 +102,7 @@ class Walk {
   Result<void> set(const Field& field, const std::string& flag, const std::string& text) {
     const bool many = std::holds_alternative<std::vector<std::string>*>(field.value);
     const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
-    if (!first && !many) return wrong(flag, "to be given once", "given twice");
+    if (!first && !many) return wrong(flag, "this flag once", "it twice");
     if (first && many) std::get<std::vector<std::string>*>(field.value)->clear();
     return set_field(field, text).map_error([&](Error error) {
       error.file = flag;
@@ -125,7 +125,7 @@ class Walk {
         KA_TRY(place_word(place, plain_[next]));
       }
       if (place.words->size() < place.least) {
-        return wrong("", place.name + " (" + place.meaning + ")", "nothing in its place");
+        return wrong("", place.name + " (" + place.meaning + ")", "nothing");
       }
     }
     if (next == plain_.size()) return {};
@@ -136,8 +136,7 @@ class Walk {
     } else if (further.ends_with(".toml")) {
       advice = "did you mean --config " + shown(further) + "?";
     }
-    return wrong("", "no further word" + (advice.empty() ? "" : " (" + advice + ")"),
-                 shown(further));
+    return wrong("", "no more words" + (advice.empty() ? "" : " (" + advice + ")"), shown(further));
   }
 
   static Result<void> place_word(const Positional& place, const std::string& word) {
@@ -183,16 +182,17 @@ class Walk {
 Fields common_fields(Common& common, const Page& page) {
   const Field out_file{"out", "file to write", &common.out};
   const Field out_folder{.name = "out",
-                         .meaning = page.out_is_new ? "folder to write into; none may be there"
-                                                    : "folder to write into, made if need be",
+                         .meaning = page.out_is_new
+                                        ? "new folder to write into; it must not exist yet"
+                                        : "folder to write into; made if it does not exist",
                          .value = &common.out,
                          .stands_for = "FOLDER"};
   const Fields choosable{
       page.out_is_folder ? out_folder : out_file,
-      {"force", "overwrite what is there", &common.force},
+      {"force", "overwrite an existing file", &common.force},
       {"json", "print JSON and nothing else on stdout", &common.json},
-      {"dry_run", "say what would be done and write nothing", &common.dry_run},
-      {"jobs", "threads to use; 0: one a processor", &common.jobs, 0.0, 1024.0},
+      {"dry_run", "print what would be done, and write nothing", &common.dry_run},
+      {"jobs", "threads to use; 0: one per processor", &common.jobs, 0.0, 1024.0},
   };
   Fields fields;
   for (const Field& field : choosable) {
@@ -202,10 +202,10 @@ Fields common_fields(Common& common, const Page& page) {
   fields.push_back(
       {"config", "settings to use instead of the project's kinalign.toml", &common.config});
   fields.push_back({"quiet", "print errors only", &common.quiet});
-  fields.push_back({"verbose", "say more: what each file was read as, names of joints and nodes",
+  fields.push_back({"verbose", "print more: how each file was read, names of joints and nodes",
                     &common.verbose});
   fields.push_back({.name = "color",
-                    .meaning = "colours: auto is on a terminal without NO_COLOR",
+                    .meaning = "colours; auto: on a terminal, unless NO_COLOR is set",
                     .value = &common.color,
                     .choices = {"auto", "always", "never"}});
   return fields;

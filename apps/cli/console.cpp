@@ -203,7 +203,7 @@ Failure Console::refuse(Error error) {
   refused_ = true;
   if_it_fails([verb = verb_](const Error&) {
     return std::vector<std::string>{"kinalign " + verb +
-                                    " --help shows what it takes, with examples"};
+                                    " --help lists its arguments and flags, with examples"};
   });
   return Failure(std::move(error));
 }
@@ -211,7 +211,7 @@ Failure Console::refuse(Error error) {
 void Console::wrote(const std::string& path) {
   if (path.empty()) return;
   if_it_fails([path](const Error&) {
-    return std::vector<std::string>{harmless(path) + " is written all the same, and whole"};
+    return std::vector<std::string>{harmless(path) + " was written completely before this error"};
   });
 }
 

@@ -22,8 +22,8 @@ std::vector<std::string> file_advice(const Error& error) {
     const std::string name = file->path().string();
     if (name.ends_with(".mcap")) recordings.push_back(name);
   }
-  if (recordings.empty()) return {"name a file in it"};
-  return {"name a file in it, as " +
+  if (recordings.empty()) return {"name a file in this folder"};
+  return {"name a file in this folder, such as " +
           harmless(*std::min_element(recordings.begin(), recordings.end()))};
 }
 

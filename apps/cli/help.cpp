@@ -97,7 +97,7 @@ std::string group_page(const std::string& group, const std::vector<Verb>& verbs)
     if (group_of(verb.page.name) == group) text += line_of(verb.page.name, verb.page.summary);
   }
   return text + "\n" +
-         line_of(fmt::format("kinalign {} VERB --help", group), "a verb's page, with examples");
+         line_of(fmt::format("kinalign {} VERB --help", group), "help for a verb, with examples");
 }
 
 std::string overview(const std::vector<Verb>& verbs) {
@@ -111,12 +111,12 @@ std::string overview(const std::vector<Verb>& verbs) {
     const std::string group = group_of(verb.page.name);
     if (group.empty()) text += line_of(verb.page.name, verb.page.summary);
     if (!group.empty() && group != listed) {
-      text += line_of(group + " ...", "verbs of its own: " + words_of(group, verbs));
+      text += line_of(group + " ...", "a group of verbs: " + words_of(group, verbs));
     }
     listed = group;
   }
   text += "\n";
-  text += line_of("kinalign VERB --help", "a verb's page, with examples");
+  text += line_of("kinalign VERB --help", "help for a verb, with examples");
   text += line_of("kinalign --version", "the version");
   text +=
       "\nexit code  0 done, 1 findings, 2 wrong use, 3 input or output, 130 stopped by Ctrl-C\n";
@@ -140,7 +140,7 @@ std::string help_page(const Page& page, const Usage& usage) {
       usage.settings,
       fmt::format("settings (also KINALIGN_<NAME>, and [{}] in kinalign.toml)", page.name));
   Common common;
-  return text + lines_of(common_fields(common, page), "as everywhere");
+  return text + lines_of(common_fields(common, page), "flags of all verbs");
 }
 
 }  // namespace kinalign

@@ -70,18 +70,18 @@ std::string man_page(const std::vector<Verb>& verbs) {
   }
   Common common;
   text += ".SH FLAGS OF EVERY VERB\n" + items(common_fields(common, Page{}));
-  text += item("-h, --help", "the verb's page");
+  text += item("-h, --help", "help for the verb");
   text +=
-      ".SH SETTINGS\nA flag wins over KINALIGN_<NAME> in the environment, that over what a "
-      "manifest "
-      "states, that over\nthe nearest kinalign.toml in the current folder or above it, that "
-      "over\n.I "
-      "~/.config/kinalign/config.toml.\n.B kinalign config\nprints what is in force and whence.\n"
+      ".SH SETTINGS\nThe first of these places that sets an option decides: a flag; "
+      "KINALIGN_<NAME> in the environment;\nthe manifest; the nearest kinalign.toml in the current "
+      "folder or above it;\n.I ~/.config/kinalign/config.toml.\n.B kinalign config\nprints all "
+      "settings in use and where each comes from.\n"
       ".SH EXIT STATUS\n";
   text += item("0", "done") +
-          item("1", "done, with warnings or errors found; rebuild: not the same") +
+          item("1", "done, with warnings or errors found; rebuild: the bytes differ") +
           item("2", "wrong use");
-  text += item("3", "input or output") + item("130", "stopped by Ctrl-C; no half file is left");
+  text +=
+      item("3", "input or output") + item("130", "stopped by Ctrl-C; no unfinished file is left");
   return text;
 }
 

@@ -22,7 +22,7 @@ Result<int> with_memory(const Work& work) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    return Failure(Error{"", 0, "as much memory as the files need", "no more of it"});
+    return Failure(Error{"", 0, "enough memory for the files", "no free memory"});
   }
 }
 
@@ -63,10 +63,10 @@ class Run {
   std::vector<std::string> advice(const Error& error) const {
     const std::string variable = surroundings_.variable("KINALIGN_CONFIG");
     const bool by_variable = common_.config.empty() && error.file == variable;
-    if (unreadable_ && by_variable) return {"KINALIGN_CONFIG names it"};
+    if (unreadable_ && by_variable) return {"the variable KINALIGN_CONFIG names this file"};
     if (unreadable_) return {};
     if (error.line > 0) return {std::string(settings_pages)};
-    return {"kinalign " + verb_.page.name + " --help shows what it takes, with examples"};
+    return {"kinalign " + verb_.page.name + " --help lists its arguments and flags, with examples"};
   }
 
   Result<std::vector<SettingsFile>> read_settings() {

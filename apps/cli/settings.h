@@ -49,7 +49,7 @@ Result<std::vector<SettingsFile>> parse_settings(const std::vector<SettingsText>
 
 /// The pages to read after an error in a settings file.
 inline constexpr std::string_view settings_pages =
-    "docs/commands.md says what a file of settings has, docs/recording.md what one of a lab";
+    "docs/commands.md describes a settings file, docs/recording.md describes a lab file";
 
 /// The options that a verb's table and the beginning of a file may set.
 struct Settable {

@@ -36,7 +36,7 @@ constexpr std::size_t least_rows = 8;  // frames; shorter stretches are left out
 
 Result<std::string> bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) return Failure(Error{path, 0, "a file that can be read", "none"});
+  if (!in) return Failure(Error{path, 0, "a readable file", "no readable file"});
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
@@ -68,7 +68,7 @@ Result<TrainingOptions> options_of(const std::string& method, const std::string&
   if (const auto* found = find_method(denoise, method)) return found->options;
   if (const auto* found = find_method(pose, method)) return found->options;
   if (const auto* found = find_method(fuse, method)) return found->options;
-  return Failure(Error{name, 0, "a method that is known", method});
+  return Failure(Error{name, 0, "a known method", method});
 }
 
 /// A model that goes on learns with a fifth of the rate and at most 300 steps, so that it forgets
@@ -159,7 +159,7 @@ Result<std::optional<Model>> model_before(const TrainingJob& job, Read read) {
   Model model = KA_TRY(read(KA_TRY(bytes_of(job.from)), job.from));
   if (model.facts.method == job.method) return std::optional<Model>(std::move(model));
   return Failure(Error{job.from, 0, "a model of the method " + job.method,
-                       "one of " + shown(model.facts.method)});
+                       "a model of the method " + shown(model.facts.method)});
 }
 
 Failure cannot_go_on(const TrainingJob& job, const std::string& expected) {
@@ -206,7 +206,7 @@ Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
   if (!from) return pairs_of(windows, job.input, job.truth, least_rows);
   const DenoiseLayout& layout = from->layout;
   if (std::abs(windows.facts.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
-    return Failure(Error{job.windows, 0, "windows at the model's rate", "another one"});
+    return Failure(Error{job.windows, 0, "windows at the model's rate", "another rate"});
   }
   const Pairs joints{layout.inputs, layout.outputs, layout.rate_hz, layout.parents};
   return pairs_for(windows, job.input, job.truth, joints, least_rows);
@@ -218,7 +218,8 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
   if (job.hand_weight > 0.0) method.training.loss.hands = job.hand_weight;
   const auto from = KA_TRY(model_before<DenoiseModel>(job, read_denoise_model));
   if (from && method.perceptual) {
-    return Failure(Error{job.from, 0, "a method of one network to go on with", job.method});
+    return Failure(
+        Error{job.from, 0, "a method with one network, to continue training", job.method});
   }
   Pairs pairs = KA_TRY(pairs_to_learn(job, windows, from));
   const DividedPairs divided = divide(std::move(pairs.all));
@@ -290,7 +291,8 @@ Result<JointFrames> body_of(const TensorFile& file, const std::string& number, s
     out.seen.assign(seen->second.values.begin(), seen->second.values.end());
     if (out.positions.size() == 3 * out.seen.size() && out.seen.size() % joints == 0) return out;
   }
-  return Failure(Error{name, 0, "positions and states of body " + number, "none, or others"});
+  return Failure(Error{name, 0, "positions and states of body " + number,
+                       "no such arrays, or arrays of other sizes"});
 }
 
 /// Writes the projected answers to all bodies of a file. The last line of output states the mean
@@ -389,7 +391,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     if (!out.from.empty()) go_on_gently(out.options);
     if (json.contains("options")) read_options(json.at("options"), out.options);
   } catch (const Json::exception& fault) {
-    return Failure(Error{name, 0, "a whole job", shown(fault.what())});
+    return Failure(Error{name, 0, "a complete job", shown(fault.what())});
   }
   return out;
 }

@@ -41,9 +41,9 @@ void warn_of_slow_products() {
   if (gflops >= least_gflops) return;
   std::ostringstream text;
   text.precision(2);
-  text << "this machine's BLAS makes " << gflops
-       << " GFLOP/s, training takes many times as long as it could: sudo apt-get install "
-          "libopenblas0-pthread";
+  text << "the BLAS library of this machine reaches only " << gflops
+       << " GFLOP/s, so training takes much longer than needed; install a faster one: sudo apt-get "
+          "install libopenblas0-pthread";
   std::cout << nlohmann::ordered_json{{"warning", text.str()}}.dump() << std::endl;
 }
 
@@ -79,14 +79,14 @@ int main(int argc, char** argv) {
     auto job = kinalign::read_job(text, argv[1]);
     if (!job) return fail(job.error());
     if (job->device == "cuda" && !torch::cuda::is_available()) {
-      return fail({"--device", 0, "a GPU, and a LibTorch that knows CUDA (docs/training.md)",
-                   "none of both at once"});
+      return fail({"--device", 0, "a GPU and a LibTorch with CUDA (docs/training.md)",
+                   "no GPU that LibTorch can use"});
     }
     torch::set_num_threads(static_cast<int>(job->threads));
     if (job->device == "cpu") warn_of_slow_products();
     const auto done = kinalign::run_job(*job);
     return done ? 0 : fail(done.error());
   } catch (const std::exception& fault) {  // LibTorch throws
-    return fail({argv[1], 0, "a job that LibTorch can do", fault.what()});
+    return fail({argv[1], 0, "a job that LibTorch can run", fault.what()});
   }
 }

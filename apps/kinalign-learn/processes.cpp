@@ -113,8 +113,8 @@ Result<Processes> Processes::join(const ProcessPlace& place) {
   } catch (const std::exception& fault) {
     return Failure(Error{"", 0,
                          "all " + std::to_string(place.size) +
-                             " processes within five minutes at " + shown(place.address) + ":" +
-                             std::to_string(place.port),
+                             " processes to connect within five minutes to " +
+                             shown(place.address) + ":" + std::to_string(place.port),
                          shown(fault.what())});
   }
 }
@@ -126,8 +126,8 @@ Result<void> Processes::agree(const std::string& text) {
     if (share_.is_first()) group_->store->set("job", own);
     if (group_->store->get("job") == own) return {};
   } catch (const std::exception&) {
-    return Failure(Error{"", 0, "all processes of the training to begin", "one that ended before",
-                         ErrorKind::lost_process});
+    return Failure(Error{"", 0, "all processes of the training to start",
+                         "a process that ended before the start", ErrorKind::lost_process});
   }
   return Failure(
       Error{"", 0, "the same job, data and checkpoint in every process",
@@ -152,7 +152,7 @@ Result<Processes> Processes::join(const ProcessPlace& place) {
       Error{"", 0,
             "a kinalign-learn that was built with Gloo (Debian: libgloo-dev) to train in "
             "several processes",
-            "one without"});
+            "a kinalign-learn without Gloo"});
 }
 
 Result<void> Processes::agree(const std::string&) { return {}; }

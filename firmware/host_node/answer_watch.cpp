@@ -5,14 +5,13 @@ namespace kinalign {
 
 std::string AnswerWatch::complaint(std::int64_t silent_ns, bool answers_came) const {
   if (answers_came) {
-    return "answers of " + server_ +
-           " do not count: they are signed with another key than --key-file has, or not at all";
+    return "answers of " + server_ + " are refused: they are not signed with the key in --key-file";
   }
   const std::string silent = std::to_string(silent_ns / 1'000'000'000);
   return server_ + " has not answered for " + silent +
          " s: either no kinalign time-server --node-port is there, or " +
          (keyed_ ? "its --lab-key is not the one that this node's key was made from, or is missing"
-                 : "it has a --lab-key, and this node needs --key-file");
+                 : "it has a --lab-key, so this node needs --key-file");
 }
 
 std::string AnswerWatch::look(std::int64_t age_ns, std::uint64_t accepted,

@@ -37,10 +37,10 @@ Tried<MacKey> read_key_file(const std::string& path) {
   }
   struct stat found {};
   if (fstat(fileno(file.get()), &found) != 0 || !S_ISREG(found.st_mode)) {
-    return failure(path + ": expected a file with a key, found none");
+    return failure(path + ": expected a regular file with a key, found none");
   }
   if ((found.st_mode & 077U) != 0) {
-    return failure(path + ": expected mode 0600, since nobody else may read a key, found " +
+    return failure(path + ": expected mode 0600, so that only you can read the key, found " +
                    octal(found.st_mode) + ": chmod 600 " + path);
   }
   std::array<char, 80> text{};
@@ -50,7 +50,7 @@ Tried<MacKey> read_key_file(const std::string& path) {
   if (take_hex(digits, key)) return key;
   // Any other content may be secret, so the message does not show it.
   std::array<std::uint8_t, 32> lab{};
-  const char* instead = take_hex(digits, lab) ? "64 digits, the lab's key" : "something else";
+  const char* instead = take_hex(digits, lab) ? "64 digits, the lab's key" : "other text";
   return failure(path + ": expected a key of 32 hexadecimal digits, found " + instead);
 }
 

@@ -42,7 +42,7 @@ Tried<NodeSocket> NodeSocket::connected_to(const std::string& host, const std::s
     if (made.descriptor_ < 0) continue;
     if (::connect(made.descriptor_, one->ai_addr, one->ai_addrlen) == 0) return made;
   }
-  return failure(host + ":" + port + ": expected a way there, found: " + std::strerror(errno));
+  return failure(host + ":" + port + ": expected a network route, found: " + std::strerror(errno));
 }
 
 NodeSocket::NodeSocket(NodeSocket&& other) noexcept

@@ -84,25 +84,25 @@ const char* host_node_help() {
   --rate HZ              frames a second (15)
   --sample-rate HZ       samples a second (100)
   --key-file FILE        the node's own key, 32 hexadecimal digits; the file's mode is 0600
-  --seconds S            for how long (until SIGINT or SIGTERM)
+  --seconds S            length of the run (until SIGINT or SIGTERM)
   --boot-id N            of the first start (random)
-  --clockless            request, answer, confirm, as of a node without a counter
+  --clockless            behave as a node without a counter: request, answer, confirm
   --orientation          send orientations too
   --battery-mv N         a battery with so many millivolts
-  --dither-us N          up to so much later goes each frame (1000)
-  --narrow               stamps leave modulo 2^32
+  --dither-us N          delay each frame by up to N us (1000)
+  --narrow               send stamps modulo 2^32
   --offset S             the counter at the start (0)
-  --drift-ppm X          of the counter against the host's (0)
-  --drift AT:PPM         another drift from AT seconds on
+  --drift-ppm X          drift of the counter against the host's (0)
+  --drift AT:PPM         change the drift AT seconds after the start
   --step AT:S            the counter jumps by S seconds
   --reboot-at AT         the counter begins at 0 again, with a new boot id
   --same-boot-id         a reboot keeps the boot id
-  --outage AT:S          no link for S seconds
-  --rebind-at AT         goes on from another port, as after a change of address
+  --outage AT:S          no link for S seconds, AT seconds after the start
+  --rebind-at AT         send from another port, as after a change of address
   --sensor-fails N       every Nth reading gets no answer
 
-Prints one line of JSON at its end: what it counted, and under "truth" from when on (raw_ns of
-CLOCK_MONOTONIC_RAW) its counter stood at what and ran how.
+Prints one line of JSON at the end: counts, and under "truth" the counter's value and drift from each
+change on, with the time of the change (raw_ns of CLOCK_MONOTONIC_RAW).
 )";
 }
 
@@ -191,13 +191,13 @@ tl::unexpected<Trouble> no_option(const std::string& word) {
                                  [&](const Flag& one) { return resembles(name, one.name); });
   const std::string meant =
       near == flags().end() ? "" : std::string("did you mean --") + near->name + "? ";
-  return wrong_use("no option " + word + "; " + meant + "--help says which there are");
+  return wrong_use("unknown option " + word + "; " + meant + "--help lists the options");
 }
 
 Tried<HostNodeOptions> completed(HostNodeOptions options) {
   if (options.help || options.script) return options;
   if (options.host.empty())
-    return wrong_use("expected --server HOST:PORT; --help says what else there is");
+    return wrong_use("expected --server HOST:PORT; --help lists the options");
   options.node.frame_period_us = static_cast<std::uint32_t>(std::lround(1e6 / options.rate_hz));
   std::stable_sort(options.events.begin(), options.events.end(),
                    [](const Event& a, const Event& b) { return a.at_s < b.at_s; });
@@ -218,8 +218,8 @@ Tried<HostNodeOptions> options_from(std::span<const char* const> words) {
       return no_option(words[i]);
     }
     if (flag->expected != nullptr && i + 1 == words.size()) {
-      return wrong_use(std::string(word) + ": expected a value behind it (" + flag->expected +
-                       "), found the end");
+      return wrong_use(std::string(word) + ": expected a value after it (" + flag->expected +
+                       "), found nothing");
     }
     const std::string value = flag->expected != nullptr ? words[++i] : "";
     if (!flag->read(value, options)) {

@@ -159,7 +159,7 @@ def what_is_named_as_a_recording_and_is_none_is_called_what_it_is(folder):
     assert first.endswith("found 'HIERARCHY'"), first
     refused("recover", path, "-o", folder / "o.mcap", naming=f"{path}: expected an MCAP file, found 'HIERARCHY'")
     out, _ = done_with(0, "check", path)
-    assert out.startswith(f"note     {path}: expected what its ending says, found bvh: clip, 2 joints"), out
+    assert out.startswith(f"note     {path}: expected the kind of file that its extension says, found bvh: clip, 2 joints"), out
 
 
 @case
@@ -212,7 +212,7 @@ def where_memory_does_not_suffice_for_a_chunk_it_is_said(folder):
     path.write_bytes(b"\x89MCAP0\r\n" + b"\x01" + struct.pack("<QII", 8, 0, 0) +
                      b"\x06" + struct.pack("<Q", len(head) + size) + head + stored)
     for words in (("check", path), ("recover", path, "-o", folder / "o.mcap")):
-        refused(*words, naming="expected as much memory as the files need, found no more of it", memory=300 << 20)
+        refused(*words, naming="expected enough memory for the files, found no free memory", memory=300 << 20)
     assert list(folder.iterdir()) == [path]
 
 
@@ -340,7 +340,7 @@ def of_what_is_written_a_full_stdout_takes_nothing_back(folder):
         assert done.returncode == 3, done
         assert done.stderr == (
             f"kinalign {words[0]}: standard output: expected room to write, found No space left on "
-            f"device\n  {out} is written all the same, and whole\n"), done.stderr
+            f"device\n  {out} was written completely before this error\n"), done.stderr
         assert out.exists()
     assert take.read_bytes() == again.read_bytes()
 

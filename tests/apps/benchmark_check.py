@@ -111,12 +111,12 @@ def another_twin_or_other_files_are_not_touched(folder):
     before = digests(data)
     for words in (("--scale", SCALE, "--seed", "2"), ("--scale", "0.0002")):
         _, err = done_with(3, "benchmark", "twin", *words, "-o", data)
-        assert "expected a twin of the same scale, seed and motions" in err, err
+        assert "expected a twin with the same scale, seed and motions" in err, err
     other = folder / "other"
     other.mkdir()
     (other / "mine.txt").write_text("mine")
     _, err = done_with(3, "benchmark", "twin", "--scale", SCALE, "-o", other)
-    assert "expected a new folder, or a twin that was begun" in err, err
+    assert "expected a new folder, or an unfinished twin" in err, err
     assert digests(data) == before and [path.name for path in other.iterdir()] == ["mine.txt"]
 
 
@@ -145,7 +145,7 @@ def a_folder_without_motions_and_a_motion_of_another_skeleton_are_told(folder):
     motions = folder / "motions"
     motions.mkdir()
     _, err = done_with(3, "benchmark", "twin", "--scale", SCALE, "-o", folder / "twin", "--motion", motions)
-    assert "expected a folder with BVH files, found none in it" in err and not (folder / "twin").exists(), err
+    assert "expected a folder with BVH files, found no BVH file" in err and not (folder / "twin").exists(), err
     (motions / "other.bvh").write_text(samples.bvh())
     out, _ = done_with(1, "benchmark", "twin", "--scale", SCALE, "-o", folder / "twin", "--motion", motions)
     failed = [line for line in out.splitlines() if line.startswith("failed")]
@@ -281,7 +281,7 @@ def a_dry_run_names_methods_whose_time_is_not_known_and_each_network_once(folder
     _, said = run(data, folder, "raw", "smoothnet", "cnn+project", "cnn", "--dry-run")
     assert [(one["method"], one["seconds"] is None) for one in said["trainings"]] == [
         ("smoothnet", True), ("cnn", False)], said
-    for words, last in ((("smoothnet",), "smoothnet     to train, 1,200 steps, time not known"),
+    for words, last in ((("smoothnet",), "smoothnet     to train, 1,200 steps, unknown time"),
                         (("raw",), "nothing to train")):
         out, _ = done_with(0, "benchmark", "run", data, *words, "-o", folder / "results", "--dry-run")
         assert out.splitlines()[-1] == last, out
@@ -328,7 +328,7 @@ def a_program_of_others_is_marked_as_the_methods_are(folder):
         assert abs(rows["own"][key] - rows["raw"][key]) < 0.02 * rows["raw"][key], (key, rows)
     assert not (results / "programs").exists()
     _, err = run(data, folder, "raw", "--method", f"own={program(folder, '-1')}", code=3)
-    assert "of finite float32 or float64, found another array" in err, err
+    assert "of finite float32 or float64, found another shape, type or value" in err, err
     _, err = run(data, folder, "raw", "--method", "own=false", code=3)
     assert "false: expected a program that ends with 0" in err, err
     for words in ("own", "=x", "o/n=x"):

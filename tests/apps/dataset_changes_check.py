@@ -127,7 +127,7 @@ def rm_says_what_goes_and_asks(folder):
         assert running.wait(60) == 0
         text = os.read(parent, 65536).decode()
         os.close(parent)
-        assert "remove them for good? [y/N]" in text and f"{name}" in text, text
+        assert "remove these files permanently? [y/N]" in text and f"{name}" in text, text
         assert all(p.exists() != is_gone for p in files), text
     assert (data / "sourcedata/sub-01" / name).exists()
     said = answer("rm", data, name, "sub-01_task-S2A02_run-01", "--raw", "--yes")

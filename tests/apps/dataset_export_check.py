@@ -170,7 +170,7 @@ def a_data_set_of_its_own_is_listed_and_verified_as_it_was_written(folder):
     summaries[1].write_text("{")
     said = [(one["file"], one["expected"], one["found"]) for one in answer("verify", free, code=1)["findings"]
             if one["severity"] == "error"]
-    assert said[0] == (str(summaries[0].relative_to(free)), "a summary beside the take", "none"), said
+    assert said[0] == (str(summaries[0].relative_to(free)), "a summary next to the take", "none"), said
     assert len(said) == 2 and said[1][1].startswith("a summary that can be read: ") and said[1][2] != "none", said
     assert (out / f"sub-00/{NAME}_take.h5").read_bytes() == (data / f"sub-00/{NAME}_take.h5").read_bytes()
     done("build", out)
@@ -218,7 +218,7 @@ def an_export_that_would_write_no_file_fails_and_leaves_nothing(folder):
     for kind, needs in (("bvh", "a skeleton"), ("mot", "a skeleton"), ("sto", "nodes with orientations")):
         ran = kinalign("dataset", "export", data, "-o", folder / "none", "--format", kind)
         said = law(ran, ("dataset", "export"), folder / "none")
-        assert ran.returncode == 3 and f"expected {needs} in one take at least, for {kind}, found none" in said, said
+        assert ran.returncode == 3 and f"expected {needs} in at least one take, for {kind}, found no take with them" in said, said
         assert not list(folder.glob("none*")), said
     exported(folder / "all", data, "npz")
 

@@ -66,7 +66,7 @@ def a_folder_per_person_becomes_a_data_set_that_builds(folder):
     assert takes(folder / "set") == ["sub-01_task-motion_run-07", "sub-05_task-motion_run-01", "sub-anna_task-walk_run-02",
                                      "sub-anna_task-walk_run-03", "sub-bert_task-run_run-01"]
     assert answer("build", folder / "set")["made"] == 5
-    assert "nothing wrong" in said("verify", folder / "set", "--deep")
+    assert "no faults" in said("verify", folder / "set", "--deep")
 
 
 @case
@@ -524,7 +524,7 @@ def ui_prmd_comes_in_by_one_command_and_equals_its_source(folder):
         assert was.shape == now.shape and abs(was - now).max() < half_a_step + 1e-9, name
     assert answer("build", folder / "set", seconds=600)["made"] == 690
     assert answer("build", folder / "set", seconds=600)["up_to_date"] == 690
-    assert "nothing wrong" in said("verify", folder / "set", seconds=300)
+    assert "no faults" in said("verify", folder / "set", seconds=300)
 
 
 def protocol():
@@ -587,7 +587,7 @@ def a_pair_of_files_of_one_name_is_copied_apart_and_rebuilt(folder):
         assert answer("import", data, source, *copy)["added"] == 0
         assert answer("build", data)["made"] == 2
         assert answer("build", data)["up_to_date"] == 2
-        assert "nothing wrong" in said("verify", data, "--deep")
+        assert "no faults" in said("verify", data, "--deep")
     assert len(list((folder / "set1/sourcedata").rglob("*.txt"))) == 6
     take = folder / "set0/sub-05/sub-05_task-m10_run-02_take.h5"
     ran = kinalign("rebuild", take, "--inputs", source, "--verify")

@@ -109,7 +109,7 @@ def the_space_of_most_takes_decides_and_every_reason_is_counted(folder):
     ran = kinalign("dataset", "windows", data, "-o", folder / "none.npz", "--stream", "kinect", "--length", 5000)
     assert ran.returncode == 3 and not (folder / "none.npz").exists(), ran
     found = ran.stderr.decode().split("found ")[1]
-    assert found == "has no window: too short, or too little is valid (3 takes); kinect in another space (1 take)\n", found
+    assert found == "has no window: too short, or too few valid cells (3 takes); kinect in another space (1 take)\n", found
 
 
 @case

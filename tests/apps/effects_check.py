@@ -134,7 +134,7 @@ def info_and_check_find_a_person_upright_only_with_the_files_own_axis(folder):
         found = said["streams"][0]["findings"]
         assert len(found) == findings, f"{name} --up {up}: {found}"
         out, _ = done_with(findings, "check", folder / name, "--up", up)
-        assert ("the person is read as lying" in out) == (findings == 1), out
+        assert ("the person appears to lie" in out) == (findings == 1), out
         assert findings == 0 or f"--up {name[0]} " in out, out
 
 

@@ -159,7 +159,7 @@ def a_model_that_is_tested_on_people_of_its_training_is_named_in_the_caption(fol
     assert kinalign(*words, memory=1 << 36, seconds=400).returncode == 0
     compared("--model", model, "--data", data, "-o", results)
     caption = (results / "table.md").read_text()
-    assert "all.safetensors was trained on people that it is tested on: 01, 02, 03" in caption, caption
+    assert "all.safetensors was trained on people of the test part: 01, 02, 03" in caption, caption
 
 
 @case
@@ -187,9 +187,9 @@ def methods_that_fuse_stand_beside_the_filter_by_device(folder):
 def methods_of_two_tasks_make_no_table(folder):
     both = "expected methods and models of one task, one table for each, found "
     wrong("eval", "refine", "dip", "--data", "d", "-o", "r",
-          says=f"METHOD: {both}refine, which cleans a Kinect, and dip, which answers nodes with a pose")
+          says=f"METHOD: {both}refine, which cleans a Kinect, and dip, which computes a pose from nodes")
     wrong("eval", "wouda", "--model", DENOISER, "--data", "d", "-o", folder / "r",
-          says=f"METHOD: {both}wouda, which answers nodes with a pose, and {shown(DENOISER)}, which cleans a Kinect")
+          says=f"METHOD: {both}wouda, which computes a pose from nodes, and {shown(DENOISER)}, which cleans a Kinect")
     wrong("eval", "raw", "--nodes", "waist", "--data", "d", "-o", "r",
           says="--nodes: expected a method for poses or for fusion, found raw")
     wrong("eval", "dip", "--windows", "w.npz", "--split", "s.json", "-o", "r",

@@ -34,10 +34,9 @@ def a_quick_flag_beside_a_manifest_is_refused_with_the_key_that_says_it(folder):
                              ("--joint", "A=B", "joints in [space.kinect]")):
         _, err = done_with(2, *begin, flag, value)
         assert err.startswith(f"kinalign align: {flag}: expected {key} of "), err
-        assert "found a flag beside the manifest\n" in err, err
+        assert "found this flag with a manifest\n" in err, err
     _, err = done_with(2, "align", folder / "take.mcap", "--mocap", "a.bvh", "-o", folder / "t.h5")
-    assert err.startswith("kinalign align: --mocap: expected file in [stream.NAME] of a manifest, recording.toml, which "
-                          "mixes recordings with files (NAME: a stream's own, see kinalign info), found take.mcap, a recording, which brings its own streams\n"), err
+    assert err.startswith("kinalign align: --mocap: expected file in [stream.NAME] of a recording.toml, which can combine recordings and files (NAME: a stream's name, see kinalign info), found take.mcap, a recording, which already has streams\n"), err
     done_with(0, *begin, "--gap-ms", "50", "--rotations", "slerp", "--double", "--reference", "mocap")
 
 
@@ -46,12 +45,12 @@ def a_flag_without_the_file_it_is_for_is_refused(folder):
     samples.recording(folder)
     begin = ("align", "--mocap", folder / "mocap.bvh", "-o", folder / "t.h5")
     for flag, value in (("--space", "paper"), ("--joint", "A=B"), ("--kinect-layout", "kinect")):
-        wrong(*begin, flag, value, says=f"{flag}: expected --kinect, which it is for, found none")
+        wrong(*begin, flag, value, says=f"{flag}: expected --kinect, to which this flag applies, found no --kinect")
     for flag, value in (("--imu-layout", "imu"), ("--root-node", "waist")):
-        wrong(*begin, flag, value, says=f"{flag}: expected --imu, which it is for, found none")
-    wrong(*begin, "--points-layout", "trc", says="--points-layout: expected --points, which it is for, found none")
+        wrong(*begin, flag, value, says=f"{flag}: expected --imu, to which this flag applies, found no --imu")
+    wrong(*begin, "--points-layout", "trc", says="--points-layout: expected --points, to which this flag applies, found no --points")
     wrong(*begin, "--kinect", folder / "kinect.csv", "--rotation-y-deg", "3",
-          says="--rotation-y-deg: expected --space paper, which it is for, found --space fit")
+          says="--rotation-y-deg: expected --space paper, to which this flag applies, found --space fit")
 
 
 @case
@@ -79,7 +78,7 @@ def a_flag_whose_value_is_no_pair_is_wrong_use(folder):
     wrong(*begin, "--imu", "w.csv", says="--imu: expected NODE=FILE, found 'w.csv'")
     wrong(*begin, "--points", "w.csv", says="--points: expected NAME=FILE, found 'w.csv'")
     wrong(*begin, "--kinect", "k.csv", "--joint", "A:B", says="--joint: expected KINECT=MOCAP, found 'A:B'")
-    wrong(*begin, "--points", "mocap=w.csv", says="--points: expected a name that no other stream has, found mocap")
+    wrong(*begin, "--points", "mocap=w.csv", says="--points: expected a name that no other stream uses, found mocap")
 
 
 @case
@@ -107,7 +106,7 @@ def a_manifests_stream_may_have_any_name_and_two_kinds_of_one_name_are_told(fold
     manifest.write_text(text)
     done_with(0, "align", manifest, "-o", folder / "t.h5")
     manifest.write_text(text.replace('file = "kinect.csv"', 'files = ["kinect.csv", "imu.csv"]'))
-    refused("align", manifest, "-o", folder / "u.h5", naming=f"{manifest}: expected streams with names that differ, found 'imu' "
+    refused("align", manifest, "-o", folder / "u.h5", naming=f"{manifest}: expected streams with different names, found 'imu' "
             "twice: kinect.csv (points) and imu.csv (nodes)", out=folder / "u.h5")
 
 
@@ -139,7 +138,7 @@ def an_unknown_reference_is_wrong_use(folder):
     begin = ("align", "--mocap", folder / "mocap.bvh", "--kinect", folder / "kinect.csv", "-o", folder / "t.h5")
     wrong(*begin, "--reference", "kinekt", says="--reference: expected a stream: mocap or kinect, found kinekt")
     wrong(*begin, "--reference", "kinect",
-          says="--reference: expected --space none beside it: the reference is not moved, found --space fit")
+          says="--reference: expected --space none as well, because the reference is not moved, found --space fit")
     done_with(0, *begin, "--reference", "kinect", "--space", "none")
 
 
@@ -148,11 +147,10 @@ def convert_names_what_is_missing_and_refuses_what_it_has_no_use_for(folder):
     samples.recording(folder)
     bvh, take = folder / "mocap.bvh", folder / "t.h5"
     done_with(0, "align", folder / "recording.toml", "-o", take)
-    wrong("convert", bvh, says="expected OUT (a new file; its ending, .npz, .bvh or .mcap, decides), found nothing in its "
-          "place")
-    wrong("convert", says="expected IN (a take, a recording, or a stream's file), found nothing in its place")
+    wrong("convert", bvh, says="expected OUT (a new file; its extension .npz, .bvh or .mcap decides the format), found nothing")
+    wrong("convert", says="expected IN (a take, a recording, or a stream's file), found nothing")
     wrong("convert", bvh, folder / "o.csv", says=f"{folder}/o.csv: expected a name that ends in .npz, .bvh or .mcap, "
-          "found another ending")
+          "found another extension")
     _, err = done_with(2, "convert", take, folder / "o.bvh", "--double")
     assert "--double: expected a new file that ends in .npz, found " in err, err
     done_with(0, "convert", take, folder / "o.npz", "--double")
@@ -189,7 +187,7 @@ def a_take_does_not_get_the_ending_of_another_format(folder):
     manifest = samples.recording(folder)
     done_with(0, "align", manifest, "-o", folder / "t.h5")
     for name in ("x.npz", "x.csv", "x.bvh"):
-        says = ("-o: expected a name for an HDF5 file, as take.h5 (kinalign convert makes .npz and .bvh of a take), "
+        says = ("-o: expected a name for an HDF5 file, such as take.h5 (kinalign convert makes .npz and .bvh of a take), "
                 f"found {name}")
         wrong("align", manifest, "-o", folder / name, says=says)
         wrong("rebuild", folder / "t.h5", "--inputs", folder, "-o", folder / name, says=says)

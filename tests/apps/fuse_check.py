@@ -119,8 +119,7 @@ def a_Kinect_that_never_sees_the_person_while_nodes_send_is_told(folder):
     lines = kinect.read_text().splitlines()
     kinect.write_text("\n".join(lines[:1] + lines[1:12]) + "\n")
     first = refused("fuse", manifest, "--model", SMALL, "-o", folder / "o.bvh", naming=manifest)
-    assert first.endswith("expected a second in which the Kinect sees the person and the waist's node sends, found none "
-                          "(denoise and pose take one device alone)"), first
+    assert first.endswith("expected a second in which the Kinect sees the person and the waist's node sends, found no such second (denoise and pose use one device alone)"), first
 
 
 @case

@@ -78,7 +78,7 @@ def a_reboot_a_new_port_and_an_outage_are_told_and_cost_no_certificate(folder):
     last = server.node(1)
     assert last["lives"] == 2 and last["battery_mv"] == 3712, last
     in_time(last["certainty"] == "certified", last)
-    assert "node 1: started anew" in server.err, server.err
+    assert "node 1: restarted" in server.err, server.err
     rates = [line.get("rate_hz") for line in server.said("node")]
     assert rates[0] is None and 0.0 not in rates, rates
     in_time(rates[-1] > 10, rates)
@@ -97,7 +97,7 @@ def a_node_without_the_key_is_not_heard(folder):
     told = server.said("node_event")  # the second node is told a second after the first, if it is there so long
     assert 1 <= len(told) <= 2, told
     assert all(line["kind"] == "wrong_key" and line["warning"] for line in told), told
-    key = " with another key" if told[0]["node_id"] == 2 else " without a MAC"
+    key = " frames signed with another key" if told[0]["node_id"] == 2 else " without a MAC"
     assert key in server.err and "kinalign node-key --lab-key LAB --node" in server.err, server.err
 
 
@@ -140,7 +140,7 @@ def a_replaced_lab_key_that_can_not_be_read_is_told_once_and_the_old_one_stays(f
         time.sleep(1.2)
         assert ended(start_node(BUILD, server.node_port, 1, "--seconds", 1, key=keys.of(1)))["accepted"] > 0
     lines = [line for line in server.err.splitlines() if "lab.key" in line]
-    stays = "; the key that was read before stays in force"
+    stays = "; the key that was read before stays in use"
     assert len(lines) == 2 and all(line.endswith(stays) for line in lines), server.err
     assert "warning: " in lines[0] and "(chmod 600), found mode 0644" in lines[0], lines
     assert "No such file or directory" in lines[1], lines
@@ -154,7 +154,7 @@ def keys_are_written_for_their_owner_and_never_over_a_file(folder):
     text = lab.read_text()
     assert re.fullmatch(r"[0-9a-f]{64}\n", text) and stat.S_IMODE(lab.stat().st_mode) == 0o600
     done = kinalign("node-key", "--new-lab-key", lab)
-    assert done.returncode == 3 and b"a file, which stays as it is" in done.stderr and lab.read_text() == text
+    assert done.returncode == 3 and b"an existing file, which is not overwritten" in done.stderr and lab.read_text() == text
     printed = kinalign("node-key", "--lab-key", lab, "--node", 7).stdout.decode()
     kinalign("node-key", "--lab-key", lab, "--node", 7, "-o", node)
     assert re.fullmatch(r"[0-9a-f]{32}\n", printed) and node.read_text() == printed
@@ -167,24 +167,20 @@ def keys_are_written_for_their_owner_and_never_over_a_file(folder):
     for verb in (("node-key", "--node", 7), ("time-server", "--port", 0, "--node-port", 0)):
         done = kinalign(*verb, "--lab-key", node)
         assert done.returncode == 3 and done.stderr.decode().endswith(
-            "found 32 digits, a node's key\n  --lab-key takes the lab's own file, from which the nodes' keys came\n"), done
-    cases.wrong("time-server", "--lab-key", "x", says="--lab-key: expected --node-port beside it, found none")
+            "found 32 digits, a node's key\n  --lab-key needs the lab's own key file, from which the nodes' keys were derived\n"), done
+    cases.wrong("time-server", "--lab-key", "x", says="--lab-key: expected --node-port as well, found no --node-port")
 
 
 @case
 def flags_of_node_key_that_do_not_go_together_are_told_with_what_is_meant(_):
-    cases.wrong("node-key", says="expected --new-lab-key FILE, once in a lab, or --lab-key FILE --node N, for each node, "
-                "found none of them")
-    cases.wrong("node-key", "--lab-key", "a", says="--lab-key: expected --node N beside it, the node that the key is for, "
-                "found none")
-    cases.wrong("node-key", "--node", 7, says="--node: expected --lab-key FILE beside it, of which a node's key is made, "
-                "found none")
+    cases.wrong("node-key", says="expected --new-lab-key FILE, once per lab, or --lab-key FILE --node N, for each node, found neither")
+    cases.wrong("node-key", "--lab-key", "a", says="--lab-key: expected --node N as well, the id of the node, found no --node")
+    cases.wrong("node-key", "--node", 7, says="--node: expected --lab-key FILE as well, from which the node's key is derived, found no --lab-key")
     for flag, value in (("--lab-key", "b"), ("--node", 7)):
         cases.wrong("node-key", "--new-lab-key", "a", flag, value,
-                    says=f"{flag}: expected none beside --new-lab-key: one call makes the lab's key, the next ones, "
-                    "with --lab-key FILE --node N, the nodes', found both")
+                    says=f"{flag}: expected --new-lab-key FILE alone; for a node's key, run again with --lab-key FILE --node N, found both")
     cases.wrong("node-key", "--new-lab-key", "a", "-o", "b",
-                says="--out: expected none beside --new-lab-key, which names the new file itself, found b")
+                says="--out: expected no --out with --new-lab-key, which already names the new file, found b")
     for flag in ("--lab-key", "--new-lab-key"):
         cases.wrong("node-key", flag, "", says=f"{flag}: expected a file's name, found nothing")
 

@@ -43,7 +43,7 @@ class TextServer:
 def a_clock_beyond_the_assumptions_is_named_once_and_in_the_summary(_):
     with TextServer() as server:
         ended(start_node(BUILD, server.node_port, 7, "--seconds", 10, "--drift-ppm", 300))
-    keeps = "its clock keeps contradicting the assumptions (more than 100 ppm off, or asleep)"
+    keeps = "its clock contradicts the assumptions again and again (drift above 100 ppm, or the node sleeps)"
     assert len(server.told) <= 8, server.told
     assert [keeps in line for line in server.told] == [False] * (len(server.told) - 1) + [True], server.told
     assert f"not locked: {keeps}" in server.said, server.said
@@ -55,7 +55,7 @@ def a_step_is_told_first_then_what_it_costs_then_that_it_is_over(_):
         ended(start_node(BUILD, server.node_port, 7, "--seconds", 8, "--step", "6:0.5"))
     assert re.fullmatch(r"node 7: joined .*\n"
                         r"node 7: warning: its counter stepped by at least (499|500)\.\d+ ms\n"
-                        r"node 7: warning: the stamps of 5\.\d s are not certified any more\n"
+                        r"node 7: warning: the stamps of 5\.\d s are no longer certified\n"
                         r"node 7: its counter runs evenly again", "\n".join(server.told)), server.told
 
 
@@ -68,12 +68,12 @@ def every_node_with_a_wrong_key_is_told_and_stands_in_the_summary(folder):
         for node in wrong:
             ended(node)
     assert len(server.told) == 4, server.told
-    for node, how in ((9, "without a MAC"), (11, "with another key"), (12, "with another key"), (13, "with another key")):
-        said = f"warning: something that says it is node {node} is not heard: it sends {how} (from "
+    for node, how in ((9, "frames without a MAC"), (11, "frames signed with another key"), (12, "frames signed with another key"), (13, "frames signed with another key")):
+        said = f"warning: a sender that calls itself node {node} is refused: it sends {how} (from "
         assert sum(line.startswith(said) for line in server.told) == 1, server.told
     assert re.search(r"\n  refused  \d+ no mac, \d+ wrong mac\n"
-                     r"  no mac: from what says it is node 9 \(\d+ frames\)\n"
-                     r"  wrong mac: from what says it is node 11, 12, 13 \(\d+ frames\)\n$", server.said), server.said
+                     r"  no mac: senders that call themselves node 9 \(\d+ frames\)\n"
+                     r"  wrong mac: senders that call themselves node 11, 12, 13 \(\d+ frames\)\n$", server.said), server.said
 
 
 if __name__ == "__main__":

@@ -71,7 +71,7 @@ def a_take_and_the_files_it_was_made_of_give_a_pose(folder):
         seen = told("info", folder / f"{name}.bvh")["streams"][0]
         assert seen["samples"] == said["frames"], seen
     text, _ = done_with(0, "pose", take, "--model", SMALL / "two.safetensors", "-o", folder / "c.bvh")
-    assert "c.bvh: 330 frames at 30 Hz, 9 joints\nbody     as of a stature of 1.84 m, by the model\nnodes    5 of 5, 100.0 % valid\nT-pose   0.0 to " in text, text
+    assert "c.bvh: 330 frames at 30 Hz, 9 joints\nbody     of stature 1.84 m, from the model\nnodes    5 of 5, 100.0 % valid\nT-pose   0.0 to " in text, text
     assert (folder / "a.bvh").read_bytes() == (folder / "c.bvh").read_bytes()
 
 

@@ -88,9 +88,9 @@ def the_page_names_every_kind_of_line(_):
 @case
 def wrong_use_is_said_before_anything_is_opened(folder):
     for words, says in (((), "--device: expected at least one device, or a lab.toml for --config, found none"),
-                        (("--device", "imu=nodes"), "expected NAME=PROTOCOL:PORT, as in imu=nodes:5005, found imu=nodes"),
+                        (("--device", "imu=nodes"), "expected NAME=PROTOCOL:PORT, such as imu=nodes:5005, found imu=nodes"),
                         (("--device", "imu=node:5005"), 'expected a known protocol (nearest: nodes), found "node"'),
-                        (("--device", "a=noitom:tcp:7001"), "expected an address and a port to connect to, found none"),
+                        (("--device", "a=noitom:tcp:7001"), "expected an address and a port to connect to, found no address or no port"),
                         (("--device", "a=nodes:5005", "--wait"), "--wait: expected --marks-port, --trigger-port or a keyboard"),
                         (("--device", "a=nodes:5005", "--marks-port", "30", "--trigger-port", "30"),
                          "--trigger-port: expected another port than --marks-port, found 30"),
@@ -150,7 +150,7 @@ def what_is_wrong_with_a_lab_is_told_with_its_line(folder):
     for text, says in (('[device.mocap]\nprotocol = "noitm"\n', ':2: expected protocol as one of nodes, noitom'),
                        ('[device.mocap]\nprotocol = "noitom"\nprt = 1\n', ":3: expected a key of [device.mocap] (nearest: port)"),
                        ('[record]\npre_rol_s = 1\n', ":2: expected a setting of record (did you mean pre_roll_s?)"),
-                       ('[device.mocap]\nprotocol = "noitom"\n', ":1: expected port, where it is heard (0: any free one), found none"),
+                       ('[device.mocap]\nprotocol = "noitom"\n', ":1: expected port to receive on (0: any free port), found no port"),
                        ('[align]\ngap_ms = 1\n', "--device: expected at least one device, or a lab.toml")):
         lab.write_text(text)
         done = kinalign("record", "-o", folder / "takes", "--config", lab)

@@ -12,8 +12,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from cases import Skip, case, done_with, kinalign, main, wrong
 from recording_program import Recording
 
-PAGES = "docs/commands.md says what a file of settings has, docs/recording.md what one of a lab"
-HELP = "kinalign record --help shows what it takes, with examples"
+PAGES = "docs/commands.md describes a settings file, docs/recording.md describes a lab file"
+HELP = "kinalign record --help lists its arguments and flags, with examples"
 
 
 def refusal(code, folder, *words, **how):
@@ -35,7 +35,7 @@ def a_file_of_settings_that_cannot_be_read_is_no_wrong_use(folder):
     none = folder / "none.toml"
     says = f"{none}: expected a readable file, found No such file or directory"
     assert refusal(3, folder, "--config", none) == [says]
-    assert refusal(3, folder, env={"KINALIGN_CONFIG": str(none)}) == [says, "KINALIGN_CONFIG names it"]
+    assert refusal(3, folder, env={"KINALIGN_CONFIG": str(none)}) == [says, "the variable KINALIGN_CONFIG names this file"]
     assert refusal(3, folder, "--config", folder)[0].startswith(f"{folder}: expected"), "a folder"
     for verb in (("check", "x.bvh"), ("align", "x.toml", "-o", "x.h5")):  # of every verb
         done = kinalign(*verb, "--config", none, cwd=folder)
@@ -53,7 +53,7 @@ def a_file_is_no_folder(folder):
 
 @case
 def a_hosts_name_and_nodes_over_tcp_are_wrong_use(folder):
-    says = "expected an IP address (getent hosts NAME says that of a host), found mocap-pc"
+    says = "expected an IP address (getent hosts NAME shows the address of a host), found mocap-pc"
     assert refusal(2, folder, "--device", "mocap=noitom:tcp:mocap-pc:7001") == [f"mocap: {says}", HELP]
     config = lab(folder, '[record]\npre_roll_s = 1\n[device.mocap]\nprotocol = "noitom"\ntransport = "tcp"\n'
                          'address = "mocap-pc"\nport = 7001\n')
@@ -103,11 +103,10 @@ def a_port_that_is_taken_is_told_with_its_device_and_what_takes_another(folder):
                  "--trigger-port")):
             port, ss = place.rsplit(":", 1)[1], "-tlpn" if place.startswith("TCP") else "-ulpn"
             assert refusal(3, folder, *words) == [
-                f"{name}: expected a {place}, found another program on it",
-                f"ss {ss} 'sport = :{port}' shows which one, another kinalign perhaps; {remedy} takes another port"]
+                f"{name}: expected a {place}, found a port that another program uses",
+                f"ss {ss} 'sport = :{port}' shows which program uses it, perhaps another kinalign; {remedy} sets another port"]
     said = refusal(3, folder, "--device", "mocap=noitom:udp:192.0.2.77:7012")
-    assert said[1] == ("ip -brief address shows this machine's; --device mocap=noitom:udp:ADDRESS:PORT takes one of "
-                       "them"), said
+    assert said[1] == ("ip -brief address shows this machine's; --device mocap=noitom:udp:ADDRESS:PORT accepts these addresses"), said
 
 
 @case
@@ -127,13 +126,12 @@ def port_30_without_rights_is_told_with_what_to_do(folder):
 @case
 def what_is_wrong_in_a_lab_is_told_with_its_line_and_the_page_that_shows_the_keys(folder):
     for text, says in (('[device.a]\nprotocol = "nodes"\n[devices.mocap]\nport = 1\n',
-                        ":3: expected settings, or a lab's device as [device.mocap], found [devices.mocap]"),
+                        ":3: expected settings, or a device of a lab as [device.mocap], found [devices.mocap]"),
                        ("[device.mocap]\nprt = 1\n", ":2: expected a key of [device.mocap] (nearest: port), found \"prt\""),
                        ('[align]\ngap_ms = 50\n[space.kinect]\nmethod = "fit"\n',
-                        ":3: expected settings, or a lab's devices, found [space.kinect] of a manifest, which is for "
-                        "kinalign align"),
+                        ":3: expected settings, or devices of a lab, found [space.kinect], which belongs in a manifest for kinalign align"),
                        ('[device.a]\nprotocol = "nodes"\nport = 0\nnodes = { "1" = "2" }\n',
-                        ":1: expected a place by name, as waist: a number is another node's id, found 2 of node 1"),
+                        ":1: expected the name of a place, such as waist: a number may be another node's id, found 2 of node 1"),
                        ("[device]\nport = 1\n",
                         ":2: expected [device.NAME], a table of its own for each, found port, a number")):
         config = lab(folder, text)

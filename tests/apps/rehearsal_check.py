@@ -68,7 +68,7 @@ def a_recorder_that_fails_leaves_no_devices_behind_that_go_on_sending(folder):
         ports = drawn_ports()
         ports[1] = str(taken.getsockname()[1])
         code, said = rehearse(folder, 20, *ports)
-    assert code == 3 and "found another program on it" in said, (code, said)
+    assert code == 3 and "found a port that another program uses" in said, (code, said)
     named = str(folder).encode()
     alive = [words.read_bytes() for words in pathlib.Path("/proc").glob("[0-9]*/cmdline")]
     assert not any(named in words for words in alive), [words for words in alive if named in words]

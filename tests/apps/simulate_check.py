@@ -127,10 +127,10 @@ def a_motion_of_ones_own_is_simulated_as_it_is(folder):
 @case
 def nothing_is_ever_written_over(folder):
     page = " ".join(done_with(0, "simulate", "--help")[0].split())
-    assert "folder to write into; none may be there" in page and "made if need be" not in page, page
+    assert "new folder to write into; it must not exist yet" in page and "made if need be" not in page, page
     made, _ = simulate(folder, "--seconds", "3")
     before = digests(made)
-    refused("simulate", "built-in", "-o", made, naming=f"{made}: expected no file or folder of that name, found one")
+    refused("simulate", "built-in", "-o", made, naming=f"{made}: expected no file or folder of that name, found an existing one")
     assert digests(made) == before
 
 
@@ -138,9 +138,9 @@ def nothing_is_ever_written_over(folder):
 def wrong_use_is_told(folder):
     wrong("simulate", "built-in", says="--out: expected a new folder's name, found none")
     wrong("simulate", "built-in", "-o", folder / "x", "--to", "127.0.0.1",
-          says="--to: expected --live beside it, found none")
+          says="--to: expected --live as well, found no --live")
     wrong("simulate", "built-in", "-o", folder / "x", "--live", "--node-stamps", "own",
-          says="--node-stamps: expected files, found --live, where nodes send their own")
+          says="--node-stamps: expected files, found --live, with which the nodes send their own stamps")
     assert not (folder / "x").exists()
 
 

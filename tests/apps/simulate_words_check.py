@@ -53,7 +53,7 @@ def live_a_skeleton_that_is_no_suits_is_refused_before_a_folder_is_made(folder):
     (folder / "two.bvh").write_text(TWO_JOINTS)
     said = refused("simulate", folder / "two.bvh", "-o", folder / "r", "--live", naming=folder / "two.bvh",
                    out=folder / "r")
-    assert said.endswith(" for --live a suit's skeleton of 59 joints, as Noitom's stream has it, found 2 joints"), said
+    assert said.endswith(" a suit's skeleton with the 59 joints of Noitom's stream, for --live, found 2 joints"), said
     assert "59 joints" in page() and "3 s at least" in page(), page()
 
 
@@ -62,7 +62,7 @@ def a_motion_that_is_shorter_than_was_asked_for_says_so(folder):
     done_with(0, "simulate", "built-in", "-o", folder / "r", "--seconds", "4")
     motion = folder / "r/truth/motion.bvh"
     said, _ = done_with(0, "simulate", motion, "-o", folder / "longer", "--seconds", "8")
-    assert said.splitlines()[1] == "  note    motion.bvh has no more: --seconds asked for 8.00 s", said
+    assert said.splitlines()[1] == "  note    motion.bvh is shorter than --seconds asks for (8.00 s)", said
     for words in (("--seconds", "4"), ("--seconds", "3"), ()):
         said, _ = done_with(0, "simulate", motion, "-o", folder / f"as asked {len(words)}{words[-1:]}", *words)
         assert "note" not in said, said
@@ -71,7 +71,7 @@ def a_motion_that_is_shorter_than_was_asked_for_says_so(folder):
 @case
 def a_host_by_name_is_wrong_use_and_leaves_nothing(folder):
     wrong(*live(folder, "--to", "localhost"),
-          says="--to: expected an address in numbers, as 127.0.0.1, found localhost")
+          says="--to: expected an address in numbers, such as 127.0.0.1, found localhost")
     assert not (folder / "r").exists()
 
 
@@ -85,8 +85,8 @@ def a_host_that_there_is_no_way_to_is_told_and_leaves_nothing(folder):
     law(done, words, folder / "r")
     assert done.returncode == 3, done.stderr
     assert done.stderr.decode().splitlines() == [
-        "kinalign simulate: --to: expected a way to 10.9.9.9 port 7012, found Network is unreachable",
-        "  nothing was written", "  ip route get 10.9.9.9 shows what this machine knows of it"], done.stderr
+        "kinalign simulate: --to: expected a network route to 10.9.9.9 port 7012, found Network is unreachable",
+        "  nothing was written", "  ip route get 10.9.9.9 shows this machine's route to it"], done.stderr
 
 
 @case
@@ -107,7 +107,7 @@ def where_nobody_listens_every_device_says_so_alike_and_it_ends_with_1(folder):
     assert done.returncode == 1, said
     counts = re.findall(r"(\d+) of (\d+) on (\w+) port", said)
     assert [name for *_, name in counts] == ["mocap", "kinect", "imu", "marks"], said
-    assert re.search(r"^  nobody received this: is kinalign record running on ports mocap \d+, kinect \d+, imu \d+, "
+    assert re.search(r"^  the host refused every datagram: is kinalign record running on ports mocap \d+, kinect \d+, imu \d+, "
                      r"marks \d+ of 127\.0\.0\.1\?", said, re.M), said
     assert "next " not in said, said
     in_time(all(int(refusals) > 0.9 * int(sent) for refusals, sent, _ in counts), said)
@@ -117,7 +117,7 @@ def where_nobody_listens_every_device_says_so_alike_and_it_ends_with_1(folder):
 def two_devices_on_one_port_are_refused_before_anything_is_made(folder):
     out, err = done_with(2, "simulate", "built-in", "-o", folder / "r", "--live", "--mocap-port", 7012, "--kinect-port",
                          7012)
-    assert err.startswith("kinalign simulate: --kinect-port: expected another port than that of --mocap-port, found "
+    assert err.startswith("kinalign simulate: --kinect-port: expected a port other than that of --mocap-port, found "
                           "7012\n"), err
     assert not out and not (folder / "r").exists()
 
@@ -129,7 +129,7 @@ def another_program_on_a_port_is_no_recorder(folder):
         words = live(folder, "--mocap-port", other.getsockname()[1], *drawn_ports()[2:])
         done = kinalign(*words)
     said = law(done, words) + done.stdout.decode()
-    assert done.returncode == 1 and "nobody answered this: is kinalign record running on ports " in said, said
+    assert done.returncode == 1 and "no reply came: is kinalign record running on ports " in said, said
     assert "on mocap port" not in said and "on kinect port" in said and "next " not in said, said
 
 
@@ -176,8 +176,7 @@ def a_recording_elsewhere_or_of_another_name_is_not_called_by_that_one(folder):
     recorder.end()
     assert done.returncode == 0, done.stderr
     assert done.stdout.decode().splitlines()[-2:] == [
-        f"  next    {folder}/r/recording.toml names {folder}/r/take_01.mcap, which is not there: put the name of what was "
-        "recorded in its place",
+        f"  next    {folder}/r/recording.toml names {folder}/r/take_01.mcap, which does not exist: replace this name by the name of your recording",
         f"          then: kinalign align {folder}/r/recording.toml -o {folder}/r/take.h5"], done.stdout
 
 

@@ -31,13 +31,13 @@ def of_a_folder_a_file_in_it_is_named(folder):
     for verb in (("align", takes, "-o", folder / "t.h5"), ("info", takes), ("check", takes),
                  ("recover", takes, "-o", folder / "whole.mcap")):
         _, err = done_with(3, *verb)
-        assert "found a directory\n" in err and err.endswith("\n  name a file in it\n"), err
+        assert "found a directory\n" in err and err.endswith("\n  name a file in this folder\n"), err
     for name in ("b.mcap", "a.mcap", "0.txt"):
         (takes / name).write_text("")
     for verb in (("align", takes, "-o", folder / "t.h5"), ("info", takes), ("check", takes),
                  ("recover", takes, "-o", folder / "whole.mcap")):
         _, err = done_with(3, *verb)
-        assert err.endswith(f"\n  name a file in it, as {takes}/a.mcap\n"), err
+        assert err.endswith(f"\n  name a file in this folder, such as {takes}/a.mcap\n"), err
 
 
 @case
@@ -148,7 +148,7 @@ def check_refuses_a_manifest_as_align_does(folder):
         refused("align", manifest, "-o", folder / "t.h5", naming=f"{manifest}{line}: {found}")
         out, _ = done_with(1, "check", manifest)
         assert out.startswith(f"error    {manifest}{line}: {found}"), out
-        assert "kinalign align makes no take of it" in out, out
+        assert "kinalign align can't make a take of this file" in out, out
         assert ("kinalign info FILE -v lists" in out) == ("overlap" not in found), out
 
 
@@ -184,7 +184,7 @@ def a_take_that_cannot_be_made_again_differs(folder):
     verify = ("rebuild", take, "--inputs", folder, "--verify")
     (folder / "kinect.csv").write_text(samples.kinect(4).replace("1.3,", "x,", 1))
     out, _ = done_with(1, *verify)
-    assert out.startswith(f"{take}: differs: cannot be made again: {folder}/kinect.csv:2: expected "), out
+    assert out.startswith(f"{take}: differs: the take can't be made again: {folder}/kinect.csv:2: expected "), out
     (folder / "kinect.csv").write_text(samples.kinect(4, 9_000_000_000))
     out, _ = done_with(1, *verify)
     assert "differs: cannot be made again: expected streams that overlap" in out, out
@@ -239,7 +239,7 @@ def info_gives_first_and_last_stamp_and_the_mean_rate_where_it_is_another(folder
     (folder / "kinect.csv").write_text(samples.kinect(40))
     rows_dropped(folder / "kinect.csv", range(10, 30))
     out, _ = done_with(0, "info", folder / "kinect.csv")
-    assert "at 30 Hz (14.62 on the whole); 25 joints" in out, out
+    assert "at 30 Hz (14.62 over the whole stream); 25 joints" in out, out
     (folder / "imus.sto").write_text(samples.sto())
     out, _ = done_with(0, "info", folder / "imus.sto")
     assert "  stream   imu (sto): 2 samples" in out and "           torso_imu, pelvis_imu\n" in out, out
@@ -252,14 +252,14 @@ def streams_that_miss_each_other_are_answered_with_the_start_that_joins_them(fol
     (folder / "kinect.csv").write_text(samples.kinect(4, start))
     begin = ("align", "--mocap", folder / "mocap.bvh", "--kinect", folder / "kinect.csv", "-o", folder / "t.h5")
     _, err = done_with(3, *begin)
-    assert f"  --start-ns {start} puts the first frame of mocap where the others have begun: right only if all began at once\n" in err, err
+    assert f"  --start-ns {start} moves the first frame of mocap to the begin of the others: correct only if all started at the same time\n" in err, err
     done_with(0, *begin, "--start-ns", start, "--space", "none")
     (folder / "imu.csv").write_text(samples.imu(4, start))
     manifest.write_text(samples.manifest().replace("start_ns = 0", "start_ns = 5\nclick_latency_ms = 1"))
     _, err = done_with(3, "align", manifest, "-o", folder / "u.h5")
     assert "imu imu " in err, err
     said = f"start_ns = {start - 1_000_000} in [stream.mocap]"
-    assert f"  {said} puts the first frame of mocap where the others have begun: right only if all began at once\n" in err, err
+    assert f"  {said} moves the first frame of mocap to the begin of the others: correct only if all started at the same time\n" in err, err
     manifest.write_text(manifest.read_text().replace("start_ns = 5", f"start_ns = {start - 1_000_000}"))
     done_with(0, "align", manifest, "-o", folder / "u.h5")
 
@@ -271,7 +271,7 @@ def the_start_that_joins_points_counts_the_offset_that_moves_them(folder):
     manifest.write_text('[stream.optical]\nfile = "kinect.csv"\noffset_ms = 5000\n[stream.kinect]\nfile = "later.csv"\n')
     _, err = done_with(3, "align", manifest, "-o", folder / "t.h5")
     said = "start_ns = 85000000000 in [stream.optical]"
-    assert f"  {said} puts the first frame of optical where the others have begun: right only if all began at once\n" in err, err
+    assert f"  {said} moves the first frame of optical to the begin of the others: correct only if all started at the same time\n" in err, err
     manifest.write_text(manifest.read_text().replace("offset_ms", "start_ns = 85000000000\noffset_ms"))
     done_with(0, "align", manifest, "-o", folder / "t.h5")
 
@@ -284,9 +284,9 @@ def check_tells_what_align_remarks_of_a_plan(folder):
     assert 'file = "imu.csv"' in text
     manifest.write_text(text.replace('file = "imu.csv"', 'files = { waist = "imu.csv", wrist = "copy.csv" }'))
     out, _ = done_with(1, "check", manifest)
-    assert "two of its nodes are one" in out, out
+    assert "two of its nodes have the same data" in out, out
     out, _ = done_with(1, "align", manifest, "-o", folder / "t.h5")
-    assert "two of its nodes are one" in out, out
+    assert "two of its nodes have the same data" in out, out
 
 
 @case

@@ -151,7 +151,7 @@ def the_standard_value_in_a_help_page_is_the_one_in_force(folder):
     for (verb, name), (value, whence) in settings(cwd=folder, env=none).items():
         assert whence == "standard", (verb, name, whence)
         text = re.sub(r"\s+", " ", page(verb or "align"))
-        described = re.search(rf" --{name.replace('_', '-')} [^[]*?(?:\[(\S*)\] )?(?=--|-\w, --|as everywhere|$)", text)
+        described = re.search(rf" --{name.replace('_', '-')} [^[]*?(?:\[(\S*)\] )?(?=--|-\w, --|flags of all verbs|$)", text)
         told += described.group(1) is not None
         assert described.group(1) in (None, value), (verb, name, value, described.group(1))
     assert told >= 4, told

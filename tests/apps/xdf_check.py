@@ -62,7 +62,7 @@ def convert_takes_an_XDF_whole_or_torn_and_writes_over_nothing(folder):
     before = shown.read_bytes()
     refused("convert", path, shown, naming=shown)
     wrong("convert", path, folder / "rec.npz",
-          says=f"{folder}/rec.npz: expected of an XDF file one that ends in .mcap, found another ending")
+          says=f"{folder}/rec.npz: expected a name that ends in .mcap, for an XDF file, found another extension")
     path.write_bytes(path.read_bytes()[:-5])
     out, _ = done_with(1, "convert", path, shown, "--force")
     assert f"warning  {path}: expected a last chunk of 25 bytes, found 20 bytes" in out, out

@@ -172,7 +172,7 @@ def a_node_that_is_not_answered_says_so_once_with_the_likely_causes_and_when_it_
         host.answers = True
         host.run(*(("--key-file", secret(folder)) if keyed else ()), seconds=7.5)
         cause = ("its --lab-key is not the one that this node's key was made from, or is missing" if keyed else
-                 "it has a --lab-key, and this node needs --key-file")
+                 "it has a --lab-key, so this node needs --key-file")
         assert host.err == (f"host_node: {host.address()} has not answered for 5 s: either no kinalign time-server "
                             f"--node-port is there, or {cause}\n"
                             f"host_node: {host.address()} answers now\n"), host.err
@@ -183,8 +183,7 @@ def a_node_whose_answers_have_another_key_says_that(folder):
     host = Host(key=KEY)
     host.answers_to = lambda datagram, _: [datagrams.reply(datagram.origin, 1, 1, FORGER)]
     host.run("--key-file", secret(folder), seconds=6)
-    assert host.err == (f"host_node: answers of {host.address()} do not count: they are signed with another key than "
-                        "--key-file has, or not at all\n"), host.err
+    assert host.err == (f"host_node: answers of {host.address()} are refused: they are not signed with the key in --key-file\n"), host.err
 
 
 @case
@@ -321,13 +320,13 @@ def what_it_can_not_do_it_says_in_one_line(folder):
             (["--server", "127.0.0.1"], 2, '--server: expected HOST:PORT, or [HOST]:PORT for IPv6, found "127.0.0.1"'),
             (["--server", "::1:5"], 2, '--server: expected HOST:PORT, or [HOST]:PORT for IPv6, found "::1:5"'),
             (["--server", "[::1]:0"], 2, '--server: expected HOST:PORT, or [HOST]:PORT for IPv6, found "[::1]:0"'),
-            ([], 2, "expected --server HOST:PORT; --help says what else there is"),
-            (["--rat", "5"], 2, "no option --rat; did you mean --rate? --help says which there are"),
-            (["--key_file", "k"], 2, "no option --key_file; did you mean --key-file? --help says which there are"),
-            (["-clokcless"], 2, "no option -clokcless; did you mean --clockless? --help says which there are"),
-            (["--xy"], 2, "no option --xy; --help says which there are"),
-            (["--loud"], 2, "no option --loud; --help says which there are"),
-            (["--rate"], 2, "--rate: expected a value behind it (0.1 to 1000 Hz), found the end"),
+            ([], 2, "expected --server HOST:PORT; --help lists the options"),
+            (["--rat", "5"], 2, "unknown option --rat; did you mean --rate? --help lists the options"),
+            (["--key_file", "k"], 2, "unknown option --key_file; did you mean --key-file? --help lists the options"),
+            (["-clokcless"], 2, "unknown option -clokcless; did you mean --clockless? --help lists the options"),
+            (["--xy"], 2, "unknown option --xy; --help lists the options"),
+            (["--loud"], 2, "unknown option --loud; --help lists the options"),
+            (["--rate"], 2, "--rate: expected a value after it (0.1 to 1000 Hz), found nothing"),
             (["--rate", ""], 2, '--rate: expected 0.1 to 1000 Hz, found ""'),
             (["--rate", "nan"], 2, '--rate: expected 0.1 to 1000 Hz, found "nan"'),
             (["--step", "3"], 2, '--step: expected AT:S, both in seconds, found "3"'),
@@ -336,19 +335,19 @@ def what_it_can_not_do_it_says_in_one_line(folder):
              f"{missing}: expected a key, found: No such file or directory; "
              "kinalign node-key --lab-key LAB --node N -o FILE makes one"),
             (["--server", "h:1", "--key-file", str(folder / "folder")], 3,
-             f"{folder}/folder: expected a file with a key, found none"),
+             f"{folder}/folder: expected a regular file with a key, found none"),
             (["--server", "127.0.0.1:x"], 2, '--server: expected HOST:PORT, or [HOST]:PORT for IPv6, found "127.0.0.1:x"')]:
         done = subprocess.run([HOST_NODE, *options], capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr, done.stdout) == (code, f"host_node: {text}\n", ""), done
     for mode, text, expected in [
             (0o644, KEY.hex(), "expected mode 0600, since nobody else may read a key, found 0644: chmod 600 " + key),
             (0o640, KEY.hex(), "expected mode 0600, since nobody else may read a key, found 0640: chmod 600 " + key),
-            (0o600, KEY.hex()[1:], "expected a key of 32 hexadecimal digits, found something else"),
-            (0o600, KEY.hex() + "0", "expected a key of 32 hexadecimal digits, found something else"),
+            (0o600, KEY.hex()[1:], "expected a key of 32 hexadecimal digits, found other text"),
+            (0o600, KEY.hex() + "0", "expected a key of 32 hexadecimal digits, found other text"),
             (0o600, 2 * KEY.hex(), "expected a key of 32 hexadecimal digits, found 64 digits, the lab's key"),
-            (0o600, 3 * KEY.hex(), "expected a key of 32 hexadecimal digits, found something else"),
-            (0o600, "", "expected a key of 32 hexadecimal digits, found something else"),
-            (0o600, "-" + KEY.hex()[1:], "expected a key of 32 hexadecimal digits, found something else")]:
+            (0o600, 3 * KEY.hex(), "expected a key of 32 hexadecimal digits, found other text"),
+            (0o600, "", "expected a key of 32 hexadecimal digits, found other text"),
+            (0o600, "-" + KEY.hex()[1:], "expected a key of 32 hexadecimal digits, found other text")]:
         done = subprocess.run([HOST_NODE, "--server", "127.0.0.1:9", "--key-file", secret(folder, text, mode)],
                               capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (3, f"host_node: {key}: {expected}\n"), done

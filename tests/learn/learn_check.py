@@ -343,9 +343,9 @@ def what_is_wrong_with_a_job_is_told_as_a_line(folder):
         error = lines[-1]["error"]
         assert (error["expected"], error["found"]) == (expected, found), error
     refused(folder / "none.json", "a job of schema kinalign.training_job/1", "a file of another kind")
-    refused(job(folder, "magic"), "a method that is known", "magic")
+    refused(job(folder, "magic"), "a known method", "magic")
     refused(job(folder, "refine", input="imu"), 'a stream "imu" with names', "mocap, kinect")
-    refused(job(folder, "refine", windows=str(folder / "none.npz")), "a file that can be read", "none")
+    refused(job(folder, "refine", windows=str(folder / "none.npz")), "a readable file", "no readable file")
     refused(job(folder, "refine", learn=["S09-A1"]), "pairs to train on", "none")
     assert not (folder / "m.safetensors").exists()
 

@@ -33,7 +33,7 @@ WRONG = {
     "--seeds 2.5": "--seeds: expected a whole number from 1 to 10000, found 2.5",
     "--seeds 0": "--seeds: expected a whole number from 1 to 10000, found 0",
     "--first -1": "--first: expected a whole number from 0 to 9e+15, found -1",
-    "--first": "--first: expected a value behind it (NUMBER), found the end",
+    "--first": "--first: expected a value after it (NUMBER), found nothing after it",
     "--seeds 3 --seeds 4": "--seeds: expected to be given once, found given twice",
     "--bars --minutes 5": "--minutes: expected 1, 10 or 60, for which bars are stated, found 5",
     "--bars --bursts --minutes 10":

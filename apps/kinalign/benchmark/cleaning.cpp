@@ -91,7 +91,7 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
     if (KA_TRY(has_identity(bytes, file, identity))) return file;
     if (!call.common.force) {
       return Failure(Error{file, 0, "a model trained on these takes with this seed and these steps",
-                           "another one (--force trains it again)"});
+                           "a model of other takes, seed or steps (--force trains it again)"});
     }
   }
   const std::string run = o.folder + "/models/" + method + ".training";
@@ -280,7 +280,7 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
   out.learnt.assign(learnt.begin(), learnt.end());
   if (out.learnt.empty() || out.tested.empty()) {
     return Failure(Error{o.split, 0, "takes with a Kinect and mocap in the parts train and test",
-                         out.learnt.empty() ? "none to train on" : "none to test"});
+                         out.learnt.empty() ? "no take to train on" : "no take to test"});
   }
   out.learnt_people = learnt_people.size();
   out.tested_takes = tested_takes.size();

@@ -43,7 +43,7 @@ Result<std::array<std::size_t, compared_joints>> joints_among(
     for (const FuseJoint& joint : fuse_joints) {
       if (!at && joint.kinect == wanted) at = index_of(names, std::string(joint.body));
     }
-    if (!at) return Failure(Error{"", 0, "a skeleton with the joint " + wanted, "none"});
+    if (!at) return Failure(Error{"", 0, "a skeleton with the joint " + wanted, "no such joint"});
     out[p] = *at;
   }
   return out;
@@ -106,7 +106,8 @@ Result<Clip> true_clip(FileSystem& files, const std::string& path) {
   const auto wanted = std::find_if(groups.begin(), groups.end(), [](const TakeGroup& group) {
     return group.name == true_group && std::holds_alternative<ClipGroup>(group.kind);
   });
-  if (wanted == groups.end()) return Failure(Error{path, 0, "a skeleton \"mocap\"", "none"});
+  if (wanted == groups.end())
+    return Failure(Error{path, 0, "a skeleton \"mocap\"", "no such skeleton"});
   const auto at = static_cast<std::size_t>(wanted - groups.begin());
   Clip out;
   out.skeleton = std::get<ClipGroup>(wanted->kind).skeleton;
@@ -122,7 +123,7 @@ Result<Clip> true_clip(FileSystem& files, const std::string& path) {
                              rows->local_rotations.end());
   }
   if (out.frames.size() > 1) return out;
-  return Failure(Error{path, 0, "a skeleton with two frames at least", "fewer"});
+  return Failure(Error{path, 0, "a skeleton with at least two frames", "fewer frames"});
 }
 
 /// For each frame of the grid the row with the nearest stamp.
@@ -246,7 +247,7 @@ Result<ComparedMotion> motion_of_json(const std::string& text, const std::string
     return out;
   } catch (const Json::exception&) {
     // JSON has no infinite number; such an answer of a model is written as null.
-    return Failure(Error{path, 0, "models that answer with numbers", "others"});
+    return Failure(Error{path, 0, "models with finite answers", "NaN or infinite values"});
   }
 }
 
@@ -282,7 +283,7 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
   for (PoseSolver& solver : solvers) {
     const PoseLayout& layout = solver.model().layout;
     if (layout.rate_hz != rate_hz) {
-      return Failure(Error{"", 0, "models of one rate", "several"});
+      return Failure(Error{"", 0, "models with the same rate", "several rates"});
     }
     NodeFrames nodes = KA_TRY(nodes_for(solver.model(), named, {"", "auto"}, span));
     const auto head = std::find(layout.nodes.begin(), layout.nodes.end(), "head");

@@ -238,9 +238,9 @@ std::string takes_text(const AnsweredTakes& all) {
 }
 
 const std::string how_compared =
-    "Both bodies have the middle of their hips in one place and look ahead; red: the truth. The "
-    "answer has the body of the model's training people, so that part of the distance is a matter "
-    "of lengths.";
+    "Both bodies are drawn with the middle of their hips in one place, facing forward; red: the "
+    "truth. The answer has the bone lengths of the model's training people, so a part of the "
+    "distance comes from bone lengths.";
 
 /// Figure 8: answers of a model for five nodes.
 PosePictures pose_figure(const AnsweredTakes& all) {
@@ -249,7 +249,7 @@ PosePictures pose_figure(const AnsweredTakes& all) {
   out.id = "figure-8";
   out.title = "Figure 8: the pose from five nodes";
   if (motions.empty()) {
-    out.absent = "No take has nodes that a pose could be answered to. " + all.note();
+    out.absent = "No take has the nodes that the model needs. " + all.note();
     return out;
   }
   out.absent = all.note();
@@ -306,7 +306,7 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   out.id = "figure-9";
   out.title = "Figure 9: the head without and with a node on it";
   if (motions.empty()) {
-    out.absent = "No take has nodes that a pose could be answered to. " + all.note();
+    out.absent = "No take has the nodes that the model needs. " + all.note();
     return out;
   }
   if (!has_head_model) {
@@ -317,12 +317,13 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   }
   const ComparedMotion& shown = motions.front();
   out.caption = fmt::format(
-      "{}, the instant in each fifth of the take in which the true head looks farthest aside. The "
-      "line from the head shows where it looks. Below: degrees between the answer's and the "
+      "{}, in each fifth of the take the instant at which the true head is turned furthest to the "
+      "side. The line from the head is its direction of look. Below: degrees between the answer's "
+      "and the "
       "truth's direction of look. {} {}",
       shown.take,
       has_head_model ? "The data has no node on the head: one without errors is computed from the "
-                       "truth. Both models may have learnt from different people."
+                       "truth. The two models may have been trained on different people."
                      : "",
       how_compared);
   const std::vector<std::string> names =
@@ -368,7 +369,8 @@ Table device_table(const AnsweredTakes& all) {
   Table table;
   table.caption = fmt::format(
       "Mean distance to the truth over {}, in which limbs are hidden from the Kinect for 3 s, one "
-      "after the other. The Kinect as it is: a hidden joint stays where it was seen last",
+      "after the other. Kinect as it is: a hidden joint keeps the position at which it was last "
+      "seen",
       takes_text(all));
   table.columns = {{"answer", "answer"},
                    {"all_cm", "all, cm", 1},
@@ -406,17 +408,17 @@ PosePictures device_figure(const AnsweredTakes& all) {
   const auto& motions = all.motions;
   PosePictures out;
   out.id = "figure-10";
-  out.title = "Figure 10: a Kinect, nodes, and both where the Kinect loses a limb";
+  out.title = "Figure 10: a Kinect, nodes, and both, while the Kinect loses a limb";
   if (motions.empty()) {
-    out.absent = "No take has a Kinect and nodes that a pose could be answered to. " + all.note();
+    out.absent = "No take has the Kinect and the nodes that the model needs. " + all.note();
     return out;
   }
   out.absent = all.note();
   const ComparedMotion& shown = motions.front();
   const auto [from, to] = first_hidden(shown);
   out.caption = fmt::format(
-      "{}: the right arm is hidden from the Kinect from {} to {}. One model answers to the Kinect "
-      "alone, to the nodes alone and to both. Below: mean distance to the truth. {}",
+      "{}: the right arm is hidden from the Kinect from {} to {}. One model computes the pose from "
+      "the Kinect alone, from the nodes alone and from both. Below: mean distance to the truth. {}",
       shown.take, second_of(shown, from), second_of(shown, to), how_compared);
   for (const char* name : device_rows) out.rows.emplace_back(name, std::vector<PosePicture>{});
   out.rows.emplace_back("truth", std::vector<PosePicture>{});
@@ -441,7 +443,7 @@ std::string model_or_shipped(const std::string& given, const std::string& name) 
 }
 
 PosePictures without_model(PosePictures figure, const std::string& how) {
-  figure.absent = "No model was given, and none comes with the program. " + how;
+  figure.absent = "No model was given, and the program has no shipped model. " + how;
   return figure;
 }
 
@@ -476,7 +478,8 @@ Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
     solvers.push_back(KA_TRY(pose_solver(with_head, call)));
     const auto& nodes = solvers.back().model().layout.nodes;
     if (std::find(nodes.begin(), nodes.end(), "head") == nodes.end()) {
-      return Failure(Error{with_head, 0, "a model with a node on the head", "one without"});
+      return Failure(
+          Error{with_head, 0, "a model with a node on the head", "a model without this node"});
     }
   }
   const AnsweredTakes all =

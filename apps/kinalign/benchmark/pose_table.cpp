@@ -268,17 +268,16 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
   out.title = "Table 8: instants of the test takes";
   const auto joints = acting_joints(data.layout.outputs);
   if (!joints) {
-    out.absent = "The truth lacks hips, shoulders or wrists, so that no instants can be chosen.";
+    out.absent = "The truth has no hips, shoulders or wrists, so no instants can be chosen.";
     return out;
   }
   out.caption =
-      "All pictures have one scale and one direction of view. Green: the Kinect, dashed where a "
-      "joint is inferred. Red: the truth, pale behind each answer. A method's answer, not "
-      "steadied, has "
-      "the colour of the text. Below: mean distance to the truth. The truth alone chooses the "
-      "instants among all "
-      "test takes: where the person stands upright and still, where the hands differ most in "
-      "height, where the trunk is lowest, and where the body turns fastest to either side.";
+      "All pictures have the same scale and direction of view. Green: the Kinect, dashed where a "
+      "joint is inferred. Red: the truth, pale behind each answer. Colour of the text: the "
+      "method's answer, without smoothing. Below: mean distance to the truth. The instants are "
+      "chosen by the truth alone, among all test takes: the person stands upright and still, the "
+      "hands differ most in height, the trunk is lowest, the body turns fastest to the left and to "
+      "the right.";
   const auto searches = pose_searches();
   const auto chosen = choose_frames(data, *joints, searches);
   std::vector<StickFigure> truths;
@@ -316,7 +315,7 @@ ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& 
   out.step_s = bin_s;
   out.caption = fmt::format(
       "Mean distance to the truth in {}, the longest test take: means over half a second of the "
-      "answers that are not steadied.",
+      "answers without smoothing.",
       pair.take);
   const auto bin = static_cast<std::size_t>(bin_s * static_cast<float>(data.layout.rate_hz));
   for (const CleanedTakes& method : all) {
@@ -340,8 +339,8 @@ SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes
   SideBySide out;
   out.rate_hz = data.layout.rate_hz;
   out.caption = fmt::format(
-      "{}, the longest test take. Pale red behind each: the truth. Beside a name: mean distance to "
-      "the truth at that instant, not steadied. Drag a picture to turn all of them.",
+      "{}, the longest test take. Pale red behind each: the truth. Next to a name: mean distance "
+      "to the truth at that instant, without smoothing. Drag a picture to turn all of them.",
       pair.take);
   const DrawnJoints answered = drawn_joints(data.layout.outputs),
                     seen = drawn_joints(data.layout.inputs);

@@ -104,7 +104,7 @@ Result<std::vector<float>> read_answer(const std::string& path, std::size_t fram
   }
   return Failure(Error{
       path, 0, fmt::format("\"positions\" [{},{},3] of finite float32 or float64", frames, joints),
-      "another array"});
+      "another shape, type or value"});
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& 
     KA_TRY(write_question(data, *pair, question, call));
     const int code = KA_TRY(run_program_on(method.program, question, answer));
     if (code != 0) {
-      return Failure(Error{method.program, 0, "a program that ends with 0 for " + pair->take,
+      return Failure(Error{method.program, 0, "exit code 0 for " + pair->take,
                            fmt::format("exit code {}", code)});
     }
     out.push_back(

@@ -65,18 +65,17 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   for (const EvalMethod& method : eval_methods()) {
     usage.positionals.back().choices.push_back(method.name);
   }
-  usage.flags = {
-      {"split",
-       "whom to train on and test (default: FOLDER/splits/people.json)",
-       &o.split,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"steps", "batches of each training; 0: the method's own number", &o.steps, 0.0, 1e8},
-      {"seed", "of each training", &o.seed, 0.0, 1e9},
-      {"device", "where networks are trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
-      format_field(o.format)};
+  usage.flags = {{"split",
+                  "people to train on and to test (default: FOLDER/splits/people.json)",
+                  &o.split,
+                  0.0,
+                  0.0,
+                  {},
+                  "FILE"},
+                 {"steps", "batches per training; 0: the method's default", &o.steps, 0.0, 1e8},
+                 {"seed", "random seed of each training", &o.seed, 0.0, 1e9},
+                 {"device", "device that trains networks", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+                 format_field(o.format)};
   usage.flags.push_back({"method",
                          "another method: a program that reads one NPZ and writes another",
                          &o.programs,
@@ -87,10 +86,10 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   const auto model = [&usage](const char* name, const char* meaning, std::string& file) {
     usage.flags.push_back({name, meaning, &file, 0.0, 0.0, {}, "FILE"});
   };
-  model("pose-model", "of figure 8: for five nodes (default: the shipped one)", o.pose_model);
-  model("head-model", "of figure 9: for nodes with one on the head (default: the shipped one)",
+  model("pose-model", "model for figure 8: five nodes (default: the shipped model)", o.pose_model);
+  model("head-model", "model for figure 9: nodes with one on the head (default: the shipped model)",
         o.head_model);
-  model("fuse-model", "of figure 10: for a Kinect and nodes (default: the shipped one)",
+  model("fuse-model", "model for figure 10: a Kinect and nodes (default: the shipped model)",
         o.fuse_model);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     for (const std::string& words : o.programs) KA_TRY(program_method(words));
@@ -123,10 +122,10 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
     not_known += takes ? 0 : 1;
     seconds += takes.value_or(0.0);
     text += one.is_there
-                ? fmt::format("{:<13} is there\n", one.method)
+                ? fmt::format("{:<13} is already trained\n", one.method)
                 : fmt::format("{:<13} to train, {} steps, {}\n", one.method,
                               grouped(static_cast<std::uint64_t>(one.steps)),
-                              takes ? "at most about " + duration_text(*takes) : "time not known");
+                              takes ? "at most about " + duration_text(*takes) : "unknown time");
     json.push_back({{"method", one.method},
                     {"is_there", one.is_there},
                     {"steps", one.steps},
@@ -135,7 +134,7 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
   if (trainings == 0) text += "nothing to train\n";
   if (trainings > not_known) {
     text += fmt::format("at most about {} of training on one core{}\n", duration_text(seconds),
-                        not_known > 0 ? ", without those whose time is not known" : "");
+                        not_known > 0 ? ", without trainings of unknown time" : "");
   }
   call.console.print(text);
   call.console.print_json(Json{{"trainings", json}, {"seconds", seconds}}.dump());
@@ -188,7 +187,7 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
                 fmt::format("seed {}", o.seed)};
   if (o.steps > 0) {
     page.facts.push_back(
-        fmt::format("{} steps a network", grouped(static_cast<std::uint64_t>(o.steps))));
+        fmt::format("{} steps per network", grouped(static_cast<std::uint64_t>(o.steps))));
   }
   if (const auto* best = best_row(table, "position_cm")) {
     const auto& name = std::get<std::string>(best->front());
@@ -205,7 +204,8 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
   page.marks = with_joined_deviations(table);
   page.marks_note =
       "E_p is the mean square of a coordinate's error, E_b the mean error of a bone's length, E_s "
-      "the answer's own roughness, which has no truth in it: judge E_s by the truth's. Position is "
+      "the roughness of the answer itself. E_s does not use the truth: compare it with the truth's "
+      "own E_s. Position is "
       "the mean distance; fitted the same after a similarity fit of each frame; constancy the "
       "deviation of bones within a take; acceleration the difference of second differences; jitter "
       "the third difference. Steadied rows have the mean of the answer and of the answer to the "
@@ -297,7 +297,7 @@ Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
   if (call.common.dry_run) return show_training_plan(cleaning, call);
   KA_TRY(check_page(page_path, call));
   call.console.if_it_fails(
-      [](const Error&) { return std::vector<std::string>{"networks that are trained are kept"}; });
+      [](const Error&) { return std::vector<std::string>{"trained networks are kept"}; });
   const CleaningData data = KA_TRY(open_cleaning(cleaning, call));
   const auto all = KA_TRY(run_methods(cleaning, data, call));
   const Table table = marks_table(data, all);
@@ -323,8 +323,8 @@ Verb benchmark_run_verb() {
            "Fits or trains each method on the training people of a data set, runs it on the takes "
            "of the test people, and writes the paper's tables 8 and 9 and figures 8 to 10 as one "
            "page (benchmark.html), with table 9 also as Markdown, LaTeX and CSV. Networks are kept "
-           "in the folder and used again. With --dry-run it says what would be trained, and for "
-           "how long.",
+           "in the folder and used again. --dry-run prints what would be trained, and for how "
+           "long.",
        .examples = {{"kinalign benchmark run twin -o results",
                      "all methods; first: kinalign benchmark twin --scale 0.02 -o twin"},
                     {"kinalign benchmark run twin raw offset ridge -o quick",

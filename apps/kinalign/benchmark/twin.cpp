@@ -41,8 +41,8 @@ struct TwinVerb {
 Usage describe_twin(TwinVerb& o) {
   Usage usage;
   usage.flags = {
-      {"scale", "share of the paper's frames; 1: 13.7 hours of motion", &o.scale, 1e-6, 1.0},
-      {"seed", "of the people and of all that is drawn", &o.seed, 0.0, 9e15},
+      {"scale", "fraction of the paper's frames; 1: 13.7 hours of motion", &o.scale, 1e-6, 1.0},
+      {"seed", "seed of all random numbers", &o.seed, 0.0, 9e15},
       {"motion",
        "BVH files of a Perception Neuron or CMU skeleton for every second take",
        &o.motion,
@@ -75,7 +75,7 @@ Result<std::vector<std::string>> motions_in(const std::string& folder) {
     if (name.ends_with(".bvh") || name.ends_with(".BVH")) out.push_back(below + name);
   }
   if (!out.empty()) return out;
-  return Failure(Error{folder, 0, "a folder with BVH files", "none in it"});
+  return Failure(Error{folder, 0, "a folder with BVH files", "no BVH file"});
 }
 
 /// The nearest parent folder of a path that exists.
@@ -99,16 +99,16 @@ Result<void> check_folder(const TwinJob& job, Call& call) {
   const std::string path = job.folder + "/" + plan_file;
   if (is_there(path)) {
     if (KA_TRY(read_whole(call.surroundings.files, path, longest_plan)) == job.plan) return {};
-    return Failure(Error{path, 0, "a twin of the same scale, seed and motions", "another twin"});
+    return Failure(
+        Error{path, 0, "a twin with the same scale, seed and motions", "a twin with other values"});
   }
   if (is_there(job.folder) && !fs::is_empty(job.folder, fault)) {
-    return Failure(Error{job.folder, 0, "a new folder, or a twin that was begun",
-                         "a folder with other files"});
+    return Failure(
+        Error{job.folder, 0, "a new folder, or an unfinished twin", "a folder with other files"});
   }
   const std::uint64_t wanted = bytes_of(job.takes), there = free_bytes(job.folder);
   if (there == 0 || wanted < there) return {};
-  return Failure(
-      Error{job.folder, 0, size_text(wanted) + " of room on the disk", size_text(there)});
+  return Failure(Error{job.folder, 0, size_text(wanted) + " of free disk space", size_text(there)});
 }
 
 /// Makes the folders, dataset.toml and the plan. Existing files stay, since a stopped job
@@ -265,14 +265,14 @@ void say_made(const TwinJob& job, const TwinMade& made, const std::vector<std::s
     actions.insert(take.name.action);
   }
   call.console.print(tables_text(twin_tables(job.o.scale, made.counts)));
-  call.console.print(harmless(fmt::format(
-      "{}: {}, {:.2f} h, {}{}\n  people  {}, {}\n  pairs   {}\n  splits  {}\n"
-      "  next    kinalign eval raw offset ridge --data {} -o results --folds people\n",
-      job.folder, counted(made.made + made.were_there, "take"), hours_of(made.counts.sum().mocap),
-      size_text(made.bytes),
-      made.were_there > 0 ? fmt::format("; {} were there already", made.were_there) : "",
-      counted(people.size(), "person", "people"), counted(actions.size(), "action"),
-      pairs_text(made.counts), splits.empty() ? "none" : joined(splits), job.folder)));
+  call.console.print(harmless(
+      fmt::format("{}: {}, {:.2f} h, {}{}\n  people  {}, {}\n  pairs   {}\n  splits  {}\n"
+                  "  next    kinalign eval raw offset ridge --data {} -o results --folds people\n",
+                  job.folder, counted(made.made + made.were_there, "take"),
+                  hours_of(made.counts.sum().mocap), size_text(made.bytes),
+                  made.were_there > 0 ? fmt::format("; {} existed before", made.were_there) : "",
+                  counted(people.size(), "person", "people"), counted(actions.size(), "action"),
+                  pairs_text(made.counts), splits.empty() ? "none" : joined(splits), job.folder)));
   for (const auto& [name, error] : made.failed) {
     call.console.print(
         harmless(fmt::format("failed  {}: {}\n", to_string(name), to_string(error))));
@@ -307,7 +307,7 @@ Result<int> run_twin(TwinVerb& o, Call& call) {
   call.console.detail(fmt::format("{} to make: about {}", counted(job.takes.size(), "take"),
                                   size_text(bytes_of(job.takes))));
   call.console.if_it_fails([](const Error&) {
-    return std::vector<std::string>{"the same command goes on where it stopped"};
+    return std::vector<std::string>{"run the same command again to continue"};
   });
   KA_TRY(begin_folder(job, files));
   const std::string path = job.folder + "/" + std::string(catalogue_file);
@@ -328,15 +328,15 @@ Verb benchmark_twin_verb() {
       {.name = "benchmark twin",
        .summary = "a simulated twin of the paper's data set",
        .text = "Makes a data set of the paper's 12 people, 6 classes and combinations of devices, "
-               "each take by simulation and alignment. --scale is the share of the paper's "
+               "each take by simulation and alignment. --scale is the fraction of the paper's "
                "frames. With --motion every second take has a recorded motion on the body of its "
-               "person. The same seed gives the same takes; a stopped job goes on where it was. "
-               "With --dry-run it says how much room it needs.",
+               "person. The same seed gives the same takes. The same command continues a stopped "
+               "job. --dry-run prints the disk space needed.",
        .examples = {{"kinalign benchmark twin --scale 0.01 -o twin",
                      "10 minutes of motion, then: kinalign eval raw offset ridge --data twin -o "
                      "results"},
                     {"kinalign benchmark twin --scale 1 -o whole --dry-run",
-                     "as much as the paper has: how much room that takes"}},
+                     "the disk space for as much data as the paper has"}},
        .common = {"out", "json", "dry_run", "jobs"},
        .out_is_folder = true},
       describe_twin, run_twin);

@@ -23,8 +23,8 @@ Usage describe_add(Add& o) {
       folder_word(o.folder),
       {"FILE", "recordings, recording.toml files or takes", &o.files, 1, 1'000'000}};
   usage.flags = {
-      {"subject", "who it is (default: as the file says)", &o.subject, 0.0, 0.0, {}, "ID"},
-      {"action", "which action it is (default: as the file says)", &o.action, 0.0, 0.0, {}, "ID"},
+      {"subject", "id of the person (default: as in the file)", &o.subject, 0.0, 0.0, {}, "ID"},
+      {"action", "id of the action (default: as in the file)", &o.action, 0.0, 0.0, {}, "ID"},
       {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
 }
@@ -35,14 +35,14 @@ Result<int> run_add(Add& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
   call.console.if_it_fails([folder](const Error&) -> std::vector<std::string> {
-    return {"what was added before it is in the data set; it can be said again"};
+    return {"files before this one were added; run the same command again after the repair"};
   });
   TakeAdder adder(files, folder, catalogue);
   auto json = nlohmann::ordered_json::array();
   for (const std::string& path : o.files) {
     const AddRequest request{path, o.subject, o.action, o.copy};
     const Added added = KA_TRY(adder.add(request, call.console.progress()));
-    call.console.print(harmless(path + (added.was_there ? " is there already: " : ": ") +
+    call.console.print(harmless(path + (added.was_there ? " was already added: " : ": ") +
                                 to_string(added.name) + "\n"));
     json.push_back(
         {{"file", path}, {"name", to_string(added.name)}, {"was_there", added.was_there}});
@@ -59,12 +59,12 @@ Result<int> run_add(Add& o, Call& call) {
 Verb dataset_add_verb() {
   return make_verb<Add>(
       {.name = "dataset add",
-       .summary = "take recordings, manifests or takes into a data set",
-       .text = "Each gets the next free run of its subject and action. Raw files stay where they "
-               "are; with --copy the "
-               "data set has them itself. Takes are made by `kinalign dataset build`.",
+       .summary = "add recordings, manifests or takes to a data set",
+       .text =
+           "Each gets the next free run of its subject and action. Raw files stay where they are; "
+           "--copy copies them into the data set. `kinalign dataset build` makes the takes.",
        .examples =
-           {{"kinalign dataset add walks takes/03_S1A02_01.mcap", "what `record` wrote"},
+           {{"kinalign dataset add walks takes/03_S1A02_01.mcap", "a file that `record` wrote"},
             {"kinalign dataset add walks demo/recording.toml --subject 01 --action S1A01 --copy",
              "raw files of other programs, copied"}},
        .common = {"json"}},

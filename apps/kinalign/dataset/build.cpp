@@ -22,10 +22,10 @@ struct Build {
 Usage describe_build(Build& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
-  usage.flags = {
-      {"all", "make every take again", &o.all},
-      {"index_offset", "added to the number of a job in a Slurm array, whose numbers are limited",
-       &o.index_offset, 0.0, 1e9}};
+  usage.flags = {{"all", "make every take again", &o.all},
+                 {"index_offset",
+                  "added to the job's number in a Slurm array, because these numbers are limited",
+                  &o.index_offset, 0.0, 1e9}};
   return usage;
 }
 
@@ -41,7 +41,7 @@ std::string_view words_of(BuildReason reason) {
     case BuildReason::asked:
       return "--all";
     case BuildReason::no_summary:
-      return "to be summarised";
+      return "no summary yet";
     case BuildReason::up_to_date:
       break;
   }
@@ -131,16 +131,15 @@ Result<int> run_build(Build& o, Call& call) {
 Verb dataset_build_verb() {
   return make_verb<Build>(
       {.name = "dataset build",
-       .summary = "align all that is new or changed in a data set",
-       .text = "A take is made again where its manifest, [align] of dataset.toml or the bytes of a "
-               "raw file changed. A "
-               "build that was stopped goes on where it was. Under Slurm or MPI each process makes "
-               "its share "
-               "(docs/formats/dataset.md).",
+       .summary = "align all new or changed takes of a data set",
+       .text = "A take is made again if its manifest, [align] of dataset.toml or the bytes of a "
+               "raw file changed. The same command continues a stopped build. Under Slurm or MPI "
+               "each process makes its share (docs/formats/dataset.md).",
        .examples = {{"kinalign dataset build walks", "with all processors"},
-                    {"kinalign dataset build walks --dry-run", "says what it would make, and why"},
+                    {"kinalign dataset build walks --dry-run",
+                     "prints what would be made, and why"},
                     {"srun -n 8 kinalign dataset build walks --jobs 1",
-                     "eight processes of a cluster"}},
+                     "eight processes on a cluster"}},
        .common = {"json", "dry_run", "jobs"}},
       describe_build, run_build);
 }

@@ -22,12 +22,14 @@ std::string folder_of(const std::vector<std::string>& words) {
 }
 
 Field where_field(std::string& where) {
-  return {"where", "takes for which this holds, as for `dataset query`", &where, 0.0, 0.0, {},
+  return {"where", "use only takes that meet this condition (see `dataset query`)",
+          &where,  0.0,
+          0.0,     {},
           "SQL"};
 }
 
 Field split_field(std::string& split) {
-  return {"split", "parts, as `dataset split` wrote them", &split, 0.0, 0.0, {}, "FILE"};
+  return {"split", "file with parts, written by `dataset split`", &split, 0.0, 0.0, {}, "FILE"};
 }
 
 Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
@@ -42,9 +44,9 @@ Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
 Result<void> say_not_built(const DatasetIndex& index, const std::string& folder, Call& call) {
   const std::uint64_t not_built = KA_TRY(index.not_built());
   if (not_built == 0) return {};
-  call.console.print(
-      harmless(fmt::format("note   {} not built, and not counted: kinalign dataset build {}\n",
-                           counted(not_built, "take"), folder)));
+  call.console.print(harmless(
+      fmt::format("note   {} not built and therefore not counted: kinalign dataset build {}\n",
+                  counted(not_built, "take"), folder)));
   return {};
 }
 

@@ -39,15 +39,18 @@ Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"format", "of the files", &o.format, 0.0, 0.0, format_names()},
+      {"format", "format of the files", &o.format, 0.0, 0.0, format_names()},
       where_field(o.where),
       split_field(o.split),
-      {"release", "without dates and names; refused where a text gives a person away", &o.release}};
+      {"release",
+       "for publication: without dates and names; refused if a text may identify a person",
+       &o.release}};
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty())
-      return Failure(Error{"-o", 0, "-o FOLDER, which is not there yet", "none"});
+      return Failure(Error{"-o", 0, "-o FOLDER, which must not exist yet", "none"});
     if (o.split.empty() || o.format == "webdataset") return {};
-    return Failure(Error{"--split", 0, "--format webdataset, whose shards have parts", o.format});
+    return Failure(
+        Error{"--split", 0, "--format webdataset, the only format with parts", o.format});
   };
   return usage;
 }
@@ -119,7 +122,7 @@ Result<int> run_export(Export& o, Call& call) {
   }
   print_findings(findings, call);
   if (has_error(findings)) {
-    call.console.print("nothing was written: a person could be known by what the errors name\n");
+    call.console.print("nothing was written: the texts listed as errors may identify a person\n");
     call.console.print_json(
         fmt::format("{{\"files\": 0, \"findings\": {}}}", findings_json(findings)));
     return 1;
@@ -152,7 +155,7 @@ std::string formats_text() {
   for (const ExportFormat& one : export_formats()) {
     out += fmt::format("{}{}: {}", out.empty() ? "" : ". ", one.name, one.title);
   }
-  return out + ". What a format can't hold is said.";
+  return out + ". The program lists what a format can't hold.";
 }
 
 }  // namespace

@@ -31,29 +31,30 @@ Usage describe_import(Import& o) {
   usage.positionals = {folder_word(o.folder),
                        {"SOURCE", "folders, files or archives (.zip, .tar, .tar.gz) of a corpus",
                         &o.sources, 1, 1'000'000}};
-  usage.flags = {{"from", "which corpus it is; auto: by its files", &o.from, 0.0, 0.0, kinds},
-                 {"subject",
-                  "who it is, where neither folders nor names say it",
-                  &o.subject,
-                  0.0,
-                  0.0,
-                  {},
-                  "ID"},
-                 {"action",
-                  "which action it is, in place of the names of single files",
-                  &o.action,
-                  0.0,
-                  0.0,
-                  {},
-                  "ID"},
-                 {"metres_per_unit",
-                  "length of the unit of BVH, C3D or TRC files, m; 0: the format's own (BVH: 0.01)",
-                  &o.metres_per_unit, 0.0, 1000.0},
-                 {.name = "up",
-                  .meaning = "the up axis of BVH, C3D or TRC files (default: the format's own)",
-                  .value = &o.up,
-                  .choices = {"", "y", "z"}},
-                 {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
+  usage.flags = {
+      {"from", "kind of corpus; auto: recognised by its files", &o.from, 0.0, 0.0, kinds},
+      {"subject",
+       "id of the person, if neither folders nor names state it",
+       &o.subject,
+       0.0,
+       0.0,
+       {},
+       "ID"},
+      {"action",
+       "id of the action, instead of the names of single files",
+       &o.action,
+       0.0,
+       0.0,
+       {},
+       "ID"},
+      {"metres_per_unit",
+       "length of the unit of BVH, C3D or TRC files, m; 0: the format's own (BVH: 0.01)",
+       &o.metres_per_unit, 0.0, 1000.0},
+      {.name = "up",
+       .meaning = "the up axis of BVH, C3D or TRC files (default: the format's own)",
+       .value = &o.up,
+       .choices = {"", "y", "z"}},
+      {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
 }
 
@@ -79,7 +80,7 @@ using Changed = std::vector<std::pair<std::string, std::string>>;
 std::string changed_line(std::string_view what, const Changed& changed) {
   if (changed.empty()) return "";
   constexpr std::size_t most = 5;
-  std::string text = fmt::format("  {} by ids of letters and digits: ", what);
+  std::string text = fmt::format("  {} renamed to ids of letters and digits: ", what);
   for (std::size_t i = 0; i < std::min(most, changed.size()); ++i) {
     text += fmt::format("{}{} is {}", i > 0 ? ", " : "", changed[i].first, changed[i].second);
   }
@@ -113,7 +114,7 @@ void print_json(const Imported& made, Console& console) {
 
 void advise_to_say_it_again(Console& console) {
   console.if_it_fails([](const Error&) -> std::vector<std::string> {
-    return {"some takes are in the data set; the same import goes on where it stopped"};
+    return {"some takes are in the data set; run the same command again to continue"};
   });
 }
 
@@ -136,10 +137,10 @@ Result<int> run_import(Import& o, Call& call) {
                              if (done % 100 == 0 && done < takes)
                                console.print(fmt::format("{} of {}\n", done, takes));
                            }));
-  console.print(harmless(fmt::format(
-      "{}: {} of {}, {}{}\n", made.kind, counted(made.takes, "take"),
-      counted(made.subjects, "person", "people"), counted(made.actions, "action"),
-      made.were_there > 0 ? fmt::format("; {} were there already", made.were_there) : "")));
+  console.print(harmless(
+      fmt::format("{}: {} of {}, {}{}\n", made.kind, counted(made.takes, "take"),
+                  counted(made.subjects, "person", "people"), counted(made.actions, "action"),
+                  made.were_there > 0 ? fmt::format("; {} existed before", made.were_there) : "")));
   console.print(harmless(left_out_lines(made.left_out) + changed_line("people", made.subject_ids) +
                          changed_line("actions", made.action_ids)));
   console.print("see    kinalign dataset build " + harmless(folder) + "\n");
@@ -153,12 +154,11 @@ Result<int> run_import(Import& o, Call& call) {
 Verb dataset_import_verb() {
   return make_verb<Import>(
       {.name = "dataset import",
-       .summary = "take a published corpus into a data set",
-       .text = "Knows a corpus by its folders and names, adds its people and actions to "
-               "dataset.toml and "
-               "its takes as `dataset add` does. Where FOLDER is no data set yet it becomes one. "
-               "The same import "
-               "said again adds nothing twice. What each corpus gives: docs/dataset_import.md.",
+       .summary = "add a published corpus to a data set",
+       .text = "Recognises a corpus by its folders and names, adds its people and actions to "
+               "dataset.toml, and adds its takes as `dataset add` does. If FOLDER is no data set "
+               "yet, it becomes one. Running the same import again adds nothing twice. "
+               "docs/dataset_import.md lists the contents of each corpus.",
        .examples =
            {{"kinalign dataset import prmd ui_prmd.zip", "an archive, unpacked below sourcedata/"},
             {"kinalign dataset import dances bvh/ --from bvh --copy",

@@ -23,16 +23,11 @@ struct Init {
 /// The command line of `kinalign dataset init`.
 Usage describe_init(Init& o) {
   Usage usage;
-  usage.positionals = {{"FOLDER", "the new data set, or a folder that is to be one", &o.folder}};
-  usage.flags = {{"template", "what dataset.toml begins with", &o.template_name, 0.0, 0.0,
-                  catalogue_template_names()},
-                 {"name",
-                  "what the data set is called (default: as its folder)",
-                  &o.name,
-                  0.0,
-                  0.0,
-                  {},
-                  "NAME"}};
+  usage.positionals = {{"FOLDER", "folder of the new data set; it may exist", &o.folder}};
+  usage.flags = {
+      {"template", "first content of dataset.toml", &o.template_name, 0.0, 0.0,
+       catalogue_template_names()},
+      {"name", "name of the data set (default: the folder's name)", &o.name, 0.0, 0.0, {}, "NAME"}};
   return usage;
 }
 
@@ -46,10 +41,10 @@ Result<int> run_init(Init& o, Call& call) {
   const std::string text =
       KA_TRY(catalogue_template(o.template_name, o.name.empty() ? own : o.name));
   KA_TRY(write_whole(call.surroundings.files, path, text, Overwrite::no));
-  call.console.print(harmless(path +
-                              ": a new data set. Say there who was recorded, doing what; then\n"
-                              "  kinalign dataset add " +
-                              folder + " TAKE.mcap ...\n"));
+  call.console.print(harmless(
+      path +
+      ": a new data set. Describe the people and the actions in it; then\n  kinalign dataset add " +
+      folder + " TAKE.mcap ...\n"));
   call.console.print_json(nlohmann::ordered_json{{"written", path}}.dump());
   return 0;
 }
@@ -64,7 +59,7 @@ Verb dataset_init_verb() {
        .text = "Writes dataset.toml: the name, the licence, people by pseudonyms, classes of "
                "actions and actions. "
                "The template hfut-mmd has the paper's 12 people, 6 classes and 34 actions.",
-       .examples = {{"kinalign dataset init walks", "an empty one"},
+       .examples = {{"kinalign dataset init walks", "an empty data set"},
                     {"kinalign dataset init hfut --template hfut-mmd",
                      "with the paper's catalogue"}},
        .common = {"json"}},

@@ -29,13 +29,13 @@ struct Shown {
 Fields fields_of(Shown& o) {
   return {{"columns", "comma-separated, or all", &o.columns, 0.0, 0.0, {}, "COLUMNS"},
           {"sort",
-           "a column; with a - at its end the greatest first: frames-; verdict: the worst first",
+           "column to sort by; with - at its end, largest first: frames-; verdict: worst first",
            &o.sort,
            0.0,
            0.0,
            {},
            "COLUMN"},
-          {"limit", "rows at most; 0: all", &o.limit, 0.0, 1e12},
+          {"limit", "largest number of rows; 0: all", &o.limit, 0.0, 1e12},
           format_field(o.format)};
 }
 
@@ -115,7 +115,7 @@ Usage describe_list(List& o) {
       {"class", "takes of this class of actions", &o.class_id, 0.0, 0.0, {}, "ID"},
       {"action", "takes of this action", &o.action, 0.0, 0.0, {}, "ID"},
       {"modality",
-       "takes that have it; may be repeated",
+       "takes with this modality; may be repeated",
        &o.modality,
        0.0,
        0.0,
@@ -187,7 +187,7 @@ Result<void> check_query(const Query& o, const Sources& given) {
                                    std::pair("limit", "--limit")}) {
     if (!given.contains(name)) continue;
     return Failure(
-        Error{flag, 0, "it beside a condition: a whole SELECT says its own", "a SELECT"});
+        Error{flag, 0, "it only with a condition: a whole SELECT has its own", "a SELECT"});
   }
   return {};
 }
@@ -195,7 +195,7 @@ Result<void> check_query(const Query& o, const Sources& given) {
 Usage describe_query(Query& o) {
   Usage usage;
   usage.positionals = {folder_word(o.shown.folder),
-                       {"CONDITION", "of SQL, or a whole SELECT", &o.words}};
+                       {"CONDITION", "an SQL condition, or a whole SELECT", &o.words}};
   usage.flags = fields_of(o.shown);
   usage.check = [&o](const Common&, const Sources& given) { return check_query(o, given); };
   return usage;
@@ -223,11 +223,11 @@ Verb dataset_list_verb() {
       {.name = "dataset list",
        .summary = "the takes of a data set, by person, class, action, modality or verdict",
        .text = "",
-       .examples = {{"kinalign dataset list walks", "all of them"},
+       .examples = {{"kinalign dataset list walks", "all takes"},
                     {"kinalign dataset list walks --class S2 --modality imu --sort frames-",
-                     "Baduanjin with nodes, the longest first"},
+                     "Baduanjin takes with nodes, longest first"},
                     {"kinalign dataset list walks --columns name,worst --verdict bad",
-                     "what is wrong with the bad ones"}},
+                     "what is wrong with the bad takes"}},
        .common = {"json"}},
       describe_list, run_list);
 }
@@ -236,15 +236,14 @@ Verb dataset_list_verb() {
 Verb dataset_query_verb() {
   return make_verb<Query>(
       {.name = "dataset query",
-       .summary = "ask the index of a data set in SQL",
-       .text = "A condition on the columns of `takes`, or a whole SELECT of `takes` and `streams`. "
-               "Nothing can be "
-               "changed by it.",
+       .summary = "query the index of a data set in SQL",
+       .text = "Takes a condition on the columns of `takes`, or a whole SELECT from `takes` and "
+               "`streams`. A query can't change anything.",
        .examples = {{"kinalign dataset query walks \"class = 'S2' and frames > 6000\"",
-                     "the takes for which that holds"},
+                     "the takes that meet the condition"},
                     {"kinalign dataset query walks \"select subject, sum(seconds) / 60 as minutes "
                      "from takes group by subject\" --format csv",
-                     "minutes of each person"}},
+                     "minutes per person"}},
        .common = {"json"}},
       describe_query, run_query);
 }

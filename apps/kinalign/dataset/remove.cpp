@@ -27,7 +27,7 @@ Usage describe_remove(Remove& o) {
       folder_word(o.folder),
       {"NAME", "takes, or a person (sub-03) with all takes", &o.names, 1, 1'000'000}};
   usage.flags = {{"raw", "remove the raw files below sourcedata/, too", &o.raw},
-                 {"yes", "do not ask", &o.yes}};
+                 {"yes", "remove without asking", &o.yes}};
   return usage;
 }
 
@@ -38,8 +38,8 @@ std::string raw_left_text(const std::vector<std::string>& places) {
   std::string out;
   for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
     const bool is_folder = places[i].ends_with('/');
-    out += "  " + places[i] + " stays; --raw removes it" +
-           (is_folder ? "" : " unless another take is made of it") + "\n";
+    out += "  " + places[i] + " is kept; --raw removes it" +
+           (is_folder ? "" : ", unless another take is made from it") + "\n";
   }
   if (places.size() > most_places) {
     out += "  and " + std::to_string(places.size() - most_places) + " more raw files or folders\n";
@@ -51,17 +51,17 @@ std::string raw_left_text(const std::vector<std::string>& places) {
 std::string raw_kept_text(const std::vector<std::string>& places) {
   std::string out;
   for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
-    out += "  " + places[i] + " stays: it was not copied or unpacked for this take\n";
+    out += "  " + places[i] + " is kept: it was not copied or unpacked for this take\n";
   }
   if (places.size() > most_places) {
-    out += "  and " + std::to_string(places.size() - most_places) + " more that stay\n";
+    out += "  and " + std::to_string(places.size() - most_places) + " more that are kept\n";
   }
   return out;
 }
 
 std::string raw_shared_text(const std::vector<std::string>& places) {
   if (places.empty()) return "";
-  return "  " + counted(places.size(), "raw file") + " of other takes, too, " +
+  return "  " + counted(places.size(), "raw file") + " also used by other takes " +
          (places.size() == 1 ? "stays: " : "stay: ") + places.front() +
          (places.size() == 1 ? "\n" : ", ...\n");
 }
@@ -72,14 +72,14 @@ std::string plan_text(const RemovalPlan& plan) {
   for (const TakeName& name : plan.takes) out += to_string(name) + "\n";
   out += counted(plan.takes.size(), "take") + ", " + counted(plan.files.size(), "file") + ", " +
          size_text(plan.bytes) + "\n";
-  for (const std::string& name : plan.unknown) out += "  " + name + ": nothing of it is there\n";
+  for (const std::string& name : plan.unknown) out += "  " + name + ": not in the data set\n";
   return out + raw_left_text(plan.raw_left) + raw_kept_text(plan.raw_kept) +
          raw_shared_text(plan.raw_shared);
 }
 
 /// Asks on the terminal. Any answer but y or yes means no.
 bool agreed(Call& call) {
-  call.console.complain("remove them for good? [y/N]");
+  call.console.complain("remove these files permanently? [y/N]");
   std::string answer;
   for (char c = 0; ::read(STDIN_FILENO, &c, 1) == 1 && c != '\n';) answer += c;
   return answer == "y" || answer == "yes";
@@ -110,7 +110,7 @@ Result<int> run_remove(Remove& o, Call& call) {
     const bool can_ask = ::isatty(STDIN_FILENO) == 1 && call.surroundings.err_is_terminal;
     if (!can_ask) {
       return call.console.refuse(
-          Error{"--yes", 0, "--yes, where there is no terminal to ask on", "none"});
+          Error{"--yes", 0, "--yes, because there is no terminal to ask on", "no --yes"});
     }
   }
   call.console.print(harmless(plan_text(plan)));
@@ -121,7 +121,7 @@ Result<int> run_remove(Remove& o, Call& call) {
     return 0;
   }
   call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
-    return {"a part may be removed; run the same again to go on"};
+    return {"some files may be removed; run the same command again to continue"};
   });
   KA_TRY(remove_takes(files, folder, plan));
   KA_TRY(open_index(folder, call));
@@ -140,15 +140,15 @@ Verb dataset_rm_verb() {
   return make_verb<Remove>(
       {.name = "dataset rm",
        .summary = "remove takes from a data set",
-       .text = "Removes the take, its summary, its manifest and its page, and with --raw its "
-               "raw files that were copied or unpacked below sourcedata/, unless another take is "
-               "made of them. Raw files of your own are never touched. "
-               "Asks on a terminal; elsewhere it needs --yes. Exit code 1 where one of the names "
-               "was not there."
-               "",
+       .text =
+           "Removes the take, its summary, its manifest and its page. With --raw it also removes "
+           "raw files that were copied or unpacked below sourcedata/, unless another take is made "
+           "from them. Your own raw files are never touched. The verb asks on a terminal; without "
+           "a terminal it needs --yes. Exit code 1 if a name is not in the data set."
+           "",
        .examples = {{"kinalign dataset rm walks sub-03_task-S2A03_run-01 --yes", "one take"},
                     {"kinalign dataset rm walks sub-03 --raw --dry-run",
-                     "says what would go of a person"}},
+                     "prints which files of a person would be removed"}},
        .common = {"json", "dry_run"}},
       describe_remove, run_remove);
 }

@@ -51,8 +51,10 @@ Result<int> run_rename(Rename& o, Call& call) {
   const RenamePlan plan = KA_TRY(plan_rename(files, folder, catalogue, from, to));
   if (call.common.dry_run) return show_plan(plan, call);
   call.console.if_it_fails([=](const Error&) -> std::vector<std::string> {
-    return {"a part may be renamed; run again to go on: kinalign dataset rename " + folder + " " +
-            from + " " + to};
+    return {
+        "some files may be renamed; run the same command again to continue: kinalign dataset "
+        "rename " +
+        folder + " " + from + " " + to};
   });
   const Renamed done = KA_TRY(rename_takes(files, folder, plan));
   KA_TRY(open_index(folder, call));
@@ -60,10 +62,11 @@ Result<int> run_rename(Rename& o, Call& call) {
   for (const auto& take : plan.takes) old.insert(take.first);
   const auto splits = splits_naming(files, folder, old);
   std::string text =
-      fmt::format("{}: {} is {} now, {}\n", folder, from, to, counted(plan.takes.size(), "take"));
+      fmt::format("{}: {} is now {}, {}\n", folder, from, to, counted(plan.takes.size(), "take"));
   if (done.to_build > 0) {
-    text += fmt::format("  {} to be made again, since subject and action stand in its bytes\n",
-                        counted(done.to_build, "take"));
+    text +=
+        fmt::format("  {} to be made again, because a take's file contains subject and action\n",
+                    counted(done.to_build, "take"));
   }
   text += splits_text(splits);
   if (done.to_build > 0) text += fmt::format("see    kinalign dataset build {}\n", folder);
@@ -82,16 +85,16 @@ Verb dataset_rename_verb() {
   return make_verb<Rename>(
       {.name = "dataset rename",
        .summary = "give a take, a person or an action another name",
-       .text = "Files, raw files below sourcedata/, manifests and dataset.toml follow; comments in "
-               "them stay. A take whose subject or action changes is dropped and has to be built "
-               "again from its raw files. Nothing is overwritten. A rename that was stopped is "
-               "finished by the same command.",
+       .text = "Renames files, raw files below sourcedata/, manifests and ids in dataset.toml; "
+               "comments are kept. If the subject or action of a take changes, the take is removed "
+               "and has to be built again from its raw files. Nothing is overwritten. The same "
+               "command finishes a stopped rename.",
        .examples = {{"kinalign dataset rename walks sub-03 sub-13", "a person"},
                     {"kinalign dataset rename walks sub-03_task-S2A03_run-01 "
                      "sub-03_task-S2A04_run-01",
                      "a take that was filed under the wrong action"},
                     {"kinalign dataset rename walks S2A03 S2A09 --dry-run",
-                     "says what would be renamed"}},
+                     "prints what would be renamed"}},
        .common = {"json", "dry_run"}},
       describe_rename, run_rename);
 }

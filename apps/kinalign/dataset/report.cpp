@@ -32,9 +32,8 @@ Usage describe_report(Report& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"pages", "write each take's page, too: those that are missing or whose take has changed",
-       &o.pages},
-      {"card", "write the data card, FOLDER/README.md, and no page", &o.card}};
+      {"pages", "also write the pages of takes that have no page or have changed", &o.pages},
+      {"card", "write the data card, FOLDER/README.md, instead of the page", &o.card}};
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     const std::string& out = common.out;
     if (o.card && o.pages) {
@@ -80,7 +79,7 @@ Result<void> make_page(const PageJob& job) {
   if (ended.code <= most_findings) return {};
   if (interrupted()) return Failure(interruption());
   const std::string first = ended.complaint.substr(0, ended.complaint.find('\n'));
-  return Failure(Error{job.take, 0, "a take of which kinalign report makes a page",
+  return Failure(Error{job.take, 0, "a take that kinalign report can make a page of",
                        first.empty() ? fmt::format("exit code {}", ended.code) : first});
 }
 
@@ -143,8 +142,7 @@ void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
                               {"good", page.good},   {"not_built", page.not_built}};
   if (pages) {
     text += fmt::format("  pages of takes: {} made, {} up to date", pages->made, pages->up_to_date);
-    if (pages->removed > 0)
-      text += fmt::format(", {} of takes that are gone removed", pages->removed);
+    if (pages->removed > 0) text += fmt::format(", {} of removed takes deleted", pages->removed);
     text += "\n";
     json["pages"] = {{"made", pages->made},
                      {"up_to_date", pages->up_to_date},
@@ -203,11 +201,11 @@ Verb dataset_report_verb() {
   return make_verb<Report>(
       {.name = "dataset report",
        .summary = "a page for a data set, its takes' pages, and the data card",
-       .text = "FOLDER/report.html, one file that loads nothing: all takes, worst first, with "
-               "pictures, filters and the paper's tables. --pages writes the takes' pages beside "
-               "it, below report/. --card writes README.md; text between <!-- own text --> and "
-               "<!-- end --> in it is kept. What this verb wrote before is replaced; another file "
-               "only with --force.",
+       .text = "Writes FOLDER/report.html, one file that loads nothing: all takes, worst first, "
+               "with pictures, filters and the paper's tables. --pages also writes the takes' "
+               "pages below report/. --card writes README.md and keeps its text between <!-- own "
+               "text --> and <!-- end -->. A file that this verb wrote before is replaced; any "
+               "other file only with --force.",
        .examples = {{"kinalign dataset report walks", "writes walks/report.html"},
                     {"kinalign dataset report walks --pages",
                      "also walks/report/NAME.html, for takes that are new or changed"},

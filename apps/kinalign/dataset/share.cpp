@@ -45,10 +45,11 @@ Result<BuildShare> read(const Names& names, const Variable& variable, const std:
   if (rank && size && own >= 0 && own < *size) {
     return BuildShare{static_cast<std::size_t>(own), static_cast<std::size_t>(*size)};
   }
-  return Failure(Error{names.rank, 0,
-                       std::string("a number below ") + names.size +
-                           " (of a larger array KINALIGN_SHARES says how many there are in all)",
-                       rank_text + " of " + size_text});
+  return Failure(
+      Error{names.rank, 0,
+            std::string("a number below ") + names.size +
+                " (if the array is larger, set KINALIGN_SHARES to the number of all jobs)",
+            rank_text + " of " + size_text});
 }
 
 }  // namespace

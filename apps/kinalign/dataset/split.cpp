@@ -29,29 +29,30 @@ Usage describe_split(SplitVerb& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"by", "how takes are divided", &o.options.by, 0.0, 0.0, split_methods()},
-      {"test", "share of the frames for the test", &o.options.test, 0.0, 1.0},
+      {"by", "how to divide takes", &o.options.by, 0.0, 0.0, split_methods()},
+      {"test", "fraction of the frames for the test", &o.options.test, 0.0, 1.0},
       {"test-people",
-       "who is tested, in place of --by and --test; all others are trained on",
+       "people of the test part, instead of --by and --test; all others are for training",
        &o.test_people,
        0.0,
        0.0,
        {},
        "ID,ID,..."},
-      {"validation", "share of the frames for validation", &o.options.validation, 0.0, 1.0},
-      {"stratified", "of takes: each class is divided by itself", &o.options.stratified},
-      {"seed", "of the random numbers", &o.options.seed, 0.0, 9e15},
-      {"check", "look at a split that is there instead", &o.check, 0.0, 0.0, {}, "FILE"}};
+      {"validation", "fraction of the frames for validation", &o.options.validation, 0.0, 1.0},
+      {"stratified", "with --by take: divide each class by itself", &o.options.stratified},
+      {"seed", "seed of the random numbers", &o.options.seed, 0.0, 9e15},
+      {"check", "check an existing split instead", &o.check, 0.0, 0.0, {}, "FILE"}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     for (const char* name : {"by", "test", "validation", "stratified", "seed"}) {
       if (o.test_people.empty() || given.count(name) == 0) continue;
-      return Failure(Error{"--test-people", 0, std::string("no --") + name + " beside it", "both"});
+      return Failure(Error{"--test-people", 0, std::string("no --") + name + " with it", "both"});
     }
     if (o.options.test + o.options.validation >= 1.0) {
-      return Failure(Error{"--test", 0, "shares that leave something for training", "all of it"});
+      return Failure(Error{"--test", 0, "fractions that leave takes for training",
+                           "fractions of 1 or more together"});
     }
     if (o.options.stratified && o.options.by != "take") {
-      return Failure(Error{"--stratified", 0, "--by take, whose classes can be divided alike",
+      return Failure(Error{"--stratified", 0, "--by take, the only way that can divide each class",
                            "--by " + o.options.by});
     }
     if (!o.check.empty() == common.out.empty()) return {};
@@ -128,19 +129,17 @@ Verb dataset_split_verb() {
   return make_verb<SplitVerb>(
       {.name = "dataset split",
        .summary = "divide takes for training and test, and look for leaks",
-       .text = "subject: nobody is in two parts. take: whole takes at random. leave-one-out: a "
-               "part for each person. "
-               "hfut-denoise and hfut-imu are the paper's two. A split in which the same take, or "
-               "the same bytes under two "
-               "names, stand in two parts is refused with exit code 1; so are people where they "
-               "have to be apart.",
+       .text = "subject: no person is in two parts. take: whole takes at random. leave-one-out: a "
+               "part for each person. hfut-denoise and hfut-imu are the paper's two splits. A "
+               "split is refused with exit code 1 if two parts have the same take, or the same "
+               "bytes under two names, or, for splits by person, the same person.",
        .examples = {{"kinalign dataset split walks --by subject --test 0.2 --seed 7 -o "
                      "walks/splits/people.json",
-                     "a fifth of the frames, of people who are not in the training"},
+                     "a fifth of the frames, from people who are not in the training part"},
                     {"kinalign dataset split walks --test-people 1 -o walks/splits/first.json",
-                     "one person is the test, all others are the training"},
+                     "one person for the test, all others for training"},
                     {"kinalign dataset split walks --check walks/splits/people.json",
-                     "whether it still holds"}},
+                     "checks whether the split still fits the data set"}},
        .common = {"out", "force", "json"}},
       describe_split, run_split);
 }

@@ -9,7 +9,7 @@ namespace kinalign {
 std::string splits_text(const std::vector<SplitFile>& splits) {
   std::string out;
   for (const SplitFile& one : splits) {
-    out += fmt::format("  {} names {} of them: make it again with kinalign dataset split\n",
+    out += fmt::format("  {} names {} of these takes: make it again with kinalign dataset split\n",
                        one.path, one.takes);
   }
   return out;

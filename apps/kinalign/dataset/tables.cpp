@@ -65,9 +65,9 @@ Verb dataset_tables_verb() {
   return make_verb<Tables>(
       {.name = "dataset tables",
        .summary = "the paper's tables of a data set: frames by people and by classes",
-       .text = "subjects is the paper's table 6, classes its table 7, data_sets its table 1 with "
-               "this data set in the "
-               "last row; modalities says which were recorded together.",
+       .text =
+           "subjects is the paper's table 6, classes its table 7, data_sets its table 1 with this "
+           "data set in the last row. modalities lists the modalities that were recorded together.",
        .examples = {{"kinalign dataset tables walks", "all four"},
                     {"kinalign dataset tables walks --table classes --format latex",
                      "for a paper"}},

@@ -23,7 +23,7 @@ Usage describe_verify(Verify& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"deep", "read every row of the takes and every byte of the raw files, too", &o.deep}};
+      {"deep", "also read every row of the takes and every byte of the raw files", &o.deep}};
   return usage;
 }
 
@@ -70,7 +70,7 @@ Result<int> run_verify(Verify& o, Call& call) {
   call.console.print(
       harmless(fmt::format("{}: {} takes, {:.1f} MB read, {}\n", folder, found.takes,
                            1e-6 * static_cast<double>(found.bytes),
-                           serious == 0 ? "nothing wrong" : fmt::format("{} faults", serious))));
+                           serious == 0 ? "no faults" : fmt::format("{} faults", serious))));
   call.console.print_json(fmt::format("{{\"takes\": {}, \"bytes\": {}, \"findings\": {}}}",
                                       found.takes, found.bytes, findings_json(found.findings)));
   return serious == 0 ? 0 : 1;
@@ -82,12 +82,10 @@ Result<int> run_verify(Verify& o, Call& call) {
 Verb dataset_verify_verb() {
   return make_verb<Verify>(
       {.name = "dataset verify",
-       .summary = "whether a data set is whole: every byte of its takes is read",
-       .text = "Compares each take with its SHA-256 and its summary, names with dataset.toml, "
-               "manifests with what the takes "
-               "were made of, and names files that belong to nothing. Exit code 1 where something "
-               "is wrong; notes alone are "
-               "exit code 0.",
+       .summary = "check a data set: read every byte of its takes",
+       .text = "Compares each take with its SHA-256 and its summary, names with dataset.toml, and "
+               "manifests with the files that the takes were made from. Lists files that belong to "
+               "no take. Exit code 1 if something is wrong; 0 if there are only notes.",
        .examples = {{"kinalign dataset verify walks", "after a copy, or once a year"},
                     {"kinalign dataset verify walks --deep",
                      "stamps, bones and units of every row, and the raw files"}},

@@ -34,16 +34,17 @@ Usage describe_windows(Windows& o) {
       split_field(o.split),
       where_field(o.where),
       {"stream",
-       "which stream; may be repeated (default: those that all takes have)",
+       "stream to use; may be repeated (default: the streams that all takes have)",
        &o.options.streams,
        0.0,
        0.0,
        {},
        "NAME"},
-      {"length", "rows of a window", &o.options.length, 2.0, 1e6},
-      {"step", "rows from one window to the next", &o.options.step, 1.0, 1e6},
-      {"rate", "rows a second; 0: the takes' own", &o.options.rate_hz, 0.0, 1e4, {}, "HZ"},
-      {"valid", "least share of valid cells of each stream", &o.options.valid, 0.0, 1.0}};
+      {"length", "rows per window", &o.options.length, 2.0, 1e6},
+      {"step", "rows from the start of one window to the start of the next", &o.options.step, 1.0,
+       1e6},
+      {"rate", "rows per second; 0: the rate of the takes", &o.options.rate_hz, 0.0, 1e4, {}, "HZ"},
+      {"valid", "smallest fraction of valid cells in each stream", &o.options.valid, 0.0, 1.0}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.ends_with(".npz")) return {};
     return Failure(Error{"-o", 0, "-o FILE.npz", common.out.empty() ? "none" : shown(common.out)});
@@ -102,12 +103,13 @@ void print(const WindowsMade& made, const WindowSource& source, Call& call) {
   }
   call.console.print(written(table, TableFormat::text));
   if (made.too_little_valid > 0) {
-    call.console.print(fmt::format("note   {} windows left out: too little is valid (--valid)\n",
+    call.console.print(fmt::format("note   {} windows left out: too few valid cells (--valid)\n",
                                    made.too_little_valid));
   }
   if (made.rows_left_out > 0) {
-    call.console.print(fmt::format(
-        "note   {} rows left out: in stretches shorter than half a window\n", made.rows_left_out));
+    call.console.print(
+        fmt::format("note   {} rows left out: their stretches are shorter than half a window\n",
+                    made.rows_left_out));
   }
   auto left_out = nlohmann::ordered_json::array();
   for (const TakeLeftOut& one : made.takes_left_out) {
@@ -153,7 +155,7 @@ Verb dataset_windows_verb() {
                "0 in the arrays STREAM_valid.",
        .examples =
            {{"kinalign dataset windows walks -o walks.npz --split walks/splits/people.json",
-             "windows of 64 rows, each with its part of the split"},
+             "windows of 64 rows, each marked with its part of the split"},
             {"kinalign dataset windows walks -o pairs.npz --where \"kinect > 0\" --stream mocap "
              "--stream kinect --rate 30 --length 90 --step 45",
              "pairs for cleaning a Kinect, 3 s at 30 Hz"}},

@@ -71,8 +71,7 @@ Result<void> check_methods(const Eval& o, const Sources& given) {
 /// The command line of `kinalign eval`, with the checks that need several flags.
 Usage describe_eval(Eval& o) {
   Usage usage;
-  usage.positionals = {{"METHOD",
-                        "which methods (default: those that clean a Kinect without training)",
+  usage.positionals = {{"METHOD", "methods (default: those that clean a Kinect without training)",
                         &o.methods, 0, 100}};
   auto& choices = usage.positionals.front().choices;
   for (const EvalMethod& method : eval_methods()) choices.push_back(method.name);
@@ -81,18 +80,24 @@ Usage describe_eval(Eval& o) {
   }
   usage.flags = {
       {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
-      {"windows", "a file of windows in its place", &o.windows, 0.0, 0.0, {}, "FILE"},
-      {"folds", "what is tested apart", &o.folds, 0.0, 0.0, {"people", "runs", "actions", "split"}},
+      {"windows", "a file of windows instead of a data set", &o.windows, 0.0, 0.0, {}, "FILE"},
+      {"folds",
+       "folds: what is left out of training and tested",
+       &o.folds,
+       0.0,
+       0.0,
+       {"people", "runs", "actions", "split"}},
       {"split",
-       "of the data set, in place of folds: its part train is learnt from, its part test tested",
+       "a split of the data set, instead of folds: its part train for training, its part test for "
+       "the test",
        &o.split,
        0.0,
        0.0,
        {},
        "FILE"},
       {"model",
-       "a finished model, a row of its own; may be repeated. Nobody who is tested should have been "
-       "in its training",
+       "a finished model, shown in a row of its own; may be repeated. Test it only on people who "
+       "were not in its training",
        &o.models,
        0.0,
        0.0,
@@ -101,16 +106,16 @@ Usage describe_eval(Eval& o) {
       input_field(o.input),
       truth_field(o.truth),
       nodes_field(o.nodes),
-      {"rate", "frames a second, of methods that clean", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
-      {"seeds", "trainings of each network", &o.seeds, 1.0, 100.0},
-      {"steps", "batches of each training; 0: the method's own number", &o.steps, 0.0, 1e8},
-      {"hand-weight", "of wrists and hands in the loss of networks; 0: the method's own",
+      {"rate", "frames per second of methods that clean", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
+      {"seeds", "number of trainings per network", &o.seeds, 1.0, 100.0},
+      {"steps", "batches per training; 0: the method's default", &o.steps, 0.0, 1e8},
+      {"hand-weight", "weight of wrists and hands in the loss of networks; 0: the method's default",
        &o.hand_weight, 0.0, 100.0},
       {"own-root",
-       "positions from each skeleton's own root and heading, as BRA's published marks are; of "
-       "methods that clean",
+       "for methods that clean: positions relative to each skeleton's own root and heading, like "
+       "BRA's published marks",
        &o.own_root},
-      {"device", "where networks are trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      {"device", "device that trains networks", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
       format_field(o.format)};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});
@@ -231,7 +236,7 @@ Result<std::string> known_people(const Eval& o, const Comparison& comparison,
                           std::inserter(both, both.end()));
     if (both.empty()) continue;
     out += (out.empty() ? "" : "; ") +
-           fmt::format("{} was trained on {} that it is tested on: {}", file_name(file),
+           fmt::format("{} was trained on {} of the test part: {}", file_name(file),
                        both.size() == 1 ? "a person" : "people", fmt::join(both, ", "));
   }
   return out;
@@ -288,7 +293,7 @@ Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std:
   std::string made = KA_TRY(run.comparison.mark(trial, call));
   if (run.comparison.sum_up("", {{"", {made}}}).empty()) {
     return Failure(Error{trial.model.empty() ? trial.training.method : trial.model, 0,
-                         "marks that are numbers", "none"});
+                         "marks that are finite numbers", "no number"});
   }
   KA_TRY(write_whole(files, file, made, Overwrite::yes));
   return made;
@@ -464,10 +469,11 @@ Table joints_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
 Table radii_of(const std::vector<MethodMarks>& rows) {
   Table out;
   out.caption =
-      "stated 90 % radii over all people, and the one radius for all joints that holds as many";
+      "stated 90 % radii over all people, and the single radius for all joints that contains the "
+      "same fraction";
   out.columns = {{"method", "method"},           {"part", "part"},
                  {"cells", "positions"},         {"covered_percent", "within, %", 1},
-                 {"radius_cm", "stated, cm", 2}, {"one_radius_cm", "one for all, cm", 2}};
+                 {"radius_cm", "stated, cm", 2}, {"one_radius_cm", "single radius, cm", 2}};
   for (const MethodMarks& marks : rows) {
     if (marks.radii.empty()) continue;
     auto parts = marks.radii;
@@ -568,21 +574,21 @@ std::string input_of(const Eval& o, Learns task) {
 Verb eval_verb() {
   return make_verb<Eval>(
       {.name = "eval",
-       .summary = "methods and models held against each other on people they have not seen",
-       .text =
-           "Each method is fitted or trained on all takes but those of a fold, and tested on "
-           "these. Every result of a fold, a method and a seed is kept in the folder, so that a "
-           "table grows over several runs and a stopped run goes on. Methods of one task make one "
-           "table: they clean a Kinect, answer nodes with a pose, or answer both. \"steadied\" "
-           "rows have the same smoothing and constant bones for every method. \"both\", "
-           "\"kinect\" and \"nodes\" say what a method that fuses was given; \"filter\" is fusion "
-           "without learning. The folder gets table, people (each person's values) and tests "
-           "(paired ones), each as .md, .tex, .csv and .json; of methods that clean a Kinect also "
-           "joints (each joint's error) and, where they state how sure they are, radii.",
+       .summary = "compare methods and models on people that are not in their training",
+       .text = "Each method is fitted or trained on all takes except those of a fold, and tested "
+               "on the fold. The folder keeps the result of each fold, method and seed, so several "
+               "runs extend a table and the same command continues a stopped run. Methods of one "
+               "task share a table: they clean a Kinect, compute a pose from nodes, or from both. "
+               "\"steadied\" rows have the same smoothing and constant bones for every method. "
+               "\"both\", \"kinect\" and \"nodes\" name the input of a method that fuses; "
+               "\"filter\" is fusion without learning. The folder contains table, people (each "
+               "person's values) and tests (paired tests), each as .md, .tex, .csv and .json. For "
+               "methods that clean a Kinect it also contains joints (each joint's error) and, for "
+               "methods that state their uncertainty, radii.",
        .examples = {{"kinalign eval raw offset ridge --data walks -o results",
                      "without training: a table in seconds"},
                     {"kinalign eval refine bra --data walks -o results --folds people --seeds 3",
-                     "two networks, three trainings each for every person left out"},
+                     "two networks, each trained three times per person left out"},
                     {"kinalign eval inertial wouda --data cmu -o results --folds people",
                      "poses from nodes"},
                     {"kinalign eval --model fuse --data cmu --split cmu/split.json -o results",

@@ -52,7 +52,7 @@ std::string with_warnings(std::string text, const AboutAnswer& about) {
 
 Field body_flag(std::string& words, const std::string& otherwise) {
   return {"body",
-          "whose bones the answer has: a stature in m, or a BVH of the person's suit (default: " +
+          "bone lengths of the answer: a stature in m, or a BVH of the person's suit (default: " +
               otherwise + ")",
           &words,
           0.0,
@@ -89,8 +89,7 @@ AboutAnswer about_body(const Skeleton& body, const std::string& by) {
 
 std::string body_line(const AboutAnswer& about) {
   const AboutAnswer& body = about.at("body");
-  return fmt::format("body     as of a stature of {:.2f} m, by {}\n",
-                     body.at("stature_m").get<double>(),
+  return fmt::format("body     of stature {:.2f} m, from {}\n", body.at("stature_m").get<double>(),
                      harmless(body.at("by").get<std::string>()));
 }
 
@@ -100,12 +99,12 @@ Result<AboutAnswer> in_child(const std::string& in,
   AboutAnswer about =
       AboutAnswer::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), as_text)), nullptr, false);
   if (about.is_object()) return about;
-  return Failure(Error{in, 0, "a take that can be read", "another answer"});
+  return Failure(Error{in, 0, "a take that can be read", "an unreadable answer"});
 }
 
 Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, Call& call) {
   if (!is_finite(clip)) {
-    return Failure(Error{model, 0, "a model that answers with numbers", "others"});
+    return Failure(Error{model, 0, "a model with finite answers", "NaN or infinite values"});
   }
   OutputFile file =
       KA_TRY(OutputFile::create(call.surroundings.files, call.common.out, call.common.overwrite()));

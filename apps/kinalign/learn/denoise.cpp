@@ -51,15 +51,15 @@ Usage describe_denoise(Denoise& o) {
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in, 0}};
   usage.flags = {
       {"model",
-       "a model's file, or the name of a shipped one (default: the one that fits)",
+       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
        &o.model,
        0.0,
        0.0,
        {},
        "FILE"},
-      {"stream", "which stream (default: the only one of joints)", &o.stream, 0.0, 0.0, {}, "NAME"},
+      {"stream", "stream of joints (default: the only one)", &o.stream, 0.0, 0.0, {}, "NAME"},
       {"project",
-       "feet that stand do not slide, bones keep their lengths: steps in the hidden space of a "
+       "keep standing feet in place and bone lengths constant, by steps in the hidden space of a "
        "model of cnn or cnn-manifold",
        &o.project}};
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
@@ -67,7 +67,7 @@ Usage describe_denoise(Denoise& o) {
     KA_TRY(check(o.live, o.in));
     if (!o.live.live.empty() && o.project) {
       return Failure(
-          Error{"--project", 0, "a file or a take: it needs the whole motion", "--live"});
+          Error{"--project", 0, "a file or a take, because it needs the whole motion", "--live"});
     }
     if (!o.live.live.empty() && (common.out.empty() || common.out.ends_with(".bvh"))) return {};
     if (!o.live.live.empty()) {
@@ -157,7 +157,7 @@ std::vector<std::string> missing_warnings(const Json& long_missing) {
     const std::string who = names.size() > most_named ? fmt::format("{} joints", names.size())
                                                       : fmt::format("{}", fmt::join(names, ", "));
     const bool is_one = names.size() == 1;
-    out.push_back(fmt::format("{} {} missing for {} s: there {} a guess", who,
+    out.push_back(fmt::format("{} {} missing for {} s: during this time {} a guess", who,
                               is_one ? "is" : "are", seconds, is_one ? "it is" : "they are"));
   }
   return out;
@@ -304,8 +304,8 @@ void print(const Json& about, const std::string& out, Call& call) {
                       100.0 * about.at("inferred").get<double>());
   if (about.contains("radius_90_cm")) {
     text += fmt::format(
-        "sure     9 of 10 joints that were seen lie within {:.1f} cm, if the data is like the "
-        "model's\n",
+        "sure     9 of 10 visible joints lie within {:.1f} cm, if the data is like the training "
+        "data\n",
         about.at("radius_90_cm").get<double>());
   }
   if (about.contains("projected")) {
@@ -313,7 +313,7 @@ void print(const Json& about, const std::string& out, Call& call) {
       return about.at("projected").at(what).at(i).get<double>();
     };
     text += fmt::format(
-        "project  standing feet move {:.2f} cm a frame, before {:.2f}; bones vary by {:.1f} cm, "
+        "project  standing feet move {:.2f} cm per frame, before {:.2f}; bones vary by {:.1f} cm, "
         "before {:.1f}\n",
         said("feet_cm", 1), said("feet_cm", 0), said("bone_cm", 1), said("bone_cm", 0));
   }
@@ -381,19 +381,19 @@ Result<int> run_denoise(Denoise& o, Call& call) {
 Verb denoise_verb() {
   return make_verb<Denoise>(
       {.name = "denoise",
-       .summary = "a Kinect's skeleton cleaned, with bones of constant length",
-       .text =
-           "A model brings rough joints to where a precise system would have seen them. The new "
-           "file has the model's joints at its rate. A joint that is missing for 2 s or longer "
-           "is told, and the exit code is 1. --project needs the program kinalign-learn.",
+       .summary = "clean a Kinect's skeleton and give it bones of constant length",
+       .text = "A model moves rough joints to the positions that a precise system would have "
+               "measured. The new file has the joints and the rate of the model. If a joint is "
+               "missing for 2 s or longer, a warning names it and the exit code is 1. --project "
+               "needs the program kinalign-learn.",
        .examples =
            {{"kinalign denoise kinect.csv -o clean.bvh", "a skeleton that Blender opens"},
             {"kinalign denoise take.h5 -o clean.trc --stream kinect --model own.safetensors",
              "a take's stream, with a model of your own"},
             {"kinalign denoise kinect.csv -o clean.bvh --model cnn.safetensors --project",
-             "feet that stand stay where they are"},
+             "keeps standing feet in place"},
             {"kinalign denoise --live 7040 -o clean.bvh",
-             "what record receives now, which was begun with --live-port 7040"}},
+             "live data from a kinalign record with --live-port 7040"}},
        .common = {"out", "force", "json"}},
       describe_denoise, run_denoise);
 }

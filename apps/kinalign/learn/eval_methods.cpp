@@ -68,7 +68,8 @@ const std::vector<EvalMethod>& eval_methods() {
       if (one.task != Learns::denoise) continue;
       out.push_back({one.name, one.summary, true});
       if (one.has_code) {
-        out.push_back({one.name + std::string(projects), "the same, brought to constraints", true});
+        out.push_back(
+            {one.name + std::string(projects), "the same, projected to constraints", true});
       }
     }
     return out;

@@ -41,29 +41,24 @@ Usage describe_fuse(FuseWords& o) {
   Usage usage;
   usage.positionals = {
       {"IN", "a take, a recording or a manifest with a Kinect and nodes", &o.in, 0}};
-  usage.flags = {{"model",
-                  "a model's file, or the name of a shipped one (default: the one that fits)",
-                  &o.model,
-                  0.0,
-                  0.0,
-                  {},
-                  "FILE"},
-                 {"kinect",
-                  "the stream of the Kinect (default: the only one of joints)",
-                  &o.kinect,
-                  0.0,
-                  0.0,
-                  {},
-                  "NAME"},
-                 {"nodes",
-                  "the stream of the nodes (default: the only one of nodes)",
-                  &o.nodes,
-                  0.0,
-                  0.0,
-                  {},
-                  "NAME"}};
+  usage.flags = {
+      {"model",
+       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
+       &o.model,
+       0.0,
+       0.0,
+       {},
+       "FILE"},
+      {"kinect",
+       "stream of the Kinect (default: the only stream of joints)",
+       &o.kinect,
+       0.0,
+       0.0,
+       {},
+       "NAME"},
+      {"nodes", "stream of the nodes (default: the only one)", &o.nodes, 0.0, 0.0, {}, "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
-  usage.flags.push_back(body_flag(o.body, "as long as the Kinect sees them"));
+  usage.flags.push_back(body_flag(o.body, "the lengths that the Kinect measures"));
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     KA_TRY(check(o.worn));
@@ -90,14 +85,14 @@ void tell_headings(const std::vector<std::string>& names, const std::vector<Head
     found[names[n]] = {{"turned_deg", turned}, {"spread_deg", spread}};
     const bool is_there = about.at("nodes").at(names[n]).at("valid").get<double>() > 0.0;
     if (is_there && std::abs(turned) > most_turned_deg && spread <= most_unsure_deg) {
-      about["warnings"].push_back(fmt::format(
-          "{}: the Kinect turned it by {:.0f} deg: is it in another's place, or worn in "
-          "another way?",
-          names[n], turned));
+      about["warnings"].push_back(
+          fmt::format("{}: its heading differs by {:.0f} deg from the Kinect's; was it swapped "
+                      "with another node, or worn in another orientation?",
+                      names[n], turned));
     }
     if (!is_there || spread <= most_unsure_deg) continue;
     about["warnings"].push_back(
-        fmt::format("{}: the Kinect hardly shows its heading (± {:.0f} deg)", names[n], spread));
+        fmt::format("{}: its heading is uncertain by the Kinect (± {:.0f} deg)", names[n], spread));
   }
   about["found_headings"] = std::move(found);
 }
@@ -214,16 +209,15 @@ Result<int> run_fuse(FuseWords& o, Call& call) {
 Verb fuse_verb() {
   return make_verb<FuseWords>(
       {.name = "fuse",
-       .summary = "a person's pose from a Kinect and inertial nodes together",
-       .text =
-           "A model answers with the whole body, at its place before the Kinect. Where the Kinect "
-           "loses a limb the nodes show it; where the Kinect sees it, it shows how far each node's "
-           "heading is off. The person holds a T-pose for a second or more, as for pose.",
+       .summary = "compute a person's pose from a Kinect and inertial nodes together",
+       .text = "A model computes the whole body and its place in front of the Kinect. While the "
+               "Kinect loses a limb, the nodes measure it; while it sees the limb, it corrects the "
+               "node's heading. The person holds a T-pose for a second or more, as for pose.",
        .examples = {{"kinalign fuse take.h5 -o fused.bvh", "a skeleton that Blender opens"},
                     {"kinalign fuse take.h5 -o fused.bvh --kinect kinect --nodes imu --tpose 2,5",
                      "the streams by name, the T-pose from second 2 to 5"},
                     {"kinalign fuse --live 7040 -o fused.bvh",
-                     "what record receives now, which was begun with --live-port 7040"}},
+                     "live data from a kinalign record with --live-port 7040"}},
        .common = {"out", "force", "json"}},
       describe_fuse, run_fuse);
 }

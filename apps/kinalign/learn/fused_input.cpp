@@ -41,7 +41,7 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
   FusedInput out;
   const NodeChoice choice = KA_TRY(choose(layout.nodes, both.nodes));
   if (both.kinect.frames.stamps.size() < 2) {
-    return Failure(Error{"", 0, "a Kinect with two frames at least", "fewer"});
+    return Failure(Error{"", 0, "a Kinect with at least two frames", "fewer frames"});
   }
   const EvenSpan span = span_of_both(both, choice, layout.nodes.rate_hz);
   out.start = span.start;
@@ -59,7 +59,7 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
   if (!yaw) {
     return Failure(Error{"", 0,
                          "a second in which the Kinect sees the person and the waist's node sends",
-                         "none (denoise and pose take one device alone)"});
+                         "no such second (denoise and pose use one device alone)"});
   }
   turn_world(out.input.nodes, *yaw);
   const double mean = leg_length(model.body.skeleton);

@@ -30,7 +30,7 @@ Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {{"MODEL", "the model's file", &o.model}};
   usage.flags = {{"network",
-                  "which: net, or the one behind it that bra-p has",
+                  "network to export: net, or the second network of bra-p",
                   &o.network,
                   0.0,
                   0.0,
@@ -159,7 +159,7 @@ Result<Exported> exported_denoise(const std::string& bytes, const std::string& p
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
   KA_TRY(check_usable(Denoiser::make(model), path));
   if (second && !model.second) {
-    return Failure(Error{path, 0, "a network behind the first one", "none"});
+    return Failure(Error{path, 0, "a second network", "none"});
   }
   Parts parts = second ? parts_of(*model.second, model.tensors, "second") : whole_network(model);
   return Exported{std::move(parts), metadata_of(model, second)};
@@ -171,7 +171,7 @@ std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const 
   return {{"kinalign.task", facts.task},
           {"kinalign.method", facts.method},
           {"kinalign.rate_hz", fmt::format("{:g}", layout.rate_hz)},
-          {"kinalign.input", "channels as docs/formats/model.md says"},
+          {"kinalign.input", "channels as described in docs/formats/model.md"},
           {"kinalign.output", output},
           {"kinalign.nodes", Json(layout.nodes).dump()},
           {"kinalign.bones", Json(layout.bones).dump()},
@@ -215,7 +215,7 @@ Result<Exported> exported(const std::string& bytes, const std::string& path,
   const std::string task = KA_TRY(task_of_model(bytes, path));
   const bool second = network == "second";
   if (second && task != "denoise") {
-    return Failure(Error{path, 0, "a network behind the first one", "none"});
+    return Failure(Error{path, 0, "a second network", "none"});
   }
   if (task == "pose") return exported_pose(bytes, path);
   return task == "fuse" ? exported_fuse(bytes, path) : exported_denoise(bytes, path, second);
@@ -247,11 +247,11 @@ Result<int> run_export(Export& o, Call& call) {
 Verb model_export_verb() {
   return make_verb<Export>(
       {.name = "model export",
-       .summary = "a model's network as ONNX",
-       .text = "Writes the network for ONNX Runtime and its like. The scales of its numbers are "
-               "part of the graph; what stands in the channels is said in the metadata and in "
-               "docs/formats/model.md. What makes the channels, and the steadying or the rotations "
-               "behind it, are no part of it.",
+       .summary = "write a model's network as ONNX",
+       .text = "Writes the network for ONNX Runtime and similar programs. The graph contains the "
+               "scales of its numbers. The metadata and docs/formats/model.md describe the "
+               "channels. The graph does not compute the channels, nor does it smooth the answer "
+               "or turn it into rotations.",
        .examples = {{"kinalign model export denoise.safetensors -o denoise.onnx",
                      "for ONNX Runtime"}},
        .common = {"out", "force", "json"}},

@@ -53,7 +53,7 @@ Result<void> append_block(const NodeBlock& block, std::size_t first, NamedNodes&
     const Time stamp = block.stamps[i / nodes];
     if (block.valid[i] == 0 || (!track.stamps.empty() && stamp <= track.stamps.back())) continue;
     if (track.stamps.size() * out.tracks.size() > most_samples) {
-      return Failure(Error{"", 0, "a stream that fits into memory", "a longer one"});
+      return Failure(Error{"", 0, "a stream that fits into memory", "a longer stream"});
     }
     track.stamps.push_back(stamp);
     append_numbers(block.orientation, i, 4, track.orientation);

@@ -34,7 +34,7 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
                     const std::vector<double>& positions, const std::vector<Tracking>& state) {
   const std::size_t joints = out.joints.size();
   if ((out.frames.size() + stamps.size()) * joints > most_values) {
-    return Failure(Error{"", 0, "a stream that fits into memory", "a longer one"});
+    return Failure(Error{"", 0, "a stream that fits into memory", "a longer stream"});
   }
   for (std::size_t t = 0; t < stamps.size(); ++t) {
     if (!out.frames.stamps.empty() && stamps[t] <= out.frames.stamps.back()) {
@@ -179,7 +179,7 @@ std::vector<std::string> warnings_of(const NamedPoints& points, const EvenFrames
   }
   if (frames.jump_s) {
     out.push_back(fmt::format(
-        "the body jumps at {:.1f} s: is it another person? From there on the answer may be wrong",
+        "the body jumps at {:.1f} s, perhaps to another person; after that the answer may be wrong",
         *frames.jump_s));
   }
   return out;

@@ -37,13 +37,13 @@ Usage describe_pose(PoseWords& o) {
   usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in, 0}};
   usage.flags = {
       {"model",
-       "a model's file, or the name of a shipped one (default: the one that fits)",
+       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
        &o.model,
        0.0,
        0.0,
        {},
        "FILE"},
-      {"stream", "which stream (default: the only one of nodes)", &o.stream, 0.0, 0.0, {}, "NAME"}};
+      {"stream", "stream of nodes (default: the only one)", &o.stream, 0.0, 0.0, {}, "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "the mean of the training people"));
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
@@ -161,18 +161,16 @@ Result<int> run_pose(PoseWords& o, Call& call) {
 Verb pose_verb() {
   return make_verb<PoseWords>(
       {.name = "pose",
-       .summary = "a person's pose from a few inertial nodes",
-       .text =
-           "A model answers with the whole body to nodes on waist, forearms and shanks. The person "
-           "holds a T-pose for a second or more: it says how the nodes are worn. A node that is "
-           "lost, and arms that hung in place of a T-pose, are told, and the exit code is 1. Where "
-           "a "
-           "sixth node is on the head, a model that knows of it is taken.",
+       .summary = "compute a person's pose from a few inertial nodes",
+       .text = "A model computes the whole body from nodes on waist, forearms and shanks. The "
+               "person holds a T-pose for a second or more, which shows how the nodes are worn. If "
+               "a node is lost, or the arms hang instead of a T-pose, a warning says so and the "
+               "exit code is 1. If a sixth node is on the head, a model for six nodes is used.",
        .examples = {{"kinalign pose take.h5 -o pose.bvh", "a skeleton that Blender opens"},
                     {"kinalign pose recording.toml -o pose.bvh --tpose 2,5 --heading shared",
                      "nodes with magnetometers, the T-pose from second 2 to 5"},
                     {"kinalign pose --live 7040 -o pose.bvh",
-                     "what record receives now, which was begun with --live-port 7040"}},
+                     "live data from a kinalign record with --live-port 7040"}},
        .common = {"out", "force", "json"}},
       describe_pose, run_pose);
 }

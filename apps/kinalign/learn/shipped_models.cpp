@@ -18,7 +18,7 @@ Result<std::string> shipped_model(const std::string& name) {
     std::error_code fault;
     if (std::filesystem::exists(file, fault)) return file.string();
   }
-  return Failure(Error{"--model", 0, "a model's file, since none is installed", "none"});
+  return Failure(Error{"--model", 0, "a model's file, because no model is installed", "none"});
 }
 
 Result<std::string> model_named(const std::string& given, const std::string& usual) {

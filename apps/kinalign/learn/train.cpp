@@ -50,23 +50,23 @@ std::string input_of(const Train& o) {
 /// The command line of `kinalign train`, with the checks that need several flags.
 Usage describe_train(Train& o) {
   Usage usage;
-  usage.positionals = {{"METHOD", "what is trained", &o.method}};
+  usage.positionals = {{"METHOD", "method to train", &o.method}};
   for (const TrainedMethod& one : trained_methods()) {
     usage.positionals.front().choices.push_back(one.name);
   }
   usage.flags = {
       {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
-      {"windows", "a file of windows in its place", &o.windows, 0.0, 0.0, {}, "FILE"},
+      {"windows", "a file of windows instead of a data set", &o.windows, 0.0, 0.0, {}, "FILE"},
       {"split",
-       "of the data set: its parts train and validation are used",
+       "a split of the data set: its parts train and validation are used",
        &o.split,
        0.0,
        0.0,
        {},
        "FILE"},
       {"where",
-       "of the data set: a condition as dataset query has it (default: no take whose verdict is "
-       "bad)",
+       "use only takes of the data set that meet this condition, as in dataset query (default: "
+       "takes whose verdict is not bad)",
        &o.where,
        0.0,
        0.0,
@@ -75,32 +75,33 @@ Usage describe_train(Train& o) {
       input_field(o.input),
       truth_field(o.truth),
       nodes_field(o.nodes),
-      {"rate", "frames a second that the model works at", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
+      {"rate", "frames per second of the model", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
       {"from",
-       "a model of the same method to go on from: a file, or the name of a shipped one",
+       "a model of the same method to continue from: a file, or the name of a shipped model",
        &o.from,
        0.0,
        0.0,
        {},
        "MODEL"},
       {"hand-weight",
-       "of wrists and hands in the loss, beside 1 for other joints; 0: the method's own",
+       "weight of wrists and hands in the loss, where other joints have 1; 0: the method's default",
        &o.hand_weight, 0.0, 100.0},
       {"vary-speed",
-       "of poses and fusion: movements are learnt faster and slower, by up to this share",
+       "for poses and fusion: vary the speed of the training motion by up to this fraction",
        &o.vary_speed, 0.0, 1.0},
       {"vary-size",
-       "of poses and fusion: people are learnt taller and smaller, by up to this share",
+       "for poses and fusion: vary the size of the training people by up to this fraction",
        &o.vary_size, 0.0, 1.0},
-      {"steps", "batches; 0: the method's own number", &o.steps, 0.0, 1e8},
-      {"seed", "of everything that is random", &o.seed, 0.0, 1e9},
-      {"patience", "judgements without a better one before it stops; 0: never", &o.patience, 0.0,
-       1e6},
-      {"device", "where it is trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
-      {"processes", "of this machine that train together, with the result of one", &o.processes,
-       1.0, 32.0},
-      {"resume", "go on with a run that was stopped", &o.resume},
-      {"prepare", "write the job and its windows and train nothing: for another machine",
+      {"steps", "batches; 0: the method's default", &o.steps, 0.0, 1e8},
+      {"seed", "seed of all random numbers", &o.seed, 0.0, 1e9},
+      {"patience", "stop after this many validations without improvement; 0: never", &o.patience,
+       0.0, 1e6},
+      {"device", "device to train on", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      {"processes",
+       "number of processes of this machine that train together, with the same result as one",
+       &o.processes, 1.0, 32.0},
+      {"resume", "continue a stopped run", &o.resume},
+      {"prepare", "write the job and its windows for another machine, without training",
        &o.prepare}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     KA_TRY(check_task_flags(method_of(o), given));
@@ -198,7 +199,7 @@ Result<Places> places_of(const Train& o, Call& call) {
   if (address.empty()) {
     return Failure(Error{"MASTER_ADDR", 0,
                          "the address of the first process's machine in the environment",
-                         "none in " + who});
+                         "no address in " + who});
   }
   if (processes > 1) return Failure(Error{"--processes", 0, "1 in each process of a cluster", who});
   if (o.windows.empty()) {
@@ -239,7 +240,7 @@ void print_trained(const Train& o, const Json& last, Call& call) {
   if (last.contains("judgement")) {
     text += fmt::format(", {:.4g} on the validation part", last.at("judgement").get<double>());
   }
-  text += fmt::format("\nlog      {}/curves.svg, log.csv, events for TensorBoard beside them\n",
+  text += fmt::format("\nlog      {}/curves.svg, log.csv, events for TensorBoard\n",
                       harmless(run_folder(call.common.out)));
   call.console.print(text);
   call.console.print_json(last.dump(1));
@@ -249,9 +250,9 @@ void print_trained(const Train& o, const Json& last, Call& call) {
 void print_prepared(const Train& o, const std::vector<std::string>& jobs,
                     const std::string& windows, Call& call) {
   std::string text = harmless(windows) + ": windows\n";
-  if (!o.from.empty()) text += harmless(o.from) + ": the model that the training goes on from\n";
+  if (!o.from.empty()) text += harmless(o.from) + ": the model to continue from\n";
   for (const std::string& job : jobs) text += harmless(job) + ": a job\n";
-  text += "Bring these files to the other machine, with the same names, and run there:\n";
+  text += "Copy these files to the other machine, with the same names, and run there:\n";
   for (const std::string& job : jobs) text += "  kinalign-learn " + harmless(job) + "\n";
   call.console.print(text);
   call.console.print_json(Json{{"windows", windows}, {"jobs", jobs}}.dump(1));
@@ -299,7 +300,7 @@ class FolderLock {
       return out;
     }
     return Failure(Error{folder, 0, "a folder that no other training uses now",
-                         file < 0 ? std::strerror(errno) : "one that does"});
+                         file < 0 ? std::strerror(errno) : "another training in this folder"});
   }
   FolderLock(FolderLock&& other) noexcept
       : file_(std::exchange(other.file_, -1)), path_(std::exchange(other.path_, "")) {}
@@ -325,8 +326,8 @@ Result<std::optional<FolderLock>> open_folder(const Train& o, const std::string&
   if (places.is_first()) out.emplace(KA_TRY(FolderLock::take(folder)));
   std::error_code fault;
   if (o.resume && !fs::exists(folder + "/checkpoint.safetensors", fault)) {
-    call.console.note("kinalign train: nothing to go on from in " + harmless(folder) +
-                      ": the training begins anew");
+    call.console.note("kinalign train: no checkpoint in " + harmless(folder) +
+                      ": the training starts from the beginning");
   }
   return out;
 }
@@ -347,7 +348,8 @@ Result<int> run_train(Train& o, Call& call) {
   const std::string& out = call.common.out;
   std::error_code fault;
   if (fs::exists(out, fault) && !call.common.force) {
-    return Failure(Error{out, 0, "no file of that name (--force overwrites)", "one"});
+    return Failure(
+        Error{out, 0, "no file of that name (--force overwrites)", "a file of that name"});
   }
   const Places places = KA_TRY(places_of(o, call));
   const std::string folder = run_folder(out);
@@ -372,29 +374,27 @@ Result<int> run_train(Train& o, Call& call) {
 Verb train_verb() {
   return make_verb<Train>(
       {.name = "train",
-       .summary = "a model from a data set",
+       .summary = "train a model from a data set",
        .text =
-           "Trains a network and writes one SafeTensors file, which denoise, pose or fuse reads "
-           "and PyTorch and NumPy open. refine, cnn, cnn-manifold, bra, bra-p, bra-p-plain and "
-           "smoothnet "
-           "clean a Kinect; inertial, inertial-online, dip, dip-512, dip-robust and wouda answer "
-           "nodes with a pose; "
-           "gated, gated-online and bilstm answer a Kinect and nodes together. The last two "
-           "kinds learn from a skeleton alone. The same seed gives the same weights on the "
-           "same machine. A run that was stopped goes on with --resume. The program "
-           "kinalign-learn does the work; it is built where LibTorch is installed.",
+           "Trains a network and writes one SafeTensors file. denoise, pose and fuse read this "
+           "file; PyTorch and NumPy open it. refine, cnn, cnn-manifold, bra, bra-p, bra-p-plain "
+           "and smoothnet clean a Kinect; inertial, inertial-online, dip, dip-512, dip-robust and "
+           "wouda compute a pose from nodes; gated, gated-online and bilstm from a Kinect and "
+           "nodes together. The last two kinds need only skeletons for training. The same seed "
+           "gives the same weights on the same machine. --resume continues a stopped run. The "
+           "program kinalign-learn does the work; it is built if LibTorch is installed.",
        .examples =
            {{"kinalign train refine --data walks -o denoise.safetensors",
              "a network that cleans a Kinect, from the pairs of a data set"},
             {"kinalign train bra --data walks --split walks/splits/people.json -o bra.safetensors "
              "--patience 10",
-             "stops when the validation part gets no better"},
+             "stops when the validation part no longer improves"},
             {"kinalign train inertial --data walks -o pose.safetensors",
-             "a network that answers five nodes with a pose"},
+             "a network that computes a pose from five nodes"},
             {"kinalign train gated --data walks -o fuse.safetensors",
              "a network for a Kinect and nodes together"},
             {"kinalign train refine --data own --from denoise -o own.safetensors",
-             "the model that comes with the program, fitted to one's own takes"},
+             "the shipped model, fitted to your own takes"},
             {"kinalign train bra --data walks -o bra.safetensors --device cuda --prepare",
              "a folder bra.training for a machine with a GPU, where kinalign-learn trains"}},
        .common = {"out", "force", "json", "jobs"}},

@@ -26,8 +26,8 @@ struct TaskWords {
 };
 constexpr std::array<TaskWords, 3> task_words{
     {{Learns::denoise, "denoise", "cleans a Kinect"},
-     {Learns::pose, "pose", "answers nodes with a pose"},
-     {Learns::fuse, "fuse", "answers a Kinect and nodes with a pose"}}};
+     {Learns::pose, "pose", "computes a pose from nodes"},
+     {Learns::fuse, "fuse", "computes a pose from a Kinect and nodes"}}};
 
 /// The members that every job has.
 Json begun_job(const TrainingWanted& wanted, Call& call) {
@@ -62,13 +62,13 @@ const std::vector<TrainedMethod>& trained_methods() {
   static const std::vector<TrainedMethod> all{
       {"refine", "ours", Learns::denoise},
       {"refine-linear",
-       "ours beside a linear answer, for people and rooms like those of the training",
+       "ours, added to a linear answer, for people and rooms like those of the training",
        Learns::denoise},
       {"cnn", "convolutional autoencoder (Holden 2016), paired", Learns::denoise, true},
       {"cnn-manifold", "convolutional autoencoder of clean motion", Learns::denoise, true},
       {"bra", "bidirectional recurrent autoencoder (Li 2019)", Learns::denoise},
       {"bra-p", "the same, perceptual (Li 2020)", Learns::denoise},
-      {"bra-p-plain", "bra-p without its second network behind it", Learns::denoise},
+      {"bra-p-plain", "bra-p without its second network", Learns::denoise},
       {"smoothnet", "layers along time (Zeng 2022), then the mean offset", Learns::denoise},
       {"inertial", "ours", Learns::pose},
       {"inertial-online", "ours, without later frames", Learns::pose},
@@ -92,7 +92,7 @@ const TrainedMethod* find_trained(const std::string& name) {
 }
 
 Field input_field(std::string& input) {
-  return {"input", "the rough stream (default: kinect; of a method that fuses: a simulated Kinect)",
+  return {"input", "the rough stream (default: kinect; for methods that fuse: a simulated Kinect)",
           &input,  0.0,
           0.0,     {},
           "NAME"};
@@ -105,8 +105,8 @@ Field truth_field(std::string& truth) {
 /// The flag --nodes, for methods that get nodes.
 Field nodes_field(std::string& nodes) {
   return {"nodes",
-          "of poses and fusion: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "
-          "ankle_left, ankle_right, head (default: all but the head)",
+          "for poses and fusion: 3 to 6 of wrist_left, wrist_right, ankle_left, ankle_right, head "
+          "and, as the last, waist (default: all except head)",
           &nodes,
           0.0,
           0.0,
@@ -130,8 +130,8 @@ Result<void> check_task_flags(const TrainedMethod& method, const Sources& given)
     return Failure(Error{"--own-root", 0, "a method that cleans a Kinect", method.name});
   }
   if (method.task == Learns::pose && given.count("input") > 0) {
-    return Failure(Error{"--input", 0, "a method that sees a Kinect",
-                         method.name + ", which sees simulated nodes"});
+    return Failure(Error{"--input", 0, "a method with a Kinect as input",
+                         method.name + ", whose input is simulated nodes"});
   }
   if (method.task != Learns::denoise && given.count("rate") > 0) {
     return Failure(Error{"--rate", 0, "a method that cleans a stream",
@@ -157,7 +157,7 @@ Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::st
   std::string why = ended.complaint;  // "kinalign dataset windows: ..."
   if (const auto end = why.find(": "); end != std::string::npos) why = why.substr(end + 2);
   while (!why.empty() && why.back() == '\n') why.pop_back();
-  return Failure(Error{wanted.data, 0, "a data set that windows can be cut from", why});
+  return Failure(Error{wanted.data, 0, "a data set to cut windows from", why});
 }
 
 Result<std::string> trained_model(const TrainingWanted& wanted, Call& call) {

@@ -35,10 +35,9 @@ Result<std::string> worker_program() {
   for (const auto& file : {own / "kinalign-learn", own / "../kinalign-learn/kinalign-learn"}) {
     if (::access(file.c_str(), X_OK) == 0) return file.lexically_normal().string();
   }
-  return Failure(Error{"", 0,
-                       "the program kinalign-learn, which trains (built where libtorch-dev is "
-                       "installed)",
-                       "none beside kinalign"});
+  return Failure(
+      Error{"", 0, "the program kinalign-learn, which trains (built if libtorch-dev is installed)",
+            "no kinalign-learn in the folder of kinalign"});
 }
 
 /// One process of kinalign-learn.
@@ -148,7 +147,7 @@ class Workers {
     if (const Child* child = first_to_fail()) return Failure(error_of(*child));
     const std::string& last = children_.front().last;
     if (!last.empty()) return last;
-    return Failure(Error{"", 0, "kinalign-learn to end well", "no result"});
+    return Failure(Error{"", 0, "a result of kinalign-learn", "no result"});
   }
 
  private:
@@ -229,8 +228,8 @@ class Workers {
       who = "process " + std::to_string(&child - children_.data()) + " (of 0 to " +
             std::to_string(children_.size() - 1) + ") of kinalign-learn";
     }
-    return {"", 0, who + " to end well",
-            child.code > 128 ? "its end by signal " + std::to_string(child.code - 128)
+    return {"", 0, who + " to end with exit code 0",
+            child.code > 128 ? "signal " + std::to_string(child.code - 128)
                              : "exit code " + std::to_string(child.code)};
   }
 

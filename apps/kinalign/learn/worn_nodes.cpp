@@ -57,8 +57,8 @@ Result<ChosenTPose> choose_t_pose(const std::string& wanted, const WornFrames& w
     const auto still = first_still(worn, rate_hz);
     if (!still) {
       return Failure(Error{"", 0,
-                           "a second in which no node turns faster than 20 deg/s, for the T-pose",
-                           "none (--tpose START,END names one)"});
+                           "for the T-pose, a second in which no node turns faster than 20 deg/s",
+                           "no such second (--tpose START,END chooses one)"});
     }
     out.frames = *still;
     out.found = true;
@@ -92,19 +92,22 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
   const std::string& name = layout.nodes[node];
   const auto& worn = posed.calibration.nodes[node];
   if (presence.valid == 0.0) return name + " has no samples: its limb is a guess";
-  if (!worn) return name + " has no samples in the T-pose, and is left out: its limb is a guess";
+  if (!worn) return name + " has no samples in the T-pose and is left out: its limb is a guess";
   if (presence.longest_lost_s >= longest_lost_s) {
-    return fmt::format("{} is missing for {:.1f} s: there its limb is a guess", name,
+    return fmt::format("{} is missing for {:.1f} s: during this time its limb is a guess", name,
                        presence.longest_lost_s);
   }
   const bool is_checked =
       posed.calibration.worn_as_told || posed.calibration.headings == Headings::mounting;
   if (!is_checked || worn->tilt_deg <= most_tilt_deg) return "";
   if (worn_place(name)->on_arm) {
-    return fmt::format("{} is held {:.0f} deg off a T-pose: arms hung, or it is worn another way",
-                       name, worn->tilt_deg);
+    return fmt::format(
+        "{} is {:.0f} deg away from a T-pose: the arms hung, or the node is worn in another "
+        "orientation",
+        name, worn->tilt_deg);
   }
-  return fmt::format("{} is worn {:.0f} deg off what docs/pose.md says", name, worn->tilt_deg);
+  return fmt::format("{} is worn {:.0f} deg away from the orientation in docs/pose.md", name,
+                     worn->tilt_deg);
 }
 
 /// The longest time for which a node repeats one sample, s.
@@ -143,14 +146,15 @@ std::vector<std::string> sample_warnings(const PoseLayout& layout,
   std::vector<std::string> out;
   for (std::size_t n = 0; n < tracks.size(); ++n) {
     if (const double frozen = frozen_s(tracks[n]); frozen > longest_frozen_s) {
-      out.push_back(fmt::format("{} repeats one sample for {:.1f} s: there its limb is a guess",
-                                layout.nodes[n], frozen));
+      out.push_back(
+          fmt::format("{} repeats one sample for {:.1f} s: during this time its limb is a guess",
+                      layout.nodes[n], frozen));
     }
   }
   if (const double lost = lost_with_root_s(tracks); root_bounds && lost > longest_lost_s) {
-    out.push_back(
-        fmt::format("{} sends {:.1f} s less than other nodes: without it there is no answer",
-                    layout.nodes.back(), lost));
+    out.push_back(fmt::format(
+        "{} sends {:.1f} s less than other nodes: without this node no pose is computed",
+        layout.nodes.back(), lost));
   }
   return out;
 }
@@ -185,28 +189,28 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
   std::vector<std::string> out;
   if (const std::string restless = restless_nodes(layout, calibration); !restless.empty()) {
     out.push_back(restless +
-                  " m/s2 are left in the T-pose beside gravity: accelerations in another unit, "
-                  "gravity in them or not, or another order of the quaternion's numbers");
+                  " m/s2 in the T-pose are not gravity: the unit of the accelerations, gravity in "
+                  "them, or the order of the quaternion's numbers is wrong");
   }
   if (headings == "auto" && as_told >= 2 && off >= 2 && !arms_alone) {
     out.push_back(names + " are worn " + tilts +
-                  " deg off what docs/pose.md says, the others as it says: are they in each "
-                  "other's place?");
+                  " deg away from the orientation in docs/pose.md, the others are as described "
+                  "there: were these nodes swapped?");
   }
   if (headings == "shared" && calibration.worn_as_told &&
       calibration.spread_deg > most_shared_deg) {
-    out.push_back(fmt::format(
-        "the nodes' headings by how they are worn lie {:.0f} deg apart, and one for all "
-        "was asked for: --heading mounting?",
-        calibration.spread_deg));
+    out.push_back(
+        fmt::format("--heading shared was given, but the headings by mounting differ by {:.0f} deg "
+                    "between nodes: try --heading mounting",
+                    calibration.spread_deg));
   }
   return out;
 }
 
 std::string heading_line(const Json& about) {
-  if (about.at("headings") == "mounting") return "each node's own, by how it is worn";
-  return about.at("facing") == "arms" ? "one for all nodes, by arms that come down"
-                                      : "one for all nodes, by how they are worn";
+  if (about.at("headings") == "mounting") return "one per node, by its mounting";
+  return about.at("facing") == "arms" ? "one for all nodes, by the arms coming down"
+                                      : "one for all nodes, by their mounting";
 }
 
 /// The printed line about the T-pose: its seconds, the fastest turn and, where they are checked,
@@ -226,7 +230,7 @@ std::string t_pose_line(const Json& about) {
   const bool is_checked =
       about.at("worn_as_told").get<bool>() || about.at("headings") == "mounting";
   if (!is_checked) return out + "; forearms not checked";
-  return arms.empty() ? out : out + "; forearms " + arms + " deg off";
+  return arms.empty() ? out : out + "; forearms " + arms + " deg off a T-pose";
 }
 
 }  // namespace
@@ -240,7 +244,7 @@ std::vector<Field> worn_flags(WornWords& o) {
            {},
            "START,END"},
           {"heading",
-           "whether nodes share a heading, or how they are worn says it",
+           "whether all nodes share a heading, or each has its own by its mounting",
            &o.headings,
            0.0,
            0.0,
@@ -321,8 +325,8 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
   double valid = 0.0;
   const double fastest = fastest_turn_deg(posed.even.worn, posed.t_pose.frames);
   if (fastest > most_turn_deg_s) {
-    warnings.push_back(
-        fmt::format("in the T-pose a node turned at {:.0f} deg/s: it was not held still", fastest));
+    warnings.push_back(fmt::format(
+        "a node turned at {:.0f} deg/s in the T-pose: the person did not hold still", fastest));
   }
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const NodePresence presence = presence_of(nodes, n, layout.rate_hz);

@@ -94,8 +94,9 @@ class LiveDenoiseRun {
              {"long_missing_s", missing},
              {"warnings", Json::array()}};
     for (const auto& [joint, seconds] : missing.items()) {
-      out["warnings"].push_back(fmt::format("{} is missing for {:.1f} s: there it is a guess",
-                                            joint, seconds.get<double>()));
+      out["warnings"].push_back(
+          fmt::format("{} is missing for {:.1f} s: during this time it is a guess", joint,
+                      seconds.get<double>()));
     }
     session_.describe(out);
     return out;

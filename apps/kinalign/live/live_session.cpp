@@ -64,11 +64,12 @@ std::string frame_json(const Skeleton& skeleton, const ClipFrames& one) {
 
 Result<void> check_live_frames(std::size_t frames) {
   if (frames < most_live_frames) return {};
-  return Failure(Error{"--live", 0, "at most 1,000,000 frames", "more"});
+  return Failure(Error{"--live", 0, "at most 1,000,000 frames", "more frames"});
 }
 
 Failure no_live_frames(const std::string& waited_for) {
-  return Failure(Error{"--live", 0, "frames to answer", "none: it ended " + waited_for});
+  return Failure(
+      Error{"--live", 0, "frames to compute", "no frame; the program ended " + waited_for});
 }
 
 Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::string& stream) {
@@ -137,10 +138,11 @@ Result<void> LiveSession::tell_quiet(Duration silence) {
   if (is_quiet_ || silence <= most_quiet) return {};
   is_quiet_ = true;
   if (!stream_->now()) {
-    return Failure(Error{"--live", 0, "the stream of kinalign record --live-port",
-                         "a connection from which nothing came for 5 s"});
+    return Failure(
+        Error{"--live", 0, "the stream of kinalign record --live-port", "no data for 5 s"});
   }
-  tell("record has sent nothing for 5 s: it stands still, or the way to it", {{"event", "quiet"}});
+  tell("kinalign record has sent nothing for 5 s: record or the network has stopped",
+       {{"event", "quiet"}});
   return {};
 }
 
@@ -150,7 +152,7 @@ Result<void> LiveSession::run(const LiveWork& work) {
   broke_ = !interrupted() && !stream_->closed();
   if (broke_ && !stream_->now()) {
     return Failure(Error{"--live", 0, "the stream of kinalign record --live-port",
-                         "a connection that ended before it began"});
+                         "a connection that ended before the first message"});
   }
   return {};
 }
@@ -198,13 +200,14 @@ void LiveSession::describe(Json& about) const {
 /// The warnings about the stream: broken off, messages lost, samples left out.
 std::vector<std::string> LiveSession::warnings() const {
   std::vector<std::string> out;
-  if (broke_) out.emplace_back("the stream broke off: record ended without its end, or was killed");
+  if (broke_)
+    out.emplace_back("the stream broke off: kinalign record was killed, or the network failed");
   if (const std::uint64_t lost = stream_->counts().lost; lost > 0) {
-    out.push_back(fmt::format("{} messages lost: this program read too slowly", grouped(lost)));
+    out.push_back(fmt::format("{} messages lost: this program reads too slowly", grouped(lost)));
   }
   if (const std::uint64_t refused = stream_->counts().refused; refused > 0) {
-    out.push_back(fmt::format("{} samples left out: their clock or their numbers are wrong",
-                              grouped(refused)));
+    out.push_back(
+        fmt::format("{} samples left out: their stamps or values are wrong", grouped(refused)));
   }
   return out;
 }

@@ -18,7 +18,7 @@ namespace {
 constexpr int connect_patience_ms = 5000;
 
 std::string text_of_code(int code) {
-  if (code == ECONNREFUSED) return "nobody who serves there";
+  if (code == ECONNREFUSED) return "no program that serves this port";
   return std::strerror(code);
 }
 
@@ -39,7 +39,7 @@ Result<Handle> connected(const Endpoint& at, int type, const char* flag, const c
     return Failure(Error{flag, 0, expected + (" at " + where), std::move(found)});
   };
   const FoundAddress found = find_address(at.host, at.port, type);
-  if (found == nullptr) return fail("no address: names are not looked up");
+  if (found == nullptr) return fail("a name (give the address in numbers)");
   Handle socket(::socket(found->ai_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.fd() < 0) return fail(text_of_code(errno));
   if (::connect(socket.fd(), found->ai_addr, found->ai_addrlen) == 0) return socket;
@@ -68,7 +68,7 @@ LiveConnection::Came LiveConnection::wait(Duration patience) {
 }
 
 Result<LiveDatagrams> LiveDatagrams::open(const Endpoint& to) {
-  return LiveDatagrams(KA_TRY(connected(to, SOCK_DGRAM, "--send", "a way")));
+  return LiveDatagrams(KA_TRY(connected(to, SOCK_DGRAM, "--send", "a network route")));
 }
 
 void LiveDatagrams::send(std::string_view text) const {

@@ -24,21 +24,22 @@ std::string without_brackets(const std::string& host) {
 
 std::vector<Field> live_flags(LiveWords& o) {
   return {{"live",
-           "what kinalign record receives now, by its --live-port, in place of IN",
+           "instead of IN: live data from a kinalign record with this --live-port",
            &o.live,
            0.0,
            0.0,
            {},
            "[HOST:]PORT"},
           {"look_ahead",
-           "with --live: frames that an answer waits for; more are more exact and later",
+           "with --live: later frames that an answer waits for; a larger number gives a more "
+           "accurate but later answer",
            &o.look_ahead,
            0.0,
            1000.0,
            {},
            "FRAMES"},
           {"send",
-           "with --live: each frame goes there as a UDP datagram of JSON, too",
+           "with --live: also send each frame to this address as a UDP datagram of JSON",
            &o.send,
            0.0,
            0.0,
@@ -53,17 +54,17 @@ Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
   if (!out.host.empty() && parse_port(port, out.port)) return out;
   return Failure(
-      Error{flag, 0, "a port from 1 to 65535, as in 7040 or 127.0.0.1:7040", shown(text)});
+      Error{flag, 0, "a port from 1 to 65535, such as 7040 or 127.0.0.1:7040", shown(text)});
 }
 
 Result<void> check(const LiveWords& o, const std::vector<std::string>& in) {
   if (o.live.empty()) {
-    if (o.look_ahead) return Failure(Error{"--look-ahead", 0, "--live beside it", "none"});
-    if (!o.send.empty()) return Failure(Error{"--send", 0, "--live beside it", "none"});
-    if (in.empty()) return Failure(Error{"IN", 0, "a file, or --live PORT", "none"});
+    if (o.look_ahead) return Failure(Error{"--look-ahead", 0, "--live as well", "no --live"});
+    if (!o.send.empty()) return Failure(Error{"--send", 0, "--live as well", "no --live"});
+    if (in.empty()) return Failure(Error{"IN", 0, "a file, or --live PORT", "neither"});
     return {};
   }
-  if (!in.empty()) return Failure(Error{"--live", 0, "no file beside it", shown(in.front())});
+  if (!in.empty()) return Failure(Error{"--live", 0, "no file as well", shown(in.front())});
   KA_TRY(parse_endpoint(o.live, "--live"));
   if (!o.send.empty()) KA_TRY(parse_endpoint(o.send, "--send"));
   return {};

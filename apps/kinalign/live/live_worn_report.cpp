@@ -62,18 +62,19 @@ void LiveWornReport::take(const LiveMark& mark) {
   if (mark.mark.mark.kind != Mark::Kind::t_pose) return;
   refusal_.clear();
   if (!worn_->nodes().begin())
-    return tell_refusal("it was marked before " + layout_->nodes.back() + " had sent");
+    return tell_refusal("the mark came before the first sample of " + layout_->nodes.back());
   worn_->mark_t_pose(mark.at);
-  session_->tell("T-pose marked: hold it for two seconds", Json{{"event", "t_pose_marked"}});
+  session_->tell("T-pose marked: hold still for two seconds", Json{{"event", "t_pose_marked"}});
 }
 
 /// Reports a refused T-pose; the same reason only once in a row.
 void LiveWornReport::tell_refusal(const std::string& why) {
   if (why == refusal_) return;
   refusal_ = why;
-  session_->tell(
-      (worn_->calibration() ? "T-pose not taken, the one before holds: " : "no T-pose yet: ") + why,
-      Json{{"event", "t_pose_refused"}, {"found", why}});
+  session_->tell((worn_->calibration() ? "T-pose refused, the previous T-pose stays in use: "
+                                       : "no T-pose yet: ") +
+                     why,
+                 Json{{"event", "t_pose_refused"}, {"found", why}});
 }
 
 bool LiveWornReport::tell_t_pose() {
@@ -84,7 +85,7 @@ bool LiveWornReport::tell_t_pose() {
   Json event{{"event", "calibrated"}};
   event.update(calibration());
   const Json& t_pose = event.at("t_pose");
-  session_->tell(fmt::format("T-pose of {:.1f} to {:.1f} s taken: you may move",
+  session_->tell(fmt::format("T-pose from {:.1f} to {:.1f} s accepted: you may move",
                              t_pose.at("from_s").get<double>(), t_pose.at("to_s").get<double>()),
                  event);
   return true;
@@ -100,7 +101,7 @@ void LiveWornReport::watch(const std::vector<std::uint8_t>& valid) {
       session_->tell(name + " has been missing for 2 s: its limb is a guess",
                      Json{{"event", "node_missing"}, {"node", name}});
     } else if (missing_[n] == 0 && before >= longest) {
-      session_->tell(name + " is back; if it was switched off, mark a new T-pose",
+      session_->tell(name + " sends again; if it was switched off, mark a new T-pose",
                      Json{{"event", "node_back"}, {"node", name}});
     }
   }
@@ -119,7 +120,7 @@ void LiveWornReport::count(const std::vector<std::uint8_t>& valid) {
 std::string LiveWornReport::waits_for() const {
   if (!worn_->nodes().begin()) return "waiting for the nodes: " + names_.text();
   if (worn_->calibration()) return "";
-  return fmt::format("waiting for a T-pose that is held still ({}){}", names_.text(),
+  return fmt::format("waiting for a T-pose without motion ({}){}", names_.text(),
                      refusal_.empty() ? "" : "; " + refusal_);
 }
 
@@ -156,11 +157,11 @@ Json LiveWornReport::about() const {
   out["late_samples"] = worn_->nodes().late();
   const double fastest = worn_->calibration()->fastest_deg_s;
   if (fastest > most_turn_deg_s) {
-    warnings.push_back(
-        fmt::format("in the T-pose a node turned at {:.0f} deg/s: it was not held still", fastest));
+    warnings.push_back(fmt::format(
+        "a node turned at {:.0f} deg/s in the T-pose: the person did not hold still", fastest));
   }
   for (const std::string& other : names_.others()) {
-    warnings.push_back(other + " is none of the model's nodes: say in lab.toml where it is worn");
+    warnings.push_back(other + " is not a node of the model: state in lab.toml where it is worn");
   }
   out["warnings"] = std::move(warnings);
   return out;
@@ -175,10 +176,11 @@ std::string LiveWornReport::warning_of(std::size_t node) const {
     return name + " has no samples: its limb is a guess";
   }
   if (one.valid == 0) {
-    return name + " has no samples in the T-pose, and is left out: its limb is a guess";
+    return name + " has no samples in the T-pose and is left out: its limb is a guess";
   }
   if (lost_s < longest_lost_s) return "";
-  return fmt::format("{} is missing for {:.1f} s: there its limb is a guess", name, lost_s);
+  return fmt::format("{} is missing for {:.1f} s: during this time its limb is a guess", name,
+                     lost_s);
 }
 
 }  // namespace kinalign

@@ -51,7 +51,7 @@ Result<void> check_live(const Motion& motion, const std::string& name) {
   const std::size_t joints = motion.skeleton.joints();
   if (joints == noitom_joints) return {};
   return Failure(Error{name, 0,
-                       "for --live a suit's skeleton of 59 joints, as Noitom's stream has it",
+                       "a suit's skeleton with the 59 joints of Noitom's stream, for --live",
                        std::to_string(joints) + " joints"});
 }
 

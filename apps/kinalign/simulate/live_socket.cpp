@@ -21,7 +21,7 @@ LiveTraffic& LiveTraffic::operator+=(const LiveTraffic& more) {
 
 Result<void> check_live_address(const std::string& host) {
   if (find_address(host, 1, SOCK_DGRAM)) return {};
-  return Failure(Error{"--to", 0, "an address in numbers, as 127.0.0.1", shown(host)});
+  return Failure(Error{"--to", 0, "an address in numbers, such as 127.0.0.1", shown(host)});
 }
 
 Result<LiveSocket> LiveSocket::connected_to(const std::string& host, std::uint16_t port) {
@@ -29,7 +29,7 @@ Result<LiveSocket> LiveSocket::connected_to(const std::string& host, std::uint16
   const FoundAddress address = find_address(host, port, SOCK_DGRAM);
   LiveSocket made(::socket(address->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (made.fd_ < 0 || ::connect(made.fd_, address->ai_addr, address->ai_addrlen) != 0) {
-    return Failure(Error{"--to", 0, "a way to " + host + " port " + std::to_string(port),
+    return Failure(Error{"--to", 0, "a network route to " + host + " port " + std::to_string(port),
                          std::strerror(errno)});
   }
   return made;

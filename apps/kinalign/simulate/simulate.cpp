@@ -54,7 +54,7 @@ Result<void> check_live_ports(const Simulate& o) {
         std::pair(o.node_port, "--node-port"), std::pair(o.marks_port, "--marks-port")}) {
     const auto [other, is_free] = flags.emplace(port, flag);
     if (is_free) continue;
-    return Failure(Error{flag, 0, std::string("another port than that of ") + other->second,
+    return Failure(Error{flag, 0, std::string("a port other than that of ") + other->second,
                          std::to_string(port)});
   }
   return {};
@@ -66,15 +66,16 @@ Result<void> check_simulate(const Simulate& o, const Common& common, const Sourc
   if (o.live) {
     KA_TRY(check_live_address(o.to));
     KA_TRY(check_live_ports(o));
-    return refuse(given, "node_stamps",
-                  {"--node-stamps", 0, "files", "--live, where nodes send their own"});
+    return refuse(
+        given, "node_stamps",
+        {"--node-stamps", 0, "files", "--live, with which the nodes send their own stamps"});
   }
   for (const auto& [name, flag] :
        {std::pair("to", "--to"), std::pair("link", "--link"), std::pair("begin_in", "--begin-in"),
         std::pair("clockless", "--clockless"), std::pair("mocap_port", "--mocap-port"),
         std::pair("kinect_port", "--kinect-port"), std::pair("node_port", "--node-port"),
         std::pair("marks_port", "--marks-port")}) {
-    KA_TRY(refuse(given, name, {flag, 0, "--live beside it", "none"}));
+    KA_TRY(refuse(given, name, {flag, 0, "--live as well", "no --live"}));
   }
   return {};
 }
@@ -86,15 +87,16 @@ Usage describe_simulate(Simulate& o) {
                         "built-in, or a BVH of a Perception Neuron or CMU skeleton, 3 s at least",
                         &o.motion}};
   usage.flags = {
-      {"seed", "of the person and of all that is drawn", &o.seed, 0.0, 9e15},
-      {"seconds", "how long (default: 60, or all of a BVH, which has no more)", &o.seconds,
-       least_rehearsal_s, most_s},
+      {"seed", "seed of all random numbers", &o.seed, 0.0, 9e15},
+      {"seconds", "length, s (default: 60, or the whole BVH, which is also the longest)",
+       &o.seconds, least_rehearsal_s, most_s},
       {"node_rate", "samples of a node, Hz: 15, 60 and 100 are usual", &o.node_rate, 1.0, 1000.0},
       {.name = "node_stamps",
-       .meaning = "nodes' stamps: by their own clocks, or of arrival over the paper's radio",
+       .meaning = "nodes' stamps: by their own clocks, or times of arrival over the paper's radio",
        .value = &o.node_stamps,
        .choices = {"own", "arrival"}},
-      {"live", "send it in real time, as the devices would; of a BVH: a suit's, with its 59 joints",
+      {"live",
+       "send the streams in real time, as the devices would; a BVH must have a suit's 59 joints",
        &o.live},
       {"to", "live: address of the host that records, in numbers", &o.to},
       {"mocap_port", "live: the host's port for the suit", &o.mocap_port, 1.0, 65535.0},
@@ -107,8 +109,8 @@ Usage describe_simulate(Simulate& o) {
                   "paper's ...)",
        .value = &o.link,
        .choices = {"A", "B", "C", "D", "E", "F", "G"}},
-      {"begin_in", "live: time to start the recorder in, s", &o.begin_in, 0.1, 3600.0},
-      {"clockless", "live: nodes without a counter, as the paper's; --node-rate 15 is theirs",
+      {"begin_in", "live: wait before sending, to start the recorder, s", &o.begin_in, 0.1, 3600.0},
+      {"clockless", "live: nodes without a counter, like the paper's, which have --node-rate 15",
        &o.clockless}};
   usage.check = [&o](const Common& common, const Sources& given) {
     return check_simulate(o, common, given);
@@ -214,7 +216,7 @@ Result<int> run(Simulate& o, Call& call) {
   const std::string& name = o.motion.front();
   const Motion motion = KA_TRY(motion_of(o, call));
   call.console.if_it_fails([](const Error&) {
-    return std::vector<std::string>{"without --live it is simulated into files"};
+    return std::vector<std::string>{"without --live the motion can be simulated into files"};
   });
   if (o.live) KA_TRY(check_live(motion, name));
   call.console.if_it_fails({});
@@ -225,7 +227,7 @@ Result<int> run(Simulate& o, Call& call) {
   }
   call.console.if_it_fails([to = o.to](const Error&) {
     return std::vector<std::string>{"nothing was written",
-                                    "ip route get " + to + " shows what this machine knows of it"};
+                                    "ip route get " + to + " shows this machine's route to it"};
   });
   std::optional<LiveSockets> sockets;
   if (o.live) sockets = KA_TRY(open_live(live_options(o), rehearsal->nodes.size()));
@@ -233,7 +235,7 @@ Result<int> run(Simulate& o, Call& call) {
   const RehearsalFolder folder{call.surroundings.files, call.common.out};
   KA_TRY(make_new_folder(folder.path));
   call.console.if_it_fails([path = folder.path](const Error&) {
-    return std::vector<std::string>{path + " is not whole: delete it"};
+    return std::vector<std::string>{path + " is incomplete: delete it"};
   });
   KA_TRY(make_new_folder(folder.path + "/truth"));
   KA_TRY(write_motion(folder, motion));
@@ -247,18 +249,17 @@ Result<int> run(Simulate& o, Call& call) {
 Verb simulate_verb() {
   return make_verb<Simulate>(
       {.name = "simulate",
-       .summary = "what devices would have recorded of a motion, with the truth",
+       .summary = "simulate what devices record of a motion, with the truth",
        .text = "Writes into a new folder what a suit (60 Hz, started and stopped by clicks), a "
                "Kinect v2 (30 Hz) and five inertial nodes would have recorded, each by its own "
-               "clock and with its own errors; recording.toml for align; and in truth/ what no "
-               "device knows. The same seed gives the same bytes. With --live it sends them in "
-               "real time instead: Noitom's stream, the Kinect sender's, and five nodes over a "
-               "radio that delays and loses.",
+               "clock and with its own errors. The folder also has recording.toml for align, and "
+               "the true motion and clocks in truth/. The same seed gives the same bytes. --live "
+               "sends the streams in real time instead: Noitom's stream, the Kinect sender's, and "
+               "five nodes over a radio with delays and losses.",
        .examples = {{"kinalign simulate built-in -o rehearsal --seconds 60",
-                     "a person of our own making, then: kinalign align rehearsal/recording.toml -o "
-                     "take.h5"},
+                     "a built-in motion; then: kinalign align rehearsal/recording.toml -o take.h5"},
                     {"kinalign simulate walk.bvh -o rehearsal --seed 7 --node-rate 15",
-                     "your own motion, with nodes as slow as the paper's"},
+                     "your own motion, with nodes at the paper's rate"},
                     {"kinalign simulate built-in -o rehearsal --live --seconds 20",
                      "to kinalign record -o rehearsal --config rehearsal/lab.toml"}},
        .common = {"out", "json"},

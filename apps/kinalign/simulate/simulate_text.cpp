@@ -35,7 +35,7 @@ std::string head_lines(const ToldRehearsal& told) {
   std::string text = fmt::format("{}: {} of {}, seed {}\n", told.folder,
                                  duration_text(truth.length_s), truth.motion, truth.seed);
   if (told.asked_s && *told.asked_s > truth.length_s + same_s) {
-    text += fmt::format("  note    {} has no more: --seconds asked for {}\n", truth.motion,
+    text += fmt::format("  note    {} is shorter than --seconds asks for ({})\n", truth.motion,
                         duration_text(*told.asked_s));
   }
   return text;
@@ -68,7 +68,7 @@ std::string refused_line(const SentRehearsal& sent) {
                         grouped(port.traffic.refused), grouped(port.traffic.sent), port.name,
                         port.number);
   }
-  return list.empty() ? "" : "  datagrams that nobody took: " + list + "\n";
+  return list.empty() ? "" : "  datagrams refused by the host: " + list + "\n";
 }
 
 /// The advice if no datagram came back from the host.
@@ -81,7 +81,7 @@ std::string nobody_line(const SentRehearsal& sent) {
   }
   return fmt::format(
       "  {}: is kinalign record running on ports {} of {}? --begin-in leaves time to start it\n",
-      taken ? "nobody answered this" : "nobody received this", ports, sent.options.to);
+      taken ? "no reply came" : "the host refused every datagram", ports, sent.options.to);
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ SentText sent_text(const SentRehearsal& sent) {
   text.sent += fmt::format("  sent {} frames of mocap, {} of kinect, {} of nodes with {} samples\n",
                            grouped(counts.mocap_frames), grouped(counts.kinect_frames),
                            grouped(counts.node_frames), grouped(counts.node_samples));
-  text.sent += fmt::format("  {} replies reached nodes; a frame left {:.1f} ms late at the worst\n",
+  text.sent += fmt::format("  {} replies reached nodes; the latest frame was sent {:.1f} ms late\n",
                            grouped(counts.replies), 1e3 * seconds(counts.worst_late));
   text.nobody = refused_line(sent);
   // A rehearsal that was stopped at once can't have got an answer yet.
@@ -134,8 +134,8 @@ SentText sent_text(const SentRehearsal& sent) {
   text.next = sent.recorded_there
                   ? align_line(sent.folder)
                   : fmt::format(
-                        "  next    {0}/recording.toml names {0}/{1}, which is not there: put the "
-                        "name of what was recorded in its place\n"
+                        "  next    {0}/recording.toml names {0}/{1}, which does not exist: replace "
+                        "this name by the name of your recording\n"
                         "          then: kinalign align {0}/recording.toml -o {0}/take.h5\n",
                         sent.folder, live_take_name);
   return text;

@@ -8,19 +8,21 @@ namespace kinalign {
 /// Only errors that a person can act on get advice.
 std::vector<std::string> port_advice(const Error& error, const WantedPort& wanted) {
   if (error.kind == ErrorKind::port_taken) {
-    return {
-        fmt::format("ss -{}lpn 'sport = :{}' shows which one, another kinalign perhaps; {} takes "
-                    "another port",
-                    wanted.tcp ? 't' : 'u', wanted.port, wanted.port_from)};
+    return {fmt::format(
+        "ss -{}lpn 'sport = :{}' shows which program uses it, perhaps another kinalign; {} "
+        "sets another port",
+        wanted.tcp ? 't' : 'u', wanted.port, wanted.port_from)};
   }
   if (error.kind == ErrorKind::port_forbidden) {
-    return {"as root, or once: sudo setcap cap_net_bind_service=+ep $(command -v kinalign)",
-            wanted.port_from +
-                " takes a port from 1024 on, which needs no rights, for who can be told one"};
+    return {
+        "run as root, or allow it once: sudo setcap cap_net_bind_service=+ep $(command -v "
+        "kinalign)",
+        wanted.port_from +
+            " sets a port from 1024 on, which needs no root rights, if all senders can use it"};
   }
   if (error.kind == ErrorKind::address_elsewhere) {
     return {"ip -brief address shows this machine's; " + wanted.address_from +
-            " takes one of them"};
+            " accepts these addresses"};
   }
   return {};
 }
@@ -30,11 +32,12 @@ std::vector<std::string> key_advice(const Error& error) {
     case ErrorKind::exposed_key:
       return {};
     case ErrorKind::forbidden_key:
-      return {"run it as the file's owner, or let who runs it own the file (chown)"};
+      return {"run kinalign as the owner of the file, or change the owner (chown)"};
     case ErrorKind::no_such_file:
-      return {"kinalign node-key --new-lab-key FILE makes one, where the lab has none yet"};
+      return {
+          "kinalign node-key --new-lab-key FILE makes the lab's key, if the lab has no key yet"};
     default:
-      return {"--lab-key takes the lab's own file, from which the nodes' keys came"};
+      return {"--lab-key needs the lab's own key file, from which the nodes' keys were derived"};
   }
 }
 

@@ -68,10 +68,10 @@ void ClockNews::take_step(Clock& clock, const ClockEvent& event) {
   clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
   if (!clock.contradicts) return lines_.push_back(event_text(event, clock.node_id, names_));
   clock.waiting.reset();
-  lines_.push_back(fmt::format(
-      "{}: warning: {}, so nothing of it is certified; its steps are told again after a quiet "
-      "minute",
-      names_.name(clock.node_id), contradiction));
+  lines_.push_back(
+      fmt::format("{}: warning: {}, so none of its stamps are certified; its steps are reported "
+                  "again after a minute without steps",
+                  names_.name(clock.node_id), contradiction));
 }
 
 /// Collects withdrawn stretches; overlapping ones become one. A stretch withdrawn right after the

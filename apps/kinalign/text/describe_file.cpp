@@ -99,7 +99,8 @@ std::string mean_rate_text(const RecordedStream& s) {
   const double length = seconds_of(s.survey), rate = rate_hz(s);
   if (!(length > 0.0)) return "";
   const double mean = static_cast<double>(s.survey.kept() - 1) / length;
-  return std::abs(mean - rate) < 0.1 * rate ? "" : fmt::format(" ({:.4g} on the whole)", mean);
+  return std::abs(mean - rate) < 0.1 * rate ? ""
+                                            : fmt::format(" ({:.4g} over the whole stream)", mean);
 }
 
 /// The lines about a stream: samples, rate, first and last stamp, names, and stamps that do not
@@ -118,7 +119,7 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
     line += name_lines(c.names.get<std::vector<std::string>>());
   }
   if (s.survey.kept() < s.survey.samples) {
-    line += fmt::format("           {} stamps repeat, {} step back, {} leap ahead\n",
+    line += fmt::format("           {} stamps repeat, {} step back, {} jump ahead\n",
                         s.survey.duplicates, s.survey.backward, s.survey.ahead);
   }
   return line;
@@ -163,7 +164,7 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
   }
   out["report"] = Json::parse(KA_TRY(reader.report_json()), nullptr, false);
   if (out["report"].is_discarded()) {
-    return Failure(Error{path, 0, "a report as JSON", "a text that is none"});
+    return Failure(Error{path, 0, "a report as JSON", "text that is not JSON"});
   }
   return json_text(out);
 }

@@ -84,7 +84,7 @@ std::string quality_text(const Json& s) {
   std::string text = fmt::format("{:.4g} Hz, ", number_at(s, "rate_hz"));
   text += clock_text(interval_ns, counted);
   if (count_at(s, "late") > 0) {
-    text += fmt::format(", {} samples {:.2f} s late and more", grouped(count_at(s, "late")),
+    text += fmt::format(", {} samples late by {:.2f} s or more", grouped(count_at(s, "late")),
                         1e-9 * number_at(s, "worst_late_ns"));
   }
   text += marks_text(s);

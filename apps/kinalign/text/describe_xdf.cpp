@@ -41,7 +41,7 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
       fmt::format("{} clock offset{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
                   grouped(one.clock_offsets), one.clock_offsets == 1 ? "" : "s", last.offset,
                   1e6 * last.slope, 1e3 * residual);
-  if (one.clock.size() > 1) text += fmt::format("; began anew {} times", one.clock.size() - 1);
+  if (one.clock.size() > 1) text += fmt::format("; restarted {} times", one.clock.size() - 1);
   return text;
 }
 
@@ -135,37 +135,40 @@ class Judge {
   Judge(const std::string& path, Findings& out) : path_(path), out_(out) {}
 
   void judge(const XdfStreamSurvey& one) {
-    const std::string of = fmt::format("of '{}' ", shown(one.stream.name));
+    const std::string stream = fmt::format(" of stream '{}'", shown(one.stream.name));
     if (one.samples == 0) {
-      say(Severity::note, of + "samples", "none", "it was recorded and said nothing");
+      say(Severity::note, "samples" + stream, "none",
+          "this stream was recorded, but its sender sent no samples");
       return;
     }
     if (one.timeless > 0) {
-      say(Severity::warning, of + "stamps that are numbers below 1e15",
-          grouped(one.timeless) + " others", "these samples have no time");
+      say(Severity::warning, "stamps below 1e15" + stream, grouped(one.timeless) + " other stamps",
+          "these samples have no time");
     }
     if (one.backward > 0) {
-      say(Severity::warning, of + "stamps that rise",
+      say(Severity::warning, "rising stamps" + stream,
           fmt::format("{} that step back, by up to {:.3f} s", grouped(one.backward),
                       one.largest_step_back_s),
-          "the sender's clock was set back, or samples came in another order");
+          "the sender's clock was set back, or samples arrived out of order");
     }
     if (one.no_numbers > 0) {
-      say(Severity::note, of + "numbers", grouped(one.no_numbers) + " that are NaN or infinite",
-          "many senders write so what was not measured");
+      say(Severity::note, "finite values" + stream,
+          grouped(one.no_numbers) + " NaN or infinite values",
+          "many senders mark missing measurements this way");
     }
-    judge_clock(one, of);
+    judge_clock(one, stream);
   }
 
  private:
-  void judge_clock(const XdfStreamSurvey& one, const std::string& of) {
+  void judge_clock(const XdfStreamSurvey& one, const std::string& stream) {
     if (one.clock.empty()) {
-      say(Severity::note, of + "clock offsets", "none",
-          "its stamps are taken for the recorder's clock");
+      say(Severity::note, "clock offsets" + stream, "none",
+          "its stamps are treated as stamps of the recorder's clock");
     }
     if (one.clock.size() > 1) {
-      say(Severity::warning, of + "one clock", fmt::format("{}", one.clock.size()),
-          "it was reset on the way; stamps go by the nearest of their lines");
+      say(Severity::warning, "one clock" + stream, fmt::format("{} clocks", one.clock.size()),
+          "the clock was reset during the recording; each stamp is converted by the nearest clock "
+          "line");
     }
   }
   void say(Severity severity, std::string expected, std::string found, std::string meaning) {
@@ -184,8 +187,8 @@ Findings judge_xdf(const std::string& path, const XdfSurvey& survey) {
   Judge judge(path, findings);
   for (const XdfStreamSurvey& one : survey.streams) judge.judge(one);
   if (survey.streams.empty()) {
-    findings.push_back({Severity::warning, Error{path, 0, "a stream", "none that can be read"},
-                        "nothing can be taken from it", ""});
+    findings.push_back({Severity::warning, Error{path, 0, "a readable stream", "none"},
+                        "this file has no data that can be used", ""});
   }
   return findings;
 }

@@ -57,24 +57,28 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
     case Kind::joined:
       return "joined";
     case Kind::started:
-      return "started anew";
+      return "restarted";
     case Kind::restarted:
-      return "warning: started anew with its old boot id; its firmware draws none";
+      return "warning: restarted with its old boot id; its firmware must choose a new boot id at "
+             "each start";
     case Kind::twins:
-      return "warning: two nodes have this id; both are kept apart, flash one of them anew";
+      return "warning: two nodes have this id; they are recorded separately; give one of them "
+             "another id";
     case Kind::renamed:
-      return fmt::format("seems to be what {} was", names.name(event.other_id.value_or(0)));
+      return fmt::format("seems to be the same device as {}",
+                         names.name(event.other_id.value_or(0)));
     case Kind::moved:
       return "sends from another address";
     case Kind::left:
-      return "nothing for ten seconds";
+      return "has sent nothing for ten seconds";
     case Kind::returned:
-      return "is back, its clock goes on";
+      return "sends again; its clock continues";
     case Kind::newer_version:
-      return fmt::format("speaks version {} of the protocol, which this program does not know",
+      return fmt::format("sends version {} of the protocol, which this program can't read",
                          event.version);
     case Kind::too_many:
-      return fmt::format("warning: not taken in, there are {} already", NodeTable::most_streams);
+      return fmt::format("warning: ignored, because {} nodes are connected already",
+                         NodeTable::most_streams);
     case Kind::wrong_key:
       break;  // see wrong_key_text()
   }
@@ -85,16 +89,15 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
 /// have sent the frame.
 std::string wrong_key_text(const NodeEvent& event, const NodeNames& names) {
   const bool no_key = event.refusal == NodeRefusal::no_key;
-  const char* what = no_key ? "with a MAC, and there is no --lab-key"
-                     : event.refusal == NodeRefusal::no_mac ? "without a MAC"
-                                                            : "with another key";
-  const std::string mend =
-      no_key ? "; --lab-key FILE, the lab's, lets it in"
-             : fmt::format(
-                   "; if it is that node, flash what kinalign node-key --lab-key LAB --node {} "
-                   "prints",
-                   event.node_id);
-  return fmt::format("warning: something that says it is {} is not heard: it sends {} (from {}){}",
+  const char* what = no_key ? "frames with a MAC, but no --lab-key was given"
+                     : event.refusal == NodeRefusal::no_mac ? "frames without a MAC"
+                                                            : "frames signed with another key";
+  const std::string mend = no_key ? "; to accept it, give the lab's key with --lab-key FILE"
+                                  : fmt::format(
+                                        "; if it is that node, flash the key that kinalign "
+                                        "node-key --lab-key LAB --node {} prints",
+                                        event.node_id);
+  return fmt::format("warning: a sender that calls itself {} is refused: it sends {} (from {}){}",
                      names.name(event.node_id), what, address_text(event.address), mend);
 }
 
@@ -129,7 +132,7 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id, const Nod
   const auto says = [&](const std::string& what) { return names.name(node_id) + ": " + what; };
   const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // the direction is not always known
   if (event.kind == Kind::step && !event.by) {
-    return says("warning: its counter stepped, or its crystal bends more than was assumed");
+    return says("warning: its counter stepped, or its drift changes faster than assumed");
   }
   if (event.kind == Kind::step) {
     return says(fmt::format("warning: its counter stepped by at least {:.3f} ms", by_ms));
@@ -138,15 +141,17 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id, const Nod
     return says(fmt::format("warning: its counter stepped by {:.3f} ms", by_ms));
   }
   if (event.kind == Kind::withdrawn) {
-    return says(fmt::format("warning: the stamps of {:.1f} s are not certified any more",
+    return says(fmt::format("warning: the stamps of {:.1f} s are no longer certified",
                             seconds(event.end - event.begin)));
   }
   if (event.kind == Kind::uneasy) {
-    return says(fmt::format("its likeliest stamps may be off by up to {:.3f} ms; certificates hold",
-                            by_ms));
+    return says(
+        fmt::format("its estimated stamps may be wrong by up to {:.3f} ms; their certified "
+                    "intervals stay correct",
+                    by_ms));
   }
   if (event.kind == Kind::settled) return says("its counter runs evenly again");
-  return event.kind == Kind::relaxed ? says("its clock may bend more than was assumed") : "";
+  return event.kind == Kind::relaxed ? says("its drift may change faster than assumed") : "";
 }
 
 std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id) {
@@ -161,11 +166,12 @@ std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_
 std::string event_text(const HostClockEvent& event) {
   using Kind = HostClockEvent::Kind;
   if (event.kind == Kind::suspended) {
-    return fmt::format("warning: this machine slept for {:.1f} s; the nodes' clocks begin anew",
-                       seconds(event.by));
+    return fmt::format(
+        "warning: this machine slept for {:.1f} s; the nodes' clocks are learnt again",
+        seconds(event.by));
   }
   if (event.kind == Kind::backwards) {
-    return "warning: this machine's raw clock went back; the nodes' clocks begin anew";
+    return "warning: this machine's raw clock went back; the nodes' clocks are learnt again";
   }
   return fmt::format("the wall clock was set by {:+.3f} s; stamps of nodes do not depend on it",
                      seconds(event.by));

@@ -39,11 +39,11 @@ bool has_round_trip(const NodeStatus& status) {
 /// "15.0/s", or the text for a node that is silent or has just sent its first frame.
 std::string pace_text(const NodeStatus& status, const ClockPair& now) {
   if (status.silent) return "silent since " + utc_text(now.utc - (now.raw - status.heard));
-  return status.rate_hz ? fmt::format("{:.1f}/s", *status.rate_hz) : "just heard";
+  return status.rate_hz ? fmt::format("{:.1f}/s", *status.rate_hz) : "first frame";
 }
 
 std::string_view why_not_locked(const NodeStatus& status) {
-  if (!status.stamp) return "it has echoed no answer of this server";
+  if (!status.stamp) return "no reply of this server has reached it";
   if (status.stamp->certainty == Certainty::one_sided) return "too few exchanges";
   return "its exchanges contradict the assumptions";
 }
@@ -153,8 +153,8 @@ std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCoun
     std::vector<std::string> who;
     for (const std::uint32_t id : ids) who.push_back(names.short_name(id));
     const char* others = refused.others(refusal) ? " and others" : "";
-    lines.push_back(fmt::format("{}: from what says it is {} {}{} ({} frames)", words(refusal),
-                                names.device, fmt::join(who, ", "), others,
+    lines.push_back(fmt::format("{}: senders that call themselves {} {}{} ({} frames)",
+                                words(refusal), names.device, fmt::join(who, ", "), others,
                                 grouped(counts.refusals[refusal])));
   }
   return lines;

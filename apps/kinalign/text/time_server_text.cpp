@@ -50,7 +50,7 @@ std::string client_lines(const ServedPort& served) {
   if (served.port != 123) {
     return fmt::format(
         "  clients  chrony: server {} port {} iburst\n"
-        "           most others, ESP32 and ntpdate among them, ask port 123 only\n",
+        "           most other clients, such as ESP32 and ntpdate, can use port 123 only\n",
         host, served.port);
   }
   return fmt::format(
@@ -62,14 +62,14 @@ std::string client_lines(const ServedPort& served) {
 std::string node_lines(const ServedPort& served) {
   if (!served.node_port) return "";
   return fmt::format("  nodes    port {}, {}\n", *served.node_port,
-                     served.keyed ? "with keys" : "without keys: anybody may imitate one");
+                     served.keyed ? "with keys" : "without keys: any sender can imitate a node");
 }
 
 }  // namespace
 
 std::string clock_text(const NtpServerState& state) {
   if (state.leap == NtpLeap::unsynchronised) {
-    return "not synchronised, and no reference: clients are told so and turn away";
+    return "not synchronised and no reference: clients will not follow it";
   }
   const std::string leap =
       state.leap == NtpLeap::none ? "" : ", a leap second at the end of the day (UTC)";

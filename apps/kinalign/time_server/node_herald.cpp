@@ -61,7 +61,7 @@ void NodeHerald::look_at_key() {
   if (!key || *key == lab_.key) return;
   lab_.key = *key;
   receiver_.replace_key(*key);
-  tell_live(console_, lab_.path + " has another key now; the old one is good for 60 s");
+  tell_live(console_, lab_.path + " has a new key; the old key stays valid for 60 s");
   console_.print_json(R"({"event": "key_replaced"})");
 }
 
@@ -70,7 +70,7 @@ void NodeHerald::tell_key_trouble(const std::string& trouble) {
   if (trouble == key_trouble_) return;
   key_trouble_ = trouble;
   if (trouble.empty()) return;
-  tell_live(console_, "warning: " + trouble + "; the key that was read before stays in force");
+  tell_live(console_, "warning: " + trouble + "; the key that was read before stays in use");
   console_.print_json(R"({"event": "key_unreadable"})");
 }
 

@@ -47,7 +47,7 @@ Result<void> check_pair(const std::string& one, const std::string& other) {
   if (is_ipv6_text(one) != is_ipv6_text(other)) return {};
   for (const auto& [all, part] : {std::pair{one, other}, std::pair{other, one}}) {
     if (!is_any_address(all)) continue;
-    return Failure(Error{"--listen", 0, "nothing that " + all + " stands for already", part});
+    return Failure(Error{"--listen", 0, "no address that " + all + " already includes", part});
   }
   return {};
 }
@@ -72,11 +72,11 @@ Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
     return Failure(Error{"--lab-key", 0, "a file's name", "nothing"});
   }
   if (!o.node_port && !o.lab_key.empty()) {
-    return Failure(Error{"--lab-key", 0, "--node-port beside it", "none"});
+    return Failure(Error{"--lab-key", 0, "--node-port as well", "no --node-port"});
   }
   if (o.node_port == o.port && o.port != 0) {
-    return Failure(Error{"--node-port", 0, "another port than --port",
-                         fmt::format("{}: both flags name the same port", o.port)});
+    return Failure(Error{"--node-port", 0, "a port other than that of --port",
+                         fmt::format("port {} for both", o.port)});
   }
   return {};
 }
@@ -85,17 +85,17 @@ Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
 Usage describe_time_server(TimeServerFlags& o) {
   Usage usage;
   usage.flags = {
-      {"listen", "an address to serve on (all, where none is given); may be repeated", &o.listen},
-      {"exempt", "an address or network that may ask as often as it likes; may be repeated",
-       &o.exempt}};
+      {"listen", "an address to serve on (default: all addresses); may be repeated", &o.listen},
+      {"exempt", "an address or network without a limit of requests; may be repeated", &o.exempt}};
   usage.settings = {
       {"port", "UDP port; 0: any free one", &o.port, 0.0, 65535.0},
       {"local_stratum",
-       "let clients follow this machine's clock, right or wrong, while nothing synchronises it: "
-       "the lab's reference, at this stratum; 10 is usual",
+       "while this machine's clock is not synchronised, let clients follow it as the lab's "
+       "reference, at this stratum; 10 is usual",
        &o.local_stratum, 1.0, 15.0},
       {"node_port", "UDP port for inertial nodes; 0: any free one", &o.node_port, 0.0, 65535.0},
-      {"lab_key", "file of the key that the nodes' keys come from (see node-key)", &o.lab_key}};
+      {"lab_key", "file with the lab's key, from which the nodes' keys are derived (see node-key)",
+       &o.lab_key}};
   usage.check = [&o](const Common&, const Sources& given) { return check_flags(o, given); };
   return usage;
 }
@@ -194,18 +194,16 @@ class Herald {
     if (strays_told_ || server_.counts()[NtpOutcome::from_node] == 0) return;
     strays_told_ = true;
     tell_live(console_,
-              "warning: a node sends to the NTP port; nodes are received on another one, "
-              "--node-port");
+              "warning: a node sends to the NTP port; it must send to the port of --node-port");
   }
   /// Reports each fault of stdout once, as long as it lasts: otherwise nobody may notice it for
   /// hours.
   void tell_trouble() {
     const std::string trouble = console_.out_trouble();
     if (std::exchange(out_trouble_, trouble) == trouble) return;
-    tell_live(console_, trouble.empty()
-                            ? "standard output takes lines again"
-                            : "warning: standard output takes no more (" + trouble +
-                                  "): at most 1 MiB of lines waits for room; serving goes on");
+    tell_live(console_, trouble.empty() ? "standard output accepts lines again"
+                                        : "warning: standard output is blocked (" + trouble +
+                                              "): up to 1 MiB of lines is kept; serving continues");
   }
   void tell_counts() {
     constexpr double every_s = 10;
@@ -241,9 +239,8 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   console.print_json(start_json(served, server.state()));
   if (server.state().leap == NtpLeap::unsynchronised) {
     console.note(
-        "kinalign time-server: warning: nothing sets this machine's clock, so clients are told "
-        "not to follow it; with --local-stratum 10 they do, right or wrong, in a lab that has no "
-        "other clock");
+        "kinalign time-server: warning: this machine's clock is not synchronised, so clients will "
+        "not follow it; if the lab has no other clock, use --local-stratum 10");
   }
   console.flush();
   std::optional<NodeHerald> node_herald;
@@ -260,25 +257,25 @@ Result<int> run(TimeServerFlags& o, Call& call) {
 Verb time_server_verb() {
   return make_verb<TimeServerFlags>(
       {.name = "time-server",
-       .summary = "the lab's clock: answer NTP requests",
-       .text =
-           "Serves the system's clock by NTP (RFC 5905) until Ctrl-C. Strangers get 8 answers at "
-           "once, then one in 2 s; --exempt is for clients that ask more often. With --json each "
-           "line is an object, by its member event: started and stopped; with --node-port pair "
-           "and, for each node, node (node_id, certainty, time_ns, earliest_ns, latest_ns, "
-           "drift_ppm and more), once a second; counts and node_counts, every 10 s; clock, "
-           "node_event, clock_event, host_event, key_replaced, key_unreadable and missed when it "
-           "happens. Members in _ns are on CLOCK_MONOTONIC_RAW, but utc_ns and the node's own "
-           "counter_ns: "
-           R"({"schema": "kinalign.time-server/1", "event": "pair", "raw_ns": 4521080113, )"
-           R"("utc_ns": 1790000000000000000}. docs/time_server_json.md has every member.)",
+       .summary = "be the lab's clock: answer NTP requests",
+       .text = "Serves the system's clock by NTP (RFC 5905) until Ctrl-C. A client gets at most 8 "
+               "answers at once, then one every 2 s; --exempt is for clients that ask more often. "
+               "With --json each line is an object with a member event: started and stopped; with "
+               "--node-port pair and, for each node, node (node_id, certainty, time_ns, "
+               "earliest_ns, latest_ns, "
+               "drift_ppm and more), once a second; counts and node_counts, every 10 s; clock, "
+               "node_event, clock_event, host_event, key_replaced, key_unreadable and missed when "
+               "they happen. Members in _ns are on CLOCK_MONOTONIC_RAW, except utc_ns and the "
+               "node's own counter_ns: "
+               R"({"schema": "kinalign.time-server/1", "event": "pair", "raw_ns": 4521080113, )"
+               R"("utc_ns": 1790000000000000000}. docs/time_server_json.md has every member.)",
        .examples = {{"kinalign time-server --local-stratum 10",
                      "a lab without another clock; port 123 needs root"},
                     {"kinalign time-server --port 12300 --listen 127.0.0.1",
-                     "without rights, for this machine"},
+                     "without root rights, for this machine"},
                     {"kinalign time-server --node-port 5005 --lab-key lab.key",
                      "inertial nodes too; see node-key"},
-                    {"kinalign time-server --json", "a line of JSON for each event, see below"}},
+                    {"kinalign time-server --json", "a line of JSON for each event"}},
        .common = {"json"}},
       describe_time_server, run);
 }

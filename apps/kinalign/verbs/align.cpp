@@ -64,7 +64,7 @@ Usage describe_verb_options(AlignVerb& o) {
   Usage usage;
   usage.positionals = {
       {"RECORDING",
-       "what `record` wrote, or a recording.toml: streams, files, clocks",
+       "a recording by `record`, or a recording.toml with streams, files and clocks",
        &o.manifest,
        0,
        1,
@@ -92,14 +92,14 @@ Result<Error> no_recording(FileSystem& files, const std::string& path) {
   const std::string_view head = KA_TRY(file.next());
   if (head.empty()) return unknown_file(path, head);
   if (path.ends_with(".mcap")) {
-    return Error{path, 0,
-                 "an MCAP file, as its name says (a file of another kind goes behind --mocap, "
-                 "--kinect, ...)",
-                 beginning_of(head)};
+    return Error{
+        path, 0,
+        "an MCAP file, as its name says (give a file of another kind after --mocap, --kinect, ...)",
+        beginning_of(head)};
   }
   return Error{path, 0,
-               "a recording or a recording.toml (a single file goes behind --mocap, --kinect, ...)",
-               "another ending"};
+               "a recording or a recording.toml (give a single file after --mocap, --kinect, ...)",
+               "another extension"};
 }
 
 /// The manifest of a file, or one made from the flags, with the options of the call.
@@ -144,7 +144,8 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
   }
   const auto moved = manifest.spaces.find(wanted);
   if (o.manifest.empty() && moved != manifest.spaces.end() && moved->second.method != "none") {
-    return Failure(Error{"--reference", 0, "--space none beside it: the reference is not moved",
+    return Failure(Error{"--reference", 0,
+                         "--space none as well, because the reference is not moved",
                          "--space " + moved->second.method});
   }
   return {};
@@ -173,8 +174,9 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
         s.step_ns ? options_of(manifest, s.name).start_ns.value_or(0) : to_ns(s.survey.first);
     const std::int64_t latency = to_ns(own) - start;
     const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
-    return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " puts the first frame of " +
-           shown(s.name) + " where the others have begun: right only if all began at once";
+    return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " moves the first frame of " +
+           shown(s.name) +
+           " to the begin of the others: correct only if all started at the same time";
   }
   return "";
 }
@@ -189,14 +191,14 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
                              : "kinalign align --help shows the flags");
     if (!manifest && error.kind == ErrorKind::too_few_joints) {
       lines.push_back(
-          "--joint KINECT=MOCAP names two that are one, and may be repeated; kinalign "
+          "--joint KINECT=MOCAP states that two joints are the same, and may be repeated; kinalign "
           "info FILE -v lists the names of both");
     }
     if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
   } else if (named && error.kind == ErrorKind::no_rows_in_recording) {
-    lines.push_back("kinalign check " + path + " says what is wrong with the recording");
+    lines.push_back("kinalign check " + path + " shows what is wrong with the recording");
   } else if (error.line > 0) {
-    lines.push_back("kinalign check " + error.file + " says what else is odd in it, up to there");
+    lines.push_back("kinalign check " + error.file + " lists other faults before that line");
   }
   return lines;
 }
@@ -255,23 +257,22 @@ Result<int> run(AlignVerb& o, Call& call) {
 Verb align_verb() {
   return make_verb<AlignVerb>(
       {.name = "align",
-       .summary = "raw files of one motion into a take: one grid, one space",
+       .summary = "bring raw files of one motion into a take: one grid, one space",
        .text =
-           "Streams are cut to the span they share and resampled onto the reference's stamps; "
-           "nothing is invented across a gap. The take is an HDF5 file that h5py and MATLAB "
-           "open, with the report and every parameter inside. Exit code 1 where it was done with "
-           "warnings.",
+           "Cuts all streams to their common span and resamples them onto the reference's stamps; "
+           "no values are made up across a gap. The take is an HDF5 file that h5py and MATLAB "
+           "open; it contains the report and every parameter. Exit code 1 if there were warnings.",
        .examples =
            {{"kinalign align takes/03_S1A02_01.mcap -o take.h5",
-             "what was recorded, also if it is torn"},
-            {"kinalign align demo/recording.toml -o demo/mine.h5", "what the manifest says"},
+             "a recording, even if it is truncated"},
+            {"kinalign align demo/recording.toml -o demo/mine.h5", "the files of a manifest"},
             {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --kinect "
              "demo/kinect.csv -o demo/quick.h5",
-             "two files without a manifest; a BVH knows no time of day"},
+             "two files without a manifest; a BVH contains no time of day"},
             {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --imu "
              "waist=demo/imu_waist.csv --imu wrist_left=demo/imu_wrist_left.csv --root-node waist "
              "-o demo/nodes.h5",
-             "nodes, brought into the waist's space"}},
+             "nodes, moved into the waist's space"}},
        .common = {"out", "force", "json", "dry_run", "jobs"}},
       describe_verb_options, run);
 }

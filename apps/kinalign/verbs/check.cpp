@@ -70,7 +70,8 @@ Findings check_plan(const std::string& path, const Input& input) {
   Error error = judged.error();
   if (error.file.empty()) error.file = path;
   const std::string repair = name_advice(error);
-  return {{Severity::error, std::move(error), "kinalign align makes no take of it", repair}};
+  return {
+      {Severity::error, std::move(error), "kinalign align can't make a take of this file", repair}};
 }
 
 /// Refuses the call (exit code 2) if a flag does not apply to the file.
@@ -129,8 +130,10 @@ Findings judge_name(const std::string& path, const RecordedStream& stream) {
   const bool misnamed = path.ends_with(".mcap") || path.ends_with(".xdf") || path.ends_with(".h5");
   if (!misnamed) return {};
   return {{Severity::note,
-           Error{path, 0, "what its ending says", stream.format + ": " + contents_line(stream)},
-           "it was read and checked as that", "give it the ending of what it is"}};
+           Error{path, 0, "the kind of file that its extension says",
+                 stream.format + ": " + contents_line(stream)},
+           "the file was checked as what it contains",
+           "rename the file to the extension of its kind"}};
 }
 
 /// Reads all streams in parallel. The findings are about stamps, arrivals and values.
@@ -247,11 +250,10 @@ Result<int> run(Check& o, Call& call) {
 Verb check_verb() {
   return make_verb<Check>(
       {.name = "check",
-       .summary = "what is wrong with a file, and what it means",
-       .text =
-           "Reads every value; of a manifest also whether it can be aligned, of a take also what "
-           "its report says. Exit code 1 where there are warnings or errors, 3 where a file can't "
-           "be used.",
+       .summary = "find faults in files, with their meaning and repair",
+       .text = "Reads every value. Checks whether a manifest can be aligned, and shows the "
+               "findings in the report of a take. Exit code 1 if there are warnings or errors, 3 "
+               "if a file can't be used.",
        .examples = {{"kinalign check demo/mocap.bvh", "frames, unit, stamps"},
                     {"kinalign check demo/*.csv --json", "many files, for programs"},
                     {"kinalign check walks_bids", "a whole BIDS-Motion data set"}},

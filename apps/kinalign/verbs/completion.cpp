@@ -13,7 +13,7 @@ struct Completion {
 
 Usage describe(Completion& o) {
   Usage usage;
-  usage.positionals = {{"SHELL", "for which shell", &o.shell, 1, 1, {"bash", "zsh", "fish"}}};
+  usage.positionals = {{"SHELL", "name of the shell", &o.shell, 1, 1, {"bash", "zsh", "fish"}}};
   return usage;
 }
 
@@ -34,7 +34,7 @@ Verb completion_verb() {
            {{"kinalign completion bash > ~/.local/share/bash-completion/completions/kinalign",
              "for new shells of bash"},
             {"kinalign completion zsh > ~/.zfunc/_kinalign",
-             "for new shells of zsh, where ~/.zfunc is a folder of its fpath"},
+             "for new shells of zsh, if ~/.zfunc is a folder of its fpath"},
             {"kinalign completion fish > ~/.config/fish/completions/kinalign.fish",
              "for new shells of fish"}},
        .common = {}},

@@ -103,11 +103,10 @@ Result<int> run(Config&, Call& call) {
 Verb config_verb() {
   return make_verb<Config>(
       {.name = "config",
-       .summary = "print the settings in force and where each comes from",
-       .text =
-           "A flag wins over KINALIGN_<NAME> in the environment, that over what a manifest states, "
-           "that over the nearest kinalign.toml in the current folder or above it, that over "
-           "~/.config/kinalign/config.toml.",
+       .summary = "print all settings in use and where each comes from",
+       .text = "The first of these places that sets an option decides: a flag; KINALIGN_<NAME> in "
+               "the environment; the manifest; the nearest kinalign.toml in the current folder or "
+               "above it; ~/.config/kinalign/config.toml.",
        .examples = {{"kinalign config", "all settings of all verbs"},
                     {"kinalign config --json", "the same for programs"}},
        .common = {"json", "jobs"}},

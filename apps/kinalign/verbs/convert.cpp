@@ -37,14 +37,15 @@ struct Convert {
 /// The command line of `kinalign convert`. The ending of the new file decides its format.
 Usage describe_convert(Convert& o) {
   Usage usage;
-  usage.positionals = {{"IN", "a take, a recording, or a stream's file", &o.from},
-                       {"OUT", "a new file; its ending, .npz, .bvh or .mcap, decides", &o.to}};
+  usage.positionals = {
+      {"IN", "a take, a recording, or a stream's file", &o.from},
+      {"OUT", "a new file; its extension .npz, .bvh or .mcap decides the format", &o.to}};
   usage.flags = o.stream.fields();
   usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     const std::string& to = o.to.front();
     if (!to.ends_with(".npz") && !to.ends_with(".bvh") && !to.ends_with(".mcap")) {
-      return Failure(Error{to, 0, "a name that ends in .npz, .bvh or .mcap", "another ending"});
+      return Failure(Error{to, 0, "a name that ends in .npz, .bvh or .mcap", "another extension"});
     }
     if (o.store_double && !to.ends_with(".npz")) {
       return Failure(Error{"--double", 0, "a new file that ends in .npz", shown(to)});
@@ -161,7 +162,7 @@ Result<Findings> convert_take(const Job& job, const Convert& o, Call& call) {
   KA_TRY(check_flags(o, nullptr, call));
   if (!job.to.ends_with(".mcap")) return convert_in_child(job);
   return call.console.refuse(
-      Error{job.to, 0, "of a take a file that ends in .npz or .bvh", "another ending"});
+      Error{job.to, 0, "a name that ends in .npz or .bvh, for a take", "another extension"});
 }
 
 Findings findings_of(const Recording& recording) {
@@ -179,8 +180,9 @@ Findings findings_of(const Recording& recording) {
 Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call) {
   const Progress progress = call.console.progress();
   if (!job.to.ends_with(".mcap")) {
-    return call.console.refuse(Error{job.to, 0, "of a recording a file that ends in .mcap",
-                                     "another ending (kinalign align makes a take of it)"});
+    return call.console.refuse(
+        Error{job.to, 0, "a name that ends in .mcap, for a recording",
+              "another extension (kinalign align makes a take of a recording)"});
   }
   KA_TRY(check_flags(o, nullptr, call));
   const auto source = KA_TRY(
@@ -198,7 +200,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
 Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
   if (!job.to.ends_with(".mcap")) {
     return call.console.refuse(
-        Error{job.to, 0, "of an XDF file one that ends in .mcap", "another ending"});
+        Error{job.to, 0, "a name that ends in .mcap, for an XDF file", "another extension"});
   }
   KA_TRY(check_flags(o, nullptr, call));
   return KA_TRY(show_xdf(job.files, job.from, job.to, job.overwrite, call.console.progress()))
@@ -267,19 +269,17 @@ Result<int> run(Convert& o, Call& call) {
 Verb convert_verb() {
   return make_verb<Convert>(
       {.name = "convert",
-       .summary = "one format into another",
-       .text =
-           "From a take to .npz or .bvh, from any stream's file to .npz, from .bvh to .bvh; from a "
-           "recording, an XDF or a stream's file to an .mcap of JSON, which Foxglove and "
-           "Lichtblick show. "
-           "Exit code 1 where it was done with warnings.",
+       .summary = "convert a file to another format",
+       .text = "Converts a take to .npz or .bvh, any stream's file to .npz, .bvh to .bvh, and a "
+               "recording, an XDF or a stream's file to an .mcap of JSON, which Foxglove and "
+               "Lichtblick show. Exit code 1 if there were warnings.",
        .examples = {{"kinalign convert demo/mocap.bvh demo/mocap.npz",
                      "positions, local_positions, local_rotations, joint_names, ... for NumPy"},
                     {"kinalign convert demo/take.h5 demo/take.npz", "all streams of a take"},
                     {"kinalign convert demo/take.h5 demo/aligned.bvh",
                      "the take's skeleton stream"},
                     {"kinalign convert takes/03_S1A02_01.mcap shown.mcap",
-                     "skeletons, samples, marks, to look at in Lichtblick"}},
+                     "skeletons, samples and marks, to view in Lichtblick"}},
        .common = {"force", "json"}},
       describe_convert, run);
 }

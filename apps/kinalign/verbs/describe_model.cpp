@@ -64,7 +64,8 @@ std::string layer_lines(const std::vector<Layer>& layers, std::size_t indent) {
   for (const Layer& layer : layers) {
     text += std::string(indent, ' ') + layer_text(layer) + "\n";
     for (const auto& branch : layer.branches) {
-      text += std::string(indent + 2, ' ') + (branch.empty() ? "branch: as it is\n" : "branch\n");
+      text += std::string(indent + 2, ' ') +
+              (branch.empty() ? "branch: unchanged input\n" : "branch\n");
       text += layer_lines(branch, indent + 4);
     }
   }
@@ -146,7 +147,7 @@ std::string training_lines(const Json& training) {
   if (!how.empty()) text += line("training", how);
   const auto from = training.find("from");
   if (from == training.end() || !from->is_object()) return text;
-  return text + line("went on", "from a model of the same method") +
+  return text + line("continued", "from a model of the same method") +
          data_lines(from->value("data", Json::array()));
 }
 

@@ -95,9 +95,9 @@ Result<int> run(Info& o, Call& call) {
 Verb info_verb() {
   return make_verb<Info>(
       {.name = "info",
-       .summary = "what is in a file",
-       .text = "Reads the whole file once. A take is opened in a process of its "
-               "own, with limits: HDF5 files from outside can crash the library.",
+       .summary = "show the contents of a file",
+       .text = "Reads the whole file once. A take is opened in a separate process with limits, "
+               "because HDF5 files from other people can crash the library.",
        .examples = {{"kinalign info demo/mocap.bvh", "joints, frames, rate"},
                     {"kinalign info demo/mocap.bvh -v", "with the joints' names"},
                     {"kinalign info demo/take.h5 --json", "everything, with the report"},

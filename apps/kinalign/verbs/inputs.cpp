@@ -54,7 +54,7 @@ Fields StreamFlags::fields() {
   std::erase_if(out, [&](const Field& field) {
     return std::find(of_alignment.begin(), of_alignment.end(), field.name) != of_alignment.end();
   });
-  out.push_back({"select", "rows of a table to take; may be repeated", &select});
+  out.push_back({"select", "rows of a table to use; may be repeated", &select});
   return out;
 }
 
@@ -69,11 +69,11 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
       if (std::none_of(own.begin(), own.end(), [&](const Field& f) { return is(f.name); }))
         continue;
       return Failure(Error{flag_of(name), 0, "a stream's own file",
-                           shown(path) + ", which says such things itself"});
+                           shown(path) + ", which already states this"});
     }
     const auto useless = useless_options(*stream);
     if (std::none_of(useless.begin(), useless.end(), is)) continue;
-    return Failure(Error{flag_of(name), 0, "a file that has a use for it",
+    return Failure(Error{flag_of(name), 0, "a file that can use this flag",
                          shown(path) + ": " + contents_line(*stream)});
   }
   return {};
@@ -118,10 +118,10 @@ int code_of(const Findings& findings) {
 Result<void> check_take_name(const std::string& out) {
   for (const std::string_view ending : {".npz", ".csv", ".bvh"}) {
     if (!out.ends_with(ending)) continue;
-    return Failure(Error{"-o", 0,
-                         "a name for an HDF5 file, as take.h5 (kinalign convert makes .npz and "
-                         ".bvh of a take)",
-                         shown(file_name(out))});
+    return Failure(Error{
+        "-o", 0,
+        "a name for an HDF5 file, such as take.h5 (kinalign convert makes .npz and .bvh of a take)",
+        shown(file_name(out))});
   }
   return {};
 }
@@ -152,8 +152,8 @@ Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const s
 Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
     if (same_file(out, input)) {
-      return Failure(Error{out, 0, "another name than those of the files it is made of",
-                           "'" + shown(file_name(input)) + "', which is one of them"});
+      return Failure(Error{out, 0, "a name other than those of the input files",
+                           "'" + shown(file_name(input)) + "', an input file"});
     }
   }
   return {};

@@ -22,7 +22,7 @@ Verb man_verb() {
   return make_verb<Man>({.name = "man",
                          .summary = "print the man page",
                          .text = "",
-                         .examples = {{"kinalign man | man -l -", "reads it"}},
+                         .examples = {{"kinalign man | man -l -", "shows the page"}},
                          .common = {}},
                         describe, run);
 }

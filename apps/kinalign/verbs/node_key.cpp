@@ -25,39 +25,39 @@ Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
 /// --new-lab-key makes the lab's key only, so no other flag may be given.
 Result<void> check_drawn(const NodeKeyFlags& o, const Common& common) {
   if (!common.out.empty()) {
-    return Failure(Error{"--out", 0, "none beside --new-lab-key, which names the new file itself",
+    return Failure(Error{"--out", 0,
+                         "no --out with --new-lab-key, which already names the new file",
                          shown(common.out)});
   }
   if (o.lab_key.empty() && !o.node) return {};
-  return Failure(Error{o.node ? "--node" : "--lab-key", 0,
-                       "none beside --new-lab-key: one call makes the lab's key, the next ones, "
-                       "with --lab-key FILE --node N, the nodes'",
-                       "both"});
+  return Failure(
+      Error{o.node ? "--node" : "--lab-key", 0,
+            "--new-lab-key FILE alone; for a node's key, run again with --lab-key FILE --node N",
+            "both"});
 }
 
 /// A node's key needs the lab's key and the node's id.
 Result<void> check_node(const NodeKeyFlags& o) {
   if (o.lab_key.empty() && !o.node) {
-    return Failure(Error{"", 0,
-                         "--new-lab-key FILE, once in a lab, or --lab-key FILE --node N, for each "
-                         "node",
-                         "none of them"});
+    return Failure(
+        Error{"", 0, "--new-lab-key FILE, once per lab, or --lab-key FILE --node N, for each node",
+              "neither"});
   }
   if (!o.node) {
-    return Failure(
-        Error{"--lab-key", 0, "--node N beside it, the node that the key is for", "none"});
+    return Failure(Error{"--lab-key", 0, "--node N as well, the id of the node", "no --node"});
   }
   if (!o.lab_key.empty()) return {};
-  return Failure(
-      Error{"--node", 0, "--lab-key FILE beside it, of which a node's key is made", "none"});
+  return Failure(Error{"--node", 0, "--lab-key FILE as well, from which the node's key is derived",
+                       "no --lab-key"});
 }
 
 /// The command line of `kinalign node-key`.
 Usage describe_node_key(NodeKeyFlags& o) {
   Usage usage;
-  usage.flags = {{"new_lab_key", "draw a lab key, and write it into this new file", &o.new_lab_key},
-                 {"lab_key", "the file with the lab's key", &o.lab_key},
-                 {"node", "the node's id, as it is flashed", &o.node, 0.0, 4294967295.0}};
+  usage.flags = {
+      {"new_lab_key", "make a random lab key and write it to this new file", &o.new_lab_key},
+      {"lab_key", "the file with the lab's key", &o.lab_key},
+      {"node", "id of the node, as in its firmware", &o.node, 0.0, 4294967295.0}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     KA_TRY(check_named(o, given));
     return o.new_lab_key.empty() ? check_node(o) : check_drawn(o, common);
@@ -70,7 +70,7 @@ Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (!o.new_lab_key.empty()) {
     KA_TRY(write_key(files, o.new_lab_key, KA_TRY(new_lab_key())));
-    call.console.print(o.new_lab_key + ": a new lab key; keep a copy where nobody else reads it\n");
+    call.console.print(o.new_lab_key + ": a new lab key; keep a copy in a safe place\n");
     return 0;
   }
   call.console.if_it_fails(key_advice);
@@ -92,14 +92,14 @@ Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
 Verb node_key_verb() {
   return make_verb<NodeKeyFlags>(
       {.name = "node-key",
-       .summary = "the lab's key, and the key that a node is flashed with",
-       .text =
-           "A node with a key can't be imitated, nor its frames be replayed. Its key is derived "
-           "from the lab's, which time-server --lab-key reads; no file is ever overwritten.",
-       .examples = {{"kinalign node-key --new-lab-key lab.key", "once in a lab"},
+       .summary = "make the lab's key, and the key of each node",
+       .text = "If a node has a key, no other sender can imitate it or replay its frames. The "
+               "node's key is derived from the lab's key, which time-server --lab-key reads. No "
+               "file is ever overwritten.",
+       .examples = {{"kinalign node-key --new-lab-key lab.key", "once per lab"},
                     {"kinalign node-key --lab-key lab.key --node 7", "prints 32 digits"},
                     {"kinalign node-key --lab-key lab.key --node 7 -o node7.key",
-                     "writes them, for nobody else to read"}},
+                     "writes them to a file that only you can read"}},
        .common = {"out"}},
       describe_node_key, run_node_key);
 }

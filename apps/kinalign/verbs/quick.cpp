@@ -57,7 +57,7 @@ Result<void> check_stream_names(const Manifest& manifest) {
   std::vector<std::string> names;
   for (const StreamOptions& stream : manifest.streams) {
     if (std::find(names.begin(), names.end(), stream.name) != names.end()) {
-      return Failure(Error{"--points", 0, "a name that no other stream has", shown(stream.name)});
+      return Failure(Error{"--points", 0, "a name that no other stream uses", shown(stream.name)});
     }
     names.push_back(stream.name);
   }
@@ -120,32 +120,32 @@ std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
 /// --space is "fit" without the flag; a manifest has another default.
 Fields QuickFlags::fields() {
   space.method = "fit";
-  return {
-      {"mocap", "the reference: a BVH, or a file of points", &mocap},
-      {"kinect", "a file of Kinect joints", &kinect},
-      {"imu", "a node's file; may be repeated", &imu},
-      {"points", "a further file of points; may be repeated", &points},
-      {"mocap_layout", "layout of the reference's file", &mocap_options.layout},
-      {"kinect_layout", "layout of the Kinect file", &kinect_layout},
-      {"points_layout", "layout of the further files of points", &points_layout},
-      {"imu_layout", "layout of the nodes' files", &imu_layout},
-      {"root_node", "node into whose space all nodes are brought", &root_node},
-      {"start_ns", "stamp of the click that started the mocap, ns since 1970",
-       &mocap_options.start_ns, -4e18, 4e18},
-      {"metres_per_unit", "length of the mocap file's unit, m; 0: the format's own (BVH: 0.01)",
-       &mocap_options.metres_per_unit, 0.0, 1000.0},
-      {.name = "up",
-       .meaning = "the mocap file's up axis (BVH: y)",
-       .value = &mocap_options.up,
-       .choices = {"", "y", "z"}},
-      {.name = "space",
-       .meaning = "how the Kinect comes into the mocap's space",
-       .value = &space.method,
-       .choices = {"none", "paper", "fit"}},
-      {"rotation_y_deg", "of --space paper: turn about the y axis, degrees", &space.rotation_y_deg,
-       -360.0, 360.0},
-      {"joint", "of --space: a Kinect's and a mocap's joint that mean one place; may be repeated",
-       &joints}};
+  return {{"mocap", "the reference: a BVH, or a file of points", &mocap},
+          {"kinect", "a file of Kinect joints", &kinect},
+          {"imu", "a node's file; may be repeated", &imu},
+          {"points", "a further file of points; may be repeated", &points},
+          {"mocap_layout", "layout of the reference's file", &mocap_options.layout},
+          {"kinect_layout", "layout of the Kinect file", &kinect_layout},
+          {"points_layout", "layout of the further files of points", &points_layout},
+          {"imu_layout", "layout of the nodes' files", &imu_layout},
+          {"root_node", "node whose space all nodes are moved into", &root_node},
+          {"start_ns", "stamp of the click that started the mocap, ns since 1970",
+           &mocap_options.start_ns, -4e18, 4e18},
+          {"metres_per_unit", "length of the mocap file's unit, m; 0: the format's own (BVH: 0.01)",
+           &mocap_options.metres_per_unit, 0.0, 1000.0},
+          {.name = "up",
+           .meaning = "the mocap file's up axis (BVH: y)",
+           .value = &mocap_options.up,
+           .choices = {"", "y", "z"}},
+          {.name = "space",
+           .meaning = "method that moves the Kinect into the mocap's space",
+           .value = &space.method,
+           .choices = {"none", "paper", "fit"}},
+          {"rotation_y_deg", "with --space paper: rotation about the y axis, degrees",
+           &space.rotation_y_deg, -360.0, 360.0},
+          {"joint",
+           "with --space: a joint of the Kinect and the same joint of the mocap; may be repeated",
+           &joints}};
 }
 
 Result<void> refuse_beside(const std::string& path, const Sources& given) {
@@ -154,12 +154,12 @@ Result<void> refuse_beside(const std::string& path, const Sources& given) {
     if (path.ends_with(".mcap")) {
       const std::string key(twin.key.substr(0, twin.key.find('.')));
       return Failure(Error{flag_of(twin.flag), 0,
-                           key + ".NAME] of a manifest, recording.toml, which mixes recordings "
-                                 "with files (NAME: a stream's own, see kinalign info)",
-                           shown(file_name(path)) + ", a recording, which brings its own streams"});
+                           key + ".NAME] of a recording.toml, which can combine recordings and "
+                                 "files (NAME: a stream's name, see kinalign info)",
+                           shown(file_name(path)) + ", a recording, which already has streams"});
     }
     return Failure(Error{flag_of(twin.flag), 0, std::string(twin.key) + " of " + shown(path),
-                         "a flag beside the manifest"});
+                         "this flag with a manifest"});
   }
   return {};
 }
@@ -167,14 +167,17 @@ Result<void> refuse_beside(const std::string& path, const Sources& given) {
 Result<void> refuse_alone(const QuickFlags& flags, const Sources& given) {
   for (const Twin& twin : twins) {
     if (!is_given(twin.flag, given) || twin.needs.empty() || is_given(twin.needs, given)) continue;
-    return Failure(Error{flag_of(twin.flag), 0, flag_of(twin.needs) + ", which it is for", "none"});
+    return Failure(Error{flag_of(twin.flag), 0,
+                         flag_of(twin.needs) + ", to which this flag applies",
+                         "no " + flag_of(twin.needs)});
   }
   if (is_given("rotation_y_deg", given) && flags.space.method != "paper") {
-    return Failure(Error{"--rotation-y-deg", 0, "--space paper, which it is for",
+    return Failure(Error{"--rotation-y-deg", 0, "--space paper, to which this flag applies",
                          "--space " + flags.space.method});
   }
   if (!flags.joints.empty() && flags.space.method == "none") {
-    return Failure(Error{"--joint", 0, "--space fit or paper, which it is for", "--space none"});
+    return Failure(
+        Error{"--joint", 0, "--space fit or paper, to which this flag applies", "--space none"});
   }
   return {};
 }

@@ -90,19 +90,19 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
                               {"same", found.same()},
                               {"software", origin.software},
                               {"changed_inputs", found.changed}};
-  std::string text = fmt::format("{}: every byte agrees\n", take);
+  std::string text = fmt::format("{}: all bytes are equal\n", take);
   if (found.difference) {
-    text = fmt::format("{}: differs from byte {} on\n", take, *found.difference);
+    text = fmt::format("{}: bytes differ from byte {} on\n", take, *found.difference);
     json["first_difference"] = *found.difference;
   } else if (found.failure) {
-    text = fmt::format("{}: differs: cannot be made again: {}\n", take, to_string(*found.failure));
+    text = fmt::format("{}: differs: the take can't be made again: {}\n", take,
+                       to_string(*found.failure));
     json["failure"] = to_string(*found.failure);
   }
   for (const std::string& name : found.changed) text += "  " + changed_line(name) + "\n";
   if (found.difference && found.changed.empty()) {
     text += fmt::format(
-        "  the inputs are the same; the take was changed, or another version than {} "
-        "remade it\n",
+        "  the inputs are the same; the take was changed, or this version differs from {}\n",
         origin.software);
   }
   call.console.print(harmless(text));
@@ -137,8 +137,8 @@ Result<int> run(Rebuild& o, Call& call) {
       [base, take, count = inputs.size()](const Error& error) -> std::vector<std::string> {
         if (!error.file.starts_with(base)) return {};
         return {
-            fmt::format("--inputs is one folder that has all {} files of the take by the names "
-                        "that kinalign info {} shows: copy or link them into one",
+            fmt::format("--inputs must be one folder with all {} files of the take, under the "
+                        "names that kinalign info {} shows: copy or link them there",
                         count, take)};
       });
   // A missing input is an error, not a difference: the comparison would say nothing about the take.
@@ -155,11 +155,10 @@ Result<int> run(Rebuild& o, Call& call) {
 Verb rebuild_verb() {
   return make_verb<Rebuild>(
       {.name = "rebuild",
-       .summary = "make a take again from its inputs, compare every byte",
-       .text =
-           "A take holds every parameter that made it and the SHA-256 of every input. Exit code 1 "
-           "where an input is not the one that the take was made from, or where it was made with "
-           "warnings.",
+       .summary = "make a take again from its inputs, or compare every byte",
+       .text = "A take contains every parameter of its alignment and the SHA-256 of every input. "
+               "Exit code 1 if an input is not the file that the take was made from, or if there "
+               "were warnings.",
        .examples = {{"kinalign rebuild demo/take.h5 --inputs demo --verify",
                      "exit code 0: the same bytes; 1: not"},
                     {"kinalign rebuild demo/take.h5 --inputs demo -o demo/again.h5",

@@ -41,15 +41,15 @@ struct Report {
 Usage describe_report(Report& o) {
   Usage usage;
   usage.positionals = {{"TAKE", "a take that kinalign wrote", &o.take}};
-  usage.flags = {{"inputs",
-                  "folder of the files that the take was made from, for the raw samples (default: "
-                  "the take's own, where they lie there)",
-                  &o.inputs},
-                 {"detail-s",
-                  "where the 60 s of raw samples begin, s from the first row (default: around the "
-                  "longest gap)",
-                  &o.detail_s, no_detail_s, 1e9},
-                 {"open", "show the page with xdg-open", &o.open}};
+  usage.flags = {
+      {"inputs",
+       "folder of the files that the take was made from, for the raw samples (default: the take's "
+       "folder, if they are there)",
+       &o.inputs},
+      {"detail-s",
+       "begin of the 60 s of raw samples, s after the first row (default: around the longest gap)",
+       &o.detail_s, no_detail_s, 1e9},
+      {"open", "show the page with xdg-open", &o.open}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.ends_with(".html") || common.out.ends_with(".htm")) return {};
     return Failure(Error{"-o", 0, "the page's file name, as in -o take.html",
@@ -143,7 +143,7 @@ Result<Outline> outline_of(FileSystem& files, const std::string& path, double wa
     out.nodes = json.at("nodes").get<std::vector<std::string>>();
     return out;
   } catch (const nlohmann::json::exception&) {
-    return Failure(Error{path, 0, "a take that says when it begins", "another answer"});
+    return Failure(Error{path, 0, "a take that states its first stamp", "no first stamp"});
   }
 }
 
@@ -362,15 +362,13 @@ Result<int> run(Report& o, Call& call) {
 Verb report_verb() {
   return make_verb<Report>(
       {.name = "report",
-       .summary = "a page for a take",
-       .text =
-           "One HTML file that loads nothing: a verdict for each stream, figures of time, space "
-           "and "
-           "nodes, and a 3D player. Raw samples stand in it where the take's inputs can be read. "
-           "Exit code 1 where a stream is bad.",
+       .summary = "make a page for a take",
+       .text = "Writes one HTML file that loads nothing: a verdict for each stream, figures of "
+               "time, space and nodes, and a 3D player. It shows raw samples if the take's inputs "
+               "can be read. Exit code 1 if a stream is bad.",
        .examples = {{"kinalign report demo/take.h5 -o demo/page.html", "open it in a browser"},
                     {"kinalign report demo/take.h5 -o demo/page.html --force --open",
-                     "opens it at once"},
+                     "also opens the page"},
                     {"kinalign report demo/take.h5 -o demo/page.html --force --json",
                      "path, size, verdicts"}},
        .common = {"out", "force", "json", "jobs"}},

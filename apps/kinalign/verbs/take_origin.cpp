@@ -43,7 +43,7 @@ Result<Origin> origin_of(FileSystem& files, const std::string& path) {
     }
     return origin;
   } catch (const nlohmann::json::exception&) {
-    return Failure(Error{path, 0, "a take that says how it was made", "another answer"});
+    return Failure(Error{path, 0, "a take that states how it was made", "no such statement"});
   }
 }
 

@@ -53,13 +53,13 @@ TEST_CASE("a flag of many values may be given as often as wanted, another only o
   const Given given = after({"a", "--imu", "waist=w.csv", "--imu=ankle_left=a.csv"});
   CHECK(given.mix.imu == std::vector<std::string>{"waist=w.csv", "ankle_left=a.csv"});
   CHECK(after({"a", "--rows=2", "--rows=3"}).message ==
-        "--rows: expected to be given once, found given twice");
+        "--rows: expected this flag once, found it twice");
 }
 
 TEST_CASE("words that are no flags go to the positionals, behind -- all of them") {
   CHECK(after({"a", "--rows", "2", "b"}).mix.files == std::vector<std::string>{"a", "b"});
   CHECK(after({"--", "--rows"}).mix.files == std::vector<std::string>{"--rows"});
-  CHECK(after({}).message == "expected FILE (a file to mix), found nothing in its place");
+  CHECK(after({}).message == "expected FILE (a file to mix), found nothing");
 }
 
 TEST_CASE("of two words the one that is missing is named") {
@@ -68,12 +68,12 @@ TEST_CASE("of two words the one that is missing is named") {
   usage.positionals = {{"IN", "a file", &from}, {"OUT", "a new file", &to}};
   const auto parsed = parse_words({"a"}, usage, {});
   REQUIRE_FALSE(parsed);
-  CHECK(to_string(parsed.error()) == "expected OUT (a new file), found nothing in its place");
+  CHECK(to_string(parsed.error()) == "expected OUT (a new file), found nothing");
 }
 
 TEST_CASE("a word too many is refused by name") {
   CHECK(after({"1", "2", "3", "4", "5", "6", "7", "8", "9", "10"}).message ==
-        "expected no further word, found 10");
+        "expected no more words, found 10");
 }
 
 TEST_CASE("a word too many is refused with what to do instead") {
@@ -81,15 +81,15 @@ TEST_CASE("a word too many is refused with what to do instead") {
   Usage usage;
   usage.positionals = {{"FILE", "a file", &file, 1, 1, {}, "one at a time"}};
   CHECK(to_string(parse_words({"a", "b"}, usage, {}).error()) ==
-        "expected no further word (one at a time), found b");
+        "expected no more words (one at a time), found b");
 }
 
 TEST_CASE("a TOML file as a word too many is taken for what --config names") {
   const auto parsed = parse_words({"lab.toml"}, {}, {});
   REQUIRE_FALSE(parsed);
   CHECK(to_string(parsed.error()) ==
-        "expected no further word (did you mean --config lab.toml?), found lab.toml");
-  CHECK(to_string(parse_words({"lab"}, {}, {}).error()) == "expected no further word, found lab");
+        "expected no more words (did you mean --config lab.toml?), found lab.toml");
+  CHECK(to_string(parse_words({"lab"}, {}, {}).error()) == "expected no more words, found lab");
 }
 
 TEST_CASE("an unknown flag is answered with the nearest known one") {
@@ -120,9 +120,9 @@ TEST_CASE("values outside the range or the choices are refused with what may sta
 
 TEST_CASE("a flag without its value is refused, also in front of the next flag") {
   CHECK(after({"a", "--gap-ms"}).message ==
-        "--gap-ms: expected a value behind it (NUMBER), found the end");
+        "--gap-ms: expected a value after it (NUMBER), found nothing after it");
   CHECK(after({"a", "--gap-ms", "--double"}).message ==
-        "--gap-ms: expected a value behind it (NUMBER), found --double");
+        "--gap-ms: expected a value after it (NUMBER), found --double");
 }
 
 TEST_CASE("what was given wins over what a file said in the meantime, and only that") {

@@ -16,11 +16,11 @@ using Lines = std::vector<std::string>;
 TEST_CASE("for a folder the first recording in it is named, if it has one") {
   const FreshFolder folder;
   const Error error{folder.path(), 0, "any words", "others", ErrorKind::directory};
-  CHECK(file_advice(error) == Lines{"name a file in it"});
+  CHECK(file_advice(error) == Lines{"name a file in this folder"});
   folder.write("b.mcap", "");
   folder.write("a.mcap", "");
   folder.write("0.csv", "");
-  CHECK(file_advice(error) == Lines{"name a file in it, as " + (folder / "a.mcap")});
+  CHECK(file_advice(error) == Lines{"name a file in this folder, such as " + (folder / "a.mcap")});
 }
 
 TEST_CASE("for a file that a disk can't read, the call of ddrescue is named") {

@@ -61,7 +61,7 @@ TEST_CASE("what only a verb's own check can see is wrong use too") {
   CHECK(outcome.code == 2);
   CHECK(outcome.err ==
         "kinalign mix: --imu: expected NODE=FILE, found w.csv\n"
-        "  kinalign mix --help shows what it takes, with examples\n");
+        "  kinalign mix --help lists its arguments and flags, with examples\n");
 }
 
 TEST_CASE("a flag wins over the environment, that over the project, that over the user") {
@@ -93,7 +93,8 @@ TEST_CASE("--config takes the place of the project's file") {
   named.variables["KINALIGN_CONFIG"] = "/no/such";
   const Outcome by_variable = named.run(show, {"mix", "a"});
   CHECK(by_variable.code == 3);
-  CHECK(by_variable.err.ends_with("such file or directory\n  KINALIGN_CONFIG names it\n"));
+  CHECK(by_variable.err.ends_with(
+      "such file or directory\n  the variable KINALIGN_CONFIG names this file\n"));
 }
 
 TEST_CASE("a fault in a file of settings is told with its line") {
@@ -105,9 +106,9 @@ TEST_CASE("a fault in a file of settings is told with its line") {
     const Outcome outcome = machine.run(show, {"mix", "a"});
     CHECK(outcome.code == 2);
     const auto end = outcome.err.find('\n');
-    CHECK(outcome.err.substr(end) ==
-          "\n  docs/commands.md says what a file of settings has, docs/recording.md what one of a "
-          "lab\n");
+    CHECK(
+        outcome.err.substr(end) ==
+        "\n  docs/commands.md describes a settings file, docs/recording.md describes a lab file\n");
     return outcome.err.substr(0, end);
   };
   CHECK(message("[mix]\nrwos = 2\n") ==
@@ -123,10 +124,10 @@ TEST_CASE("a fault in a file of settings is told with its line") {
   CHECK(message("[mix]\nrows = {a = 1}\n").find(":2: expected settings, ") != std::string::npos);
   CHECK(message("[mix]\n[devices.mocap]\nport = 1\n") ==
         "kinalign mix: " + path +
-            ":2: expected settings, or a lab's device as [device.mocap], found [devices.mocap]");
+            ":2: expected settings, or a device of a lab as [device.mocap], found [devices.mocap]");
   CHECK(message("[[device]]\nport = 1\n") ==
         "kinalign mix: " + path +
-            ":1: expected settings, or a lab's device as [device.NAME], found [[device]]");
+            ":1: expected settings, or a device of a lab as [device.NAME], found [[device]]");
   CHECK(message("[devices]\nport = 1\n") ==
         "kinalign mix: " + path + ":2: expected a verb (did you mean device?), found devices");
   CHECK(message("[mix\n").find(":1: expected TOML, found ") != std::string::npos);

@@ -24,18 +24,18 @@ def a_port_that_is_taken_is_named_with_what_to_do(_):
         done = kinalign("time-server", "--port", server.port)
     assert done.returncode == 3 and done.stdout == b"", done
     assert done.stderr.decode() == (
-        f"kinalign time-server: 0.0.0.0:{server.port}: expected a UDP port to serve on, found another program on it\n"
-        f"  ss -ulpn 'sport = :{server.port}' shows which one, another kinalign perhaps; --port takes another port\n"), done.stderr
+        f"kinalign time-server: 0.0.0.0:{server.port}: expected a UDP port to serve on, found a port that another program uses\n"
+        f"  ss -ulpn 'sport = :{server.port}' shows which program uses it, perhaps another kinalign; --port sets another port\n"), done.stderr
 
 
 @case
 def advice_names_the_flag_of_the_port_that_failed(folder):
     with Server(*ALL_ADDRESSES) as server:
         done = kinalign("time-server", "--port", 0, "--node-port", server.port)
-    advice = f"ss -ulpn 'sport = :{server.port}' shows which one, another kinalign perhaps; --node-port takes another port\n"
+    advice = f"ss -ulpn 'sport = :{server.port}' shows which program uses it, perhaps another kinalign; --node-port sets another port\n"
     assert done.returncode == 3 and done.stderr.decode().endswith(advice), done
     done = kinalign("time-server", "--port", 0, "--listen", "192.0.2.77")
-    assert done.returncode == 3 and b"found no interface that has it" in done.stderr, done
+    assert done.returncode == 3 and b"found no network interface with this address" in done.stderr, done
     assert b"ip -brief address" in done.stderr and b"--listen takes one" in done.stderr, done
     node_key = folder / "node7.key"
     node_key.write_text("ab" * 16 + "\n")
@@ -139,8 +139,7 @@ def a_disk_that_is_full_is_told_while_it_serves(_):
         server = subprocess.Popen([cases.PROGRAM, "time-server", *ALL_ADDRESSES, "--json"], stdout=full,
                                   stderr=subprocess.PIPE, text=True)
         line = server.stderr.readline()
-        assert line.endswith("warning: standard output takes no more (No space left on device): at most 1 MiB of lines "
-                             "waits for room; serving goes on\n"), line
+        assert line.endswith("warning: standard output is blocked (No space left on device): up to 1 MiB of lines is kept; serving continues\n"), line
         assert server.poll() is None
         server.send_signal(signal.SIGTERM)
         assert "expected room to write, found No space left" in server.communicate(timeout=30)[1]
@@ -183,7 +182,7 @@ def the_help_and_the_page_name_every_kind_of_line(_):
 @case
 def wrong_use_is_told_before_anything_is_served(_):
     cases.wrong("time-server", "--exempt", "lab",
-                says="--exempt: expected an address or a network as 192.168.7.0/24, found lab")
+                says="--exempt: expected an address or a network, such as 192.168.7.0/24, found lab")
     cases.wrong("time-server", "--port", "65536", says="--port: expected a whole number from 0 to 65535, found 65536")
     cases.wrong("time-server", "--local-stratum", "16",
                 says="--local-stratum: expected a whole number from 1 to 15, found 16")
@@ -191,11 +190,11 @@ def wrong_use_is_told_before_anything_is_served(_):
                 says="--listen: expected an IPv4 or IPv6 address, found localhost")
     for one, other, says in (("127.0.0.1", "127.0.0.1", "each address once, found 127.0.0.1 twice"),
                              ("::1", "0:0::1", "each address once, found ::1 twice"),
-                             ("127.0.0.1", "0.0.0.0", "nothing that 0.0.0.0 stands for already, found 127.0.0.1"),
-                             ("::", "::1", "nothing that :: stands for already, found ::1")):
+                             ("127.0.0.1", "0.0.0.0", "no address that 0.0.0.0 already includes, found 127.0.0.1"),
+                             ("::", "::1", "no address that :: already includes, found ::1")):
         cases.wrong("time-server", "--listen", one, "--listen", other, says=f"--listen: expected {says}")
     cases.wrong("time-server", "--port", "12399", "--node-port", "12399",
-                says="--node-port: expected another port than --port, found 12399: both flags name the same port")
+                says="--node-port: expected a port other than that of --port, found port 12399 for both")
 
 
 if __name__ == "__main__":

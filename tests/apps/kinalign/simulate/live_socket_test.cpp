@@ -95,6 +95,6 @@ TEST_CASE("a host is named by an address of either kind, never by a name") {
     const auto refused = check_live_address(host);
     REQUIRE(!refused);
     CHECK(to_string(refused.error()) ==
-          "--to: expected an address in numbers, as 127.0.0.1, found " + shown(host));
+          "--to: expected an address in numbers, such as 127.0.0.1, found " + shown(host));
   }
 }

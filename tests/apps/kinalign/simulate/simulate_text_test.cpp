@@ -44,7 +44,7 @@ TEST_CASE("a rehearsal that was recorded says what was sent, and what comes next
   const SentText text = sent_text(well_sent());
   CHECK(text.sent ==
         "  sent 400 frames of mocap, 240 of kinect, 600 of nodes with 4,000 samples\n"
-        "  560 replies reached nodes; a frame left 2.0 ms late at the worst\n");
+        "  560 replies reached nodes; the latest frame was sent 2.0 ms late\n");
   CHECK(text.nobody.empty());
   CHECK(text.next == "  next    kinalign align r/recording.toml -o r/take.h5\n");
 }
@@ -68,9 +68,10 @@ TEST_CASE("who is stopped before anybody could answer says nothing of nobody") {
 TEST_CASE("where nobody was there it is said of every device alike, and of all together") {
   const SentText text = sent_text(sent_to_nobody());
   CHECK(text.nobody ==
-        "  datagrams that nobody took: 400 of 400 on mocap port 7012, 290 of 290 on kinect port "
+        "  datagrams refused by the host: 400 of 400 on mocap port 7012, 290 of 290 on kinect port "
         "7020, 590 of 590 on imu port 5005, 4 of 4 on marks port 7030\n"
-        "  nobody received this: is kinalign record running on ports mocap 7012, kinect 7020, imu "
+        "  the host refused every datagram: is kinalign record running on ports mocap 7012, kinect "
+        "7020, imu "
         "5005, "
         "marks 7030 of 127.0.0.1? --begin-in leaves time to start it\n");
   CHECK(text.next.empty());
@@ -81,8 +82,7 @@ TEST_CASE("another program on one port is somebody, who does not answer") {
   sent.counts.mocap.refused = 0;
   const SentText text = sent_text(sent);
   CHECK(text.nobody.find("mocap port") == std::string::npos);
-  CHECK(text.nobody.find(
-            "\n  nobody answered this: is kinalign record running on ports mocap 7012, ") !=
+  CHECK(text.nobody.find("\n  no reply came: is kinalign record running on ports mocap 7012, ") !=
         std::string::npos);
   CHECK(sent.unanswered());
   CHECK(text.next.empty());
@@ -92,7 +92,7 @@ TEST_CASE("a recorder that comes late, or for some devices only, is told what it
   SentRehearsal sent = well_sent();
   sent.counts.kinect.refused = 30;
   const SentText text = sent_text(sent);
-  CHECK(text.nobody == "  datagrams that nobody took: 30 of 290 on kinect port 7020\n");
+  CHECK(text.nobody == "  datagrams refused by the host: 30 of 290 on kinect port 7020\n");
   CHECK(!sent.unanswered());
   CHECK(!text.next.empty());
 }
@@ -101,8 +101,7 @@ TEST_CASE("a recording of another name is not called by the one that recording.t
   SentRehearsal sent = well_sent();
   sent.recorded_there = false;
   CHECK(sent_text(sent).next ==
-        "  next    r/recording.toml names r/take_01.mcap, which is not there: put the name of what "
-        "was "
-        "recorded in its place\n"
+        "  next    r/recording.toml names r/take_01.mcap, which does not exist: replace this name "
+        "by the name of your recording\n"
         "          then: kinalign align r/recording.toml -o r/take.h5\n");
 }

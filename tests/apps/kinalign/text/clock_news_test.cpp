@@ -24,11 +24,13 @@ void step(ClockNews& news, double s) {
 
 const std::string stepped = "node 7: warning: its counter stepped by at least 500.000 ms";
 const std::string keeps =
-    "node 7: warning: its clock keeps contradicting the assumptions (more than 100 ppm off, or "
-    "asleep), so nothing of it is certified; its steps are told again after a quiet minute";
+    "node 7: warning: its clock contradicts the assumptions again and again (drift above 100 ppm, "
+    "or the node sleeps), so none of its stamps are certified; its steps are reported again after "
+    "a "
+    "minute without steps";
 
 std::string withdrawn(const std::string& s) {
-  return "node 7: warning: the stamps of " + s + " s are not certified any more";
+  return "node 7: warning: the stamps of " + s + " s are no longer certified";
 }
 
 }  // namespace
@@ -54,8 +56,7 @@ TEST_CASE("a withdrawal without a step is told within a second, or at the end") 
   news.hear(1, 8, event(Kind::withdrawn, 16, 20), at(20.5));
   CHECK(news.lines(at(20.9)).empty());
   CHECK(news.lines(at(21)) == Lines{withdrawn("5.0")});
-  CHECK(news.last_lines() ==
-        Lines{"node 8: warning: the stamps of 4.0 s are not certified any more"});
+  CHECK(news.last_lines() == Lines{"node 8: warning: the stamps of 4.0 s are no longer certified"});
   CHECK(news.last_lines().empty());
 }
 

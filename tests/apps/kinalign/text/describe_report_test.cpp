@@ -87,7 +87,7 @@ TEST_CASE("what alignment found comes back from its report, word for word") {
   }
   const auto none = report_findings("{", "t.h5");
   REQUIRE_FALSE(none);
-  CHECK(to_string(none.error()) == "t.h5: expected a report as JSON, found a text that is none");
+  CHECK(to_string(none.error()) == "t.h5: expected a report as JSON, found text that is not JSON");
 }
 
 TEST_CASE("a take's page says its span in UTC, its streams, their losses and their spaces") {

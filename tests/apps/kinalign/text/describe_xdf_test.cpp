@@ -92,18 +92,18 @@ TEST_CASE("check tells what is wrong with an XDF, and nothing of a sound one") {
   const std::string more = xdf_samples(1, 1, xdf_sample(0.25, little_text(std::nan(""))));
   CHECK(told(sound + more) ==
         std::vector<std::string>{
-            "warning: of 'N1' stamps that rise; 1 that step back, by up to 0.750 s",
-            "note: of 'N1' numbers; 1 that are NaN or infinite"});
+            "warning: rising stamps of stream 'N1'; 1 that step back, by up to 0.750 s",
+            "note: finite values of stream 'N1'; 1 NaN or infinite values"});
   CHECK(told(sound + more.substr(0, 20)).front() ==
         "warning: a last chunk of 25 bytes; 15 bytes at byte " + std::to_string(sound.size()));
   CHECK(told(two_streams()) == std::vector<std::string>{"note: of 'N8' samples; none"});
   const double nowhere = std::numeric_limits<double>::infinity();
   CHECK(told(xdf_begin + xdf_header(1, "double64", 1) +
              xdf_samples(1, 1, xdf_sample(nowhere, little_text(1.0)))) ==
-        std::vector<std::string>{"warning: of 'N1' stamps that are numbers below 1e15; 1 others",
-                                 "note: of 'N1' clock offsets; none"});
-  CHECK(told(xdf_begin) == std::vector<std::string>{"warning: a stream; none that can be read"});
+        std::vector<std::string>{"warning: stamps below 1e15 of stream 'N1'; 1 other stamps",
+                                 "note: clock offsets of stream 'N1'; none"});
+  CHECK(told(xdf_begin) == std::vector<std::string>{"warning: a readable stream; none"});
   std::string resets = sound;
   for (const double offset : {0.5, 0.5, 90.0, 90.0}) resets += xdf_offset(1, 9.0, offset);
-  CHECK(told(resets) == std::vector<std::string>{"warning: of 'N1' one clock; 2"});
+  CHECK(told(resets) == std::vector<std::string>{"warning: one clock of stream 'N1'; 2 clocks"});
 }

@@ -46,7 +46,7 @@ TEST_CASE("every event has a text and a name, and warnings say that they are") {
   }
   HostClockEvent slept{HostClockEvent::Kind::suspended, {}, std::chrono::seconds(30)};
   CHECK(event_text(slept) ==
-        "warning: this machine slept for 30.0 s; the nodes' clocks begin anew");
+        "warning: this machine slept for 30.0 s; the nodes' clocks are learnt again");
 }
 
 TEST_CASE("a node that is refused for its key is told with what mends it") {
@@ -56,14 +56,15 @@ TEST_CASE("a node that is refused for its key is told with what mends it") {
   event.address = {mapped_ipv4(std::array<std::uint8_t, 4>{192, 168, 7, 20}), 4000};
   event.refusal = NodeRefusal::wrong_mac;
   CHECK(event_text(event) ==
-        "warning: something that says it is node 7 is not heard: it sends with another key (from "
-        "192.168.7.20:4000); if it is that node, flash what kinalign node-key --lab-key LAB --node "
-        "7 prints");
+        "warning: a sender that calls itself node 7 is refused: it sends frames signed with "
+        "another key (from 192.168.7.20:4000); if it is that node, flash the key that kinalign "
+        "node-key --lab-key LAB --node 7 prints");
   event.refusal = NodeRefusal::no_mac;
-  CHECK(event_text(event) ==
-        "warning: something that says it is node 7 is not heard: it sends without a MAC (from "
-        "192.168.7.20:4000); if it is that node, flash what kinalign node-key --lab-key LAB --node "
-        "7 prints");
+  CHECK(
+      event_text(event) ==
+      "warning: a sender that calls itself node 7 is refused: it sends frames without a MAC (from "
+      "192.168.7.20:4000); if it is that node, flash the key that kinalign node-key --lab-key "
+      "LAB --node 7 prints");
   const auto json = nlohmann::json::parse(event_json(event));
   CHECK(json["refusal"] == "no_mac");
   CHECK(json["node_id"] == 7);
@@ -71,8 +72,9 @@ TEST_CASE("a node that is refused for its key is told with what mends it") {
   CHECK_FALSE(json.contains("stream"));
   event.refusal = NodeRefusal::no_key;
   CHECK(event_text(event) ==
-        "warning: something that says it is node 7 is not heard: it sends with a MAC, and there is "
-        "no --lab-key (from 192.168.7.20:4000); --lab-key FILE, the lab's, lets it in");
+        "warning: a sender that calls itself node 7 is refused: it sends frames with a MAC, but "
+        "no --lab-key was given (from 192.168.7.20:4000); to accept it, give the lab's key with "
+        "--lab-key FILE");
 }
 
 TEST_CASE("a node of a lab has the device's name and its place, else its id") {
@@ -84,13 +86,14 @@ TEST_CASE("a node of a lab has the device's name and its place, else its id") {
   CHECK(event_text(event, names) == "imu wrist: joined (192.168.7.20:4000)");
   event.kind = NodeEvent::Kind::renamed;
   event.other_id = 3;
-  CHECK(event_text(event, names) == "imu wrist: seems to be what imu 3 was (192.168.7.20:4000)");
+  CHECK(event_text(event, names) ==
+        "imu wrist: seems to be the same device as imu 3 (192.168.7.20:4000)");
   event.kind = NodeEvent::Kind::wrong_key;
   event.refusal = NodeRefusal::wrong_mac;
   CHECK(event_text(event, names) ==
-        "warning: something that says it is imu wrist is not heard: it sends with another key "
-        "(from 192.168.7.20:4000); if it is that node, flash what kinalign node-key --lab-key LAB "
-        "--node 7 prints");
+        "warning: a sender that calls itself imu wrist is refused: it sends frames signed with "
+        "another key (from 192.168.7.20:4000); if it is that node, flash the key that kinalign "
+        "node-key --lab-key LAB --node 7 prints");
   ClockEvent settled;
   settled.kind = ClockEvent::Kind::settled;
   CHECK(event_text(settled, 7, names) == "imu wrist: its counter runs evenly again");

@@ -110,14 +110,14 @@ TEST_CASE("who was refused for a key is listed by what he says he is") {
   for (std::uint32_t id = 1; id < 62; ++id) refused.take(NodeRefusal::no_mac, id, {});
   const auto lines = claims_text(refused, counts);
   REQUIRE(lines.size() == 2);
-  CHECK(lines[0].starts_with("no mac: from what says it is node 1, 2, 3, "));
+  CHECK(lines[0].starts_with("no mac: senders that call themselves node 1, 2, 3, "));
   CHECK(lines[0].ends_with(", 60, 61 (1,200 frames)"));
-  CHECK(lines[1] == "wrong mac: from what says it is node 11, 12, 13 (6 frames)");
+  CHECK(lines[1] == "wrong mac: senders that call themselves node 11, 12, 13 (6 frames)");
   refused.take(NodeRefusal::wrong_mac, 99, {});  // one more than there is room for
   CHECK(claims_text(refused, counts)[1] ==
-        "wrong mac: from what says it is node 11, 12, 13 and others (6 frames)");
+        "wrong mac: senders that call themselves node 11, 12, 13 and others (6 frames)");
   CHECK(claims_text(refused, counts, {"imu", {{"12", "wrist"}}})[1] ==
-        "wrong mac: from what says it is imu 11, wrist, 13 and others (6 frames)");
+        "wrong mac: senders that call themselves imu 11, wrist, 13 and others (6 frames)");
 }
 
 }  // namespace kinalign

@@ -32,9 +32,9 @@ TEST_CASE("the first lines say where it serves, how good the clock is and what c
         "           ESP32: esp_sntp_setservername(0, \"192.168.7.1\")\n");
   CHECK(start_lines({{"127.0.0.1"}, {}, 12300}, NtpServerState{}) ==
         "serving time on 127.0.0.1:12300, UDP\n"
-        "  clock    not synchronised, and no reference: clients are told so and turn away\n"
+        "  clock    not synchronised and no reference: clients will not follow it\n"
         "  clients  chrony: server ADDRESS port 12300 iburst\n"
-        "           most others, ESP32 and ntpdate among them, ask port 123 only\n");
+        "           most other clients, such as ESP32 and ntpdate, can use port 123 only\n");
 }
 
 TEST_CASE("a synchronised clock is named with its error, a leap second with its day") {

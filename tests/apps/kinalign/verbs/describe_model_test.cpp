@@ -62,7 +62,7 @@ TEST_CASE("info tells branches, and what a network does not see") {
   REQUIRE(found);
   CHECK(found->text.find("a frame sees all before and all after it\n"
                          "              sum\n"
-                         "                branch: as it is\n"
+                         "                branch: unchanged input\n"
                          "                branch\n"
                          "                  conv 35, kernel 3, dilation 2, causal\n"
                          "                  dropout 0.25\n"
