@@ -3,7 +3,7 @@
 // frames and accepts replies. All times are arguments.
 #pragma once
 
-#include "kinalign/capture/nodes/node_desk.h"
+#include "kinalign/capture/nodes/node_responder.h"
 #include "kinalign/wire/node_reply.h"
 
 #include <optional>
@@ -85,36 +85,37 @@ class TestNode {
   std::optional<ReplyEcho> echo_;
 };
 
-/// NodeDesk with frames that arrive after a delay of `up`, and replies after a delay of `down`.
+/// NodeResponder with frames that arrive after a delay of `up`, and replies after a delay of
+/// `down`.
 struct TestDesk {
-  explicit TestDesk(const std::optional<LabKey>& lab = std::nullopt) : desk({lab, secret}) {}
+  explicit TestDesk(const std::optional<LabKey>& lab = std::nullopt) : responder({lab, secret}) {}
 
-  NodeNews take(const Bytes& bytes, const NodeAddress& from, HostTime at) {
-    return desk.receive({bytes, from, at});
+  NodeMessage take(const Bytes& bytes, const NodeAddress& from, HostTime at) {
+    return responder.receive({bytes, from, at});
   }
   Bytes reply(HostTime at) {
     Bytes out(64);
-    out.resize(desk.answer(at, out).size());
+    out.resize(responder.answer(at, out).size());
     return out;
   }
   /// Sends a frame at t, and gives the node its reply.
-  NodeNews exchange(TestNode& node, const NodeAddress& from, double t) {
-    const NodeNews news = take(node.frame(host_s(t)), from, host_s(t + 0.001));
+  NodeMessage exchange(TestNode& node, const NodeAddress& from, double t) {
+    const NodeMessage message = take(node.frame(host_s(t)), from, host_s(t + 0.001));
     const Bytes answer = reply(host_s(t + 0.0011));
     if (!answer.empty()) node.take_reply(answer, host_s(t + 0.002));
-    return news;
+    return message;
   }
-  std::uint64_t count(NodeVerdict verdict) const { return desk.counts().verdicts[verdict]; }
-  std::uint64_t count(NodeRefusal refusal) const { return desk.counts().refusals[refusal]; }
-  std::uint64_t count(EchoVerdict verdict) const { return desk.counts().echoes[verdict]; }
+  std::uint64_t count(NodeVerdict verdict) const { return responder.counts().verdicts[verdict]; }
+  std::uint64_t count(NodeRefusal refusal) const { return responder.counts().refusals[refusal]; }
+  std::uint64_t count(EchoVerdict verdict) const { return responder.counts().echoes[verdict]; }
   std::vector<NodeEvent::Kind> events() {
     std::vector<NodeEvent::Kind> kinds;
-    for (const NodeEvent& event : desk.take_events()) kinds.push_back(event.kind);
+    for (const NodeEvent& event : responder.take_events()) kinds.push_back(event.kind);
     return kinds;
   }
 
   static constexpr SipHashKey secret{1, 2, 3};
-  NodeDesk desk;
+  NodeResponder responder;
 };
 
 }  // namespace kinalign

@@ -38,7 +38,7 @@ bool has_round_trip(const NodeStatus& status) {
 
 /// "15.0/s", or the text for a node that is silent or has just sent its first frame.
 std::string pace_text(const NodeStatus& status, const ClockPair& now) {
-  if (status.silent) return "silent since " + utc_text(now.utc - (now.raw - status.heard));
+  if (status.silent) return "silent since " + utc_text(now.utc - (now.raw - status.last_arrival));
   return status.rate_hz ? fmt::format("{:.1f}/s", *status.rate_hz) : "first frame";
 }
 
@@ -103,7 +103,7 @@ std::string status_json(const NodeStatus& status) {
             {"boot_id", status.boot_id},
             {"address", address_text(status.address)},
             {"silent", status.silent},
-            {"lives", status.lives},
+            {"lives", status.sessions},
             {"accepted", status.accepted},
             {"lost", status.lost},
             {"old_key", status.old_key}};

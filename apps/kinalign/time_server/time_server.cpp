@@ -133,8 +133,8 @@ Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
   NodeReceiverOptions options;
   options.addresses = flags.listen;
   options.port = static_cast<std::uint16_t>(*flags.node_port);
-  options.desk.secret = KA_TRY(new_secret());
-  options.desk.lab_key = lab_key;
+  options.responder.secret = KA_TRY(new_secret());
+  options.responder.lab_key = lab_key;
   return KA_TRY(NodeReceiver::open(options, clocks));
 }
 

@@ -39,7 +39,7 @@ class AnswerTable {
 
  private:
   // Indexed by sequence modulo `remembered`. Stored outside the object, so that a search through
-  // all lives stays in the cache.
+  // all sessions stays in the cache.
   std::vector<GivenAnswer> answers_ = std::vector<GivenAnswer>(remembered);
   std::uint32_t newest_ = 0;
   bool begun_ = false;

@@ -17,18 +17,19 @@ constexpr std::int64_t trusted_us = 20'000'000;
 
 }  // namespace
 
-std::int64_t NodeCounter::foretold_us(HostTime h_rx) const {
-  return newest_us_ + std::chrono::duration_cast<std::chrono::microseconds>(h_rx - heard_).count();
+std::int64_t NodeCounter::predicted_us(HostTime h_rx) const {
+  return newest_us_ +
+         std::chrono::duration_cast<std::chrono::microseconds>(h_rx - newest_arrival_).count();
 }
 
 std::int64_t NodeCounter::widened(std::uint64_t counter_us, HostTime h_rx) const {
   const auto read = static_cast<std::int64_t>(counter_us);
   if (!begun_ || read >= turn_us) return read;
-  const std::int64_t foretold = foretold_us(h_rx);
+  const std::int64_t predicted = predicted_us(h_rx);
   const auto turns = static_cast<std::int64_t>(
-      std::llround(static_cast<double>(foretold - read) / static_cast<double>(turn_us)));
+      std::llround(static_cast<double>(predicted - read) / static_cast<double>(turn_us)));
   const std::int64_t nearest = read + turns * turn_us;
-  return turns > 0 && std::abs(nearest - foretold) <= trusted_us ? nearest : read;
+  return turns > 0 && std::abs(nearest - predicted) <= trusted_us ? nearest : read;
 }
 
 std::int64_t NodeCounter::widened_before(std::uint64_t counter_us, std::int64_t n_tx_us) const {
@@ -39,13 +40,13 @@ std::int64_t NodeCounter::widened_before(std::uint64_t counter_us, std::int64_t 
 }
 
 std::int64_t NodeCounter::ahead_us(std::int64_t n_us, HostTime h_rx) const {
-  return begun_ ? n_us - foretold_us(h_rx) : 0;
+  return begun_ ? n_us - predicted_us(h_rx) : 0;
 }
 
 void NodeCounter::take(std::int64_t n_us, HostTime h_rx) {
   if (begun_ && n_us <= newest_us_) return;
   newest_us_ = n_us;
-  heard_ = h_rx;
+  newest_arrival_ = h_rx;
   begun_ = true;
 }
 

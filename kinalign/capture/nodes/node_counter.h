@@ -30,10 +30,10 @@ class NodeCounter {
   void take(std::int64_t n_us, HostTime h_rx);
 
  private:
-  std::int64_t foretold_us(HostTime h_rx) const;
+  std::int64_t predicted_us(HostTime h_rx) const;
 
   std::int64_t newest_us_ = 0;
-  HostTime heard_{};  // arrival of the newest reading
+  HostTime newest_arrival_{};  // arrival of the newest reading
   bool begun_ = false;
 };
 

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "kinalign/capture/net/udp_socket.h"
-#include "kinalign/capture/nodes/node_life.h"
+#include "kinalign/capture/nodes/node_session.h"
 
 #include <optional>
 #include <span>

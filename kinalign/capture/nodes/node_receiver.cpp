@@ -24,7 +24,7 @@ struct NodeReceiver::StreamClock {
   NodeTime n{};                     // counter of the newest frame
   std::optional<ClockStamp> stamp;  // that counter reading on the host's axis
   // Arrival of the newest frame.
-  HostTime heard = HostTime::min();
+  HostTime last_arrival = HostTime::min();
   bool counts = false;  // the node has a counter
   // One-way delay of a node without a counter: the last, the sum, and the number of delays.
   std::optional<Duration> one_way;
@@ -38,7 +38,8 @@ NodeReceiver::~NodeReceiver() = default;
 Result<NodeReceiver> NodeReceiver::open(const NodeReceiverOptions& options, ClockReader& clocks) {
   std::vector<UdpSocket> sockets = KA_TRY(open_udp_sockets(options.addresses, options.port));
   for (const UdpSocket& socket : sockets)
-    attach_node_filter(socket);  // the filter only saves work; NodeDesk checks everything again
+    attach_node_filter(
+        socket);  // the filter only saves work; NodeResponder checks everything again
   return NodeReceiver(options, std::move(sockets), clocks);
 }
 
@@ -47,11 +48,11 @@ NodeReceiver::NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSo
     : sockets_(std::make_unique<std::vector<UdpSocket>>(std::move(sockets))),
       lines_(*sockets_, NodeTable::most_streams),
       axis_(clocks),
-      desk_(std::make_unique<NodeDesk>(options.desk)),
+      responder_(std::make_unique<NodeResponder>(options.responder)),
       batch_(std::make_unique<DatagramBatch>()),
       clocks_(NodeTable::most_streams),
       kept_(DatagramBatch::most),
-      heard_(NodeTable::most_streams) {}
+      arrived_at_(NodeTable::most_streams) {}
 
 void NodeReceiver::drain() {
   for (const UdpSocket* socket : lines_.ready()) {
@@ -86,35 +87,36 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
                               {datagram.from, datagram.from_port},
                               axis_.arrival(datagram.received),
                               datagram.received};
-    const NodeNews news = desk_->receive(arrival);
-    const auto answer = desk_->answer(axis_.now(), batch_->answer_to(i));
+    const NodeMessage message = responder_->receive(arrival);
+    const auto answer = responder_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
-    if (news.verdict == NodeVerdict::refused) continue;
-    keep(arrival, news);
-    if (news.verdict == NodeVerdict::accepted) heard_[news.stream] = datagram.to;
+    if (message.verdict == NodeVerdict::refused) continue;
+    keep(arrival, message);
+    if (message.verdict == NodeVerdict::accepted) arrived_at_[message.stream] = datagram.to;
   }
   unsent_ += batch_->send(socket.fd()).size();
   for (Kept& kept : std::span(kept_).first(kept_length_)) {
-    LiveClock* clock = kept.news.verdict == NodeVerdict::accepted ? &hear(kept) : nullptr;
-    if (watcher_) watcher_(kept.arrival, kept.news, clock);
+    LiveClock* clock =
+        kept.message.verdict == NodeVerdict::accepted ? &follow_clock(kept) : nullptr;
+    if (watcher_) watcher_(kept.arrival, kept.message, clock);
   }
 }
 
-void NodeReceiver::keep(const NodeArrival& arrival, const NodeNews& news) {
+void NodeReceiver::keep(const NodeArrival& arrival, const NodeMessage& message) {
   Kept& kept = kept_[kept_length_++];
   kept.arrival = arrival;  // the bytes stay valid until the next batch
-  kept.readings.assign(news.readings.begin(), news.readings.end());
-  kept.news = news;
-  kept.news.readings = kept.readings;
+  kept.readings.assign(message.readings.begin(), message.readings.end());
+  kept.message = message;
+  kept.message.readings = kept.readings;
 }
 
 /// Called after all ready sockets were read, because it may close one of them.
 void NodeReceiver::follow() {
-  for (std::size_t i = 0; i < heard_.size(); ++i) {
-    if (!heard_[i]) continue;
-    const NodeLife& life = desk_->life_of(desk_->stream(i));
-    lines_.follow(i, {life.address, *heard_[i]}, sockets_->front().port(), axis_.now());
-    heard_[i].reset();
+  for (std::size_t i = 0; i < arrived_at_.size(); ++i) {
+    if (!arrived_at_[i]) continue;
+    const NodeSession& session = responder_->session_of(responder_->stream(i));
+    lines_.follow(i, {session.address, *arrived_at_[i]}, sockets_->front().port(), axis_.now());
+    arrived_at_[i].reset();
   }
 }
 
@@ -127,29 +129,31 @@ NodeReceiver::StreamClock& NodeReceiver::clock_of(std::size_t stream) {
     missed_events_ += clock->clock.missed_events();
   }
   clock = std::make_unique<StreamClock>();
-  clock->number = desk_->stream(stream).number;
-  clock->node_id = desk_->stream(stream).node_id;
+  clock->number = responder_->stream(stream).number;
+  clock->node_id = responder_->stream(stream).node_id;
   clock->epoch = axis_.epoch();
   return *clock;
 }
 
 bool NodeReceiver::is_current(const StreamClock& clock, std::size_t stream) const {
-  return clock.number == desk_->stream(stream).number && clock.epoch == axis_.epoch();
+  return clock.number == responder_->stream(stream).number && clock.epoch == axis_.epoch();
 }
 
-LiveClock& NodeReceiver::hear(Kept& kept) {
-  NodeNews& news = kept.news;
-  StreamClock& clock = clock_of(news.stream);
-  if (news.exchange) {
+LiveClock& NodeReceiver::follow_clock(Kept& kept) {
+  NodeMessage& message = kept.message;
+  StreamClock& clock = clock_of(message.stream);
+  if (message.exchange) {
     // Rounding may put an arrival microseconds before the previous one. The order of arrival is
     // kept; a later arrival is still a correct bound.
-    clock.heard = news.exchange->h_rx = std::max(clock.heard, news.exchange->h_rx);
-    clock.clock.push(*news.exchange);
+    clock.last_arrival = message.exchange->h_rx =
+        std::max(clock.last_arrival, message.exchange->h_rx);
+    clock.clock.push(*message.exchange);
     clock.counts = true;
-    clock.n = news.exchange->n_tx;
-    clock.stamp = clock.clock.host_from_node(news.exchange->boot, clock.n);
-    desk_->set_locked(news.stream, clock.stamp && clock.stamp->certainty == Certainty::certified);
-  } else if (const auto d = news.clockless ? one_way_delay(*news.clockless) : std::nullopt) {
+    clock.n = message.exchange->n_tx;
+    clock.stamp = clock.clock.host_from_node(message.exchange->boot, clock.n);
+    responder_->set_locked(message.stream,
+                           clock.stamp && clock.stamp->certainty == Certainty::certified);
+  } else if (const auto d = message.clockless ? one_way_delay(*message.clockless) : std::nullopt) {
     clock.one_way = d;
     clock.ways += *d;
     ++clock.confirmed;
@@ -160,7 +164,7 @@ LiveClock& NodeReceiver::hear(Kept& kept) {
 void NodeReceiver::tick() {
   axis_.look();
   const HostTime now = axis_.now();
-  desk_->tick(now);
+  responder_->tick(now);
   if (now < next_watch_) return;
   next_watch_ = now + std::chrono::seconds(1);
   pairs_.add(axis_.watch());
@@ -170,21 +174,21 @@ void NodeReceiver::tick() {
 std::vector<NodeStatus> NodeReceiver::status() const {
   std::vector<NodeStatus> all;
   for (std::size_t i = 0; i < NodeTable::most_streams; ++i) {
-    const NodeStream& stream = desk_->stream(i);
+    const NodeStream& stream = responder_->stream(i);
     if (!stream.used) continue;
-    const NodeLife& life = desk_->life_of(stream);
+    const NodeSession& session = responder_->session_of(stream);
     NodeStatus& status = all.emplace_back();
     status.stream = i;
     status.node_id = stream.node_id;
-    status.boot_id = life.boot_id;
-    status.address = life.address;
+    status.boot_id = session.boot_id;
+    status.address = session.address;
     status.silent = stream.silent;
-    status.old_key = life.old_key;
-    status.lives = stream.lives;
-    status.accepted = life.accepted;
-    status.lost = life.sequences.missing();
-    status.rate_hz = stream.silent ? std::nullopt : life.pace.rate_hz();
-    status.heard = life.heard;
+    status.old_key = session.old_key;
+    status.sessions = stream.sessions;
+    status.accepted = session.accepted;
+    status.lost = session.sequences.missing();
+    status.rate_hz = stream.silent ? std::nullopt : session.pace.rate_hz();
+    status.last_arrival = session.last_arrival;
     status.battery_mv = stream.battery_mv;
     if (clocks_[i] != nullptr && is_current(*clocks_[i], i)) add_clock(status, *clocks_[i]);
   }
@@ -234,7 +238,7 @@ std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_events_of(std::size_t 
 
 std::uint64_t NodeReceiver::missed_events() const {
   std::uint64_t sum = missed_events_ + last_events_.missed() + pairs_.missed() +
-                      desk_->missed_events() + axis_.missed_events();
+                      responder_->missed_events() + axis_.missed_events();
   for (const auto& clock : clocks_) sum += clock != nullptr ? clock->clock.missed_events() : 0;
   return sum;
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes' port: sockets around a NodeDesk, and one clock per node. No call blocks. A program
-// that serves several ports (time_server.h) drains this one first.
+// The nodes' port: sockets around a NodeResponder, and one clock per node. No call blocks. A
+// program that serves several ports (time_server.h) drains this one first.
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
 #include "kinalign/capture/net/host_clock.h"
 #include "kinalign/capture/net/udp_socket.h"
-#include "kinalign/capture/nodes/node_desk.h"
 #include "kinalign/capture/nodes/node_lines.h"
+#include "kinalign/capture/nodes/node_responder.h"
 #include "kinalign/capture/nodes/node_status.h"
 #include "kinalign/clock/clock_event.h"
 
@@ -24,7 +24,7 @@ class LiveClock;
 struct NodeReceiverOptions {
   std::vector<std::string> addresses;  // empty: all addresses of IPv4 and IPv6
   std::uint16_t port = 0;              // 0: any free port, the same for all addresses
-  NodeDeskOptions desk;
+  NodeResponderOptions responder;
 };
 
 class NodeReceiver {
@@ -48,19 +48,19 @@ class NodeReceiver {
   /// Called for each datagram that passed the checks of port and key, in the order of arrival. If
   /// the datagram is accepted, `clock` is its node's clock, already updated; else it is nullptr.
   using Watcher =
-      std::function<void(const NodeArrival& arrival, const NodeNews& news, LiveClock* clock)>;
+      std::function<void(const NodeArrival& arrival, const NodeMessage& message, LiveClock* clock)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
   const std::vector<UdpSocket>& sockets() const { return *sockets_; }
   /// Readable when a datagram is waiting.
   int fd() const { return lines_.fd(); }
-  const NodeCounts& counts() const { return desk_->counts(); }
-  const RefusedNodes& refused_nodes() const { return desk_->refused_nodes(); }
+  const NodeCounts& counts() const { return responder_->counts(); }
+  const RefusedNodes& refused_nodes() const { return responder_->refused_nodes(); }
   std::uint64_t dropped() const { return lines_.dropped(); }  // datagrams dropped by the kernel
   /// Answers that the system did not accept.
   std::uint64_t unsent() const { return unsent_; }
   std::uint32_t epoch() const { return axis_.epoch(); }
-  std::uint32_t node_id(std::size_t stream) const { return desk_->stream(stream).node_id; }
+  std::uint32_t node_id(std::size_t stream) const { return responder_->stream(stream).node_id; }
   /// Ignored datagrams. They were sent to a broadcast or multicast address, so many hosts would
   /// answer, or they came from port 0, so the answer could not be received.
   std::uint64_t not_unicast() const { return not_unicast_; }
@@ -68,9 +68,9 @@ class NodeReceiver {
   /// Sorted by node id; nodes with the same id are sorted by stream.
   std::vector<NodeStatus> status() const;
   /// Changes the lab key. The previous keys stay valid for one more minute.
-  void replace_key(const LabKey& lab) { desk_->replace_key(lab, axis_.now()); }
+  void replace_key(const LabKey& lab) { responder_->replace_key(lab, axis_.now()); }
 
-  std::vector<NodeEvent> take_node_events() { return desk_->take_events(); }
+  std::vector<NodeEvent> take_node_events() { return responder_->take_events(); }
   std::vector<HostClockEvent> take_host_events() { return axis_.take_events(); }
   struct StreamEvent {
     std::size_t stream = 0;
@@ -91,13 +91,13 @@ class NodeReceiver {
   /// A datagram that waits until the answers of its batch are sent.
   struct Kept {
     NodeArrival arrival;
-    NodeNews news;
+    NodeMessage message;
     std::vector<NodeReading> readings;
   };
   bool may_answer(const Datagram& datagram);
   void take(const UdpSocket& socket, std::size_t datagrams);
-  void keep(const NodeArrival& arrival, const NodeNews& news);
-  LiveClock& hear(Kept& kept);
+  void keep(const NodeArrival& arrival, const NodeMessage& message);
+  LiveClock& follow_clock(Kept& kept);
   void follow();
   StreamClock& clock_of(std::size_t stream);
   static void add_clock(NodeStatus& status, const StreamClock& clock);
@@ -107,7 +107,7 @@ class NodeReceiver {
   std::unique_ptr<std::vector<UdpSocket>> sockets_;
   NodeLines lines_;
   HostAxis axis_;
-  std::unique_ptr<NodeDesk> desk_;
+  std::unique_ptr<NodeResponder> responder_;
   std::unique_ptr<DatagramBatch> batch_;
   std::vector<std::unique_ptr<StreamClock>> clocks_;
   EventQueue<StreamEvent> last_events_;  // events of clocks that were replaced
@@ -116,7 +116,7 @@ class NodeReceiver {
   std::size_t kept_length_ = 0;
   Watcher watcher_;
   // by stream: destination address of its frames since the last follow()
-  std::vector<std::optional<HostAddress>> heard_;
+  std::vector<std::optional<HostAddress>> arrived_at_;
   std::uint64_t datagrams_ = 0, unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;
   HostTime next_watch_ = HostTime::min();
   EventQueue<ClockPair> pairs_;

@@ -19,10 +19,10 @@ struct NodeStatus {
   NodeAddress address;
   // `silent`: no datagram for ten seconds. `old_key`: it still uses the key that is being replaced.
   bool silent = false, old_key = false;
-  // `lives`: of the stream. `accepted`, `lost`: frames of the present life.
-  std::uint64_t lives = 0, accepted = 0, lost = 0;
+  // `sessions`: of the stream. `accepted`, `lost`: frames of the present life.
+  std::uint64_t sessions = 0, accepted = 0, lost = 0;
   std::optional<double> rate_hz;            // absent before it is known, and for a silent node
-  HostTime heard{};                         // last arrival
+  HostTime last_arrival{};                  // last arrival
   std::optional<std::uint16_t> battery_mv;  // absent if the node does not send it
   // The node's clock; absent if it has none.
   std::optional<NodeTime> n;  // its newest counter reading

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distinguishes nodes and their lives. The table has a fixed size of 64 streams and 256 lives.
+// Distinguishes nodes and their sessions. The table has a fixed size of 64 streams and 256
+// sessions.
 //
-// A life is one start of a node, identified by node id and boot id. If two nodes have the same id
-// and draw the same boot id, counters and addresses distinguish them. A stream is the data of one
-// node over all its lives.
+// A session is one start of a node, identified by node id and boot id. If two nodes have the same
+// id and draw the same boot id, counters and addresses distinguish them. A stream is the data of
+// one node over all its sessions.
 #pragma once
 
 #include "kinalign/capture/net/event_queue.h"
 #include "kinalign/capture/nodes/node_event.h"
-#include "kinalign/capture/nodes/node_life.h"
+#include "kinalign/capture/nodes/node_session.h"
 
 #include <vector>
 
@@ -18,11 +19,11 @@ struct NodeStream {
   bool used = false;
   std::uint32_t number = 0;  // unique among the streams of this run
   std::uint32_t node_id = 0;
-  std::size_t life = 0;  // the present life
+  std::size_t session = 0;  // the present session
   // Lives that this stream has had.
-  std::uint64_t lives = 0;
+  std::uint64_t sessions = 0;
   std::optional<std::uint16_t> battery_mv;  // as last sent by the node
-  bool locked = false;  // the flag sent in its replies, see NodeDesk::set_locked
+  bool locked = false;  // the flag sent in its replies, see NodeResponder::set_locked
   bool silent = false;  // the event `left` was reported
 };
 
@@ -37,51 +38,51 @@ struct NodeSign {
 
 class NodeTable {
  public:
-  static constexpr std::size_t most_streams = 64, most_lives = 256;
+  static constexpr std::size_t most_streams = 64, most_sessions = 256;
 
-  NodeTable() : lives_(most_lives), streams_(most_streams) {}
+  NodeTable() : sessions_(most_sessions), streams_(most_streams) {}
 
-  /// The life that this datagram continues; nullptr: none.
-  NodeLife* life_of(const NodeSign& sign);
-  /// Returns whether a life with these ids is known, with any counter and address.
+  /// The session that this datagram continues; nullptr: none.
+  NodeSession* session_of(const NodeSign& sign);
+  /// Returns whether a session with these ids is known, with any counter and address.
   bool knows_boot(std::uint32_t node_id, std::uint32_t boot_id) const;
   /// Returns whether an admitted node has sent from this address within the last minute.
   bool knows_address(const HostAddress& host, HostTime now) const;
 
-  /// Makes a life that is held: not admitted yet. nullptr: no room.
-  NodeLife* hold(const NodeSign& sign);
-  /// Admits a held life. It becomes the present life of its node's stream or of a new stream.
+  /// Makes a session that is held: not admitted yet. nullptr: no room.
+  NodeSession* hold(const NodeSign& sign);
+  /// Admits a held session. It becomes the present session of its node's stream or of a new stream.
   /// False: no room.
-  bool admit(NodeLife& life, HostTime now);
-  /// Gives an earlier life a stream of its own, since two nodes have one id. False: no room.
-  bool part(NodeLife& life, HostTime now);
+  bool admit(NodeSession& session, HostTime now);
+  /// Gives an earlier session a stream of its own, since two nodes have one id. False: no room.
+  bool part(NodeSession& session, HostTime now);
   /// Reports nodes that have fallen silent.
   void tick(HostTime now);
 
-  NodeLife& life(std::size_t i) { return lives_[i]; }
-  const NodeLife& life(std::size_t i) const { return lives_[i]; }
+  NodeSession& session(std::size_t i) { return sessions_[i]; }
+  const NodeSession& session(std::size_t i) const { return sessions_[i]; }
   NodeStream& stream(std::size_t i) { return streams_[i]; }
   const NodeStream& stream(std::size_t i) const { return streams_[i]; }
 
-  void tell(NodeEvent::Kind kind, const NodeLife& life, HostTime at);
-  void tell(const NodeEvent& event) { events_.add(event); }
+  void report(NodeEvent::Kind kind, const NodeSession& session, HostTime at);
+  void report(const NodeEvent& event) { events_.add(event); }
   /// Events since the previous call. Events beyond the limit are counted in missed_events.
   std::vector<NodeEvent> take_events() { return events_.take(); }
   std::uint64_t missed_events() const { return events_.missed(); }
 
  private:
-  NodeStream* stream_for(const NodeLife& life);
-  NodeStream* new_stream(const NodeLife& life, HostTime now);
-  NodeLife* room_for_life(const NodeSign& sign);
-  void enter(NodeLife& life, NodeStream& stream, HostTime now);
-  void tell_name(const NodeLife& life, HostTime now);
-  std::size_t index(const NodeLife& life) const;
+  NodeStream* stream_for(const NodeSession& session);
+  NodeStream* new_stream(const NodeSession& session, HostTime now);
+  NodeSession* room_for_session(const NodeSign& sign);
+  void enter(NodeSession& session, NodeStream& stream, HostTime now);
+  void report_name(const NodeSession& session, HostTime now);
+  std::size_t index(const NodeSession& session) const;
 
-  std::vector<NodeLife> lives_;
+  std::vector<NodeSession> sessions_;
   std::vector<NodeStream> streams_;
   std::uint32_t streams_made_ = 0;
   std::uint64_t restarts_ = 0;
-  HostTime tell_too_many_ = HostTime::min();  // too_many is not reported before this time
+  HostTime report_too_many_ = HostTime::min();  // too_many is not reported before this time
   EventQueue<NodeEvent> events_;
 };
 

@@ -14,12 +14,12 @@ namespace kinalign {
 
 enum class NodeVerdict : std::uint8_t {
   accepted,
-  held,            // its life has not proved yet that it is not a recording played back
+  held,            // its session has not proved yet that it is not a recording played back
   duplicate,       // its sequence number was received before
   replayed,        // its sequence number or its counter lies too far back
   earlier_life,    // sent before its node started again
   limited,         // an unknown address that sends too often
-  no_room,         // the table of nodes or of lives is full
+  no_room,         // the table of nodes or of sessions is full
   wrong_counter,   // the counter is higher than a counter can be
   unknown_answer,  // a confirm of an answer that was not sent, or was already confirmed
   refused          // refused by wire; NodeRefusal gives the cause
@@ -46,7 +46,7 @@ EchoVerdict echo_verdict(AnswerTable::Found found);
 struct NodeCounts {
   CountsBy<NodeVerdict, node_verdicts> verdicts;  // each datagram is counted once
   CountsBy<NodeRefusal, node_refusals> refusals;  // refused datagrams
-  CountsBy<EchoVerdict, echo_verdicts> echoes;    // echoes in frames of known lives
+  CountsBy<EchoVerdict, echo_verdicts> echoes;    // echoes in frames of known sessions
   std::uint64_t answers = 0;
   std::uint64_t wrong_copies = 0;   // confirms whose T2 or T3 differs from the sent one
   std::uint64_t old_key = 0;        // datagrams with the key that was replaced

@@ -30,9 +30,9 @@ RefusedNodes::Claim& RefusedNodes::claim_of(NodeRefusal refusal, std::uint32_t n
 
 bool RefusedNodes::take(NodeRefusal refusal, std::uint32_t node_id, HostTime now) {
   Claim& claim = claim_of(refusal, node_id);
-  if (claim.told && now - *claim.told < each_every) return false;
-  if (told_ && now - *told_ < any_every) return false;
-  claim.told = told_ = now;
+  if (claim.reported && now - *claim.reported < each_every) return false;
+  if (reported_ && now - *reported_ < any_every) return false;
+  claim.reported = reported_ = now;
   return true;
 }
 

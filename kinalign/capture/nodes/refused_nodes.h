@@ -22,7 +22,7 @@ class RefusedNodes {
     std::uint32_t node_id = 0;
     NodeRefusal refusal = NodeRefusal::none;  // no_key, no_mac or wrong_mac
     // Time of the last report.
-    std::optional<HostTime> told;
+    std::optional<HostTime> reported;
   };
 
   /// Returns whether to report this refusal now: at most one per second in all, and one per ten
@@ -41,7 +41,7 @@ class RefusedNodes {
   std::size_t used_ = 0;
   Claim rest_;  // shared by all claims beyond `most`
   std::array<bool, node_refusals> others_{};
-  std::optional<HostTime> told_;  // time of the last report of any claim
+  std::optional<HostTime> reported_;  // time of the last report of any claim
 };
 
 }  // namespace kinalign

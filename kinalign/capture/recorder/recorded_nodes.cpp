@@ -30,13 +30,13 @@ std::uint64_t no_frames(const NodeCounts& counts) {
 }  // namespace
 
 Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& device,
-                                                           const NodeDeskOptions& desk,
+                                                           const NodeResponderOptions& desk,
                                                            ClockReader& clocks,
                                                            Recorder& recorder) {
   NodeReceiverOptions options;
   if (!device.address.empty()) options.addresses = {device.address};
   options.port = static_cast<std::uint16_t>(device.port);
-  options.desk = desk;
+  options.responder = desk;
   NodeReceiver receiver = KA_TRY(told_of(device.name, NodeReceiver::open(options, clocks)));
   return std::unique_ptr<RecordedNodes>(
       new RecordedNodes(device, desk.lab_key.has_value(), std::move(receiver), recorder));
@@ -50,7 +50,7 @@ RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver rece
       keyed_(keyed),
       receiver_(std::move(receiver)),
       recorder_(recorder) {
-  receiver_.watch([this](const NodeArrival& arrival, const NodeNews& news, LiveClock*) {
+  receiver_.watch([this](const NodeArrival& arrival, const NodeMessage& news, LiveClock*) {
     const Moment came{arrival.h_rx, arrival.stamp};
     if (held_.must_hold(came, news.node_id, until_)) {
       held_.hold(came, news.node_id,
@@ -79,7 +79,7 @@ void RecordedNodes::release(const std::optional<Moment>& until) {
 }
 
 // The raw bytes are recorded for every node with a channel, whatever the verdict.
-void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
+void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& news) {
   const bool has_room = nodes_.size() < most_nodes && (keyed_ || !is_limited(news.verdict));
   if (!has_room && !nodes_.contains(news.node_id)) {
     ++crowded_;
@@ -122,7 +122,7 @@ RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress&
 
 /// Counts a datagram by its verdict. A held datagram counts only as a message: it may belong to the
 /// node's next life, or be a recording played back.
-void RecordedNodes::judge(Node& node, const NodeNews& news) {
+void RecordedNodes::judge(Node& node, const NodeMessage& news) {
   SenderCounts& counts = node.raw.status.counts;
   switch (news.verdict) {
     case NodeVerdict::accepted:
@@ -185,7 +185,7 @@ void RecordedNodes::count_lost() {
     const auto found = nodes_.find(status.node_id);
     if (found == nodes_.end()) continue;
     Lost& lost = found->second.lost[status.stream];
-    if (std::exchange(lost.lives, status.lives) != status.lives) lost.before += lost.present;
+    if (std::exchange(lost.lives, status.sessions) != status.sessions) lost.before += lost.present;
     lost.present = status.lost;
     StreamStatus& stream = found->second.raw.status;
     if (status.battery_mv) stream.battery_volts = 1e-3 * *status.battery_mv;

@@ -23,7 +23,7 @@ class RecordedNodes {
  public:
   /// `clocks` and `recorder` must outlive the object.
   static Result<std::unique_ptr<RecordedNodes>> open(const DeviceOptions& device,
-                                                     const NodeDeskOptions& desk,
+                                                     const NodeResponderOptions& desk,
                                                      ClockReader& clocks, Recorder& recorder);
   RecordedNodes(const RecordedNodes&) = delete;
   RecordedNodes& operator=(const RecordedNodes&) = delete;
@@ -68,15 +68,15 @@ class RecordedNodes {
 
   struct Held {
     NodeArrival arrival;
-    NodeNews news;
+    NodeMessage news;
     std::vector<std::uint8_t> bytes;
     std::vector<NodeReading> readings;
   };
 
   RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver, Recorder& recorder);
-  void take(const NodeArrival& arrival, const NodeNews& news);
+  void take(const NodeArrival& arrival, const NodeMessage& news);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
-  static void judge(Node& node, const NodeNews& news);
+  static void judge(Node& node, const NodeMessage& news);
   void count_lost();
 
   DeviceOptions device_;

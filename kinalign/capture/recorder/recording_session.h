@@ -33,7 +33,7 @@ class RecordingSession {
     // by stream: the head of a BVH file, stored in each file
     std::map<std::string, std::string> skeletons;
     // options of the nodes' port; the keys of other ports come from its secret
-    NodeDeskOptions desk;
+    NodeResponderOptions desk;
     std::string host;                                       // the machine's name
     std::optional<std::uint16_t> marks_port, trigger_port;  // absent: no such port
     std::optional<std::uint16_t> live_port;                 // absent: no live port

@@ -6,7 +6,7 @@
 
 #include "kinalign/capture/net/counts_by.h"
 #include "kinalign/capture/net/rate_limit.h"
-#include "kinalign/capture/nodes/node_life.h"
+#include "kinalign/capture/nodes/node_session.h"
 #include "kinalign/core/error.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/protocols/slimevr/packet.h"

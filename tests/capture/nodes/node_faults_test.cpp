@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every fault that a node or a stranger can cause at NodeDesk (the numbers are those of
-// docs/faults.md, which the clock's scenarios use too). Tests of who is who: node_lives_test.cpp.
+// Every fault that a node or a stranger can cause at NodeResponder (the numbers are those of
+// docs/faults.md, which the clock's scenarios use too). Tests of who is who:
+// node_sessions_test.cpp.
 #include "tests/capture/test_node.h"
 
-#include "kinalign/capture/nodes/node_desk.h"
+#include "kinalign/capture/nodes/node_responder.h"
 #include "kinalign/clock/live/live_clock.h"
 
 #include <doctest/doctest.h>
@@ -35,12 +36,12 @@ std::vector<ClockStamp> stamps_with(TestDesk& host, TestNode& node, Beside besid
   for (int k = 0; k < 300; ++k) {
     const double t = k / 15.0;
     const Bytes frame = node.frame(host_s(t));
-    const NodeNews news = host.take(frame, home, host_s(t + 0.001));
+    const NodeMessage message = host.take(frame, home, host_s(t + 0.001));
     const Bytes reply = host.reply(host_s(t + 0.0011));
     if (!reply.empty()) node.take_reply(reply, host_s(t + 0.002));
-    if (news.exchange) {
-      clock.push(*news.exchange);
-      if (auto stamp = clock.host_from_node(news.exchange->boot, news.exchange->n_tx)) {
+    if (message.exchange) {
+      clock.push(*message.exchange);
+      if (auto stamp = clock.host_from_node(message.exchange->boot, message.exchange->n_tx)) {
         stamps.push_back(*stamp);
       }
     }
@@ -66,9 +67,9 @@ TEST_CASE("fault 6 counter_wrap32: a narrow counter is widened through four hour
   std::optional<NodeTime> last;
   bool rises = true, echoes_agree = true;
   for (int k = 0; k < 4 * 3600; ++k) {
-    const NodeNews news = host.exchange(node, home, k + 0.5);
-    if (news.verdict != Verdict::accepted) continue;
-    const Exchange& exchange = *news.exchange;
+    const NodeMessage message = host.exchange(node, home, k + 0.5);
+    if (message.verdict != Verdict::accepted) continue;
+    const Exchange& exchange = *message.exchange;
     if (last) rises &= std::abs(seconds(exchange.n_tx - *last) - 1.0) < 0.001;
     if (exchange.echo)
       echoes_agree &= std::abs(seconds(exchange.n_tx - exchange.echo->n_rx) - 0.998) < 0.001;
@@ -109,9 +110,10 @@ TEST_CASE("fault 11 reorder: frames 40 ms late are taken, each once") {
   for (int k = 0; k < 10; ++k) host.exchange(node, home, 0.02 * k);
   const Bytes early = node.frame(host_s(0.3)), late = node.frame(host_s(0.32));
   CHECK(host.take(late, home, host_s(0.33)).verdict == Verdict::accepted);
-  const NodeNews news = host.take(early, home, host_s(0.34));
-  CHECK(news.verdict == Verdict::accepted);
-  CHECK(news.frame + 1 == host.desk.life_of(host.desk.stream(news.stream)).sequences.newest());
+  const NodeMessage message = host.take(early, home, host_s(0.34));
+  CHECK(message.verdict == Verdict::accepted);
+  CHECK(message.frame + 1 ==
+        host.responder.session_of(host.responder.stream(message.stream)).sequences.newest());
   CHECK(host.take(early, home, host_s(0.35)).verdict == Verdict::duplicate);
 }
 
@@ -156,11 +158,11 @@ TEST_CASE("fault 25 spoofed_frame: no MAC, a wrong one, another node's: each by 
   // The frames are also wrong in the points that are checked after the MAC: the counter is beyond
   // any real one, and the sender is another. They must still be refused because of the MAC.
   for (TestNode* node : {&bare, &wrong, &posing}) node->offset_s = 1e11;
-  const auto refused_as = [](TestDesk& desk, TestNode& node, NodeRefusal refusal) {
-    const std::uint64_t before = desk.count(refusal);
-    CHECK(desk.take(node.frame(host_s(0)), home, host_s(0)).verdict == Verdict::refused);
-    CHECK(desk.reply(host_s(0)).empty());
-    return desk.count(refusal) == before + 1;
+  const auto refused_as = [](TestDesk& responder, TestNode& node, NodeRefusal refusal) {
+    const std::uint64_t before = responder.count(refusal);
+    CHECK(responder.take(node.frame(host_s(0)), home, host_s(0)).verdict == Verdict::refused);
+    CHECK(responder.reply(host_s(0)).empty());
+    return responder.count(refusal) == before + 1;
   };
   CHECK(refused_as(host, bare, NodeRefusal::no_mac));
   CHECK(refused_as(host, wrong, NodeRefusal::wrong_mac));
@@ -174,8 +176,8 @@ TEST_CASE("fault 25 spoofed_frame: no MAC, a wrong one, another node's: each by 
   // They are dropped before they are parsed further: they are counted as refused, and no sender is
   // held or known.
   CHECK(host.count(Verdict::refused) == 4);
-  CHECK(host.desk.counts().verdicts.total() == 4);
-  CHECK_FALSE(host.desk.stream(0).used);
+  CHECK(host.responder.counts().verdicts.total() == 4);
+  CHECK_FALSE(host.responder.stream(0).used);
   CHECK(host.events() == std::vector{Kind::wrong_key});  // one a second
 }
 
@@ -185,7 +187,7 @@ TEST_CASE("fault 25 spoofed_frame: a node with a wrong key is told, a flood of t
   other[0] ^= 1;
   TestNode wrong(7, 1, other), bare(8, 1);
   for (int k = 0; k < 700; ++k) host.take(wrong.frame(host_s(0.1 * k)), home, host_s(0.1 * k));
-  auto events = host.desk.take_events();
+  auto events = host.responder.take_events();
   REQUIRE(events.size() == 1);  // one in ten minutes
   CHECK(events[0].kind == Kind::wrong_key);
   CHECK(events[0].node_id == 7);
@@ -193,7 +195,7 @@ TEST_CASE("fault 25 spoofed_frame: a node with a wrong key is told, a flood of t
   CHECK(events[0].refusal == NodeRefusal::wrong_mac);
   for (int k = 700; k < 900; ++k)
     host.take(bare.frame(host_s(0.1 * k)), elsewhere, host_s(0.1 * k));
-  events = host.desk.take_events();
+  events = host.responder.take_events();
   REQUIRE(events.size() == 1);  // at 70 s
   CHECK(events[0].node_id == 8);
   CHECK(events[0].refusal == NodeRefusal::no_mac);
@@ -201,7 +203,7 @@ TEST_CASE("fault 25 spoofed_frame: a node with a wrong key is told, a flood of t
     const HostTime at = host_s(90.0 + 0.002 * id);
     host.take(TestNode(id, 1, other).frame(at), home, at);
   }
-  CHECK(host.desk.take_events().size() == 2);
+  CHECK(host.responder.take_events().size() == 2);
 }
 
 TEST_CASE("fault 28 flood_strangers: 50,000 packets a second take nothing from five nodes") {
@@ -226,11 +228,12 @@ TEST_CASE("fault 28 flood_strangers: 50,000 packets a second take nothing from f
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const double t = 0.01 * k + 0.002 * static_cast<double>(i);
         const NodeAddress from = address_of(static_cast<std::uint8_t>(20 + i));
-        const NodeNews news = host.exchange(nodes[i], from, t);
-        CHECK(news.exchange.has_value() == (k > 0));  // the first is held
-        if (news.exchange) {
-          clocks[i].push(*news.exchange);
-          const auto stamp = clocks[i].host_from_node(news.exchange->boot, news.exchange->n_tx);
+        const NodeMessage message = host.exchange(nodes[i], from, t);
+        CHECK(message.exchange.has_value() == (k > 0));  // the first is held
+        if (message.exchange) {
+          clocks[i].push(*message.exchange);
+          const auto stamp =
+              clocks[i].host_from_node(message.exchange->boot, message.exchange->n_tx);
           if (stamp) stamps.push_back(*stamp);
         }
         for (std::size_t s = 0; k >= 100 && s < strangers_each; ++s, ++flood) {
@@ -260,16 +263,16 @@ TEST_CASE("fault 33 echo_stale, echo_unknown: the echo is left out, the frame is
   const ReplyEcho first = *node.echo();
   for (int k = 2; k < 300; ++k) host.exchange(node, home, 0.1 * k);
   node.echo() = first;
-  NodeNews news = host.take(node.frame(host_s(30.0)), home, host_s(30.0));
-  CHECK(news.verdict == Verdict::accepted);
-  CHECK_FALSE(news.exchange->echo);
+  NodeMessage message = host.take(node.frame(host_s(30.0)), home, host_s(30.0));
+  CHECK(message.verdict == Verdict::accepted);
+  CHECK_FALSE(message.exchange->echo);
   CHECK(host.count(EchoVerdict::stale) == 1);
   node.echo() = ReplyEcho{100'000, 1, 1};
-  news = host.take(node.frame(host_s(30.1)), home, host_s(30.1));
-  CHECK(news.verdict == Verdict::accepted);
+  message = host.take(node.frame(host_s(30.1)), home, host_s(30.1));
+  CHECK(message.verdict == Verdict::accepted);
   node.echo() = ReplyEcho{298, 1, 1};  // the echo that was given, with another nonce
-  news = host.take(node.frame(host_s(30.2)), home, host_s(30.2));
-  CHECK_FALSE(news.exchange->echo);
+  message = host.take(node.frame(host_s(30.2)), home, host_s(30.2));
+  CHECK_FALSE(message.exchange->echo);
   CHECK(host.count(EchoVerdict::unknown) == 2);
 }
 
@@ -281,9 +284,9 @@ TEST_CASE("fault 34 echo_future: n_rx behind n_tx is left out and counted") {
   for (const std::uint64_t later : {std::uint64_t{1}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     node.echo()->n_rx_us =
         later == ~std::uint64_t{0} ? later : node.counter_us(host_s(0.2)) + later;
-    const NodeNews news = host.take(node.frame(host_s(0.2)), home, host_s(0.2));
-    CHECK(news.verdict == Verdict::accepted);
-    CHECK_FALSE(news.exchange->echo);
+    const NodeMessage message = host.take(node.frame(host_s(0.2)), home, host_s(0.2));
+    CHECK(message.verdict == Verdict::accepted);
+    CHECK_FALSE(message.exchange->echo);
   }
   CHECK(host.count(EchoVerdict::future) == 3);
 }
@@ -305,7 +308,7 @@ TEST_CASE("fault 35 bad_crc, truncated, unknown_newer_version: counted, and the 
   CHECK(host.count(NodeRefusal::unknown_version) == 1);
   CHECK(host.count(NodeRefusal::too_short) == 1);
   CHECK(host.count(NodeRefusal::bad_magic) == 1);
-  const auto events = host.desk.take_events();
+  const auto events = host.responder.take_events();
   REQUIRE(events.size() == 1);
   CHECK(events[0].kind == Kind::newer_version);
   CHECK(events[0].version == 3);
@@ -318,12 +321,12 @@ TEST_CASE("fault 36 sample_batch: each sample has its own counter, the exchange 
     node.samples.emplace_back().age_us = 45'000 - 5000 * i;
   }
   host.exchange(node, home, 0.0);
-  const NodeNews news = host.exchange(node, home, 0.1);
-  REQUIRE(news.readings.size() == 10);
-  const NodeTime n_tx = news.exchange->n_tx;
+  const NodeMessage message = host.exchange(node, home, 0.1);
+  REQUIRE(message.readings.size() == 10);
+  const NodeTime n_tx = message.exchange->n_tx;
   CHECK(n_tx == node_time(static_cast<std::int64_t>(node.counter_us(host_s(0.1)))));
   for (int i = 0; i < 10; ++i) {
-    CHECK(n_tx - news.readings[static_cast<std::size_t>(i)].n ==
+    CHECK(n_tx - message.readings[static_cast<std::size_t>(i)].n ==
           std::chrono::milliseconds(45 - 5 * i));
   }
 }
@@ -334,12 +337,12 @@ TEST_CASE("fault 37 firmware_overload: a sample sent 50 ms late is stamped when 
   node.samples.emplace_back().age_us = 50'000;
   prompt.samples.emplace_back();
   LiveClock clock, prompt_clock;
-  const auto stamp_of = [](TestDesk& desk, TestNode& from, LiveClock& of, double t) {
-    const NodeNews news = desk.exchange(from, home, t);
+  const auto stamp_of = [](TestDesk& responder, TestNode& from, LiveClock& of, double t) {
+    const NodeMessage message = responder.exchange(from, home, t);
     // The first frame is held, because the node has a key.
-    if (!news.exchange) return std::optional<ClockStamp>();
-    of.push(*news.exchange);
-    return of.host_from_node(news.exchange->boot, news.readings[0].n);
+    if (!message.exchange) return std::optional<ClockStamp>();
+    of.push(*message.exchange);
+    return of.host_from_node(message.exchange->boot, message.readings[0].n);
   };
   for (int k = 0; k < 100; ++k) {
     const double t = k / 15.0;
@@ -367,12 +370,12 @@ TEST_CASE("fault 38 nan_inf_sample, zero_quaternion: kept as they are, marked, s
   bad.acceleration = {std::numeric_limits<float>::quiet_NaN(), 0, INFINITY};
   node.samples = {bad};
   host.exchange(node, home, 0.0);
-  const NodeNews news = host.exchange(node, home, 0.1);
-  REQUIRE(news.readings.size() == 1);
-  CHECK(news.readings[0].faults.not_finite);
-  CHECK(news.readings[0].faults.zero_orientation);
-  CHECK(std::isnan(news.readings[0].sample.acceleration[0]));
-  CHECK(news.exchange->n_tx - news.readings[0].n == std::chrono::microseconds(100));
+  const NodeMessage message = host.exchange(node, home, 0.1);
+  REQUIRE(message.readings.size() == 1);
+  CHECK(message.readings[0].faults.not_finite);
+  CHECK(message.readings[0].faults.zero_orientation);
+  CHECK(std::isnan(message.readings[0].sample.acceleration[0]));
+  CHECK(message.exchange->n_tx - message.readings[0].n == std::chrono::microseconds(100));
 }
 
 TEST_CASE("fault 39 mac_key_rotation: the old key is good for 60 s, then not") {
@@ -382,13 +385,13 @@ TEST_CASE("fault 39 mac_key_rotation: the old key is good for 60 s, then not") {
   TestNode node(7, 1, lab);
   host.exchange(node, home, 0.0);
   host.exchange(node, home, 0.1);
-  host.desk.replace_key(next, host_s(1.0));
+  host.responder.replace_key(next, host_s(1.0));
   node.drop_echo();
   CHECK(host.exchange(node, home, 2.0).verdict == Verdict::accepted);
   CHECK(node.echo());  // the node took the reply, which was sealed with the node's own key
-  CHECK(host.desk.life_of(host.desk.stream(0)).old_key);
+  CHECK(host.responder.session_of(host.responder.stream(0)).old_key);
   CHECK(host.exchange(node, home, 60.9).verdict == Verdict::accepted);
-  CHECK(host.desk.counts().old_key == 2);
+  CHECK(host.responder.counts().old_key == 2);
   CHECK(host.exchange(node, home, 61.1).verdict == Verdict::refused);
   CHECK(host.count(NodeRefusal::wrong_mac) == 1);
   node.set_key(next);

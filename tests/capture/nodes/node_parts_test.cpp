@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of NodeDesk, each tested alone.
+// The parts of NodeResponder, each tested alone.
 #include "tests/capture/test_node.h"
 
-#include "kinalign/capture/nodes/node_desk.h"
+#include "kinalign/capture/nodes/node_responder.h"
 
 #include <doctest/doctest.h>
 
@@ -123,7 +123,7 @@ TEST_CASE("a replay of many old starts leaves room for the true one") {
   CHECK(host.exchange(node, address_of(250), t).verdict == NodeVerdict::accepted);
 }
 
-TEST_CASE("an address that nobody was taken from starts lives eight times at once") {
+TEST_CASE("an address that nobody was taken from starts eight sessions at once") {
   const LabKey lab{};
   TestDesk host(lab);
   for (std::uint32_t i = 0; i < 20; ++i) {
@@ -141,7 +141,7 @@ TEST_CASE("a reply is shorter than the shortest frame and says whether the host 
   host.exchange(node, address_of(1), 0.0);
   host.exchange(node, address_of(1), 0.1);
   CHECK_FALSE(node.locked);
-  host.desk.set_locked(0, true);
+  host.responder.set_locked(0, true);
   const Bytes frame = node.frame(host_s(0.2));
   host.take(frame, address_of(1), host_s(0.2));
   const Bytes reply = host.reply(host_s(0.2));
@@ -165,7 +165,7 @@ TEST_CASE("a clockless node: T2, T3 and T6 are the host's own, copies are only c
     for (std::uint32_t k = 0; k < 4; ++k) {
       ClocklessRequest request;
       request.origin = {7, 1, k};
-      const NodeNews asked = host.take(bytes(request), address_of(1), host_s(k));
+      const NodeMessage asked = host.take(bytes(request), address_of(1), host_s(k));
       CHECK(asked.verdict == (lab && k == 0 ? NodeVerdict::held : NodeVerdict::accepted));
       const Bytes answer = host.reply(host_s(k + 0.25));
       CHECK(answer.size() <= bytes(request).size());
@@ -175,16 +175,16 @@ TEST_CASE("a clockless node: T2, T3 and T6 are the host's own, copies are only c
       REQUIRE(decode(envelope, key ? &*key : nullptr, given) == NodeRefusal::none);
       ClocklessConfirm confirm{given.origin, given.times};
       if (k == 3) confirm.times.t3_ns += 1'000'000'000;
-      const NodeNews news = host.take(bytes(confirm), address_of(1), host_s(k + 0.5));
-      REQUIRE(news.clockless);
-      CHECK(news.clockless->t2 == host_s(k));
-      CHECK(news.clockless->t3 == host_s(k + 0.25));
-      CHECK(one_way_delay(*news.clockless) == std::chrono::milliseconds(125));
+      const NodeMessage message = host.take(bytes(confirm), address_of(1), host_s(k + 0.5));
+      REQUIRE(message.clockless);
+      CHECK(message.clockless->t2 == host_s(k));
+      CHECK(message.clockless->t3 == host_s(k + 0.25));
+      CHECK(one_way_delay(*message.clockless) == std::chrono::milliseconds(125));
       CHECK(host.reply(host_s(k + 0.5)).empty());
       CHECK(host.take(bytes(confirm), address_of(1), host_s(k + 0.6)).verdict ==
             NodeVerdict::unknown_answer);
     }
-    CHECK(host.desk.counts().wrong_copies == 1);
+    CHECK(host.responder.counts().wrong_copies == 1);
   }
 }
 

@@ -32,7 +32,7 @@ TestNode node_ahead(std::uint32_t id = 7) {
 NodeReceiver open_receiver(ClockReader& clocks, const std::string& address) {
   NodeReceiverOptions options;
   options.addresses = {address};
-  options.desk.lab_key = lab;
+  options.responder.lab_key = lab;
   auto opened = NodeReceiver::open(options, clocks);
   REQUIRE(opened);
   return std::move(*opened);
@@ -113,13 +113,13 @@ TEST_CASE("a node's clock is certified after a few frames, and its stamps hold t
   bench.node.battery_mv = 3700;
   int certified = 0;
   bool holds = true;
-  bench.receiver.watch([&](const NodeArrival&, const NodeNews& news, LiveClock* clock) {
+  bench.receiver.watch([&](const NodeArrival&, const NodeMessage& message, LiveClock* clock) {
     if (clock == nullptr) return;
-    const auto stamp = clock->host_from_node(news.exchange->boot, news.exchange->n_tx);
+    const auto stamp = clock->host_from_node(message.exchange->boot, message.exchange->n_tx);
     if (!stamp || stamp->certainty != Certainty::certified) return;
     ++certified;
     // The truth of TestNode::counter_us, which is cut to whole microseconds.
-    const HostTime truth{news.exchange->n_tx.time_since_epoch() - std::chrono::seconds(1000)};
+    const HostTime truth{message.exchange->n_tx.time_since_epoch() - std::chrono::seconds(1000)};
     holds = holds && *stamp->earliest <= truth + std::chrono::microseconds(1) &&
             truth <= *stamp->latest;
   });
@@ -186,10 +186,10 @@ TEST_CASE("a batch is answered before the clocks hear of it, each frame with its
   Bench bench;
   bench.talk(2);
   std::vector<Duration> ages;
-  bench.receiver.watch([&](const NodeArrival&, const NodeNews& news, LiveClock*) {
+  bench.receiver.watch([&](const NodeArrival&, const NodeMessage& message, LiveClock*) {
     REQUIRE(bench.client.receive());  // its answer is there, or never comes
-    for (const NodeReading& reading : news.readings)
-      ages.push_back(news.exchange->n_tx - reading.n);
+    for (const NodeReading& reading : message.readings)
+      ages.push_back(message.exchange->n_tx - reading.n);
   });
   for (std::uint32_t age_us = 1; age_us <= 3; ++age_us) {
     bench.node.samples.resize(age_us);
@@ -206,8 +206,8 @@ TEST_CASE("frames are told in the order in which they came, however slowly clock
   Bench<SlowClocks> bench;
   bench.talk(2);
   std::vector<HostTime> arrivals;
-  bench.receiver.watch([&](const NodeArrival&, const NodeNews& news, LiveClock*) {
-    arrivals.push_back(news.exchange->h_rx);
+  bench.receiver.watch([&](const NodeArrival&, const NodeMessage& message, LiveClock*) {
+    arrivals.push_back(message.exchange->h_rx);
   });
   for (const Duration each : {Duration(10s), Duration(0s)}) {
     bench.clocks.reading = each;

@@ -67,7 +67,7 @@ TEST_CASE("a node without a certificate, a counter or a voice says so") {
   bare.mean_way = std::chrono::milliseconds(33);
   bare.silent = bare.old_key = true;
   bare.rate_hz = 15.0;
-  bare.heard = now.raw - std::chrono::seconds(65);
+  bare.last_arrival = now.raw - std::chrono::seconds(65);
   CHECK(status_text(bare, now) ==
         "node 3  silent since 2026-11-22T17:38:23Z, no counter: d 33.0 ms, old key");
   CHECK(nodes_text({bare}) == "1 node, 0 locked, 1 silent");

@@ -4,7 +4,7 @@
 // bytes than it sent.
 #include "fuzz/packets/node_datagrams.h"
 
-#include "kinalign/capture/nodes/node_desk.h"
+#include "kinalign/capture/nodes/node_responder.h"
 #include "kinalign/wire/bytes.h"
 #include "kinalign/wire/node_reply.h"
 
@@ -22,8 +22,8 @@ constexpr std::array<std::uint8_t, 4> own_host{10, 0, 0, 1};
 
 using Out = std::array<std::uint8_t, max_node_datagram>;
 
-NodeDeskOptions desk_options() {
-  NodeDeskOptions options;
+NodeResponderOptions responder_options() {
+  NodeResponderOptions options;
   options.lab_key = lab;
   return options;
 }
@@ -35,7 +35,7 @@ NodeAddress own_address() {
   return address;
 }
 
-/// The node, and the NodeDesk of one of the hosts.
+/// The node, and the NodeResponder of one of the hosts.
 class Pair {
  public:
   /// Sends a frame to the host and its reply to the node; gives the exchange that resulted.
@@ -47,17 +47,17 @@ class Pair {
     if (echo_) frame.echo = *echo_;
     Out out{};
     const MacKey key = node_key(lab, own_id);
-    const NodeNews news = desk.receive({encode(frame, &key, out), from, now});
+    const NodeMessage message = responder.receive({encode(frame, &key, out), from, now});
     Envelope envelope;
     NodeReply reply;
-    const auto answer = desk.answer(now, out);
+    const auto answer = responder.answer(now, out);
     if (open_envelope(answer, envelope) == NodeRefusal::none &&
         decode(envelope, &key, reply) == NodeRefusal::none) {
       echo_ = {reply.reply_sequence, reply.nonce, frame.n_tx_us};
     }
-    return news.exchange;
+    return message.exchange;
   }
-  NodeDesk desk{desk_options()};
+  NodeResponder responder{responder_options()};
   NodeAddress from = own_address();
 
  private:
@@ -97,10 +97,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t i = 0; i < length; ++i) reader.take<std::uint8_t>();
     NodeAddress from = noisy->from;  // sometimes the node's own address
     from.host[15] = last;
-    const NodeNews news = noisy->desk.receive({bytes, from, now});
-    if (news.exchange && (news.exchange->boot == 1 && how % 4 != 2)) std::abort();
+    const NodeMessage message = noisy->responder.receive({bytes, from, now});
+    if (message.exchange && (message.exchange->boot == 1 && how % 4 != 2)) std::abort();
     Out out{};
-    if (noisy->desk.answer(now, out).size() > bytes.size()) std::abort();
+    if (noisy->responder.answer(now, out).size() > bytes.size()) std::abort();
     if (how < 128) continue;
     if (!same(quiet->exchange(now), noisy->exchange(now))) std::abort();
   }

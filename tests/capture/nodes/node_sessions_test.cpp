@@ -3,7 +3,7 @@
 // node_faults_test.cpp.
 #include "tests/capture/test_node.h"
 
-#include "kinalign/capture/nodes/node_desk.h"
+#include "kinalign/capture/nodes/node_responder.h"
 #include "kinalign/capture/nodes/node_table.h"
 #include "kinalign/clock/live/live_clock.h"
 
@@ -33,7 +33,7 @@ TEST_CASE("fault 2 reboot_same_id: a counter that begins anew is a new life, onc
   const BootKey first = host.exchange(node, home, 10.0).exchange->boot;
   node.reboot(1, host_s(10.5));
   CHECK(host.exchange(node, home, 10.6).verdict == Verdict::replayed);
-  const NodeNews second = host.exchange(node, home, 10.7);
+  const NodeMessage second = host.exchange(node, home, 10.7);
   REQUIRE(second.verdict == Verdict::accepted);
   CHECK(second.exchange->boot != first);
   CHECK((second.exchange->boot & 0xffff'ffffU) == 1);
@@ -54,8 +54,8 @@ TEST_CASE("fault 2 reboot_same_id: a new life that outlasts the one before is st
       if (back_s < 10) node.offset_s -= back_s;
       std::map<std::size_t, std::map<BootKey, int>> frames;
       for (; k < 400; ++k) {
-        const NodeNews news = host.exchange(node, home, 0.1 * k);
-        if (news.exchange) ++frames[news.stream][news.exchange->boot];
+        const NodeMessage message = host.exchange(node, home, 0.1 * k);
+        if (message.exchange) ++frames[message.stream][message.exchange->boot];
       }
       CHECK(host.events() == std::vector{Kind::joined, Kind::restarted});
       REQUIRE(frames.size() == 1);
@@ -90,25 +90,25 @@ TEST_CASE("fault 2 reboot_same_id: nor do its other ports make two nodes of it")
   for (; k < 100; ++k) host.exchange(node, home, 0.1 * k);
   node.reboot(1, host_s(10.0));
   for (; k < 250; ++k) host.exchange(node, other_port, 0.1 * k);
-  for (; k < 300; ++k) host.exchange(node, home, 0.1 * k);  // the address of the earlier life
+  for (; k < 300; ++k) host.exchange(node, home, 0.1 * k);  // the address of the earlier session
   CHECK(host.events() == std::vector{Kind::joined, Kind::restarted, Kind::moved});
   CHECK(host.count(Verdict::accepted) == 298);
 }
 
-TEST_CASE("fault 3 reboot_storm: ten starts in twenty seconds are ten lives of one stream") {
+TEST_CASE("fault 3 reboot_storm: ten starts in twenty seconds are ten sessions of one stream") {
   TestDesk host(lab);
   TestNode node(7, 100, lab);
   std::map<BootKey, int> frames;
   std::size_t stream = 0;
   for (int k = 0; k < 300; ++k) {
     if (k % 30 == 0) node.reboot(100 + static_cast<unsigned>(k), host_s(k / 15.0));
-    const NodeNews news = host.exchange(node, home, k / 15.0);
-    if (news.verdict != Verdict::accepted) continue;
-    ++frames[news.exchange->boot];
-    stream = news.stream;
+    const NodeMessage message = host.exchange(node, home, k / 15.0);
+    if (message.verdict != Verdict::accepted) continue;
+    ++frames[message.exchange->boot];
+    stream = message.stream;
   }
   CHECK(frames.size() == 10);
-  CHECK(host.desk.stream(stream).lives == 10);
+  CHECK(host.responder.stream(stream).sessions == 10);
   CHECK(host.count(Verdict::held) == 10);
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("replies go where the newest frame came from, not where a late one did
   const Bytes late = node.frame(host_s(2.0));
   host.exchange(node, elsewhere, 2.1);
   CHECK(host.take(late, home, host_s(2.11)).verdict == Verdict::accepted);
-  CHECK(host.desk.life_of(host.desk.stream(0)).address == elsewhere);
+  CHECK(host.responder.session_of(host.responder.stream(0)).address == elsewhere);
 }
 
 TEST_CASE("of a node that has echoed nothing four starts are held, each for a second at least") {
@@ -133,8 +133,8 @@ TEST_CASE("of a node that has echoed nothing four starts are held, each for a se
   CHECK(table.hold(start(7, 5, 1.09)) == nullptr);
   CHECK(table.hold(start(8, 1, 1.09)) != nullptr);  // another node has a stream of its own
   CHECK(table.hold(start(7, 5, 1.11)) != nullptr);
-  CHECK(table.life_of(start(7, 1, 1.11)) == nullptr);  // the oldest stream was given up for it
-  for (std::uint32_t boot = 2; boot <= 5; ++boot) CHECK(table.life_of(start(7, boot, 1.11)));
+  CHECK(table.session_of(start(7, 1, 1.11)) == nullptr);  // the oldest stream was given up for it
+  for (std::uint32_t boot = 2; boot <= 5; ++boot) CHECK(table.session_of(start(7, boot, 1.11)));
 }
 
 TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") {
@@ -151,18 +151,18 @@ TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") 
     std::vector<NodeEvent> events;
     int taken = 0;
     const auto exchange = [&](TestNode& node, char name, const NodeAddress& from, double t) {
-      const NodeNews news = host.exchange(node, from, t);
-      for (const NodeEvent& event : host.desk.take_events()) events.push_back(event);
-      if (!news.exchange) return;
+      const NodeMessage message = host.exchange(node, from, t);
+      for (const NodeEvent& event : host.responder.take_events()) events.push_back(event);
+      if (!message.exchange) return;
       ++taken;
-      std::string& boot = of_boot[news.exchange->boot];
+      std::string& boot = of_boot[message.exchange->boot];
       if (boot.find(name) == std::string::npos) boot += name;
-      std::string& stream = of_stream[news.stream];
+      std::string& stream = of_stream[message.stream];
       if (t >= 4.0 && stream.find(name) == std::string::npos) stream += name;
-      LiveClock& clock = clocks[news.stream];
-      clock.push(*news.exchange);
+      LiveClock& clock = clocks[message.stream];
+      clock.push(*message.exchange);
       if (t < 4.0) return;
-      const auto stamp = clock.host_from_node(news.exchange->boot, news.exchange->n_tx);
+      const auto stamp = clock.host_from_node(message.exchange->boot, message.exchange->n_tx);
       REQUIRE(stamp);
       CHECK(stamp->certainty == Certainty::certified);
       CHECK(std::chrono::abs(stamp->time - host_s(t)) < std::chrono::milliseconds(1));
@@ -180,7 +180,7 @@ TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") 
     }
     CHECK(of_a == 1);
     CHECK(of_b == 1);
-    CHECK(taken >= 180 - 3);  // each is held at first, and one frame is of an earlier life
+    CHECK(taken >= 180 - 3);  // each is held at first, and one frame is of an earlier session
     // Node b takes the place of node a until a is heard again; then a gets a stream of its own.
     std::vector<Kind> kinds;
     for (const NodeEvent& event : events) kinds.push_back(event.kind);
@@ -202,7 +202,7 @@ TEST_CASE("fault 30 node_id_change: a new stream, with a note who it was") {
   TestNode seven(7, 1, lab), nine(9, 2, lab);
   for (int k = 0; k < 5; ++k) host.exchange(seven, home, 0.1 * k);
   for (int k = 20; k < 25; ++k) host.exchange(nine, home, 0.1 * k);
-  const auto events = host.desk.take_events();
+  const auto events = host.responder.take_events();
   REQUIRE(events.size() == 3);
   CHECK(events[2].kind == Kind::renamed);
   CHECK(events[2].node_id == 9);
@@ -214,8 +214,8 @@ TEST_CASE("fault 31 address_change: the same life of the same stream") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   host.exchange(node, home, 0.0);
-  const NodeNews before = host.exchange(node, home, 0.1);
-  const NodeNews after = host.exchange(node, elsewhere, 0.2);
+  const NodeMessage before = host.exchange(node, home, 0.1);
+  const NodeMessage after = host.exchange(node, elsewhere, 0.2);
   REQUIRE(after.verdict == Verdict::accepted);
   CHECK(after.stream == before.stream);
   CHECK(after.exchange->boot == before.exchange->boot);
@@ -230,7 +230,7 @@ TEST_CASE("fault 31 address_change: the rate limit follows, that of a node and t
       host.exchange(node, moves && k / 5 % 2 == 1 ? elsewhere : home, 0.01 * k);
     }
     CHECK(host.count(Verdict::accepted) == 499);
-    return host.desk.counts().answers;
+    return host.responder.counts().answers;
   };
   // A node that moves has the rate limit of one node, 30 a second.
   CHECK(answers_of(true) == answers_of(false));
@@ -257,13 +257,13 @@ TEST_CASE("fault 32 late_node, node_leaves, node_returns: after ten minutes it i
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   host.exchange(node, home, 300.0);
-  const BootKey life = host.exchange(node, home, 300.1).exchange->boot;
-  host.desk.tick(host_s(305.0));
-  host.desk.tick(host_s(311.0));
-  host.desk.tick(host_s(320.0));
-  const NodeNews back = host.exchange(node, home, 900.0);
+  const BootKey session = host.exchange(node, home, 300.1).exchange->boot;
+  host.responder.tick(host_s(305.0));
+  host.responder.tick(host_s(311.0));
+  host.responder.tick(host_s(320.0));
+  const NodeMessage back = host.exchange(node, home, 900.0);
   REQUIRE(back.verdict == Verdict::accepted);
-  CHECK(back.exchange->boot == life);
+  CHECK(back.exchange->boot == session);
   CHECK(host.events() == std::vector{Kind::joined, Kind::left, Kind::returned});
 }
 
@@ -276,15 +276,15 @@ TEST_CASE("fault 32 node_returns: the same piece if its counter agrees within 10
     TestNode node(7, 1, lab);
     LiveClock clock;
     const auto exchange = [&](double t) {
-      const NodeNews news = host.exchange(node, home, t);
-      if (!news.exchange) return std::optional<ClockStamp>();
-      clock.push(*news.exchange);
-      return clock.host_from_node(news.exchange->boot, news.exchange->n_tx);
+      const NodeMessage message = host.exchange(node, home, t);
+      if (!message.exchange) return std::optional<ClockStamp>();
+      clock.push(*message.exchange);
+      return clock.host_from_node(message.exchange->boot, message.exchange->n_tx);
     };
     for (int k = 0; k < 600; ++k) exchange(0.1 * k);
     const ClockOrigin piece = clock.piece()->origin();
     static_cast<void>(clock.take_events());
-    host.desk.tick(host_s(300.0));
+    host.responder.tick(host_s(300.0));
     node.offset_s += wrong_s;
     const auto first = exchange(660.0);
     REQUIRE(first);
@@ -318,13 +318,13 @@ TEST_CASE("fault 32 node_returns: with another boot id it is another life") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   for (int k = 0; k < 10; ++k) host.exchange(node, home, 0.1 * k);
-  host.desk.tick(host_s(300.0));
+  host.responder.tick(host_s(300.0));
   node.reboot(2, host_s(600.0));
   CHECK(host.exchange(node, home, 601.0).verdict == Verdict::held);
-  const NodeNews back = host.exchange(node, home, 601.1);
+  const NodeMessage back = host.exchange(node, home, 601.1);
   REQUIRE(back.verdict == Verdict::accepted);
   CHECK(back.exchange->boot == 2);
-  CHECK(host.desk.stream(back.stream).lives == 2);
+  CHECK(host.responder.stream(back.stream).sessions == 2);
 }
 
 TEST_CASE("fault 40 ipv6_only, dual_stack_same_node: one stream") {
@@ -334,14 +334,14 @@ TEST_CASE("fault 40 ipv6_only, dual_stack_same_node: one stream") {
   six.host = {0xfd, 0, 0, 1};
   six.port = 4000;
   host.exchange(node, six, 0.0);
-  const NodeNews before = host.exchange(node, six, 0.1);
-  const NodeNews after = host.exchange(node, home, 0.2);
+  const NodeMessage before = host.exchange(node, six, 0.1);
+  const NodeMessage after = host.exchange(node, home, 0.2);
   CHECK(before.exchange->boot == after.exchange->boot);
   CHECK(before.stream == after.stream);
 }
 
-TEST_CASE("fault 12 replay: captures of former lives, sent on and on, keep no node out") {
-  std::vector<std::array<Bytes, 2>> captured;  // for each life an early frame and a late one
+TEST_CASE("fault 12 replay: captures of earlier sessions, sent on and on, keep no node out") {
+  std::vector<std::array<Bytes, 2>> captured;  // for each session an early frame and a late one
   for (std::uint32_t boot = 1; boot <= 4; ++boot) {
     TestNode node(7, boot, lab);
     captured.push_back({node.frame(host_s(1.0)), node.frame(host_s(31.0))});

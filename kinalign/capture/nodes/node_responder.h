@@ -37,7 +37,7 @@ struct NodeReading {
 };
 
 /// The content of an accepted datagram. A frame has `exchange`, a confirm has `clockless`.
-struct NodeNews {
+struct NodeMessage {
   NodeVerdict verdict = NodeVerdict::refused;
   // as claimed; if a key is used and the datagram is not refused, the MAC proves it
   std::uint32_t node_id = 0;
@@ -48,18 +48,18 @@ struct NodeNews {
   std::span<const NodeReading> readings;  // oldest first; valid until the next datagram
 };
 
-struct NodeDeskOptions {
+struct NodeResponderOptions {
   std::optional<LabKey> lab_key;
   // random in each run; nonces and the hash keys of unknown senders are made with it
   SipHashKey secret{};
 };
 
-class NodeDesk {
+class NodeResponder {
  public:
-  explicit NodeDesk(const NodeDeskOptions& options);
+  explicit NodeResponder(const NodeResponderOptions& options);
 
   /// Judges one datagram. Call in the order of arrival.
-  NodeNews receive(const NodeArrival& arrival);
+  NodeMessage receive(const NodeArrival& arrival);
   /// Makes the answer to the previous datagram at the front of `out`. Empty: no answer is due. The
   /// layouts ensure that an answer is never longer than its request. `h_tx` must be read just
   /// before this call, and the answer must be sent at once.
@@ -74,30 +74,36 @@ class NodeDesk {
   void tick(HostTime now) { table_.tick(now); }
 
   const NodeStream& stream(std::size_t i) const { return table_.stream(i); }
-  const NodeLife& life_of(const NodeStream& stream) const { return table_.life(stream.life); }
+  const NodeSession& session_of(const NodeStream& stream) const {
+    return table_.session(stream.session);
+  }
   const NodeCounts& counts() const { return counts_; }
   const RefusedNodes& refused_nodes() const { return refused_nodes_; }
   std::vector<NodeEvent> take_events() { return table_.take_events(); }
   std::uint64_t missed_events() const { return table_.missed_events(); }
 
  private:
-  NodeVerdict judge(const NodeArrival& arrival, NodeNews& news);
-  NodeVerdict judge_frame(const NodeArrival& arrival, const Envelope& envelope, NodeNews& news);
-  NodeVerdict judge_request(const NodeArrival& arrival, const Envelope& envelope, NodeNews& news);
-  NodeVerdict judge_confirm(const NodeArrival& arrival, const Envelope& envelope, NodeNews& news);
+  NodeVerdict judge(const NodeArrival& arrival, NodeMessage& message);
+  NodeVerdict judge_frame(const NodeArrival& arrival, const Envelope& envelope,
+                          NodeMessage& message);
+  NodeVerdict judge_request(const NodeArrival& arrival, const Envelope& envelope,
+                            NodeMessage& message);
+  NodeVerdict judge_confirm(const NodeArrival& arrival, const Envelope& envelope,
+                            NodeMessage& message);
   template <class Datagram>
   bool unlock(const Envelope& envelope, const NodeArrival& arrival, Datagram& datagram);
-  NodeVerdict find_life(const NodeSign& sign, NodeLife*& life);
-  NodeVerdict find_place(const NodeSign& sign, std::uint32_t sequence, NodeLife*& life,
-                         NodeNews& news);
-  NodeVerdict take_life(NodeLife& life, const NodeSign& sign, std::optional<HostTime> echoed);
-  std::optional<Exchange::Echo> take_echo(NodeLife& life, std::int64_t n_tx_us);
+  NodeVerdict find_session(const NodeSign& sign, NodeSession*& session);
+  NodeVerdict find_place(const NodeSign& sign, std::uint32_t sequence, NodeSession*& session,
+                         NodeMessage& message);
+  NodeVerdict take_session(NodeSession& session, const NodeSign& sign,
+                           std::optional<HostTime> echoed);
+  std::optional<Exchange::Echo> take_echo(NodeSession& session, std::int64_t n_tx_us);
   void keep(std::span<const NodeSample> samples, std::optional<std::int64_t> n_tx_us,
-            NodeNews& news);
-  void accept(NodeLife& life, const NodeSign& sign, bool newest, NodeNews& news);
+            NodeMessage& message);
+  void accept(NodeSession& session, const NodeSign& sign, bool newest, NodeMessage& message);
   void refuse(NodeRefusal refusal, std::uint8_t version, HostTime now);
-  void tell_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
-                      const NodeArrival& arrival);
+  void report_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
+                        const NodeArrival& arrival);
 
   SipHashKey secret_;
   KeyRing keys_;
@@ -112,7 +118,7 @@ class NodeDesk {
   std::array<NodeReading, max_node_samples> readings_{};
   /// The data that `answer` needs.
   struct Asked {
-    NodeLife* by = nullptr;  // nullptr: the datagram is not answered
+    NodeSession* by = nullptr;  // nullptr: the datagram is not answered
     DatagramOrigin origin;
     DatagramType type{};
     HostTime h_rx{};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's record of one life of a node. A life lasts from one start of the node to the next.
+// The host's record of one session of a node. A session lasts from one start of the node to the
+// next.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -14,20 +15,20 @@
 
 namespace kinalign {
 
-struct NodeLife {
+struct NodeSession {
   enum class State : std::uint8_t {
     free,
     held,    // not admitted yet: must echo an answer of this run of the host
-    live,    // the present life of its stream
+    live,    // the present session of its stream
     earlier  // the node has started again since
   };
   State state = State::free;
   std::uint32_t node_id = 0, boot_id = 0;
   BootKey key = 0;  // the boot id; the upper bits hold a number if this boot id was used before
-  std::size_t stream = 0;  // undefined while the life is held
+  std::size_t stream = 0;  // undefined while the session is held
   NodeAddress address;     // source address of its newest frame
-  // First arrival, last arrival, and the start of the next life.
-  HostTime begun{}, heard{}, replaced{};
+  // First arrival, last arrival, and the start of the next session.
+  HostTime begun{}, last_arrival{}, replaced{};
   bool old_key = false;  // its newest frame was signed with the key that is being replaced
   SequenceWindow sequences;
   NodeCounter counter;
