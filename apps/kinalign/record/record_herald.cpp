@@ -166,7 +166,7 @@ void RecordHerald::tell_news_of(NodeReceiver& nodes) {
   }
   const HostTime now = session_.now();
   for (const auto& [stream, node_id, event] : nodes.take_clock_events()) {
-    clock_news_.hear(stream, node_id, event, now);
+    clock_news_.add(stream, node_id, event, now);
     console_.print_json(event_json(event, stream, node_id));
   }
   for (const std::string& line : clock_news_.lines(now)) console_.note(line);

@@ -5,7 +5,7 @@
 #include "apps/cli/console.h"
 #include "apps/kinalign/record/disk_forecast.h"
 #include "apps/kinalign/record/silence_news.h"
-#include "apps/kinalign/text/clock_news.h"
+#include "apps/kinalign/text/clock_event_lines.h"
 #include "apps/kinalign/text/record_text.h"
 
 #include "kinalign/capture/net/host_clock.h"
@@ -80,7 +80,7 @@ class RecordHerald {
                                               // to it
   std::uint64_t dropped_told_ = 0;
   DiskForecast forecast_;
-  ClockNews clock_news_;
+  ClockEventLines clock_news_;
   SilenceNews silence_news_;
   bool disk_full_ = false, warned_ = false, lacks_told_ = false, ports_told_ = false;
   HostTime begun_, next_look_ = HostTime::min(), next_second_ = HostTime::min();

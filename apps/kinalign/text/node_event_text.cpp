@@ -92,13 +92,13 @@ std::string wrong_key_text(const NodeEvent& event, const NodeNames& names) {
   const char* what = no_key ? "frames with a MAC, but no --lab-key was given"
                      : event.refusal == NodeRefusal::no_mac ? "frames without a MAC"
                                                             : "frames signed with another key";
-  const std::string mend = no_key ? "; to accept it, give the lab's key with --lab-key FILE"
-                                  : fmt::format(
-                                        "; if it is that node, flash the key that kinalign "
-                                        "node-key --lab-key LAB --node {} prints",
-                                        event.node_id);
+  const std::string remedy = no_key ? "; to accept it, give the lab's key with --lab-key FILE"
+                                    : fmt::format(
+                                          "; if it is that node, flash the key that kinalign "
+                                          "node-key --lab-key LAB --node {} prints",
+                                          event.node_id);
   return fmt::format("warning: a sender that calls itself {} is refused: it sends {} (from {}){}",
-                     names.name(event.node_id), what, address_text(event.address), mend);
+                     names.name(event.node_id), what, address_text(event.address), remedy);
 }
 
 }  // namespace
@@ -114,15 +114,15 @@ std::string event_json(const NodeEvent& event) {
   Json json{{"event", "node_event"},
             {"kind", kinalign::name_of(event.kind)},
             {"warning", is_warning(event.kind)}};
-  const bool unheard = event.kind == NodeEvent::Kind::wrong_key;  // a refused node has no stream
-  if (!unheard) json["stream"] = event.stream;
+  const bool is_refused = event.kind == NodeEvent::Kind::wrong_key;  // a refused node has no stream
+  if (!is_refused) json["stream"] = event.stream;
   json["node_id"] = event.node_id;
   json["boot_id"] = event.boot_id;
   json["at_ns"] = json_ns(event.at);
   json["address"] = address_text(event.address);
   if (event.other_id) json["other_id"] = *event.other_id;
   if (event.version != 0) json["version"] = event.version;
-  if (unheard) json["refusal"] = refusal_name(event.refusal);
+  if (is_refused) json["refusal"] = refusal_name(event.refusal);
   return json_text(json);
 }
 

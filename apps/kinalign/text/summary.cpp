@@ -124,19 +124,19 @@ std::string space_line(const SpaceReport& s) {
 std::string gap_line(const Group& group) {
   const StreamReport& s = group.sum;
   if (s.gaps == 0 && harm(s) == 0 && s.inferred == 0) return "";
-  std::vector<std::string> said;
+  std::vector<std::string> parts;
   if (s.gaps > 0) {
-    said.push_back(fmt::format("{} gap{} ({:.2f} s, marked)", s.gaps, s.gaps == 1 ? "" : "s",
-                               1e-9 * static_cast<double>(s.gap_time_ns)));
+    parts.push_back(fmt::format("{} gap{} ({:.2f} s, marked)", s.gaps, s.gaps == 1 ? "" : "s",
+                                1e-9 * static_cast<double>(s.gap_time_ns)));
   }
   const auto share = [&](std::uint64_t part, const char* what) {
-    if (part > 0) said.push_back(share_text(part, s.samples) + " " + what);
+    if (part > 0) parts.push_back(share_text(part, s.samples) + " " + what);
   };
   share(s.invalid, "invalid");
   share(s.inferred, "inferred");
   share(s.bridged, "interpolated over loss");
   std::string text = "  gaps   " + harmless(s.stream);
-  for (const std::string& one : said) text += (&one == said.data() ? " " : ", ") + one;
+  for (const std::string& one : parts) text += (&one == parts.data() ? " " : ", ") + one;
   return text + worst_node(group, harm) + "\n";
 }
 

@@ -4,7 +4,7 @@
 #include "apps/kinalign/text/advice.h"
 #include "apps/kinalign/text/summary.h"
 #include "apps/kinalign/text/time_server_text.h"
-#include "apps/kinalign/time_server/node_herald.h"
+#include "apps/kinalign/time_server/node_event_printer.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/net/own_addresses.h"
@@ -151,77 +151,78 @@ ServedPort served_port(const TimeServer& server, const std::optional<NodeReceive
 }
 
 /// Reports changes while the server runs.
-class Herald {
+class ServerPrinter {
  public:
-  Herald(const TimeServer& server, std::optional<NodeHerald>& nodes, Console& console)
+  ServerPrinter(const TimeServer& server, std::optional<NodeEventPrinter>& nodes, Console& console)
       : server_(server),
         nodes_(nodes),
         console_(console),
         progress_(console.progress()),
-        told_(server.state()) {}
+        printed_(server.state()) {}
 
   /// Reports what changed since the last call. False: the server has to stop.
   bool operator()() {
-    tell_clock();
-    tell_strays();
-    tell_counts();
-    tell_trouble();
+    print_clock();
+    print_misdirected();
+    print_counts();
+    print_trouble();
     const std::string nodes = nodes_ ? (*nodes_)() : "";
     const std::string both = counts_text(server_.counts()) + (nodes.empty() ? "" : "; " + nodes);
     return progress_("serving: " + both, 0, 0);
   }
-  void tell_end() {
+  void print_end() {
     const double s = elapsed_s();
     console_.print(
         fmt::format("served for {}: {}\n", duration_text(s), counts_text(server_.counts())));
-    if (nodes_) nodes_->tell_end();
+    if (nodes_) nodes_->print_end();
     console_.print_json(counts_json(server_.counts(), "stopped", s));
   }
 
  private:
   double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
 
-  void tell_clock() {
+  void print_clock() {
     const NtpServerState& now = server_.state();
-    if (now.leap == told_.leap && now.stratum == told_.stratum) return;
-    told_ = now;
-    tell_live(console_, "the clock is now " + clock_text(now));
+    if (now.leap == printed_.leap && now.stratum == printed_.stratum) return;
+    printed_ = now;
+    print_line(console_, "the clock is now " + clock_text(now));
     console_.print_json(clock_json(now));
     console_.flush();
   }
   /// Reports nodes at the NTP port once; the count goes on.
-  void tell_strays() {
-    if (strays_told_ || server_.counts()[NtpOutcome::from_node] == 0) return;
-    strays_told_ = true;
-    tell_live(console_,
-              "warning: a node sends to the NTP port; it must send to the port of --node-port");
+  void print_misdirected() {
+    if (misdirected_printed_ || server_.counts()[NtpOutcome::from_node] == 0) return;
+    misdirected_printed_ = true;
+    print_line(console_,
+               "warning: a node sends to the NTP port; it must send to the port of --node-port");
   }
   /// Reports each fault of stdout once, as long as it lasts: otherwise nobody may notice it for
   /// hours.
-  void tell_trouble() {
+  void print_trouble() {
     const std::string trouble = console_.out_trouble();
     if (std::exchange(out_trouble_, trouble) == trouble) return;
-    tell_live(console_, trouble.empty() ? "standard output accepts lines again"
-                                        : "warning: standard output is blocked (" + trouble +
-                                              "): up to 1 MiB of lines is kept; serving continues");
+    print_line(console_, trouble.empty()
+                             ? "standard output accepts lines again"
+                             : "warning: standard output is blocked (" + trouble +
+                                   "): up to 1 MiB of lines is kept; serving continues");
   }
-  void tell_counts() {
+  void print_counts() {
     constexpr double every_s = 10;
-    if (elapsed_s() < every_s * (counts_told_ + 1)) return;
-    ++counts_told_;
+    if (elapsed_s() < every_s * (counts_printed_ + 1)) return;
+    ++counts_printed_;
     console_.print_json(counts_json(server_.counts(), "counts", elapsed_s()));
     console_.flush();
   }
 
   const TimeServer& server_;
-  std::optional<NodeHerald>& nodes_;
+  std::optional<NodeEventPrinter>& nodes_;
   Console& console_;
   Progress progress_;
-  NtpServerState told_;
+  NtpServerState printed_;
   std::string out_trouble_;  // the fault that was reported and still lasts
   Clock::time_point began_ = Clock::now();
-  int counts_told_ = 0;
-  bool strays_told_ = false;
+  int counts_printed_ = 0;
+  bool misdirected_printed_ = false;
 };
 
 Result<int> run(TimeServerFlags& o, Call& call) {
@@ -243,11 +244,11 @@ Result<int> run(TimeServerFlags& o, Call& call) {
         "not follow it; if the lab has no other clock, use --local-stratum 10");
   }
   console.flush();
-  std::optional<NodeHerald> node_herald;
-  if (nodes) node_herald.emplace(*nodes, console, call.surroundings.files, lab);
-  Herald herald(server, node_herald, console);
-  server.serve([&herald] { return herald(); }, nodes ? &*nodes : nullptr);
-  herald.tell_end();
+  std::optional<NodeEventPrinter> node_printer;
+  if (nodes) node_printer.emplace(*nodes, console, call.surroundings.files, lab);
+  ServerPrinter printer(server, node_printer, console);
+  server.serve([&printer] { return printer(); }, nodes ? &*nodes : nullptr);
+  printer.print_end();
   return 0;
 }
 

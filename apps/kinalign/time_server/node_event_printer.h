@@ -4,7 +4,7 @@
 #pragma once
 
 #include "apps/cli/console.h"
-#include "apps/kinalign/text/clock_news.h"
+#include "apps/kinalign/text/clock_event_lines.h"
 
 #include "kinalign/capture/nodes/node_receiver.h"
 
@@ -24,34 +24,34 @@ struct LabKeyFile {
 };
 
 /// Prints a message of a server that runs for days, on stderr with date and time.
-void tell_live(Console& console, std::string_view what);
+void print_line(Console& console, std::string_view what);
 
-class NodeHerald {
+class NodeEventPrinter {
  public:
   /// `lab`: the key that the receiver has.
-  NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files, LabKeyFile lab)
+  NodeEventPrinter(NodeReceiver& receiver, Console& console, FileSystem& files, LabKeyFile lab)
       : receiver_(receiver), console_(console), files_(files), lab_(std::move(lab)) {}
 
   /// Called several times a second. Returns a short status: "3 nodes, 2 locked".
   std::string operator()();
-  void tell_end();
+  void print_end();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void tell_events();
-  void tell_status();
+  void print_events();
+  void print_status();
   void look_at_key();
-  void tell_key_trouble(const std::string& trouble);
+  void print_key_trouble(const std::string& trouble);
 
-  void tell_clocks(const std::vector<std::string>& lines);
+  void print_clocks(const std::vector<std::string>& lines);
   std::string summary_of(const NodeStatus& status) const;
 
   NodeReceiver& receiver_;
   Console& console_;
   FileSystem& files_;
   LabKeyFile lab_;
-  ClockNews clock_news_;
+  ClockEventLines clock_lines_;
   std::string key_trouble_;  // the fault that was reported and still lasts
   Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
   int counts_in_s_ = 10;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/text/clock_news.h"
+#include "apps/kinalign/text/clock_event_lines.h"
 
 #include "apps/kinalign/text/node_event_text.h"
 
@@ -33,18 +33,18 @@ bool is_trouble(EventKind kind) {
 }  // namespace
 
 /// The stream's clock. A stream may have passed to another node; then the clock starts anew.
-ClockNews::Clock& ClockNews::clock_of(std::size_t stream, std::uint32_t node_id) {
+ClockEventLines::Clock& ClockEventLines::clock_of(std::size_t stream, std::uint32_t node_id) {
   Clock& clock = clocks_[stream];
   if (clock.node_id != node_id) {
-    tell_waiting(clock);
+    print_waiting(clock);
     clock = {};
     clock.node_id = node_id;
   }
   return clock;
 }
 
-void ClockNews::hear(std::size_t stream, std::uint32_t node_id, const ClockEvent& event,
-                     HostTime now) {
+void ClockEventLines::add(std::size_t stream, std::uint32_t node_id, const ClockEvent& event,
+                          HostTime now) {
   Clock& clock = clock_of(stream, node_id);
   if (!is_trouble(event.kind)) return;
   if (!contradicts(stream, node_id, now)) clock.contradicts = false;
@@ -59,7 +59,7 @@ void ClockNews::hear(std::size_t stream, std::uint32_t node_id, const ClockEvent
 
 /// Keeps the last three steps. From the third step within `steps_within` on, one line replaces the
 /// lines for single steps.
-void ClockNews::take_step(Clock& clock, const ClockEvent& event) {
+void ClockEventLines::take_step(Clock& clock, const ClockEvent& event) {
   std::rotate(clock.steps.begin(), clock.steps.begin() + 1, clock.steps.end());
   clock.steps.back() = event.end;
   clock.settled = false;
@@ -76,9 +76,9 @@ void ClockNews::take_step(Clock& clock, const ClockEvent& event) {
 
 /// Collects withdrawn stretches; overlapping ones become one. A stretch withdrawn right after the
 /// clock settled is not printed if it was printed before.
-void ClockNews::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
+void ClockEventLines::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
   const bool known =
-      clock.told && event.begin >= clock.told->begin && event.begin <= clock.told->end;
+      clock.printed && event.begin >= clock.printed->begin && event.begin <= clock.printed->end;
   if (std::exchange(clock.settled, false) && known) return;
   if (!clock.waiting) {
     clock.waiting = Stretch{event.begin, event.end, now};
@@ -89,23 +89,23 @@ void ClockNews::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
 }
 
 /// Prints the collected withdrawal as one line, and remembers it.
-void ClockNews::tell_waiting(Clock& clock) {
+void ClockEventLines::print_waiting(Clock& clock) {
   if (!clock.waiting) return;
   const ClockEvent whole{EventKind::withdrawn, 0, clock.waiting->begin, clock.waiting->end};
   lines_.push_back(event_text(whole, clock.node_id, names_));
-  clock.told = std::exchange(clock.waiting, std::nullopt);
+  clock.printed = std::exchange(clock.waiting, std::nullopt);
 }
 
-std::vector<std::string> ClockNews::lines(HostTime now) {
+std::vector<std::string> ClockEventLines::lines(HostTime now) {
   for (auto& [stream, clock] : clocks_) {
     if (!clock.waiting) continue;
     const bool caused = clock.steps.back() >= clock.waiting->end;
-    if (caused || now - clock.waiting->since >= patience) tell_waiting(clock);
+    if (caused || now - clock.waiting->since >= patience) print_waiting(clock);
   }
   return std::exchange(lines_, {});
 }
 
-bool ClockNews::contradicts(std::size_t stream, std::uint32_t node_id, HostTime now) const {
+bool ClockEventLines::contradicts(std::size_t stream, std::uint32_t node_id, HostTime now) const {
   const auto found = clocks_.find(stream);
   if (found == clocks_.end() || found->second.node_id != node_id) return false;
   return found->second.contradicts && now - found->second.troubled < quiet;

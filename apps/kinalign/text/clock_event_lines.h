@@ -26,12 +26,12 @@ inline constexpr std::string_view contradiction =
     "its clock contradicts the assumptions again and again (drift above 100 ppm, or the node "
     "sleeps)";
 
-class ClockNews {
+class ClockEventLines {
  public:
-  explicit ClockNews(NodeNames names = {}) : names_(std::move(names)) {}
+  explicit ClockEventLines(NodeNames names = {}) : names_(std::move(names)) {}
 
   /// Takes the events in their order. `now`, of the host's raw clock, is the time of the call.
-  void hear(std::size_t stream, std::uint32_t node_id, const ClockEvent& event, HostTime now);
+  void add(std::size_t stream, std::uint32_t node_id, const ClockEvent& event, HostTime now);
   /// The lines to print now. A withdrawal waits for its cause, at most a second.
   std::vector<std::string> lines(HostTime now);
   /// The lines to print at the end, also those that still wait.
@@ -50,14 +50,14 @@ class ClockNews {
     std::uint32_t node_id = 0;
     std::array<HostTime, 3> steps{HostTime::min(), HostTime::min(), HostTime::min()};  // latest
     bool contradicts = false;
-    HostTime troubled = HostTime::min();   // the latest event of trouble
-    std::optional<Stretch> waiting, told;  // withdrawn stretches, not yet printed and printed
-    bool settled = false;                  // the next withdrawn stretch is no longer certified
+    HostTime troubled = HostTime::min();      // the latest event of trouble
+    std::optional<Stretch> waiting, printed;  // withdrawn stretches, not yet printed and printed
+    bool settled = false;                     // the next withdrawn stretch is no longer certified
   };
   Clock& clock_of(std::size_t stream, std::uint32_t node_id);
   void take_step(Clock& clock, const ClockEvent& event);
   static void withdraw(Clock& clock, const ClockEvent& event, HostTime now);
-  void tell_waiting(Clock& clock);
+  void print_waiting(Clock& clock);
 
   NodeNames names_;
   std::map<std::size_t, Clock> clocks_;  // by stream
