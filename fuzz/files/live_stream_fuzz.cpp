@@ -19,7 +19,7 @@ struct Heard {
 
 Heard heard(std::string_view bytes, std::size_t piece) {
   LiveStream stream;
-  LiveNews news;
+  LiveData news;
   Heard out;
   for (; !bytes.empty() && !out.fails; bytes.remove_prefix(std::min(piece, bytes.size()))) {
     out.fails = !stream.take(bytes.substr(0, piece), news);

@@ -35,15 +35,15 @@ class LiveDenoiseRun {
         unseen_(model_.layout.inputs.size()) {}
 
   void begin() {
-    session_.tell("waiting for the Kinect's frames", Json{{"event", "started"},
-                                                          {"method", model_.facts.method},
-                                                          {"rate_hz", model_.layout.rate_hz},
-                                                          {"look_ahead", cleaner_.look_ahead()}});
+    session_.report("waiting for the Kinect's frames", Json{{"event", "started"},
+                                                            {"method", model_.facts.method},
+                                                            {"rate_hz", model_.layout.rate_hz},
+                                                            {"look_ahead", cleaner_.look_ahead()}});
   }
 
   // Answers frames as soon as they are ready. Fails if two Kinects send and none was chosen.
-  Result<void> take(const LiveNews& news) {
-    for (const LiveKinectRow& row : news.rows) {
+  Result<void> take(const LiveData& data) {
+    for (const LiveKinectRow& row : data.rows) {
       KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
       if (row.kinect->stream != stream_) continue;
       joints_.add(row.row, row.arrival);
@@ -149,12 +149,12 @@ class LiveDenoiseRun {
   Result<void> take_answer(const std::vector<float>& joints, std::optional<Time> needed) {
     const Clip one = KA_TRY(skeleton(joints, time_of(answered_)));
     if (answered_ == 0) {
-      session_.tell("", Json{{"event", "skeleton"},
-                             {"joint_names", one.skeleton.joint_names},
-                             {"parents", one.skeleton.parents}});
+      session_.report("", Json{{"event", "skeleton"},
+                               {"joint_names", one.skeleton.joint_names},
+                               {"parents", one.skeleton.parents}});
     }
     ++answered_;
-    session_.tell_frame(one.skeleton, one.frames, needed);
+    session_.report_frame(one.skeleton, one.frames, needed);
     return {};
   }
 
@@ -181,7 +181,7 @@ Result<Json> run_live_denoise(Denoiser& denoiser, const LiveJob& job, Clip& clip
   LiveDenoiseRun run(denoiser, job, session);
   run.begin();
   KA_TRY(session.run(
-      {[&](const LiveNews& news) { return run.take(news); }, [&] { return run.status(); }}));
+      {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
   KA_TRY(run.finish());
   return run.answer(clip);
 }

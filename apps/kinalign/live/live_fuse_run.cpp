@@ -33,23 +33,23 @@ class LiveFuseRun {
         fuser_(fuser, job.look_ahead()) {}
 
   void begin() {
-    session_.tell(LiveWornReport::wish() + ", before the Kinect",
-                  Json{{"event", "started"},
-                       {"method", model_.facts.method},
-                       {"rate_hz", nodes_.rate_hz},
-                       {"look_ahead", fuser_.look_ahead()},
-                       {"joint_names", model_.body.skeleton.joint_names},
-                       {"parents", model_.body.skeleton.parents}});
+    session_.report(LiveWornReport::instruction() + ", before the Kinect",
+                    Json{{"event", "started"},
+                         {"method", model_.facts.method},
+                         {"rate_hz", nodes_.rate_hz},
+                         {"look_ahead", fuser_.look_ahead()},
+                         {"joint_names", model_.body.skeleton.joint_names},
+                         {"parents", model_.body.skeleton.parents}});
   }
 
   // Takes marks, Kinect rows and samples of nodes, and answers the frames that are ready.
-  Result<void> take(const LiveNews& news) {
-    for (const LiveMark& mark : news.marks) report_.take(mark);
-    for (const LiveKinectRow& row : news.rows) {
+  Result<void> take(const LiveData& data) {
+    for (const LiveMark& mark : data.marks) report_.take(mark);
+    for (const LiveKinectRow& row : data.rows) {
       KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
       if (row.kinect->stream == stream_) joints_.add(row.row, row.arrival);
     }
-    for (const LiveNodeSample& sample : news.samples) KA_TRY(report_.add(sample));
+    for (const LiveNodeSample& sample : data.samples) KA_TRY(report_.add(sample));
     if (session_.stream().now()) advance(*session_.stream().now());
     return check_live_frames(poses_.size());
   }
@@ -106,7 +106,7 @@ class LiveFuseRun {
     std::vector<FusedFramePose> answered;
     worn_.advance(
         now, [&](Time time) { return joints_.is_ready(time, now); }, ready);
-    bool waited = report_.tell_t_pose();
+    bool waited = report_.report_t_pose();
     if (waited) fuser_.begin_headings();
     const bool was_turned = fuser_.is_turned();
     for (const LiveWornFrame& frame : ready) take_frame(frame);
@@ -136,7 +136,7 @@ class LiveFuseRun {
     ClipFrames one = clip_frames(model_.body, pose.rotations, std::span(&pose.root, 1),
                                  nodes_.rate_hz, pending.stamp);
     put_place(pose, 0, one);
-    session_.tell_frame(model_.body.skeleton, one, needed);
+    session_.report_frame(model_.body.skeleton, one, needed);
     report_.watch(pending.valid);
     answered_.push_back(std::move(pending));
     poses_.push_back(std::move(pose));
@@ -193,7 +193,7 @@ Result<Json> run_live_fuse(Fuser& fuser, const LiveJob& job, Clip& clip, Call& c
   LiveFuseRun run(fuser, job, session);
   run.begin();
   KA_TRY(session.run(
-      {[&](const LiveNews& news) { return run.take(news); }, [&] { return run.status(); }}));
+      {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
   run.finish();
   return run.answer(clip);
 }

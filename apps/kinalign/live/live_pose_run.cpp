@@ -23,18 +23,19 @@ class LivePoseRun {
         report_(model_.layout, job.nodes, pose_.worn(), session) {}
 
   void begin() {
-    session_.tell(LiveWornReport::wish(), Json{{"event", "started"},
-                                               {"method", model_.facts.method},
-                                               {"rate_hz", model_.layout.rate_hz},
-                                               {"look_ahead", pose_.look_ahead()},
-                                               {"joint_names", model_.body.skeleton.joint_names},
-                                               {"parents", model_.body.skeleton.parents}});
+    session_.report(LiveWornReport::instruction(),
+                    Json{{"event", "started"},
+                         {"method", model_.facts.method},
+                         {"rate_hz", model_.layout.rate_hz},
+                         {"look_ahead", pose_.look_ahead()},
+                         {"joint_names", model_.body.skeleton.joint_names},
+                         {"parents", model_.body.skeleton.parents}});
   }
 
   // Takes marks and samples, and answers the frames that are ready.
-  Result<void> take(const LiveNews& news) {
-    for (const LiveMark& mark : news.marks) report_.take(mark);
-    for (const LiveNodeSample& sample : news.samples) {
+  Result<void> take(const LiveData& data) {
+    for (const LiveMark& mark : data.marks) report_.take(mark);
+    for (const LiveNodeSample& sample : data.samples) {
       if (KA_TRY(report_.add(sample))) advance(sample.arrival);
     }
     if (session_.stream().now()) advance(*session_.stream().now());
@@ -84,7 +85,7 @@ class LivePoseRun {
   void advance(Time now) {
     std::vector<LivePoseFrame> answered;
     pose_.advance(now, answered);
-    const bool waited = report_.tell_t_pose();
+    const bool waited = report_.report_t_pose();
     for (LivePoseFrame& frame : answered) {
       take_answer(std::move(frame), waited ? std::nullopt : std::optional(now));
     }
@@ -92,7 +93,7 @@ class LivePoseRun {
 
   // Prints an answered frame and stores it for the file.
   void take_answer(LivePoseFrame frame, std::optional<Time> needed) {
-    session_.tell_frame(
+    session_.report_frame(
         model_.body.skeleton,
         clip_frames(model_.body, frame.pose.rotations, std::span(&frame.pose.root, 1),
                     model_.layout.rate_hz, frame.stamp),
@@ -115,7 +116,7 @@ Result<Json> run_live_pose(const PoseSolver& solver, const LiveJob& job, Clip& c
   LivePoseRun run(solver, job, session);
   run.begin();
   KA_TRY(session.run(
-      {[&](const LiveNews& news) { return run.take(news); }, [&] { return run.status(); }}));
+      {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
   run.finish();
   return run.answer(clip);
 }

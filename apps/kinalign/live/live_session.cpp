@@ -116,14 +116,14 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
   piece_came_ = came == LiveConnection::Came::bytes ? clocks_->raw() : piece_came_;
   if (came == LiveConnection::Came::bytes) {
     is_quiet_ = false;
-    LiveNews news;
-    KA_TRY(stream_->take(connection_.bytes(), news));
+    LiveData data;
+    KA_TRY(stream_->take(connection_.bytes(), data));
     if (!is_own_host_ && stream_->facts()) is_own_host_ = stream_->facts()->host == own_host();
-    KA_TRY(work.take(news));
+    KA_TRY(work.take(data));
     call_->console.flush();
   }
   const HostTime now = clocks_->raw();
-  if (came == LiveConnection::Came::nothing) KA_TRY(tell_quiet(now - piece_came_));
+  if (came == LiveConnection::Came::nothing) KA_TRY(report_quiet(now - piece_came_));
   if (now >= next_status_ && call_->console.shows()) {
     next_status_ = now + between_statuses;
     call_->console.show({{harmless(work.status()), Colour::plain}, {"Ctrl-C ends", Colour::plain}});
@@ -134,15 +134,15 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
 
 /// Warns once about a connection without data for `most_quiet`. Fails if it never sent a message of
 /// record.
-Result<void> LiveSession::tell_quiet(Duration silence) {
+Result<void> LiveSession::report_quiet(Duration silence) {
   if (is_quiet_ || silence <= most_quiet) return {};
   is_quiet_ = true;
   if (!stream_->now()) {
     return Failure(
         Error{"--live", 0, "the stream of kinalign record --live-port", "no data for 5 s"});
   }
-  tell("kinalign record has sent nothing for 5 s: record or the network has stopped",
-       {{"event", "quiet"}});
+  report("kinalign record has sent nothing for 5 s: record or the network has stopped",
+         {{"event", "quiet"}});
   return {};
 }
 
@@ -157,8 +157,8 @@ Result<void> LiveSession::run(const LiveWork& work) {
   return {};
 }
 
-void LiveSession::tell_frame(const Skeleton& skeleton, const ClipFrames& one,
-                             std::optional<Time> needed) {
+void LiveSession::report_frame(const Skeleton& skeleton, const ClipFrames& one,
+                               std::optional<Time> needed) {
   if (call_->console.prints_json() || datagrams_) {
     const std::string text = frame_json(skeleton, one);
     call_->console.print_json(text);
@@ -169,7 +169,7 @@ void LiveSession::tell_frame(const Skeleton& skeleton, const ClipFrames& one,
   latency_.add(answered - *needed, answered - one.stamps.front());
 }
 
-void LiveSession::tell(const std::string& line, const Json& event) {
+void LiveSession::report(const std::string& line, const Json& event) {
   if (!line.empty()) call_->console.print(harmless(line) + "\n");
   call_->console.print_json(json_text(event));
   call_->console.flush();

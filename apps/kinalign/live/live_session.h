@@ -33,7 +33,7 @@ Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::s
 /// The callbacks for the stream.
 struct LiveWork {
   /// Called for each piece of the stream. Fails if the piece can't be used.
-  std::function<Result<void>(const LiveNews& news)> take;
+  std::function<Result<void>(const LiveData& data)> take;
   /// The status for a person, asked twice a second: "waiting for a T-pose".
   std::function<std::string()> status;
 };
@@ -54,9 +54,9 @@ class LiveSession {
   /// Reports an answered frame: on stdout with --json, as a datagram with --send. `one`: a single
   /// frame. `needed`: the arrival of the newest message that the answer needed; absent: the frame
   /// is older than the first answer and gets no latency.
-  void tell_frame(const Skeleton& skeleton, const ClipFrames& one, std::optional<Time> needed);
+  void report_frame(const Skeleton& skeleton, const ClipFrames& one, std::optional<Time> needed);
   /// Prints a line for people and an object for programs.
-  void tell(const std::string& line, const nlohmann::ordered_json& event);
+  void report(const std::string& line, const nlohmann::ordered_json& event);
 
   /// The latencies of the newest frames: "9 ms after the samples (p99 21), 402 ms behind the motion
   /// (p99 440)".
@@ -68,7 +68,7 @@ class LiveSession {
  private:
   LiveSession(LiveConnection connection, std::optional<LiveDatagrams> datagrams, Call& call);
   Result<bool> turn(const LiveWork& work);
-  Result<void> tell_quiet(Duration silence);
+  Result<void> report_quiet(Duration silence);
   std::vector<std::string> warnings() const;
 
   LiveConnection connection_;

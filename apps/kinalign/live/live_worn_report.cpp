@@ -47,7 +47,7 @@ LiveWornReport::LiveWornReport(const PoseLayout& layout, const std::string& stre
       presence_(layout.nodes.size()),
       missing_(layout.nodes.size()) {}
 
-std::string LiveWornReport::wish() {
+std::string LiveWornReport::instruction() {
   return "T-pose: stand upright, arms straight out to the sides, palms down, and hold still for "
          "three seconds";
 }
@@ -62,32 +62,32 @@ void LiveWornReport::take(const LiveMark& mark) {
   if (mark.mark.mark.kind != Mark::Kind::t_pose) return;
   refusal_.clear();
   if (!worn_->nodes().begin())
-    return tell_refusal("the mark came before the first sample of " + layout_->nodes.back());
+    return report_refusal("the mark came before the first sample of " + layout_->nodes.back());
   worn_->mark_t_pose(mark.at);
-  session_->tell("T-pose marked: hold still for two seconds", Json{{"event", "t_pose_marked"}});
+  session_->report("T-pose marked: hold still for two seconds", Json{{"event", "t_pose_marked"}});
 }
 
 /// Reports a refused T-pose; the same reason only once in a row.
-void LiveWornReport::tell_refusal(const std::string& why) {
+void LiveWornReport::report_refusal(const std::string& why) {
   if (why == refusal_) return;
   refusal_ = why;
-  session_->tell((worn_->calibration() ? "T-pose refused, the previous T-pose stays in use: "
-                                       : "no T-pose yet: ") +
-                     why,
-                 Json{{"event", "t_pose_refused"}, {"found", why}});
+  session_->report((worn_->calibration() ? "T-pose refused, the previous T-pose stays in use: "
+                                         : "no T-pose yet: ") +
+                       why,
+                   Json{{"event", "t_pose_refused"}, {"found", why}});
 }
 
-bool LiveWornReport::tell_t_pose() {
-  if (const auto why = worn_->take_refusal()) tell_refusal(*why);
-  if (!worn_->calibration() || worn_->calibration()->first == told_) return false;
-  told_ = worn_->calibration()->first;
+bool LiveWornReport::report_t_pose() {
+  if (const auto why = worn_->take_refusal()) report_refusal(*why);
+  if (!worn_->calibration() || worn_->calibration()->first == reported_) return false;
+  reported_ = worn_->calibration()->first;
   refusal_.clear();
   Json event{{"event", "calibrated"}};
   event.update(calibration());
   const Json& t_pose = event.at("t_pose");
-  session_->tell(fmt::format("T-pose from {:.1f} to {:.1f} s accepted: you may move",
-                             t_pose.at("from_s").get<double>(), t_pose.at("to_s").get<double>()),
-                 event);
+  session_->report(fmt::format("T-pose from {:.1f} to {:.1f} s accepted: you may move",
+                               t_pose.at("from_s").get<double>(), t_pose.at("to_s").get<double>()),
+                   event);
   return true;
 }
 
@@ -98,11 +98,11 @@ void LiveWornReport::watch(const std::vector<std::uint8_t>& valid) {
     const std::size_t before = missing_[n];
     missing_[n] = valid[n] != 0 ? 0 : before + 1;
     if (missing_[n] == longest) {
-      session_->tell(name + " has been missing for 2 s: its limb is a guess",
-                     Json{{"event", "node_missing"}, {"node", name}});
+      session_->report(name + " has been missing for 2 s: its limb is a guess",
+                       Json{{"event", "node_missing"}, {"node", name}});
     } else if (missing_[n] == 0 && before >= longest) {
-      session_->tell(name + " sends again; if it was switched off, mark a new T-pose",
-                     Json{{"event", "node_back"}, {"node", name}});
+      session_->report(name + " sends again; if it was switched off, mark a new T-pose",
+                       Json{{"event", "node_back"}, {"node", name}});
     }
   }
 }

@@ -23,14 +23,14 @@ class LiveWornReport {
                  LiveSession& session);
 
   /// The instruction for the person: how to hold the T-pose.
-  static std::string wish();
+  static std::string instruction();
 
   /// Puts the sample onto the grid if its node is one of the model's. Returns whether it is.
   Result<bool> add(const LiveNodeSample& sample);
   /// Handles a mark. A mark of a T-pose calibrates the nodes.
   void take(const LiveMark& mark);
   /// Reports T-poses taken or refused since the last call. True if one was taken.
-  bool tell_t_pose();
+  bool report_t_pose();
   /// Called for each answered frame, with the validity of the nodes [N]. Reports a node that is
   /// missing for long, and its return.
   void watch(const std::vector<std::uint8_t>& valid);
@@ -48,7 +48,7 @@ class LiveWornReport {
   struct Presence {
     std::size_t valid = 0, lost = 0, longest = 0;  // frames; lost: until now
   };
-  void tell_refusal(const std::string& why);
+  void report_refusal(const std::string& why);
   nlohmann::ordered_json calibration() const;
   std::string warning_of(std::size_t node) const;
 
@@ -59,8 +59,8 @@ class LiveWornReport {
   std::vector<Presence> presence_;    // [N]
   std::vector<std::size_t> missing_;  // [N] frames answered without the node, until now
   std::size_t frames_ = 0;
-  std::string refusal_;              // the last reported refusal
-  std::optional<std::size_t> told_;  // the first frame of the reported T-pose
+  std::string refusal_;                  // the last reported refusal
+  std::optional<std::size_t> reported_;  // the first frame of the reported T-pose
 };
 
 }  // namespace kinalign

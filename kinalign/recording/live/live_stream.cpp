@@ -67,7 +67,7 @@ Duration LiveStream::utc_minus_host() const {
   return facts_->anchor.utc.time_since_epoch() - facts_->anchor.raw.time_since_epoch();
 }
 
-Result<void> LiveStream::take(std::string_view bytes, LiveNews& news) {
+Result<void> LiveStream::take(std::string_view bytes, LiveData& news) {
   reader_.feed(bytes);
   while (const auto record = reader_.next()) KA_TRY(take_record(*record, news));
   if (!reader_.is_mcap()) return no_stream("another beginning");
@@ -81,7 +81,7 @@ void LiveStream::end() {
   }
 }
 
-Result<void> LiveStream::take_record(const McapRecord& record, LiveNews& news) {
+Result<void> LiveStream::take_record(const McapRecord& record, LiveData& news) {
   if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
     if (!facts_) facts_ = to_facts(*metadata);
   } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
@@ -121,7 +121,7 @@ Result<void> LiveStream::define(const McapChannel& channel) {
 }
 
 // The checks refuse a stream that is not kinalign's before its times are used.
-Result<void> LiveStream::take_message(const McapMessage& message, LiveNews& news) {
+Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news) {
   if (!facts_) return no_stream("messages before what record says of itself");
   if (message.log_time > static_cast<std::uint64_t>(latest_log_time))
     return no_stream("a year behind 2096");
@@ -146,7 +146,7 @@ Result<void> LiveStream::take_message(const McapMessage& message, LiveNews& news
 }
 
 // If the clock is not known yet, a sample is stamped by its arrival and age.
-void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, LiveNews& news) {
+void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, LiveData& news) {
   if (message.is_exchange()) {
     const AnyExchange any = device.frames.take_exchange(message);
     if (const auto* exchange = std::get_if<Exchange>(&any)) device.clock.push(*exchange);
@@ -171,7 +171,7 @@ void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, L
 }
 
 // An exchange updates the sender's clock. Other messages may complete frames.
-void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& message, LiveNews& news) {
+void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& message, LiveData& news) {
   if (message.is_exchange()) {
     if (auto recorded = to_exchange(message.payload)) {
       device.epoch = recorded->epoch;
@@ -188,7 +188,7 @@ void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& messag
 // If the sender's clock is not known yet, the arrival minus the time that the frame spent in the
 // sender is used.
 void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
-                            const RecordedMessage& message, LiveNews& news) {
+                            const RecordedMessage& message, LiveData& news) {
   const BootKey life = life_of(frame.origin.session, device.epoch);
   const auto sender_had = [&] {
     const auto at = device.sender.host_from_node(life, kinect_sender_time(frame.taken_ticks));

@@ -41,7 +41,7 @@ struct LiveMark {
 };
 
 /// The content of a piece of the stream, each kind in the order of arrival.
-struct LiveNews {
+struct LiveData {
   std::vector<LiveNodeSample> samples;
   std::vector<LiveKinectRow> rows;
   std::vector<LiveMark> marks;
@@ -69,7 +69,7 @@ class LiveStream {
 
   /// Takes the next bytes and appends their content to `news`. Fails if they are not a stream of
   /// kinalign record; the object must not be used again then.
-  Result<void> take(std::string_view bytes, LiveNews& news);
+  Result<void> take(std::string_view bytes, LiveData& news);
 
   /// Call when no more bytes come.
   void end();
@@ -86,13 +86,13 @@ class LiveStream {
   struct NodeDevice;
   struct KinectDevice;
 
-  Result<void> take_record(const McapRecord& record, LiveNews& news);
+  Result<void> take_record(const McapRecord& record, LiveData& news);
   Result<void> define(const McapChannel& channel);
-  Result<void> take_message(const McapMessage& message, LiveNews& news);
-  void take_node(NodeDevice& device, const RecordedMessage& message, LiveNews& news);
-  void take_kinect(KinectDevice& device, const RecordedMessage& message, LiveNews& news);
+  Result<void> take_message(const McapMessage& message, LiveData& news);
+  void take_node(NodeDevice& device, const RecordedMessage& message, LiveData& news);
+  void take_kinect(KinectDevice& device, const RecordedMessage& message, LiveData& news);
   void take_frame(KinectDevice& device, const KinectFrame& frame, const RecordedMessage& message,
-                  LiveNews& news);
+                  LiveData& news);
   Duration utc_minus_host() const;
   Time on_axis(HostTime host) const { return Time{host.time_since_epoch() + utc_minus_host()}; }
 

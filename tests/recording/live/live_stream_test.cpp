@@ -42,7 +42,7 @@ std::string stream_of(std::size_t marks, std::size_t lost = 0) {
 }
 
 /// Whether the stream was read to its end, in pieces of any length.
-bool read(LiveStream& stream, std::string_view bytes, std::size_t piece, LiveNews& news) {
+bool read(LiveStream& stream, std::string_view bytes, std::size_t piece, LiveData& news) {
   for (; !bytes.empty(); bytes.remove_prefix(std::min(piece, bytes.size()))) {
     if (!stream.take(bytes.substr(0, piece), news)) return false;
   }
@@ -57,7 +57,7 @@ TEST_CASE("a stream says the same however it is cut, and that it has ended") {
   for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{100}, bytes.size()}) {
     CAPTURE(piece);
     LiveStream stream;
-    LiveNews news;
+    LiveData news;
     REQUIRE(read(stream, bytes, piece, news));
     CHECK(stream.closed());
     REQUIRE(news.marks.size() == 20);
@@ -70,7 +70,7 @@ TEST_CASE("a stream says the same however it is cut, and that it has ended") {
 
 TEST_CASE("messages that a slow client did not get are counted by their numbers") {
   LiveStream stream;
-  LiveNews news;
+  LiveData news;
   REQUIRE(read(stream, stream_of(20, 5), 64, news));
   CHECK(stream.counts().lost == 5);
 }
@@ -78,7 +78,7 @@ TEST_CASE("messages that a slow client did not get are counted by their numbers"
 TEST_CASE("a stream that breaks off is not closed") {
   const std::string bytes = stream_of(20);
   LiveStream stream;
-  LiveNews news;
+  LiveData news;
   REQUIRE(read(stream, std::string_view(bytes).substr(0, bytes.size() / 2), 64, news));
   CHECK(!stream.closed());
 }
@@ -98,7 +98,7 @@ TEST_CASE("what is no stream of record is refused with a word") {
   huge += std::string(8, '\xff');
   for (const std::string& bytes : {std::string("HTTP/1.1 200 OK\r\n"), late, jump, huge}) {
     LiveStream stream;
-    LiveNews news;
+    LiveData news;
     const auto refused = stream.take(bytes, news);
     REQUIRE(!refused);
     CHECK(refused.error().file == "--live");
@@ -116,7 +116,7 @@ TEST_CASE("law: damaged streams are refused or read, and never take much memory"
       bytes[random() % bytes.size()] = static_cast<char>(random());
     }
     LiveStream stream;
-    LiveNews news;
+    LiveData news;
     (void)read(stream, bytes, random() % 200 + 1, news);
     CHECK(news.marks.size() <= 30);
   }
