@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The node's logic as a program; options.cpp has its options.
 #include "firmware/host_node/key_file.h"
-#include "firmware/host_node/life.h"
+#include "firmware/host_node/node_run.h"
 #include "firmware/host_node/pipe_line.h"
 #include "firmware/host_node/report.h"
 #include "firmware/script/script.h"
@@ -51,9 +51,9 @@ Tried<void> run(HostNodeOptions options) {
   auto socket = NodeSocket::connected_to(options.host, options.port);
   if (!socket) return tl::unexpected(socket.error());
   const int stop = stop_descriptor();
-  const auto life = std::make_unique<Life>(options, *std::move(socket));
-  if (auto lived = life->live(stop, complain); !lived) return lived;
-  std::puts(report(options, *life).c_str());
+  const auto node_run = std::make_unique<NodeRun>(options, *std::move(socket));
+  if (auto lived = node_run->live(stop, complain); !lived) return lived;
+  std::puts(report(options, *node_run).c_str());
   return {};
 }
 

@@ -54,8 +54,8 @@ const char* name_of(SyncLight sync) {
 
 }  // namespace
 
-std::string report(const HostNodeOptions& options, Life& life) {
-  const LifeCounts counts = life.counts();
+std::string report(const HostNodeOptions& options, NodeRun& node_run) {
+  const RunCounts counts = node_run.counts();
   Object all;
   all.add("node_id", options.node.node_id).add("reboots", counts.reboots);
   const auto add = [&](const char* name, std::uint64_t number) { all.add(name, number); };
@@ -64,7 +64,9 @@ std::string report(const HostNodeOptions& options, Life& life) {
   } else {
     each_node_count(counts.node, add);
   }
-  return all.add("sync", name_of(life.lights().sync)).add("truth", truths(life.truths())).text();
+  return all.add("sync", name_of(node_run.lights().sync))
+      .add("truth", truths(node_run.truths()))
+      .text();
 }
 
 }  // namespace kinalign

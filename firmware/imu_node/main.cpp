@@ -38,16 +38,16 @@ void on_timer(void*) { xTaskNotifyGive(sampling); }
 struct Keeper {
   LinkPolicy policy;
   Watchdog watchdog;
-  std::uint64_t heard = 0;  // replies so far
+  std::uint64_t answered = 0;  // replies so far
   bool was_up = false;
 };
 
 /// Does the action that the link policy decides on. True: there is a link.
 bool keep_link(Keeper& keeper) {
   const std::uint64_t accepted = node->replies_accepted();
-  const bool heard = accepted != keeper.heard;
-  keeper.heard = accepted;
-  const LinkAction action = keeper.policy.step(board.counter_us(), wifi_is_up(), heard);
+  const bool answered = accepted != keeper.answered;
+  keeper.answered = accepted;
+  const LinkAction action = keeper.policy.step(board.counter_us(), wifi_is_up(), answered);
   if (action == LinkAction::restart) esp_restart();
   if (action == LinkAction::join) join_wifi();
   const bool up = wifi_is_up();

@@ -17,11 +17,11 @@ std::uint64_t doubled(std::uint64_t wait_us, std::uint64_t longest_us) {
 
 }  // namespace
 
-LinkAction LinkPolicy::step(std::uint64_t now_us, bool up, bool heard) {
+LinkAction LinkPolicy::step(std::uint64_t now_us, bool up, bool answered) {
   const bool changed = !began_ || up != was_up_;
   began_ = true;
   was_up_ = up;
-  if (heard || wait_us_ == 0) {
+  if (answered || wait_us_ == 0) {
     // The short waits begin again only after a reply, not for a link that comes and goes.
     wait_us_ = second_us;
     silence_us_ = first_silence_us;
@@ -29,7 +29,7 @@ LinkAction LinkPolicy::step(std::uint64_t now_us, bool up, bool heard) {
   if (changed) {
     lost_us_ = now_us;
     next_us_ = up ? now_us + silence_us_ : now_us;
-  } else if (up && heard) {
+  } else if (up && answered) {
     next_us_ = now_us + silence_us_;
   }
   return up ? while_silent(now_us) : while_down(now_us);

@@ -19,8 +19,8 @@ enum class LinkAction : std::uint8_t {
 /// link the radio itself may be at fault, and the board restarts.
 class LinkPolicy {
  public:
-  /// To be called some times a second. `heard`: a reply was accepted since the last call.
-  LinkAction step(std::uint64_t now_us, bool up, bool heard);
+  /// To be called some times a second. `answered`: a reply was accepted since the last call.
+  LinkAction step(std::uint64_t now_us, bool up, bool answered);
 
  private:
   LinkAction while_down(std::uint64_t now_us);

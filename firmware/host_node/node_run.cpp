@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/host_node/life.h"
+#include "firmware/host_node/node_run.h"
 
 #include "firmware/node/count_names.h"
 
@@ -36,7 +36,7 @@ ClockTruth first_truth(const HostNodeOptions& options) {
 
 }  // namespace
 
-Life::Life(const HostNodeOptions& options, NodeSocket socket)
+NodeRun::NodeRun(const HostNodeOptions& options, NodeSocket socket)
     : options_(options),
       socket_(std::move(socket)),
       clock_(first_truth(options)),
@@ -47,7 +47,7 @@ Life::Life(const HostNodeOptions& options, NodeSocket socket)
   boot(clock_.truths().front().boot_id);
 }
 
-void Life::boot(std::uint32_t boot_id) {
+void NodeRun::boot(std::uint32_t boot_id) {
   past_ = counts();
   NodeSettings settings = options_.node;
   settings.boot_id = boot_id;
@@ -59,7 +59,7 @@ void Life::boot(std::uint32_t boot_id) {
   }
 }
 
-Tried<void> Life::befall(const Event& event) {
+Tried<void> NodeRun::befall(const Event& event) {
   const std::int64_t now = raw_ns();
   const std::uint32_t boot_id = clock_.truths().back().boot_id;
   if (event.kind == EventKind::outage_begins) link_up_ = false;
@@ -82,14 +82,14 @@ Tried<void> Life::befall(const Event& event) {
   return {};
 }
 
-std::uint32_t Life::ticks_due() {
+std::uint32_t NodeRun::ticks_due() {
   const double now_us = static_cast<double>(board_.counter_us());
   std::uint32_t due = 0;
   for (; next_tick_us_ <= now_us; next_tick_us_ += tick_period_us_) ++due;
   return due;
 }
 
-void Life::tick_and_poll() {
+void NodeRun::tick_and_poll() {
   const std::uint32_t due = ticks_due();
   if (auto* node = std::get_if<Node>(&node_)) {
     node->set_link(link_up_);
@@ -103,7 +103,7 @@ void Life::tick_and_poll() {
   }
 }
 
-std::int64_t Life::idle_ns() {
+std::int64_t NodeRun::idle_ns() {
   const std::uint64_t now_us = board_.counter_us();
   double idle_us = next_tick_us_ - static_cast<double>(now_us);
   if (auto* node = std::get_if<Node>(&node_)) {
@@ -112,17 +112,17 @@ std::int64_t Life::idle_ns() {
   return std::clamp(ns(idle_us * 1e-6), std::int64_t{0}, std::int64_t{100'000'000});
 }
 
-void Life::watch(std::int64_t age_ns, const Say& say) {
+void NodeRun::watch(std::int64_t age_ns, const PrintLine& print_line) {
   if (age_ns < next_watch_ns_) return;
   next_watch_ns_ = age_ns + ns(0.25);
-  const LifeCounts now = counts();
+  const RunCounts now = counts();
   const AnswerCounts &replies = now.node.replies, &answers = now.clockless.answers;
   const std::string line = watch_.look(age_ns, replies.accepted + answers.accepted,
                                        wrong_key(replies) + wrong_key(answers));
-  if (!line.empty()) say(line);
+  if (!line.empty()) print_line(line);
 }
 
-Tried<void> Life::live(int stop, const Say& say) {
+Tried<void> NodeRun::live(int stop, const PrintLine& print_line) {
   for (;;) {
     const std::int64_t age = raw_ns() - begin_ns_;
     if (options_.seconds > 0 && age >= ns(options_.seconds)) return {};
@@ -130,7 +130,7 @@ Tried<void> Life::live(int stop, const Say& say) {
       if (auto befallen = befall(options_.events[next_event_++]); !befallen) return befallen;
     }
     tick_and_poll();
-    watch(age, say);
+    watch(age, print_line);
     const timespec idle{0, idle_ns()};
     std::array<pollfd, 2> watched{{{socket_.descriptor(), POLLIN, 0}, {stop, POLLIN, 0}}};
     ppoll(watched.data(), watched.size(), &idle, nullptr);
@@ -138,8 +138,8 @@ Tried<void> Life::live(int stop, const Say& say) {
   }
 }
 
-LifeCounts Life::counts() {
-  LifeCounts sum = past_;
+RunCounts NodeRun::counts() {
+  RunCounts sum = past_;
   std::vector<std::uint64_t> now;  // in the order of count_names.h
   const auto list = [&](const char*, std::uint64_t number) { now.push_back(number); };
   auto next = now.begin();

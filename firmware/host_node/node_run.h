@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node's life on the host: its ticks, arrivals and events, until its time is over.
+// One run of a node on the host: its ticks, arrivals and events, until its time is over.
 #pragma once
 
 #include "firmware/host_node/answer_watch.h"
@@ -14,21 +14,21 @@
 namespace kinalign {
 
 /// Counts summed over all reboots. Counts of the other kind of node stay 0.
-struct LifeCounts {
+struct RunCounts {
   NodeTally node;
   ClocklessCounts clockless;
   std::uint64_t reboots = 0;
 };
 
-class Life {
+class NodeRun {
  public:
-  Life(const HostNodeOptions& options, NodeSocket socket);
+  NodeRun(const HostNodeOptions& options, NodeSocket socket);
 
-  /// Runs until options.seconds are over or the descriptor `stop` can be read. `say` gets lines for
-  /// the user, for example that no host answers.
-  using Say = std::function<void(const std::string&)>;
-  Tried<void> live(int stop, const Say& say);
-  LifeCounts counts();
+  /// Runs until options.seconds are over or the descriptor `stop` can be read. `print_line` gets
+  /// lines for the user, for example that no host answers.
+  using PrintLine = std::function<void(const std::string&)>;
+  Tried<void> live(int stop, const PrintLine& print_line);
+  RunCounts counts();
   const std::vector<ClockTruth>& truths() const { return clock_.truths(); }
   const Lights& lights() const { return board_.lights(); }
 
@@ -36,7 +36,7 @@ class Life {
   void boot(std::uint32_t boot_id);
   Tried<void> befall(const Event& event);
   void tick_and_poll();
-  void watch(std::int64_t age_ns, const Say& say);
+  void watch(std::int64_t age_ns, const PrintLine& print_line);
   std::int64_t idle_ns();
   std::uint32_t ticks_due();
 
@@ -45,7 +45,7 @@ class Life {
   PretendedClock clock_;
   PosixBoard board_;
   std::variant<std::monostate, Node, ClocklessNode> node_;
-  LifeCounts past_;  // counts of the starts before this one
+  RunCounts past_;  // counts of the starts before this one
   std::int64_t begin_ns_;
   AnswerWatch watch_;
   std::int64_t next_watch_ns_ = 0;
