@@ -52,7 +52,7 @@ LiveCamera::LiveCamera(const Rehearsal& rehearsal, const LiveCameraOptions& opti
       socket_(std::move(socket)) {}
 
 void LiveCamera::work() {
-  hear();
+  receive();
   const HostTime now = clock_.raw();
   for (; next_hello_ <= std::min(now, end_); next_hello_ += hello_period) send_hello();
   for (; next_ping_ <= std::min(now, end_); next_ping_ += ping_period) send_ping();
@@ -77,7 +77,7 @@ HostTime LiveCamera::frame_due() const {
 }
 
 /// Takes the pongs; the next ping echoes the latest one.
-void LiveCamera::hear() {
+void LiveCamera::receive() {
   std::array<std::uint8_t, 64> room{};  // a pong has 36 bytes
   for (std::size_t size = socket_.receive(room); size > 0; size = socket_.receive(room)) {
     const std::int64_t received = sender_ticks(clock_.raw());

@@ -38,7 +38,7 @@ class LiveCamera {
 
  private:
   HostTime frame_due() const;
-  void hear();
+  void receive();
   void send_frame();
   void send_hello();
   void send_ping();

@@ -106,12 +106,12 @@ double LiveRehearsal::run(const std::function<bool()>& go_on) {
 
 /// Waits until that time or until a datagram arrives.
 void LiveRehearsal::wait(HostTime until) const {
-  std::vector<pollfd> heard{{camera_->fd(), POLLIN, 0}};
-  for (const auto& node : nodes_) heard.push_back({node->fd(), POLLIN, 0});
+  std::vector<pollfd> received{{camera_->fd(), POLLIN, 0}};
+  for (const auto& node : nodes_) received.push_back({node->fd(), POLLIN, 0});
   const Duration left = std::max(until - clock_->raw(), Duration::zero());
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
   const timespec timeout{whole.count(), (left - whole).count()};
-  ::ppoll(heard.data(), heard.size(), &timeout, nullptr);
+  ::ppoll(received.data(), received.size(), &timeout, nullptr);
 }
 
 /// The sums over all devices.

@@ -15,7 +15,7 @@ namespace kinalign {
 LiveTraffic& LiveTraffic::operator+=(const LiveTraffic& more) {
   sent += more.sent;
   refused += more.refused;
-  heard += more.heard;
+  received += more.received;
   return *this;
 }
 
@@ -48,7 +48,7 @@ LiveSocket::~LiveSocket() {
 
 /// Reads and counts a pending refusal (ICMP: no program listens there). The kernel keeps it in the
 /// socket, and the next send or receive would fail with it and do nothing else.
-void LiveSocket::hear_refusal() {
+void LiveSocket::read_refusal() {
   int refusal = 0;
   socklen_t size = sizeof refusal;
   const bool asked = ::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &refusal, &size) == 0;
@@ -56,7 +56,7 @@ void LiveSocket::hear_refusal() {
 }
 
 bool LiveSocket::send(std::span<const std::uint8_t> datagram) {
-  hear_refusal();
+  read_refusal();
   ++traffic_.sent;
   const bool taken = ::send(fd_, datagram.data(), datagram.size(), MSG_NOSIGNAL) ==
                      static_cast<ssize_t>(datagram.size());
@@ -65,15 +65,15 @@ bool LiveSocket::send(std::span<const std::uint8_t> datagram) {
 }
 
 std::size_t LiveSocket::receive(std::span<std::uint8_t> room) {
-  hear_refusal();
+  read_refusal();
   const ssize_t size = ::recv(fd_, room.data(), room.size(), 0);
   if (size < 0) return 0;
-  ++traffic_.heard;
+  ++traffic_.received;
   return static_cast<std::size_t>(size);
 }
 
 const LiveTraffic& LiveSocket::traffic() {
-  hear_refusal();
+  read_refusal();
   return traffic_;
 }
 

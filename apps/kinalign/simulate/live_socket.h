@@ -15,7 +15,7 @@ struct LiveTraffic {
   std::uint64_t sent = 0;  // given to send(), accepted or not
   /// The datagrams that the system or, by ICMP, the host refused: no route, or no program there.
   std::uint64_t refused = 0;
-  std::uint64_t heard = 0;  // received from the host
+  std::uint64_t received = 0;  // received from the host
 
   LiveTraffic& operator+=(const LiveTraffic& more);
 };
@@ -46,7 +46,7 @@ class LiveSocket {
 
  private:
   explicit LiveSocket(int fd) : fd_(fd) {}
-  void hear_refusal();
+  void read_refusal();
 
   int fd_ = -1;
   LiveTraffic traffic_;

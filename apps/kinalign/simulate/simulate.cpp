@@ -161,7 +161,7 @@ Result<int> write_files(const Job& job, Call& call) {
   KA_TRY(write_devices(job.folder, job.rehearsal, job.motion, {.stamps = stamps}, truth));
   KA_TRY(write_truth(job.folder, truth));
   call.console.if_it_fails({});
-  tell_files({truth, job.rehearsal, job.folder.path, o.seconds}, call.console);
+  print_files({truth, job.rehearsal, job.folder.path, o.seconds}, call.console);
   return done;
 }
 
@@ -200,13 +200,13 @@ Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   truth.link = o.link;
   KA_TRY(write_truth(job.folder, truth));
   call.console.if_it_fails({});
-  tell_start({truth, job.rehearsal, job.folder.path, o.seconds}, options, call.console);
+  print_start({truth, job.rehearsal, job.folder.path, o.seconds}, options, call.console);
   SentRehearsal sent{.options = options, .folder = job.folder.path};
   sent.length_s = job.motion.length_s;
   sent.sent_s = live.run([] { return !interrupted(); });
   sent.counts = live.counts();
   sent.recorded_there = is_there(job.folder.files, job.folder.path + "/" + live_take_name);
-  tell_end(sent, call.console);
+  print_end(sent, call.console);
   if (!sent.whole()) return stopped;
   return sent.unanswered() ? findings : done;
 }

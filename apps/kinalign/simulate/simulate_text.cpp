@@ -17,26 +17,26 @@ using Json = nlohmann::ordered_json;
 constexpr double same_s = 0.005;  // lengths are printed in hundredths of a second
 
 /// The members about a rehearsal that files and live runs share.
-Json json_of(const ToldRehearsal& told) {
+Json json_of(const RehearsalSummary& summary) {
   std::uint64_t samples = 0;
-  for (const SimulatedNode& node : told.rehearsal.nodes) samples += node.samples.size();
-  return {{"folder", told.folder},
-          {"truth", told.folder + "/truth/truth.json"},
-          {"seed", told.truth.seed},
-          {"length_s", told.truth.length_s},
-          {"mocap_frames", told.truth.mocap.frames},
-          {"kinect_frames", told.rehearsal.ticks.size()},
+  for (const SimulatedNode& node : summary.rehearsal.nodes) samples += node.samples.size();
+  return {{"folder", summary.folder},
+          {"truth", summary.folder + "/truth/truth.json"},
+          {"seed", summary.truth.seed},
+          {"length_s", summary.truth.length_s},
+          {"mocap_frames", summary.truth.mocap.frames},
+          {"kinect_frames", summary.rehearsal.ticks.size()},
           {"node_samples", samples}};
 }
 
 /// The first line, and a note if the motion is shorter than --seconds.
-std::string head_lines(const ToldRehearsal& told) {
-  const TrueRecording& truth = told.truth;
-  std::string text = fmt::format("{}: {} of {}, seed {}\n", told.folder,
+std::string head_lines(const RehearsalSummary& summary) {
+  const TrueRecording& truth = summary.truth;
+  std::string text = fmt::format("{}: {} of {}, seed {}\n", summary.folder,
                                  duration_text(truth.length_s), truth.motion, truth.seed);
-  if (told.asked_s && *told.asked_s > truth.length_s + same_s) {
+  if (summary.asked_s && *summary.asked_s > truth.length_s + same_s) {
     text += fmt::format("  note    {} is shorter than --seconds asks for ({})\n", truth.motion,
-                        duration_text(*told.asked_s));
+                        duration_text(*summary.asked_s));
   }
   return text;
 }
@@ -72,7 +72,7 @@ std::string refused_line(const SentRehearsal& sent) {
 }
 
 /// The advice if no datagram came back from the host.
-std::string nobody_line(const SentRehearsal& sent) {
+std::string no_reply_line(const SentRehearsal& sent) {
   std::string ports;
   bool taken = false;
   for (const Port& port : ports_of(sent)) {
@@ -86,31 +86,31 @@ std::string nobody_line(const SentRehearsal& sent) {
 
 }  // namespace
 
-void tell_files(const ToldRehearsal& told, Console& console) {
-  Json json = json_of(told);
-  std::string text = head_lines(told);
-  text += fmt::format("  mocap   {} frames at {} Hz: mocap.bvh\n", grouped(told.truth.mocap.frames),
-                      told.truth.mocap.rate_hz);
-  text += fmt::format("  kinect  {} frames: kinect.csv\n", grouped(told.rehearsal.ticks.size()));
-  text +=
-      fmt::format("  imu     {} samples of {} nodes: imu_*.csv\n",
-                  grouped(json["node_samples"].get<std::uint64_t>()), told.rehearsal.nodes.size());
-  text += "  truth   truth/truth.json, truth/motion.bvh\n" + align_line(told.folder);
+void print_files(const RehearsalSummary& summary, Console& console) {
+  Json json = json_of(summary);
+  std::string text = head_lines(summary);
+  text += fmt::format("  mocap   {} frames at {} Hz: mocap.bvh\n",
+                      grouped(summary.truth.mocap.frames), summary.truth.mocap.rate_hz);
+  text += fmt::format("  kinect  {} frames: kinect.csv\n", grouped(summary.rehearsal.ticks.size()));
+  text += fmt::format("  imu     {} samples of {} nodes: imu_*.csv\n",
+                      grouped(json["node_samples"].get<std::uint64_t>()),
+                      summary.rehearsal.nodes.size());
+  text += "  truth   truth/truth.json, truth/motion.bvh\n" + align_line(summary.folder);
   console.print(harmless(text));
-  json["manifest"] = told.folder + "/recording.toml";
+  json["manifest"] = summary.folder + "/recording.toml";
   console.print_json(json_text(json));
 }
 
-void tell_start(const ToldRehearsal& told, const LiveOptions& options, Console& console) {
+void print_start(const RehearsalSummary& summary, const LiveOptions& options, Console& console) {
   console.print(harmless(
-      head_lines(told) +
+      head_lines(summary) +
       fmt::format("  sending to {}: mocap on port {}, kinect {}, imu {}, marks {}\n", options.to,
                   options.mocap_port, options.kinect_port, options.node_port, options.marks_port) +
-      fmt::format("  record  kinalign record -o {0} --config {0}/lab.toml\n", told.folder)));
+      fmt::format("  record  kinalign record -o {0} --config {0}/lab.toml\n", summary.folder)));
   Json json{{"event", "sending"}};
-  json.update(json_of(told));
-  json["start_raw_ns"] = told.truth.host->raw_ns;
-  json["start_utc_ns"] = told.truth.host->utc_ns;
+  json.update(json_of(summary));
+  json["start_raw_ns"] = summary.truth.host->raw_ns;
+  json["start_utc_ns"] = summary.truth.host->utc_ns;
   console.print_json(json_text(json));
   console.flush();
 }
@@ -126,10 +126,10 @@ SentText sent_text(const SentRehearsal& sent) {
                            grouped(counts.node_frames), grouped(counts.node_samples));
   text.sent += fmt::format("  {} replies reached nodes; the latest frame was sent {:.1f} ms late\n",
                            grouped(counts.replies), 1e3 * seconds(counts.worst_late));
-  text.nobody = refused_line(sent);
+  text.no_reply = refused_line(sent);
   // A rehearsal that was stopped at once can't have got an answer yet.
   const bool judged = sent.whole() || counts.all().refused > 0;
-  if (sent.unanswered() && judged) text.nobody += nobody_line(sent);
+  if (sent.unanswered() && judged) text.no_reply += no_reply_line(sent);
   if (!sent.whole() || sent.unanswered()) return text;
   text.next = sent.recorded_there
                   ? align_line(sent.folder)
@@ -142,11 +142,11 @@ SentText sent_text(const SentRehearsal& sent) {
 }
 
 /// Prints the end of a live rehearsal.
-void tell_end(const SentRehearsal& sent, Console& console) {
+void print_end(const SentRehearsal& sent, Console& console) {
   const SentText text = sent_text(sent);
   console.print(harmless(text.sent));
-  if (!text.nobody.empty()) {
-    console.print(console.paint(Colour::warning, harmless(text.nobody)));
+  if (!text.no_reply.empty()) {
+    console.print(console.paint(Colour::warning, harmless(text.no_reply)));
   }
   console.print(harmless(text.next));
   const LiveCounts& counts = sent.counts;
@@ -158,7 +158,7 @@ void tell_end(const SentRehearsal& sent, Console& console) {
                                     {"replies", counts.replies},
                                     {"datagrams", counts.all().sent},
                                     {"refused", counts.all().refused},
-                                    {"heard", counts.all().heard},
+                                    {"heard", counts.all().received},
                                     {"worst_late_ms", 1e3 * seconds(counts.worst_late)},
                                     {"stopped", !sent.whole()},
                                     {"sent_s", sent.sent_s},

@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-struct ToldRehearsal {
+struct RehearsalSummary {
   const TrueRecording& truth;
   const Rehearsal& rehearsal;
   std::string folder{};
@@ -18,10 +18,10 @@ struct ToldRehearsal {
 };
 
 /// Reports the written files.
-void tell_files(const ToldRehearsal& told, Console& console);
+void print_files(const RehearsalSummary& summary, Console& console);
 
 /// Reports the rehearsal before it is sent, so that the recorder can be started.
-void tell_start(const ToldRehearsal& told, const LiveOptions& options, Console& console);
+void print_start(const RehearsalSummary& summary, const LiveOptions& options, Console& console);
 
 struct SentRehearsal {
   LiveCounts counts{};
@@ -32,16 +32,16 @@ struct SentRehearsal {
 
   bool whole() const { return sent_s >= length_s; }
   /// No datagram came back: no reply to a node or to the Kinect, no answer to a mark.
-  bool unanswered() const { return counts.all().heard == 0; }
+  bool unanswered() const { return counts.all().received == 0; }
 };
 
-/// The lines for people: what was sent, ports without a receiver, the next step. `nobody` is
+/// The lines for people: what was sent, ports without a receiver, the next step. `no_reply` is
 /// printed as a warning; it may be empty.
 struct SentText {
-  std::string sent, nobody, next;
+  std::string sent, no_reply, next;
 };
 SentText sent_text(const SentRehearsal& sent);
 
-void tell_end(const SentRehearsal& sent, Console& console);
+void print_end(const SentRehearsal& sent, Console& console);
 
 }  // namespace kinalign

@@ -28,7 +28,7 @@ constexpr double still_share = 0.4, full_bustle = 0.25;  // m/s
 // Labels stay right for this long while a turning body passes through its profile. An estimate.
 constexpr double labels_hold_s = 2.0;
 // Sides that are farther apart across the view than this are not confused, m.
-constexpr double told_apart = 0.25;
+constexpr double distinct = 0.25;
 
 // Estimates: durations are log-normal with a median of 0.4 s; back_misread is the share of turns of
 // the back that are misread.
@@ -59,7 +59,7 @@ void exchange(PointFrames& frames, std::size_t t, Group group) {
 }
 
 /// Measure of how far left and right of a group lie one behind the other in the camera's view: 1 if
-/// they do, 0 from `told_apart` on.
+/// they do, 0 from `distinct` on.
 double confusable(std::span<const double> joints, Group group) {
   double apart = 0.0, pairs = 0.0;
   for (std::size_t j = 0; j < kinect_joint_count; ++j) {
@@ -71,7 +71,7 @@ double confusable(std::span<const double> joints, Group group) {
     apart += (across - across.dot(way) * way).norm();
     pairs += 1.0;
   }
-  return std::pow(std::max(0.0, 1.0 - apart / pairs / told_apart), 2);
+  return std::pow(std::max(0.0, 1.0 - apart / pairs / distinct), 2);
 }
 
 /// Cameras side by side make the same mistakes: they draw the same number at the same time.

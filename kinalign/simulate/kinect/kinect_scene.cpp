@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double furthest = 100.0;  // m; a joint farther away is not accepted
+constexpr double largest_distance = 100.0;  // m; a joint farther away is not accepted
 constexpr double bustle_s = 0.5;
 // Number of frames over which a difference still counts as a motion.
 constexpr std::int64_t longest_gap = 10;
@@ -23,7 +23,7 @@ void take_truth(const KinectJointsAt& joints_at, const RigidTransform& world_fro
       const std::size_t i = t * kinect_joint_count + j;
       const Vec3 p =
           turn * (vec3(std::span<const double>(world), j) - world_from_kinect.translation);
-      scene.known[i] = p.norm() < furthest ? 1 : 0;
+      scene.known[i] = p.norm() < largest_distance ? 1 : 0;
       if (scene.known[i] != 0) {
         vec3(scene.truth, i) = p;
       } else if (t > 0) {  // keeps the last position, so that other quantities stay valid

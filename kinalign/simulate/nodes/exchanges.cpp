@@ -93,35 +93,35 @@ std::vector<std::size_t> carry_up(std::uint64_t seed, SimulatedExchanges& run) {
   std::vector<double> sent(run.frames.size());
   for (std::size_t k = 0; k < sent.size(); ++k) sent[k] = run.frames[k].sent;
   const auto arrivals = transmit(run.options.link, seed, Way::up, sent);
-  std::vector<std::size_t> heard;
+  std::vector<std::size_t> arrival;
   for (std::size_t k = 0; k < sent.size(); ++k) {
-    run.frames[k].heard = arrivals[k].first;
-    run.frames[k].heard_again = arrivals[k].duplicate;
-    if (arrivals[k].first) heard.push_back(k);
+    run.frames[k].arrival = arrivals[k].first;
+    run.frames[k].second_arrival = arrivals[k].duplicate;
+    if (arrivals[k].first) arrival.push_back(k);
   }
-  std::stable_sort(heard.begin(), heard.end(), [&](std::size_t a, std::size_t b) {
-    return *run.frames[a].heard < *run.frames[b].heard;
+  std::stable_sort(arrival.begin(), arrival.end(), [&](std::size_t a, std::size_t b) {
+    return *run.frames[a].arrival < *run.frames[b].arrival;
   });
-  return heard;
+  return arrival;
 }
 
 /// Sends a reply to each frame that arrived. The node reads its counter when a reply reaches it.
-void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<std::size_t>& heard,
+void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<std::size_t>& arrival,
                 SimulatedExchanges& run) {
   const RandomStream random(seed, 4);
-  std::vector<double> sent(heard.size());
+  std::vector<double> sent(arrival.size());
   double last = 0.0;
-  for (std::size_t j = 0; j < heard.size(); ++j) {
-    last = std::max(last, *run.frames[heard[j]].heard + random.exponential(j, 1, turnaround_s));
-    sent[j] = run.frames[heard[j]].replied = last;
+  for (std::size_t j = 0; j < arrival.size(); ++j) {
+    last = std::max(last, *run.frames[arrival[j]].arrival + random.exponential(j, 1, turnaround_s));
+    sent[j] = run.frames[arrival[j]].replied = last;
   }
   const auto arrivals = transmit(run.options.link, seed, Way::down, sent);
-  for (std::size_t j = 0; j < heard.size(); ++j) {
-    SimulatedFrame& frame = run.frames[heard[j]];
+  for (std::size_t j = 0; j < arrival.size(); ++j) {
+    SimulatedFrame& frame = run.frames[arrival[j]];
     if (!arrivals[j].first || !counter.powered(*arrivals[j].first)) continue;
     const Counter::Reading reading = counter.at(*arrivals[j].first);
     if (reading.boot_id != frame.boot_id) continue;  // a reply to an earlier boot
-    frame.reply_heard = arrivals[j].first;
+    frame.reply_arrival = arrivals[j].first;
     frame.n_rx_us = microseconds(reading.seconds);
   }
 }
@@ -130,9 +130,9 @@ void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<st
 void echo_replies(SimulatedExchanges& run) {
   auto& frames = run.frames;
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    if (!frames[k].reply_heard) continue;
+    if (!frames[k].reply_arrival) continue;
     const auto next =
-        std::upper_bound(frames.begin(), frames.end(), *frames[k].reply_heard,
+        std::upper_bound(frames.begin(), frames.end(), *frames[k].reply_arrival,
                          [](double t, const SimulatedFrame& frame) { return t <= frame.sent; });
     if (next == frames.end() || next->boot_id != frames[k].boot_id) continue;
     if (!next->echo || frames[k].replied > frames[*next->echo].replied) next->echo = k;
@@ -144,8 +144,8 @@ void confirm(std::uint64_t seed, SimulatedExchanges& run) {
   const RandomStream random(seed, 4);
   std::vector<std::pair<double, std::size_t>> answers;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
-    if (!run.frames[k].reply_heard) continue;
-    answers.emplace_back(*run.frames[k].reply_heard + dither_s * random.uniform(k, 2), k);
+    if (!run.frames[k].reply_arrival) continue;
+    answers.emplace_back(*run.frames[k].reply_arrival + dither_s * random.uniform(k, 2), k);
   }
   std::sort(answers.begin(), answers.end());
   std::vector<double> sent(answers.size());
@@ -162,23 +162,23 @@ SimulatedExchanges simulate_exchanges(const ExchangeOptions& options, std::uint6
   SimulatedExchanges run{options, floors(options.link.link, seed), {}};
   const Counter counter(seed, run.options);
   send_frames(counter, seed, run);
-  const auto heard = carry_up(seed, run);
-  carry_down(counter, seed, heard, run);
+  const auto arrival = carry_up(seed, run);
+  carry_down(counter, seed, arrival, run);
   echo_replies(run);
   confirm(seed, run);
   return run;
 }
 
-std::vector<Heard> in_order_of_arrival(const SimulatedExchanges& exchanges) {
-  std::vector<Heard> heard;
+std::vector<ArrivedFrame> in_order_of_arrival(const SimulatedExchanges& exchanges) {
+  std::vector<ArrivedFrame> arrival;
   for (std::size_t k = 0; k < exchanges.frames.size(); ++k) {
     const SimulatedFrame& frame = exchanges.frames[k];
-    if (frame.heard) heard.push_back({*frame.heard, k, false});
-    if (frame.heard_again) heard.push_back({*frame.heard_again, k, true});
+    if (frame.arrival) arrival.push_back({*frame.arrival, k, false});
+    if (frame.second_arrival) arrival.push_back({*frame.second_arrival, k, true});
   }
-  std::stable_sort(heard.begin(), heard.end(),
-                   [](const Heard& a, const Heard& b) { return a.at < b.at; });
-  return heard;
+  std::stable_sort(arrival.begin(), arrival.end(),
+                   [](const ArrivedFrame& a, const ArrivedFrame& b) { return a.at < b.at; });
+  return arrival;
 }
 
 }  // namespace kinalign

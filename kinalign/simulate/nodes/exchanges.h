@@ -45,11 +45,12 @@ struct SimulatedFrame {
   std::uint32_t boot_id = 0, sequence = 0;
   std::int64_t n_tx_us = 0;  // the counter, just before sending
   double truth = 0.0;        // the time at which the counter stood half a microsecond after n_tx_us
-  std::optional<double> heard, heard_again;  // arrivals at the host; heard_again: of a duplicate
+  std::optional<double> arrival,
+      second_arrival;    // arrivals at the host; second_arrival: of a duplicate
   double replied = 0.0;  // if the frame was heard: time at which the host sent its reply
-  std::optional<double> reply_heard;  // arrival of the reply at the node
-  std::int64_t n_rx_us = 0;           // if the reply was heard: the counter just after its arrival
-  std::optional<std::size_t> echo;    // the frame whose reply this one echoes: the newest one
+  std::optional<double> reply_arrival;  // arrival of the reply at the node
+  std::int64_t n_rx_us = 0;         // if the reply was heard: the counter just after its arrival
+  std::optional<std::size_t> echo;  // the frame whose reply this one echoes: the newest one
   /// T6 of the paper's exchange: the node answers the reply within a millisecond.
   std::optional<double> confirmed;
 };
@@ -63,11 +64,11 @@ struct SimulatedExchanges {
 SimulatedExchanges simulate_exchanges(const ExchangeOptions& options, std::uint64_t seed);
 
 /// An arrival at the host. in_order_of_arrival() lists them in that order.
-struct Heard {
+struct ArrivedFrame {
   double at = 0.0;
   std::size_t frame = 0;
   bool again = false;
 };
-std::vector<Heard> in_order_of_arrival(const SimulatedExchanges& exchanges);
+std::vector<ArrivedFrame> in_order_of_arrival(const SimulatedExchanges& exchanges);
 
 }  // namespace kinalign

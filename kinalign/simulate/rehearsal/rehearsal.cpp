@@ -228,14 +228,14 @@ ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
 
 ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
-  std::vector<std::pair<double, std::size_t>> heard;  // arrival and index
+  std::vector<std::pair<double, std::size_t>> arrived;  // arrival and index
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
-    if (arrivals[i].first) heard.emplace_back(*arrivals[i].first, i);
+    if (arrivals[i].first) arrived.emplace_back(*arrivals[i].first, i);
   }
-  std::sort(heard.begin(), heard.end());
+  std::sort(arrived.begin(), arrived.end());
   const ImuStream all = imu_stream(node, Time{});
   ArrivedNode out{{all.node_names, all.content, {}}, {}};
-  for (const auto& [at, i] : heard) {
+  for (const auto& [at, i] : arrived) {
     append_sample(all.samples, i, time_at(zero, at), out.stream.samples);
     out.clock.stamps_ns.push_back(to_ns(out.stream.samples.stamps.back()));
     out.clock.times_ns.push_back(to_ns(time_at(zero, node.truth.times[i])));

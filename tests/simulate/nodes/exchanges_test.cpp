@@ -48,8 +48,8 @@ TEST_CASE("each frame echoes the newest reply that came since the one before, an
     for (std::size_t k = 1; k < run.frames.size(); ++k) {
       const auto& frame = run.frames[k];
       for (const auto& other : run.frames) {
-        if (!other.reply_heard || *other.reply_heard > frame.sent) continue;
-        if (*other.reply_heard <= run.frames[k - 1].sent) continue;
+        if (!other.reply_arrival || *other.reply_arrival > frame.sent) continue;
+        if (*other.reply_arrival <= run.frames[k - 1].sent) continue;
         REQUIRE(frame.echo);
         CHECK(run.frames[*frame.echo].replied >= other.replied);
       }
@@ -64,8 +64,8 @@ TEST_CASE("no stamp of a node says that a packet was faster than light") {
     const auto run = simulate_exchanges(on(Link::congested), seed);
     for (const SimulatedFrame& frame : run.frames) {
       CHECK(std::abs(frame.truth - frame.sent) <= 0.51e-6);
-      if (frame.heard) CHECK(*frame.heard >= frame.sent + run.floors.up);
-      if (frame.reply_heard) CHECK(*frame.reply_heard >= frame.replied + run.floors.down);
+      if (frame.arrival) CHECK(*frame.arrival >= frame.sent + run.floors.up);
+      if (frame.reply_arrival) CHECK(*frame.reply_arrival >= frame.replied + run.floors.down);
     }
   }
 }
@@ -96,7 +96,7 @@ TEST_CASE("the same seed gives the same exchanges") {
   const auto two = simulate_exchanges(on(Link::roaming), 5);
   REQUIRE(one.frames.size() == two.frames.size());
   for (std::size_t k = 0; k < one.frames.size(); ++k) {
-    CHECK(one.frames[k].heard == two.frames[k].heard);
+    CHECK(one.frames[k].arrival == two.frames[k].arrival);
     CHECK(one.frames[k].n_rx_us == two.frames[k].n_rx_us);
   }
 }

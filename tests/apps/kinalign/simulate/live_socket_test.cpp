@@ -69,7 +69,7 @@ TEST_CASE("every datagram that nobody listens for is counted, of a device that h
     }
     CHECK(socket.traffic().sent == 5);
     CHECK(socket.traffic().refused == 5);
-    CHECK(socket.traffic().heard == 0);
+    CHECK(socket.traffic().received == 0);
   }
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("what is taken is not counted as refused, and what comes back is count
   CHECK(socket.receive(room) == 0);
   CHECK(socket.traffic().sent == 3);
   CHECK(socket.traffic().refused == 0);
-  CHECK(socket.traffic().heard == 3);
+  CHECK(socket.traffic().received == 3);
 }
 
 TEST_CASE("a host is named by an address of either kind, never by a name") {

@@ -31,7 +31,7 @@ SentRehearsal sent_to_nobody() {
   LiveCounts& counts = sent.counts;
   for (LiveTraffic* one : {&counts.mocap, &counts.kinect, &counts.nodes, &counts.clicks}) {
     one->refused = one->sent;
-    one->heard = 0;
+    one->received = 0;
   }
   counts.replies = 0;
   sent.recorded_there = false;
@@ -45,7 +45,7 @@ TEST_CASE("a rehearsal that was recorded says what was sent, and what comes next
   CHECK(text.sent ==
         "  sent 400 frames of mocap, 240 of kinect, 600 of nodes with 4,000 samples\n"
         "  560 replies reached nodes; the latest frame was sent 2.0 ms late\n");
-  CHECK(text.nobody.empty());
+  CHECK(text.no_reply.empty());
   CHECK(text.next == "  next    kinalign align r/recording.toml -o r/take.h5\n");
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("a rehearsal that was stopped says when, and no next step as if it wer
   sent.sent_s = 1.02;
   const SentText text = sent_text(sent);
   CHECK(text.sent.starts_with("  stopped after 1.0 s of 8.0 s\n"));
-  CHECK(text.nobody.empty());
+  CHECK(text.no_reply.empty());
   CHECK(text.next.empty());
 }
 
@@ -62,12 +62,12 @@ TEST_CASE("who is stopped before anybody could answer says nothing of nobody") {
   SentRehearsal sent = well_sent();
   sent.counts = {.mocap = {1, 0, 0}};
   sent.sent_s = 0.1;
-  CHECK(sent_text(sent).nobody.empty());
+  CHECK(sent_text(sent).no_reply.empty());
 }
 
 TEST_CASE("where nobody was there it is said of every device alike, and of all together") {
   const SentText text = sent_text(sent_to_nobody());
-  CHECK(text.nobody ==
+  CHECK(text.no_reply ==
         "  datagrams refused by the host: 400 of 400 on mocap port 7012, 290 of 290 on kinect port "
         "7020, 590 of 590 on imu port 5005, 4 of 4 on marks port 7030\n"
         "  the host refused every datagram: is kinalign record running on ports mocap 7012, kinect "
@@ -81,8 +81,8 @@ TEST_CASE("another program on one port is somebody, who does not answer") {
   SentRehearsal sent = sent_to_nobody();
   sent.counts.mocap.refused = 0;
   const SentText text = sent_text(sent);
-  CHECK(text.nobody.find("mocap port") == std::string::npos);
-  CHECK(text.nobody.find("\n  no reply came: is kinalign record running on ports mocap 7012, ") !=
+  CHECK(text.no_reply.find("mocap port") == std::string::npos);
+  CHECK(text.no_reply.find("\n  no reply came: is kinalign record running on ports mocap 7012, ") !=
         std::string::npos);
   CHECK(sent.unanswered());
   CHECK(text.next.empty());
@@ -92,7 +92,7 @@ TEST_CASE("a recorder that comes late, or for some devices only, is told what it
   SentRehearsal sent = well_sent();
   sent.counts.kinect.refused = 30;
   const SentText text = sent_text(sent);
-  CHECK(text.nobody == "  datagrams refused by the host: 30 of 290 on kinect port 7020\n");
+  CHECK(text.no_reply == "  datagrams refused by the host: 30 of 290 on kinect port 7020\n");
   CHECK(!sent.unanswered());
   CHECK(!text.next.empty());
 }
