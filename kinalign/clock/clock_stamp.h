@@ -17,13 +17,13 @@ enum class Certainty : std::uint8_t {
 };
 
 /// True if a reading was surely taken after the counter stepped. `earliest`: earliest time that the
-/// model gives to the reading; `heard`: newest arrival when the reading was looked up. The model
+/// model gives to the reading; `arrival`: newest arrival when the reading was looked up. The model
 /// puts a reading from before the step either before `from` or, while `from` has not come yet, into
 /// the future. Example: a counter that stepped back by 20 ms at 30 s repeats its reading of that
 /// moment at 30.02 s, which is `from`. If it stepped back by an hour, such a reading seems to lie
 /// 59 minutes ahead. HostTime::min(): the counter has not stepped.
-constexpr bool is_behind_step(HostTime earliest, HostTime from, HostTime heard) {
-  return from <= earliest && (earliest <= heard || from <= heard);
+constexpr bool is_behind_step(HostTime earliest, HostTime from, HostTime arrival) {
+  return from <= earliest && (earliest <= arrival || from <= arrival);
 }
 
 struct ClockStamp {

@@ -25,7 +25,7 @@ void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
   exchange.boot = life_of(exchange.boot, epoch);
   // Rounding may put an arrival microseconds before the previous one. The order of arrival is kept;
   // a later arrival is still a correct bound.
-  heard_ = exchange.h_rx = std::max(heard_, exchange.h_rx);
+  newest_arrival_ = exchange.h_rx = std::max(newest_arrival_, exchange.h_rx);
   clock_->push(exchange);
   (void)clock_->take_events();  // events are not displayed; align finds them again
   now_.reset();

@@ -34,7 +34,7 @@ class FollowedClock {
 
  private:
   std::unique_ptr<LiveClock> clock_;
-  HostTime heard_ = HostTime::min();
+  HostTime newest_arrival_ = HostTime::min();
   std::optional<SenderClock> now_;
 };
 

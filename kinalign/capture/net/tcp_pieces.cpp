@@ -88,7 +88,7 @@ ssize_t receive_stamped(int fd, std::span<char> room, std::optional<Time>& stamp
   const ssize_t got = ::recvmsg(fd, &head, 0);
   if (got <= 0) return got;
   for (cmsghdr* c = CMSG_FIRSTHDR(&head); c != nullptr; c = CMSG_NXTHDR(&head, c)) {
-    if (const auto said = kernel_stamp(*c)) stamp = said;
+    if (const auto kernel_time = kernel_stamp(*c)) stamp = kernel_time;
   }
   return got;
 }

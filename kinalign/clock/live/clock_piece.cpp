@@ -71,7 +71,7 @@ void ClockPiece::add(const Bound& b) {
 
 ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   const Bound e = bound(crossing);
-  heard_ = crossing.heard;
+  newest_arrival_ = crossing.arrival;
   ++crossings_;
   if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
     amount_ = std::abs(e.x);
@@ -87,7 +87,7 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
     return broken(End::contradiction);
   }
   violators_.drop_excluded_by(e, assumptions().rate);
-  if (violators_.overdue(heard_, crossings_)) {
+  if (violators_.overdue(newest_arrival_, crossings_)) {
     amount_ = violators_.pending().front().amount;
     return broken(End::overdue_violator);
   }
@@ -162,7 +162,7 @@ std::optional<HostTime> ClockPiece::step_pending_since() const {
 /// Arrival of the last crossing that contradicts one of the violators: until then the counter had
 /// not stepped. The result is at least five seconds before the first violator.
 HostTime ClockPiece::doubt_of_violators() const {
-  HostTime since = violators_.pending()[0].crossing.heard - Violators::wait;
+  HostTime since = violators_.pending()[0].crossing.arrival - Violators::wait;
   for (std::size_t i = 0; i < journal_.size(); ++i) {
     const Bound e = journal_.newest(i);
     for (const Violator& v : violators_.pending()) {
@@ -176,12 +176,13 @@ HostTime ClockPiece::doubtful_since() const {
   HostTime since = begin_;
   if (end_ == End::violators || end_ == End::overdue_violator) since = doubt_of_violators();
   if (end_ == End::slip_with_route) since = about(estimate_.last_change()->s) - before_a_slip;
-  if (end_ == End::slip_between_windows) since = heard_ - rounded_up(FloorLog::longest_reach_s);
+  if (end_ == End::slip_between_windows)
+    since = newest_arrival_ - rounded_up(FloorLog::longest_reach_s);
   return std::max(since, begin_);
 }
 
 HostTime ClockPiece::next_begins() const {
-  return end_ == End::violators ? violators_.pending()[0].crossing.heard : heard_;
+  return end_ == End::violators ? violators_.pending()[0].crossing.arrival : newest_arrival_;
 }
 
 /// Approximate arrival on the host of an event at s, apart from delays.
@@ -204,7 +205,7 @@ bool ClockPiece::may_bend() const {
 /// with the last window.
 ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const {
   ClockPiece next = *this;
-  next.begin_ = heard_;
+  next.begin_ = newest_arrival_;
   next.end_ = End::none;
   next.certificate_ = Certificate(assumed, corners);
   next.range_.reset();
@@ -245,13 +246,13 @@ ClockPiece ClockPiece::next_behind(const Assumptions& assumed, const SlopeBelief
     const Crossing& first = violators_.pending()[0].crossing;
     ClockPiece next({first.n, first.h}, assumed, prior, floors_.shortest());
     for (const Violator& v : violators_.pending()) next.add(next.bound(v.crossing));
-    next.begin_ = next.heard_ = next_begins();
+    next.begin_ = next.newest_arrival_ = next_begins();
     return next;
   }
   const Bound last = journal_.newest(0);
   ClockPiece next({origin_.node + rounded_down(last.s), host_time(last)}, assumed, prior,
                   floors_.shortest());
-  next.begin_ = next.heard_ = heard_;
+  next.begin_ = next.newest_arrival_ = newest_arrival_;
   return next;
 }
 
@@ -261,7 +262,7 @@ ClockPiece ClockPiece::next_piece() const {
   Assumptions assumed = assumptions();
   if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
   ClockPiece next = next_behind(assumed, estimate_.slope().after_a_break());
-  next.certified_from_ = std::max(certified_from_, heard_ + greatest_step_back());
+  next.certified_from_ = std::max(certified_from_, newest_arrival_ + greatest_step_back());
   return next;
 }
 
@@ -279,8 +280,8 @@ std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
     stamp.earliest = origin_.host + rounded_down(s + range->low);
     stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);
     if (certificate_.bounded()) {
-      const bool stands =
-          violators_.pending().empty() && is_behind_step(*stamp.earliest, certified_from_, heard_);
+      const bool stands = violators_.pending().empty() &&
+                          is_behind_step(*stamp.earliest, certified_from_, newest_arrival_);
       stamp.certainty = stands ? Certainty::certified : Certainty::doubtful;
     }
   } else {

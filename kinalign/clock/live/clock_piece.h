@@ -21,7 +21,7 @@ class ClockPiece {
              const ShortestRoundTrips& shortest = {})
       : origin_(origin),
         begin_(origin.host),
-        heard_(origin.host),
+        newest_arrival_(origin.host),
         certificate_(assumptions, corners),
         estimate_(prior),
         floors_(shortest) {}
@@ -93,7 +93,7 @@ class ClockPiece {
   ClockPiece next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const;
 
   ClockOrigin origin_;
-  HostTime begin_, heard_;  // arrivals of the first and the newest frame
+  HostTime begin_, newest_arrival_;  // arrivals of the first and the newest frame
   HostTime certified_from_ = HostTime::min();
   Certificate certificate_;
   OffsetEstimate estimate_;

@@ -16,7 +16,7 @@ constexpr Duration late_frames = std::chrono::seconds(1);
 }  // namespace
 
 /// Queues an event. A withdrawal that finds no room extends an earlier one.
-void LiveClock::tell(const ClockEvent& event) {
+void LiveClock::report(const ClockEvent& event) {
   if (events_.size() < most_events) return events_.push_back(event);
   ++missed_events_;
   if (event.kind != ClockEvent::Kind::withdrawn) return;
@@ -36,7 +36,7 @@ std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_,
 /// A piece is cut short: a step that is not confirmed yet leaves its stamps in doubt.
 void LiveClock::cut_short() {
   if (const auto since = piece_->step_pending_since()) {
-    tell({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
+    report({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
   }
   stepped_.reset();
   settles_.reset();
@@ -47,17 +47,17 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
   if (piece_) {  // the crystal is the same
     cut_short();
     prior = piece_->estimate().slope().after_a_break();
-    earlier_[lives_++ % earlier_.size()] = boot_;
+    earlier_[boots_++ % earlier_.size()] = boot_;
   }
   take_piece({ClockOrigin{first.n, first.h}, assumptions_, prior,
               piece_ ? piece_->floors().shortest() : ShortestRoundTrips{}});
   boot_ = boot;
-  tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});
+  report({ClockEvent::Kind::new_boot, boot, first.h, first.h});
 }
 
 void LiveClock::take_piece(const ClockPiece& piece) {
   piece_ = piece;
-  routes_told_ = piece_->estimate().changes();
+  routes_reported_ = piece_->estimate().changes();
 }
 
 void LiveClock::push(const Exchange& exchange) {
@@ -67,9 +67,9 @@ void LiveClock::push(const Exchange& exchange) {
 
 void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
   const Crossing crossing{Side::above, n_tx, h_rx, h_rx};
-  const auto lives =
-      earlier_.begin() + static_cast<std::ptrdiff_t>(std::min(lives_, earlier_.size()));
-  if (piece_ && boot != boot_ && std::find(earlier_.begin(), lives, boot) != lives) {
+  const auto boots_end =
+      earlier_.begin() + static_cast<std::ptrdiff_t>(std::min(boots_, earlier_.size()));
+  if (piece_ && boot != boot_ && std::find(earlier_.begin(), boots_end, boot) != boots_end) {
     ++late_;
     return;
   }
@@ -78,7 +78,7 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
     cut_short();
     take_piece({ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope(),
                 piece_->floors().shortest()});
-    tell({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
+    report({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
   }
   newest_ = h_rx;
   replaced_ = false;
@@ -100,21 +100,22 @@ void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
 void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
   using Verdict = ClockPiece::Verdict;
   using Kind = ClockEvent::Kind;
-  if (piece_->estimate().changes() != routes_told_) {
-    routes_told_ = piece_->estimate().changes();
-    tell({Kind::route, boot_, crossing.heard, crossing.heard});
+  if (piece_->estimate().changes() != routes_reported_) {
+    routes_reported_ = piece_->estimate().changes();
+    report({Kind::route, boot_, crossing.arrival, crossing.arrival});
   }
   switch (verdict) {
     case Verdict::taken:
       return;
     case Verdict::violator:
-      tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
+      report({Kind::violator, boot_, crossing.arrival, crossing.arrival, piece_->amount()});
       // If the violator is right, the counter has stepped. It may step back before three violators
       // have confirmed that.
-      return tell({Kind::withdrawn, boot_,
-                   std::max(crossing.heard - Violators::wait, piece_->begins()), crossing.heard});
+      return report({Kind::withdrawn, boot_,
+                     std::max(crossing.arrival - Violators::wait, piece_->begins()),
+                     crossing.arrival});
     case Verdict::uneasy:
-      return tell({Kind::uneasy, boot_, crossing.heard, crossing.heard, piece_->amount()});
+      return report({Kind::uneasy, boot_, crossing.arrival, crossing.arrival, piece_->amount()});
     case Verdict::broken:
       return take_step(crossing);
     case Verdict::slipped:
@@ -141,13 +142,14 @@ void LiveClock::settle(const Crossing& crossing) {
 bool LiveClock::replace_piece(ClockEvent::Kind why, std::optional<double> by,
                               const Crossing& crossing) {
   replaced_ = true;
-  tell({why, boot_, piece_->next_begins(), crossing.heard, by});
-  tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
+  report({why, boot_, piece_->next_begins(), crossing.arrival, by});
+  report({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
   const double assumed = piece_->assumptions().curvature;
   take_piece(piece_->next_piece());
   const double curvature = piece_->assumptions().curvature;
   if (curvature == assumed) return false;
-  tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, std::nullopt, curvature});
+  report({ClockEvent::Kind::relaxed, boot_, crossing.arrival, crossing.arrival, std::nullopt,
+          curvature});
   return true;
 }
 

@@ -59,18 +59,18 @@ class LiveClock {
   bool replace_piece(ClockEvent::Kind why, std::optional<double> by, const Crossing& crossing);
   void take_step(const Crossing& crossing);
   void settle(const Crossing& crossing);
-  void tell(const ClockEvent& event);
+  void report(const ClockEvent& event);
 
   Assumptions assumptions_;
   std::optional<ClockPiece> piece_;
   BootKey boot_ = 0;
   std::array<BootKey, 256> earlier_{};  // boots before the present one
-  std::size_t lives_ = 0;
+  std::size_t boots_ = 0;
   HostTime newest_ = HostTime::min();
   std::optional<HostTime> stepped_;  // the latest step in this boot
   bool replaced_ = false;            // the newest frame has replaced the piece
   std::optional<HostTime> settles_;  // time at which the clock settles if there is no other step
-  std::uint32_t routes_told_ = 0;
+  std::uint32_t routes_reported_ = 0;
   std::uint64_t late_ = 0;
   std::vector<ClockEvent> events_;
   std::uint64_t missed_events_ = 0;

@@ -61,12 +61,12 @@ void OffsetEstimate::add(const Bound& b) {
   look(b.s, !(excess * density > far_gaps));
 }
 
-/// Computes the middle again once enough informative bounds have come. `said`: this bound is
-/// informative.
-void OffsetEstimate::look(double s, bool said) {
+/// Computes the middle again once enough informative bounds have come. `is_informative`: this bound
+/// is informative.
+void OffsetEstimate::look(double s, bool is_informative) {
   if (!route_.bounded()) return;
   const bool young = route_.points() < few_points;
-  if (said || young) ++unseen_;
+  if (is_informative || young) ++unseen_;
   if (unseen_ >= (young ? 1 : most_unseen) || s - middle_.t > stale_middle_s) refresh(s);
 }
 

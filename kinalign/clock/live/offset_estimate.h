@@ -46,7 +46,7 @@ class OffsetEstimate {
   };
 
   void add_to_route(Side side, OffsetBound bound);
-  void look(double s, bool said);
+  void look(double s, bool is_informative);
   void refresh(double t);
   Middle joined(const Middle& middle) const;
   bool floors_known(double s) const;

@@ -9,7 +9,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::uint64_t few_crossings = 8;  // limit for a node that rarely sends
-constexpr double overtaken_s = 1.0;  // a crossing that is so late may come from before a step
+constexpr double latest_s = 1.0;  // a crossing that is so late may come from before a step
 
 }  // namespace
 
@@ -25,13 +25,13 @@ void Violators::add(const Violator& violator) { violators_[count_++] = violator;
 void Violators::drop_excluded_by(const Bound& taken, double rate) {
   const auto end = violators_.begin() + static_cast<std::ptrdiff_t>(count_);
   const auto kept = std::remove_if(violators_.begin(), end, [&](const Violator& v) {
-    return taken.s > v.bound.s + overtaken_s && contradict(taken, v.bound, rate);
+    return taken.s > v.bound.s + latest_s && contradict(taken, v.bound, rate);
   });
   count_ = static_cast<std::size_t>(kept - violators_.begin());
 }
 
 bool Violators::overdue(HostTime now, std::uint64_t crossings) const {
-  return count_ > 0 && now - violators_[0].crossing.heard > wait &&
+  return count_ > 0 && now - violators_[0].crossing.arrival > wait &&
          crossings - violators_[0].number > few_crossings;
 }
 

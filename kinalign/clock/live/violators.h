@@ -20,7 +20,7 @@ struct Crossing {
   Side side = Side::above;
   NodeTime n{};
   HostTime h{};
-  HostTime heard{};  // arrival of the frame that reported it
+  HostTime arrival{};  // arrival of the frame that reported it
 };
 
 /// A crossing that contradicts the certificate.

@@ -21,43 +21,44 @@ constexpr Duration oldest_sample = std::chrono::seconds(2);
 /// counter may have any rate.
 constexpr double most_drift_ppm = 20'000.0;
 
-/// Fits the exchanges of one boot; `life` has their indices in `exchanges`. An hour of a device
+/// Fits the exchanges of one boot; `indices` has their indices in `exchanges`. An hour of a device
 /// takes 20 MB, so exchanges that follow one another are not copied.
-HostFromNode fit_one_way(std::span<const Exchange> exchanges, std::span<const std::size_t> life) {
-  if (life.empty()) return {};
-  if (life.back() - life.front() + 1 == life.size()) {
-    return fit_one_way_clock(exchanges.subspan(life.front(), life.size()));
+HostFromNode fit_one_way(std::span<const Exchange> exchanges,
+                         std::span<const std::size_t> indices) {
+  if (indices.empty()) return {};
+  if (indices.back() - indices.front() + 1 == indices.size()) {
+    return fit_one_way_clock(exchanges.subspan(indices.front(), indices.size()));
   }
-  std::vector<Exchange> heard;
-  heard.reserve(life.size());
-  for (const std::size_t i : life) heard.push_back(exchanges[i]);
-  return fit_one_way_clock(heard);
+  std::vector<Exchange> received;
+  received.reserve(indices.size());
+  for (const std::size_t i : indices) received.push_back(exchanges[i]);
+  return fit_one_way_clock(received);
 }
 
 /// Gives pieces without replies a clock from their arrivals alone.
 HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
   HostFromNode out;
   out.doubtful = std::move(model.doubtful);
-  std::unordered_map<BootKey, std::vector<std::size_t>> lives;  // boots without replies
+  std::unordered_map<BootKey, std::vector<std::size_t>> exchanges_of;  // boots without replies
   for (const ClockPieceModel& piece : model.pieces) {
-    if (piece.knots.empty()) lives[piece.boot];
+    if (piece.knots.empty()) exchanges_of[piece.boot];
   }
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
-    const auto life = lives.find(exchanges[i].boot);
-    if (life != lives.end()) life->second.push_back(i);
+    const auto found = exchanges_of.find(exchanges[i].boot);
+    if (found != exchanges_of.end()) found->second.push_back(i);
   }
   for (ClockPieceModel& piece : model.pieces) {
     if (!piece.knots.empty()) {
       out.pieces.push_back(std::move(piece));
       continue;
     }
-    std::vector<std::size_t> heard;
-    const std::vector<std::size_t>& life = lives[piece.boot];
-    std::copy_if(life.begin(), life.end(), std::back_inserter(heard), [&](std::size_t i) {
+    std::vector<std::size_t> received;
+    const std::vector<std::size_t>& of_boot = exchanges_of[piece.boot];
+    std::copy_if(of_boot.begin(), of_boot.end(), std::back_inserter(received), [&](std::size_t i) {
       return piece.first <= exchanges[i].h_rx && exchanges[i].h_rx <= piece.last;
     });
-    HostFromNode told = fit_one_way(exchanges, heard);
-    std::move(told.pieces.begin(), told.pieces.end(), std::back_inserter(out.pieces));
+    HostFromNode fitted = fit_one_way(exchanges, received);
+    std::move(fitted.pieces.begin(), fitted.pieces.end(), std::back_inserter(out.pieces));
   }
   return out;
 }
@@ -109,10 +110,10 @@ void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Durat
 
 /// Samples may be older than the first frame, so the first line starts that much earlier, but not
 /// before the end of the previous piece.
-void reach_back(TimeModel& time, std::size_t first, std::optional<Time> told) {
+void reach_back(TimeModel& time, std::size_t first, std::optional<Time> last_stamp) {
   TimeModelPiece& line = time.pieces[first];
   Time begin = line.begin - oldest_sample;
-  if (told) begin = std::max(begin, *told + Duration{1});
+  if (last_stamp) begin = std::max(begin, *last_stamp + Duration{1});
   if (begin >= line.begin) return;
   line.offset -= nanoseconds(
       std::round(line.drift_ppm * 1e-6 * static_cast<double>((line.begin - begin).count())));
@@ -149,7 +150,7 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
   out.model = with_one_way(fit_offline_clock(exchanges).model, exchanges);
   out.time.pieces.clear();
   const ClockPieceModel* before = nullptr;
-  std::optional<Time> told;  // the last stamp of the previous piece
+  std::optional<Time> last_stamp;  // the last stamp of the previous piece
   for (const ClockPieceModel& piece : out.model.pieces) {
     const Duration last_moved = out.moved.empty() ? Duration{0} : out.moved.back();
     Duration moved = last_moved;
@@ -157,9 +158,9 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
       if (before != nullptr) moved = move_of(piece, *before, moved);
       const std::size_t first = out.time.pieces.size();
       append_lines(out.model, piece, moved, utc_minus_host, out.time);
-      reach_back(out.time, first, told);
+      reach_back(out.time, first, last_stamp);
       if (before != nullptr && moved == last_moved) keep_rising(out.time, first);
-      told = stamp_at(piece.knots.back().node, moved);
+      last_stamp = stamp_at(piece.knots.back().node, moved);
       before = &piece;
     }
     out.moved.push_back(moved);
@@ -173,11 +174,11 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
 }
 
 std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n, HostTime h_rx) {
-  const auto life = clock.pieces_of.find(boot);
-  if (life == clock.pieces_of.end()) return std::nullopt;
+  const auto of_boot = clock.pieces_of.find(boot);
+  if (of_boot == clock.pieces_of.end()) return std::nullopt;
   const auto& pieces = clock.model.pieces;
   std::optional<std::size_t> found;
-  for (const std::size_t p : life->second) {
+  for (const std::size_t p : of_boot->second) {
     // A late frame belongs to the last piece of its boot, and an early one, delayed at the start,
     // to the first.
     if (found && h_rx < pieces[p].first) continue;

@@ -79,7 +79,7 @@ std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
 }
 
 /// Records the clock's events of exchange i, or of its echo.
-void hear(OfflineWalk& walk, std::size_t i, LiveClock& clock, Side of) {
+void observe(OfflineWalk& walk, std::size_t i, LiveClock& clock, Side of) {
   for (const ClockEvent& event : clock.take_events()) note(walk, i, event, of, *clock.piece());
 }
 
@@ -113,13 +113,13 @@ OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions&
       walk.late[i] = true;
       continue;
     }
-    hear(walk, i, clock, Side::above);
+    observe(walk, i, clock, Side::above);
     walk.earliest = std::min(walk.earliest, e.h_rx);
     if (unsettled && cuts_short(walk.events.back().kind))  // the clock will not settle any more
       walk.doubtful.push_back({*unsettled, exchanges[i - 1].h_rx});
     if (e.echo) {
       clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
-      hear(walk, i, clock, Side::below);
+      observe(walk, i, clock, Side::below);
     }
     // A call refreshes the estimate, so this walk sees the same as a clock in use.
     static_cast<void>(clock.host_from_node(e.boot, e.n_tx));

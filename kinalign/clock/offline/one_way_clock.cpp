@@ -94,20 +94,20 @@ std::size_t place_of_leap(std::span<const Exchange> exchanges, const Low& before
 }
 
 /// Splits the exchanges of one boot at leaps.
-std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch life) {
+std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch boot) {
   std::vector<Stretch> out;
-  const std::vector<Low> lows = lows_of(exchanges, life);
-  std::size_t begin = life.begin, first = 0;
+  const std::vector<Low> lows = lows_of(exchanges, boot);
+  std::size_t begin = boot.begin, first = 0;
   for (std::size_t k = 1; k < lows.size(); ++k) {
     if (!leaps(lows, first, k)) continue;
-    const std::size_t end = k + 1 < lows.size() ? lows[k + 1].first : life.end;
+    const std::size_t end = k + 1 < lows.size() ? lows[k + 1].first : boot.end;
     const std::size_t place = place_of_leap(exchanges, lows[k - 1], lows[k], end);
     if (place <= begin) continue;
     out.push_back({begin, place});
     begin = place;
     first = k;
   }
-  out.push_back({begin, life.end});
+  out.push_back({begin, boot.end});
   return out;
 }
 

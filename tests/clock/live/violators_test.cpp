@@ -13,9 +13,9 @@ constexpr double rate = 100e-6;
 constexpr HostTime host(Duration d) { return HostTime{1000s + d}; }
 
 /// A frame that arrives a millisecond before it can have been sent.
-Violator early(Duration heard, std::uint64_t number = 0) {
-  return {{Side::above, NodeTime{heard}, host(heard), host(heard)},
-          {seconds(heard), -1e-3, Side::above},
+Violator early(Duration arrival, std::uint64_t number = 0) {
+  return {{Side::above, NodeTime{arrival}, host(arrival), host(arrival)},
+          {seconds(arrival), -1e-3, Side::above},
           1e-3,
           number};
 }
@@ -63,5 +63,5 @@ TEST_CASE("three are as many as there can be") {
     violators.add(early(10s + 1s * i));
   }
   CHECK(violators.full());
-  CHECK(violators.pending()[2].crossing.heard == host(12s));
+  CHECK(violators.pending()[2].crossing.arrival == host(12s));
 }
