@@ -76,8 +76,8 @@ FlagText flag_text(const Field& field) {
   const std::string value = placeholder(field);
   if (!value.empty()) text.flag += " " + value;
   const std::string standard = field_text(field);
-  const bool said = field.meaning.find("default") != std::string::npos;
-  if (!is_switch(field) && !standard.empty() && !said) text.meaning += " [" + standard + "]";
+  const bool is_stated = field.meaning.find("default") != std::string::npos;
+  if (!is_switch(field) && !standard.empty() && !is_stated) text.meaning += " [" + standard + "]";
   return text;
 }
 

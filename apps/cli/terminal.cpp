@@ -42,11 +42,11 @@ std::string broken_line(std::string_view line, std::size_t width) {
 }  // namespace
 
 TerminalSize size_of(int fd) {
-  winsize told{};
+  winsize reported{};
   TerminalSize size;
-  if (::ioctl(fd, TIOCGWINSZ, &told) != 0) return size;
-  if (told.ws_row > 1) size.rows = told.ws_row;
-  if (told.ws_col > 1) size.columns = told.ws_col;
+  if (::ioctl(fd, TIOCGWINSZ, &reported) != 0) return size;
+  if (reported.ws_row > 1) size.rows = reported.ws_row;
+  if (reported.ws_col > 1) size.columns = reported.ws_col;
   return size;
 }
 

@@ -101,7 +101,7 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
     }
     Findings found = without_folders(all_findings(s));
     append(found, judge_stamps(s, options_of(plan.header.parameters, s.name)));
-    append(report.findings, said_of(s, recording, std::move(found)));
+    append(report.findings, with_stream_name(s, recording, std::move(found)));
   }
   append(report.findings, judge_plan(recording, plan));
   return report;
@@ -200,7 +200,7 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
     Findings found = judge_arrivals(stream, arrivals, role);
     append(found,
            judge_start(stream, options_of(job.plan.header.parameters, stream.name), arrivals));
-    append(report.findings, said_of(stream, job.recording, std::move(found)));
+    append(report.findings, with_stream_name(stream, job.recording, std::move(found)));
     append(report.findings, judge_rows(report.streams.back(), counts.rows));
     append(report.findings, judge_content(stream, slabs.content(i), report.rate_hz));
   }

@@ -175,7 +175,8 @@ Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role 
   return out;
 }
 
-Findings said_of(const RecordedStream& stream, const Recording& recording, Findings findings) {
+Findings with_stream_name(const RecordedStream& stream, const Recording& recording,
+                          Findings findings) {
   const auto reads_the_same = [&](const RecordedStream& other) {
     return &other != &stream && file_of(other) == file_of(stream);
   };

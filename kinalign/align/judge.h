@@ -21,7 +21,8 @@ Findings judge_start(const RecordedStream& stream, const StreamOptions& options,
                      const Arrivals& arrivals);
 
 /// The findings of a stream. If another stream reads the same file, the findings name the stream.
-Findings said_of(const RecordedStream& stream, const Recording& recording, Findings findings);
+Findings with_stream_name(const RecordedStream& stream, const Recording& recording,
+                          Findings findings);
 
 /// Warns if a stream has content too fast for a grid of `grid_hz`.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);

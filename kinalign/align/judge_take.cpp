@@ -63,9 +63,10 @@ Findings judge_streams_alike(const TakeHeader& header) {
   };
   for (auto later = header.groups.begin(); later != header.groups.end(); ++later) {
     const auto same = [&](const TakeGroup& other) {
-      const Manifest& said = header.parameters;
+      const Manifest& parameters = header.parameters;
       return other.kind.index() == later->kind.index() && bytes_of(other) == bytes_of(*later) &&
-             options_of(said, other.name).select == options_of(said, later->name).select;
+             options_of(parameters, other.name).select ==
+                 options_of(parameters, later->name).select;
     };
     const auto first = std::find_if(header.groups.begin(), later, same);
     if (first == later || later->files.empty()) continue;

@@ -284,8 +284,8 @@ Result<void> check_streams(const Recording& recording) {
 }  // namespace
 
 std::string reference_name(const Recording& recording, const Manifest& manifest) {
-  const bool said = !manifest.align.reference.empty() || recording.streams.empty();
-  return said ? manifest.align.reference : recording.streams.front().name;
+  const bool is_stated = !manifest.align.reference.empty() || recording.streams.empty();
+  return is_stated ? manifest.align.reference : recording.streams.front().name;
 }
 
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest) {

@@ -26,14 +26,14 @@ std::vector<std::string> differing(const Fields& some, const Fields& others) {
 }
 
 /// Adds the options that a file sets explicitly, even to their defaults.
-void add_said(const KeyLines& lines, std::vector<std::string>& names) {
+void add_stated(const KeyLines& lines, std::vector<std::string>& names) {
   for (const auto& [key, line] : lines) names.push_back(key);
 }
 
 std::vector<std::string> options_set(StreamOptions options) {
   StreamOptions defaults;
   std::vector<std::string> names = differing(describe(options), describe(defaults));
-  add_said(options.lines, names);
+  add_stated(options.lines, names);
   return names;
 }
 
@@ -41,7 +41,7 @@ std::vector<std::string> options_set(SpaceOptions options) {
   SpaceOptions defaults;
   defaults.method = options.method;
   std::vector<std::string> names = differing(describe(options), describe(defaults));
-  add_said(options.lines, names);
+  add_stated(options.lines, names);
   std::erase(names, "method");
   return names;
 }

@@ -147,27 +147,27 @@ void ContentCheck::add(const TakeSlab& slab) {
 
 Findings ContentCheck::findings(const std::string& file) const {
   Findings out;
-  const auto tell = [&](Severity severity, std::uint64_t count, const std::string& expected,
-                        const std::string& found) {
+  const auto report = [&](Severity severity, std::uint64_t count, const std::string& expected,
+                          const std::string& found) {
     if (count > 0)
       out.push_back(finding(severity, file, expected, fmt::format("{} {}", count, found)));
   };
-  tell(Severity::error, not_rising_, "rising stamps", "that do not rise");
+  report(Severity::error, not_rising_, "rising stamps", "that do not rise");
   if (uneven_ * steps_share > steps_) {
-    tell(Severity::warning, uneven_, fmt::format("steps of {:.3f} ms", 1e-6 * step_ns_),
-         fmt::format("of {} have another length", steps_));
+    report(Severity::warning, uneven_, fmt::format("steps of {:.3f} ms", 1e-6 * step_ns_),
+           fmt::format("of {} have another length", steps_));
   }
   for (const Group& group : groups_) {
-    tell(Severity::error, group.not_finite, "finite values in '" + group.name + "'",
-         "NaN or infinite values");
-    tell(Severity::error, group.not_unit, "rotations of length 1 in '" + group.name + "'",
-         "of other length");
-    tell(Severity::warning, group.far, "positions within 100 m in '" + group.name + "'",
-         "farther away");
-    tell(Severity::warning, group.fast,
-         "accelerations within 1000 m/s2 and angular velocities within 100 rad/s in '" +
-             group.name + "'",
-         "larger values");
+    report(Severity::error, group.not_finite, "finite values in '" + group.name + "'",
+           "NaN or infinite values");
+    report(Severity::error, group.not_unit, "rotations of length 1 in '" + group.name + "'",
+           "of other length");
+    report(Severity::warning, group.far, "positions within 100 m in '" + group.name + "'",
+           "farther away");
+    report(Severity::warning, group.fast,
+           "accelerations within 1000 m/s2 and angular velocities within 100 rad/s in '" +
+               group.name + "'",
+           "larger values");
     std::uint64_t stretched = 0;
     double worst = 0.0;
     for (std::size_t j = 0; j < group.least.size(); ++j) {
@@ -177,8 +177,8 @@ Findings ContentCheck::findings(const std::string& file) const {
       ++stretched;
       worst = std::max(worst, by);
     }
-    tell(Severity::warning, stretched, "bones of constant length in '" + group.name + "'",
-         fmt::format("bones that change, by up to {:.1f} cm", 100.0 * worst));
+    report(Severity::warning, stretched, "bones of constant length in '" + group.name + "'",
+           fmt::format("bones that change, by up to {:.1f} cm", 100.0 * worst));
   }
   return out;
 }

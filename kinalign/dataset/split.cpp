@@ -252,33 +252,34 @@ Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& c
 Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
                      const std::string& file) {
   Findings out;
-  const auto tell = [&](Severity severity, std::string expected, std::string found) {
+  const auto report = [&](Severity severity, std::string expected, std::string found) {
     out.push_back({severity, Error{file, 0, std::move(expected), std::move(found)}, "", ""});
   };
   const Seen seen = seen_in(split, by_name(takes));
   for (const auto& [name, parts] : seen.names) {
     if (parts.size() > 1)
-      tell(Severity::error, "each take in one part", name + " in " + listed(parts));
+      report(Severity::error, "each take in one part", name + " in " + listed(parts));
   }
   for (const auto& [hash, parts] : seen.contents) {
     if (parts.size() < 2) continue;
     const auto& [one, take] = *parts.begin();
     const auto& [other, second] = *parts.rbegin();
-    tell(Severity::error, "the same bytes in one part only",
-         fmt::format("{} in {} and {} in {} (SHA-256 {}...)", take, one, second, other,
-                     hash.substr(0, 12)));
+    report(Severity::error, "the same bytes in one part only",
+           fmt::format("{} in {} and {} in {} (SHA-256 {}...)", take, one, second, other,
+                       hash.substr(0, 12)));
   }
   const bool apart = split.options.by == "subject" || split.options.by == "leave-one-out";
   for (const auto& [subject, parts] : seen.subjects) {
     if (parts.size() < 2) continue;
-    tell(apart ? Severity::error : Severity::note, "each person in one part",
-         "subject " + subject + " in " + listed(parts));
+    report(apart ? Severity::error : Severity::note, "each person in one part",
+           "subject " + subject + " in " + listed(parts));
   }
-  for (const std::string& name : seen.unknown) tell(Severity::error, "takes of the data set", name);
+  for (const std::string& name : seen.unknown)
+    report(Severity::error, "takes of the data set", name);
   if (!seen.changed.empty()) {
-    tell(Severity::warning, "takes that did not change since the split was made",
-         fmt::format("{} made again: {}{}", seen.changed.size(), *seen.changed.begin(),
-                     seen.changed.size() > 1 ? ", ..." : ""));
+    report(Severity::warning, "takes that did not change since the split was made",
+           fmt::format("{} made again: {}{}", seen.changed.size(), *seen.changed.begin(),
+                       seen.changed.size() > 1 ? ", ..." : ""));
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

@@ -46,7 +46,7 @@ void add_further(FileSystem& files, StreamOptions stream, const std::string& bas
     const StreamFile placed{path_in(base, file.path), file.node};
     for (const std::string& one : further_files_of(files, stream, placed)) {
       if (one == stream.layout) continue;
-      add_input({remembered_beside(names.at(file.path), placed.path, one), one}, out);
+      add_input({remembered_sibling(names.at(file.path), placed.path, one), one}, out);
     }
   }
 }
@@ -76,9 +76,9 @@ std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known) {
   std::vector<TakeInput> out = named_inputs(files, manifest, base, known.size());
-  const std::string beside(out.empty() ? base : kinalign::folder(out.front().path));
+  const std::string default_folder(out.empty() ? base : kinalign::folder(out.front().path));
   for (const InputFacts& input : known) {
-    add_input({input.name, beside + std::string(file_name(input.name))}, out);
+    add_input({input.name, default_folder + std::string(file_name(input.name))}, out);
   }
   return out;
 }

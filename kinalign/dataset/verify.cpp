@@ -57,8 +57,8 @@ class Verifier {
   }
 
  private:
-  void tell(Severity severity, const std::string& file, std::string expected, std::string found,
-            std::string repair = "") {
+  void report(Severity severity, const std::string& file, std::string expected, std::string found,
+              std::string repair = "") {
     out_.findings.push_back(
         {severity, Error{file, 0, std::move(expected), std::move(found)}, "", std::move(repair)});
   }
@@ -71,11 +71,11 @@ class Verifier {
          {"contact", &catalogue_.contact},
          {"description", &catalogue_.description}}};
     for (const auto& [key, text] : texts) {
-      if (text->empty()) tell(Severity::note, file, key, "none");
+      if (text->empty()) report(Severity::note, file, key, "none");
     }
     for (const Subject& one : catalogue_.subjects) {
       if (one.sex.empty() || !one.height_cm) {
-        tell(Severity::note, file, "sex and height_cm of subject " + one.id, "not both");
+        report(Severity::note, file, "sex and height_cm of subject " + one.id, "not both");
       }
     }
   }
@@ -108,8 +108,8 @@ class Verifier {
       return {};
     }
     if (is_interruption(found.error())) return Failure(found.error());
-    tell(Severity::error, path_of(name, TakeFile::take), found.error().expected,
-         found.error().found);
+    report(Severity::error, path_of(name, TakeFile::take), found.error().expected,
+           found.error().found);
     return {};
   }
 
@@ -117,44 +117,45 @@ class Verifier {
     const std::string file = path_of(name, TakeFile::summary);
     const std::string again = "remove this file; kinalign dataset build makes it again";
     if (!takes_.at(name).summary) {
-      tell(Severity::error, file, "a summary next to the take", "no summary",
-           "kinalign dataset build makes it");
+      report(Severity::error, file, "a summary next to the take", "no summary",
+             "kinalign dataset build makes it");
       return;
     }
     const auto text = read_whole(files_, folder_ + "/" + file, longest_summary);
-    const auto said = text ? parse_summary_json(*text, file) : Failure(text.error());
-    if (!said) {
-      tell(Severity::error, file, "a summary that can be read: " + said.error().expected,
-           said.error().found, again);
+    const auto stored = text ? parse_summary_json(*text, file) : Failure(text.error());
+    if (!stored) {
+      report(Severity::error, file, "a summary that can be read: " + stored.error().expected,
+             stored.error().found, again);
       return;
     }
-    made.sha256 = said->sha256;
+    made.sha256 = stored->sha256;
     std::error_code fault;
     made.bytes = std::filesystem::file_size(folder_ + "/" + path_of(name, TakeFile::take), fault);
     if (summary_json(made) != *text) {
-      tell(Severity::error, file, "the contents of the take", "other values", again);
+      report(Severity::error, file, "the contents of the take", "other values", again);
     }
     if (made.subject != name.subject || made.action != name.action) {
-      tell(Severity::error, path_of(name, TakeFile::take),
-           "subject and action as in the take's name", made.subject + " and " + made.action);
+      report(Severity::error, path_of(name, TakeFile::take),
+             "subject and action as in the take's name", made.subject + " and " + made.action);
     }
-    hashes_.push_back({folder_ + "/" + path_of(name, TakeFile::take), said->sha256,
-                       path_of(name, TakeFile::take), said->bytes});
-    summaries_.emplace(name, *said);
+    hashes_.push_back({folder_ + "/" + path_of(name, TakeFile::take), stored->sha256,
+                       path_of(name, TakeFile::take), stored->bytes});
+    summaries_.emplace(name, *stored);
   }
 
   void check_take(const TakeName& name, const TakeFiles& there) {
     if (!there.take) {
-      tell(Severity::error, path_of(name, there.manifest ? TakeFile::manifest : TakeFile::summary),
-           "a take with this name", "no take", there.manifest ? "kinalign dataset build" : "");
+      report(Severity::error,
+             path_of(name, there.manifest ? TakeFile::manifest : TakeFile::summary),
+             "a take with this name", "no take", there.manifest ? "kinalign dataset build" : "");
     }
     if (find_subject(catalogue_, name.subject) == nullptr) {
-      tell(Severity::warning, path_of(name, TakeFile::take), "a subject of dataset.toml",
-           name.subject);
+      report(Severity::warning, path_of(name, TakeFile::take), "a subject of dataset.toml",
+             name.subject);
     }
     if (find_action(catalogue_, name.action) == nullptr) {
-      tell(Severity::warning, path_of(name, TakeFile::take), "an action of dataset.toml",
-           name.action);
+      report(Severity::warning, path_of(name, TakeFile::take), "an action of dataset.toml",
+             name.action);
     }
     const auto summary = summaries_.find(name);
     if (there.manifest && summary != summaries_.end()) check_manifest(name, summary->second);
@@ -168,7 +169,7 @@ class Verifier {
       return;
     }
     if (recipe_of(*manifest) != summary.recipe) {
-      tell(Severity::warning, file, "the parameters of the take", "other parameters", build);
+      report(Severity::warning, file, "the parameters of the take", "other parameters", build);
     }
     for (const TakeInput& input :
          inputs_of(files_, *manifest, folder_ + "/sub-" + name.subject + "/", summary.inputs)) {
@@ -183,12 +184,12 @@ class Verifier {
     std::error_code fault;
     const auto size = fs::file_size(input.path, fault);
     if (fault) {
-      tell(Severity::warning, manifest, "the raw file " + input.name, "no such file",
-           "the take can't be made again without this file");
+      report(Severity::warning, manifest, "the raw file " + input.name, "no such file",
+             "the take can't be made again without this file");
     } else if (known == summary.inputs.end() || known->bytes != size) {
-      tell(Severity::warning, manifest,
-           "the raw file " + input.name + " that the take was made from", "another file",
-           "kinalign dataset build");
+      report(Severity::warning, manifest,
+             "the raw file " + input.name + " that the take was made from", "another file",
+             "kinalign dataset build");
     } else if (options_.deep) {
       hashes_.push_back({input.path, known->sha256, manifest, size});
     }
@@ -202,8 +203,8 @@ class Verifier {
           std::find(known_names.begin(), known_names.end(), name) != known_names.end();
       if (is_known || name.starts_with('.')) continue;
       if (name == unfinished_rename_file) {
-        tell(Severity::error, name, "a finished rename", "a stopped rename",
-             "run the same kinalign dataset rename again; this file names it");
+        report(Severity::error, name, "a finished rename", "a stopped rename",
+               "run the same kinalign dataset rename again; this file names it");
         continue;
       }
       const std::string place = root + name, below = name + "/";
@@ -211,13 +212,13 @@ class Verifier {
       const bool is_person =
           name.starts_with("sub-") && is_label(name.substr(4)) && fs::is_directory(place, ignored);
       if (!is_person) {
-        tell(Severity::note, name, "a file or folder of a data set", "an unknown file or folder");
+        report(Severity::note, name, "a file or folder of a data set", "an unknown file or folder");
         continue;
       }
       for (const std::string& file : KA_TRY(names_in_folder(place))) {
         const std::string path = below + file;
         if (!parse_take_path(path)) {
-          tell(Severity::note, path, "a file of a take", "an unknown file");
+          report(Severity::note, path, "a file of a take", "an unknown file");
         }
       }
     }
@@ -228,8 +229,8 @@ class Verifier {
   void check_sourcedata() {
     const auto there = files_in_sourcedata(folder_);
     if (!there) {
-      tell(Severity::warning, std::string(raw_files_folder), there.error().expected,
-           there.error().found, "files of no take could not be found");
+      report(Severity::warning, std::string(raw_files_folder), there.error().expected,
+             there.error().found, "files of no take could not be found");
       return;
     }
     if (there->empty()) return;
@@ -248,9 +249,9 @@ class Verifier {
     if (others.empty()) return;
     std::vector<std::string> first(others.begin(), others.end());
     first.resize(std::min<std::size_t>(first.size(), 3));
-    tell(Severity::note, std::string(raw_files_folder), "only files that a manifest names",
-         fmt::format("{} other files: {}{}", others.size(), fmt::join(first, ", "),
-                     others.size() > first.size() ? ", ..." : ""));
+    report(Severity::note, std::string(raw_files_folder), "only files that a manifest names",
+           fmt::format("{} other files: {}{}", others.size(), fmt::join(first, ", "),
+                       others.size() > first.size() ? ", ..." : ""));
   }
 
   Result<void> check_hashes() {
@@ -274,10 +275,10 @@ class Verifier {
       if (facts) out_.bytes += facts->bytes;
       if (facts && facts->sha256 == one.sha256) return;
       if (!facts && is_interruption(facts.error())) return;
-      tell(Severity::error, one.name,
-           one.name.ends_with(".toml") ? "the raw file that the take was made from: " + one.path
-                                       : "bytes with SHA-256 " + one.sha256.substr(0, 12) + "...",
-           facts ? facts->sha256.substr(0, 12) + "..." : facts.error().found);
+      report(Severity::error, one.name,
+             one.name.ends_with(".toml") ? "the raw file that the take was made from: " + one.path
+                                         : "bytes with SHA-256 " + one.sha256.substr(0, 12) + "...",
+             facts ? facts->sha256.substr(0, 12) + "..." : facts.error().found);
     });
     out_.takes = takes_.size();
     return is_stopped ? Failure(interruption()) : Result<void>{};

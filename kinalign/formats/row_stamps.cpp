@@ -54,7 +54,7 @@ std::optional<std::int64_t> through_double(std::string_view text, TimeScale scal
   const double ns =
       (value - static_cast<double>(scale.epoch_s) * 1e9 / static_cast<double>(scale.unit_ns)) *
       static_cast<double>(scale.unit_ns);
-  if (!(std::abs(ns) <= static_cast<double>(furthest_stamp_ns))) return std::nullopt;
+  if (!(std::abs(ns) <= static_cast<double>(largest_stamp_ns))) return std::nullopt;
   return std::llround(ns);
 }
 
@@ -64,11 +64,11 @@ std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) 
   Decimal decimal;
   if (!parse_decimal(text, decimal)) return through_double(text, scale);
   const std::int64_t whole = decimal.minus ? -decimal.whole : decimal.whole;
-  const std::int64_t furthest = furthest_stamp_ns / scale.unit_ns;
+  const std::int64_t largest = largest_stamp_ns / scale.unit_ns;
   std::int64_t epoch = 0, units = 0;
   const bool overflow = __builtin_mul_overflow(scale.epoch_s, second_ns / scale.unit_ns, &epoch) ||
                         __builtin_sub_overflow(whole, epoch, &units);
-  if (overflow || units > furthest || units < -furthest) return std::nullopt;
+  if (overflow || units > largest || units < -largest) return std::nullopt;
   // The product is below 1e10 * 1e9 + 5e9 and fits into an unsigned 64-bit integer.
   const std::uint64_t part =
       (decimal.fraction * static_cast<std::uint64_t>(scale.unit_ns) + decimal.scale / 2) /
@@ -90,9 +90,9 @@ std::string seconds_text(std::int64_t ns) {
 }
 
 std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz) {
-  constexpr double furthest =
+  constexpr double largest =
       4.5e18;  // a stamp this large is refused, but can be added to another without overflow
-  return std::llround(std::min(static_cast<double>(index) * 1e9 / rate_hz, furthest));
+  return std::llround(std::min(static_cast<double>(index) * 1e9 / rate_hz, largest));
 }
 
 RowStamps::RowStamps(bool column, double rate_hz, std::optional<std::int64_t> start_ns)
@@ -110,7 +110,7 @@ Result<Time> RowStamps::next(std::int64_t ns) {
   ++rows_;
   std::int64_t shifted = 0;
   const bool overflow = __builtin_add_overflow(ns, shift_, &shifted);
-  if (overflow || shifted > furthest_stamp_ns || shifted < -furthest_stamp_ns) {
+  if (overflow || shifted > largest_stamp_ns || shifted < -largest_stamp_ns) {
     return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(ns) + " ns"});
   }
   return utc_time(shifted);

@@ -14,7 +14,7 @@
 
 namespace kinalign {
 
-constexpr std::int64_t furthest_stamp_ns = 4'000'000'000'000'000'000;  // see formats/reader.h
+constexpr std::int64_t largest_stamp_ns = 4'000'000'000'000'000'000;  // see formats/reader.h
 
 /// Unit and zero of a time column.
 struct TimeScale {

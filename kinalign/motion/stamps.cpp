@@ -30,8 +30,8 @@ std::int64_t held(std::uint64_t ns) {
 }  // namespace
 
 Time frame_stamp(Time first, double step_ns, std::uint64_t frame) {
-  constexpr double furthest = 4e18;
-  return first + Duration{std::llround(std::min(static_cast<double>(frame) * step_ns, furthest))};
+  constexpr double largest = 4e18;
+  return first + Duration{std::llround(std::min(static_cast<double>(frame) * step_ns, largest))};
 }
 
 StampFate StampRule::judge(Time stamp) {

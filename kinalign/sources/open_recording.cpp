@@ -101,7 +101,7 @@ SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const Na
     } else if (out.paths[i] == options.skeleton) {
       name = remembered_path(folder, named.options->skeleton, out.paths[i]);
     } else {
-      name = remembered_beside(named.remembered, out.paths[0], out.paths[i]);
+      name = remembered_sibling(named.remembered, out.paths[0], out.paths[i]);
     }
   }
   if (named.file != &named.options->files.front()) {
@@ -161,8 +161,8 @@ Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFi
     if (!first || each.stream.name != options.name) continue;
     const std::int64_t shift = *options.start_ns - *first;
     const std::int64_t last = to_ns(each.stream.survey.last);
-    if (std::abs(shift) > furthest_stamp_ns ||
-        last > furthest_stamp_ns - std::max<std::int64_t>(0, shift)) {
+    if (std::abs(shift) > largest_stamp_ns ||
+        last > largest_stamp_ns - std::max<std::int64_t>(0, shift)) {
       return Failure(Error{each.paths.front(), 0, "a stamp inside +-4e18 ns",
                            std::to_string(last) + " ns, to be moved by " + std::to_string(shift)});
     }

@@ -169,18 +169,18 @@ Result<DeviceOptions> parse_device(const std::string& text) {
   return device;
 }
 
-void come_from(Lab& lab, const DeviceOptions& said) {
+void come_from(Lab& lab, const DeviceOptions& stated) {
   const auto known =
       std::find_if(lab.devices.begin(), lab.devices.end(),
-                   [&](const DeviceOptions& device) { return device.name == said.name; });
+                   [&](const DeviceOptions& device) { return device.name == stated.name; });
   if (known == lab.devices.end()) {
-    lab.devices.push_back(said);
+    lab.devices.push_back(stated);
     return;
   }
-  known->protocol = said.protocol;
-  known->transport = said.transport;
-  known->address = said.address;
-  known->port = said.port;
+  known->protocol = stated.protocol;
+  known->transport = stated.transport;
+  known->address = stated.address;
+  known->port = stated.port;
 }
 
 Result<void> validate(const Lab& lab) {

@@ -42,9 +42,9 @@ struct Lab {
 /// "mocap=noitom:tcp:192.168.7.5:7001", "imu=nodes:5005".
 Result<DeviceOptions> parse_device(const std::string& text);
 
-/// Gives the lab's device of that name the protocol, transport, address and port of `said`; its
+/// Gives the lab's device of that name the protocol, transport, address and port of `stated`; its
 /// other options stay. A new name is added as a device.
-void come_from(Lab& lab, const DeviceOptions& said);
+void come_from(Lab& lab, const DeviceOptions& stated);
 
 /// Fails if an option is missing or has no meaning, or if two devices have one name or one port.
 Result<void> validate(const Lab& lab);

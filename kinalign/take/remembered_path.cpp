@@ -74,8 +74,8 @@ std::map<std::string, std::string> remembered_paths(const std::vector<std::strin
   return out;
 }
 
-std::string remembered_beside(const std::string& name, const std::string& path,
-                              const std::string& other) {
+std::string remembered_sibling(const std::string& name, const std::string& path,
+                               const std::string& other) {
   const auto step = std::filesystem::path(other).lexically_normal().lexically_relative(
       std::filesystem::path(path).lexically_normal().parent_path());
   if (step.empty()) return std::string(file_name(other));

@@ -23,8 +23,8 @@ std::map<std::string, std::string> remembered_paths(const std::vector<std::strin
 
 /// The name of `other`, a file that the reader of `path` opens itself. `path` is stored as `name`;
 /// the new name has the same position relative to it.
-std::string remembered_beside(const std::string& name, const std::string& path,
-                              const std::string& other);
+std::string remembered_sibling(const std::string& name, const std::string& path,
+                               const std::string& other);
 
 /// The same for `path`, a file found through `given`, a path of a manifest in `folder`.
 std::string remembered_path(const std::string& folder, const std::string& given,

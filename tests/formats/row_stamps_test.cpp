@@ -67,7 +67,7 @@ TEST_CASE("every stamp comes back to the nanosecond from its digits, in any unit
   for (const std::uint64_t seed : fresh_seeds(500)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    const auto ns = static_cast<std::int64_t>(random() >> (1 + random() % 40)) % furthest_stamp_ns;
+    const auto ns = static_cast<std::int64_t>(random() >> (1 + random() % 40)) % largest_stamp_ns;
     const std::int64_t stamp = random() % 2 == 0 ? ns : -ns;
     for (const TimeScale scale : {in_us, in_ms, in_s, in_ticks}) {
       const std::string text = written(stamp, scale.unit_ns);
@@ -86,11 +86,11 @@ TEST_CASE("a tick of .NET is 100 ns, counted from the year 1") {
 }
 
 TEST_CASE("stamps reach 4e18 ns either way and no further") {
-  CHECK(parse_stamp("4000000000000000000", in_ns) == furthest_stamp_ns);
-  CHECK(parse_stamp("-4000000000000000000", in_ns) == -furthest_stamp_ns);
+  CHECK(parse_stamp("4000000000000000000", in_ns) == largest_stamp_ns);
+  CHECK(parse_stamp("-4000000000000000000", in_ns) == -largest_stamp_ns);
   CHECK_FALSE(parse_stamp("4000000000000000001", in_ns));
   CHECK_FALSE(parse_stamp("-4000000000000000001", in_ns));
-  CHECK(parse_stamp("4000000000", in_s) == furthest_stamp_ns);
+  CHECK(parse_stamp("4000000000", in_s) == largest_stamp_ns);
   CHECK_FALSE(parse_stamp("4000000001", in_s));
   CHECK_FALSE(parse_stamp("-1e300", in_s));
   CHECK_FALSE(parse_stamp("0", {1, 10 * second_ns}));
@@ -184,9 +184,9 @@ TEST_CASE("a stuck column is said with what became of the rows") {
 }
 
 TEST_CASE("a stamp that start_ns moves beyond time is an error, not another stamp") {
-  RowStamps stamps(true, 0, furthest_stamp_ns);
-  REQUIRE(stamps.next(-furthest_stamp_ns));
-  const auto beyond = stamps.next(furthest_stamp_ns);
+  RowStamps stamps(true, 0, largest_stamp_ns);
+  REQUIRE(stamps.next(-largest_stamp_ns));
+  const auto beyond = stamps.next(largest_stamp_ns);
   REQUIRE_FALSE(beyond);
   CHECK(to_string(beyond.error()) ==
         "expected a stamp inside +-4e18 ns, found 4000000000000000000 ns");
@@ -202,7 +202,7 @@ TEST_CASE("seconds are written exactly and read again to the same nanosecond") {
   for (const std::uint64_t seed : fresh_seeds(1000)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    const auto ns = static_cast<std::int64_t>(random() >> (1 + random() % 60)) % furthest_stamp_ns;
+    const auto ns = static_cast<std::int64_t>(random() >> (1 + random() % 60)) % largest_stamp_ns;
     CHECK(parse_stamp(seconds_text(ns), in_seconds) == ns);
     CHECK(parse_stamp(seconds_text(-ns), in_seconds) == -ns);
   }

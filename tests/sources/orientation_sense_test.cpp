@@ -46,7 +46,7 @@ ImuSamples swinging(const Change& change, double times = 1.0) {
   return out;
 }
 
-std::string said_of(const ImuSamples& block, const ImuContent& content) {
+std::string with_stream_name(const ImuSamples& block, const ImuContent& content) {
   OrientationSense sense;
   sense.add(block);
   std::string all;
@@ -65,19 +65,20 @@ bool says(const std::string& said, const char* what) {
 }  // namespace
 
 TEST_CASE("a node whose orientations, accelerations and turns are one is left alone") {
-  CHECK(said_of(swinging(as_it_is), with_gravity).empty());
-  CHECK(said_of(swinging(as_it_is), without).empty());
+  CHECK(with_stream_name(swinging(as_it_is), with_gravity).empty());
+  CHECK(with_stream_name(swinging(as_it_is), without).empty());
 }
 
 TEST_CASE("parts in another order, the inverse and another axis up show in gravity and in turns") {
-  const std::string shifted = said_of(swinging(parts_shifted), with_gravity);
+  const std::string shifted = with_stream_name(swinging(parts_shifted), with_gravity);
   CHECK(says(shifted, "w.csv: expected gravity of 'wrist' that points up in the world, found"));
   CHECK(says(shifted, "w.csv: expected orientations of 'wrist' that turn as the gyroscope says"));
-  CHECK(says(said_of(swinging(other_way), with_gravity), "as the gyroscope says"));
-  CHECK(said_of(swinging(z_up), with_gravity) ==
+  CHECK(says(with_stream_name(swinging(other_way), with_gravity), "as the gyroscope says"));
+  CHECK(with_stream_name(swinging(z_up), with_gravity) ==
         "w.csv: expected gravity of 'wrist' that points up in the world, found 90 degrees from it "
         "in the mean\n");
-  CHECK(said_of(swinging(z_up), without).empty());  // without gravity any axis may point up
+  CHECK(
+      with_stream_name(swinging(z_up), without).empty());  // without gravity any axis may point up
 }
 
 TEST_CASE("one sample that came on the heels of the next, or one wild rate, outweighs no other") {
@@ -85,17 +86,17 @@ TEST_CASE("one sample that came on the heels of the next, or one wild rate, outw
     CAPTURE(ns);
     ImuSamples late = swinging(as_it_is);
     late.stamps[200] = late.stamps[201] - Duration{ns};
-    CHECK(said_of(late, with_gravity).empty());
+    CHECK(with_stream_name(late, with_gravity).empty());
   }
   ImuSamples wild = swinging(as_it_is);
   wild.angular_velocity[3 * 200] = 2000.0;
-  CHECK(said_of(wild, with_gravity).empty());
+  CHECK(with_stream_name(wild, with_gravity).empty());
 }
 
 TEST_CASE("gravity may lean by up to 45 degrees") {
   const auto leaning = [](double degrees) {
     const double half = degrees * std::numbers::pi / 360.0;
-    return said_of(
+    return with_stream_name(
         swinging([half](const Quat& q) { return Quat(std::cos(half), std::sin(half), 0, 0) * q; }),
         with_gravity);
   };
@@ -104,20 +105,20 @@ TEST_CASE("gravity may lean by up to 45 degrees") {
 }
 
 TEST_CASE("a node at rest says nothing of its turns, and a few samples nothing at all") {
-  CHECK(!says(said_of(swinging(parts_shifted, 0.02), with_gravity), "gyroscope"));
+  CHECK(!says(with_stream_name(swinging(parts_shifted, 0.02), with_gravity), "gyroscope"));
   ImuSamples few = swinging(parts_shifted);
   few.stamps.resize(40);
   few.valid.resize(40);
-  CHECK(said_of(few, with_gravity).empty());
+  CHECK(with_stream_name(few, with_gravity).empty());
 }
 
 TEST_CASE("samples that are not valid, and steps of a second, prove nothing") {
   ImuSamples lost = swinging(parts_shifted);
   for (std::size_t k = 0; k < lost.valid.size(); k += 2) lost.valid[k] = 0;
-  CHECK(!says(said_of(lost, with_gravity), "gyroscope"));
+  CHECK(!says(with_stream_name(lost, with_gravity), "gyroscope"));
   ImuSamples slow = swinging(parts_shifted);
   for (std::size_t k = 0; k < slow.stamps.size(); ++k) {
     slow.stamps[k] = utc_time(static_cast<std::int64_t>(k) * 1'000'000'000);
   }
-  CHECK(!says(said_of(slow, with_gravity), "gyroscope"));
+  CHECK(!says(with_stream_name(slow, with_gravity), "gyroscope"));
 }

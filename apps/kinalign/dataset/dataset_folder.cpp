@@ -41,7 +41,7 @@ Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
   return index;
 }
 
-Result<void> say_not_built(const DatasetIndex& index, const std::string& folder, Call& call) {
+Result<void> print_not_built(const DatasetIndex& index, const std::string& folder, Call& call) {
   const std::uint64_t not_built = KA_TRY(index.not_built());
   if (not_built == 0) return {};
   call.console.print(harmless(

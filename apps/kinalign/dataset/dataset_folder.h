@@ -26,7 +26,7 @@ Field split_field(std::string& split);
 Result<DatasetIndex> open_index(const std::string& folder, Call& call);
 
 /// Prints a line if some takes have no summary yet.
-Result<void> say_not_built(const DatasetIndex& index, const std::string& folder, Call& call);
+Result<void> print_not_built(const DatasetIndex& index, const std::string& folder, Call& call);
 
 /// Prints the first findings and the number of the others. True if one is an error.
 bool print_findings(const Findings& findings, Call& call);

@@ -127,7 +127,7 @@ Result<int> run_export(Export& o, Call& call) {
         fmt::format("{{\"files\": 0, \"findings\": {}}}", findings_json(findings)));
     return 1;
   }
-  KA_TRY(say_not_built(index, job.folder, call));
+  KA_TRY(print_not_built(index, job.folder, call));
   const ExportMade made =
       KA_TRY(export_takes(files, index.catalogue(), job, call.console.progress()));
   call.console.print(harmless(fmt::format(

@@ -112,7 +112,7 @@ void print_json(const Imported& made, Console& console) {
                          .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-void advise_to_say_it_again(Console& console) {
+void advise_to_run_again(Console& console) {
   console.if_it_fails([](const Error&) -> std::vector<std::string> {
     return {"some takes are in the data set; run the same command again to continue"};
   });
@@ -133,7 +133,7 @@ Result<int> run_import(Import& o, Call& call) {
   const Imported made =
       KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
                            [&](std::uint64_t done, std::uint64_t takes) {
-                             if (done == 1) advise_to_say_it_again(console);
+                             if (done == 1) advise_to_run_again(console);
                              if (done % 100 == 0 && done < takes)
                                console.print(fmt::format("{} of {}\n", done, takes));
                            }));

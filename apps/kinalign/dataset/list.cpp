@@ -102,7 +102,7 @@ Result<int> show(const Shown& o, const DatasetIndex& index, const std::string& s
                  const std::vector<Cell>& values, Call& call) {
   const Table table = KA_TRY(index.select(sql, values));
   print_table(table, o.format, "takes", call);
-  if (o.format == "text") KA_TRY(say_not_built(index, folder_of(o.folder), call));
+  if (o.format == "text") KA_TRY(print_not_built(index, folder_of(o.folder), call));
   return index.findings().empty() ? 0 : 1;
 }
 

@@ -114,7 +114,7 @@ Result<int> run_split(SplitVerb& o, Call& call) {
   if (!leaks && o.check.empty()) {
     KA_TRY(write_split(split_json(split, takes), call));
   }
-  KA_TRY(say_not_built(index, folder, call));
+  KA_TRY(print_not_built(index, folder, call));
   const Table table = table_of(split, takes);
   call.console.print(written(table, TableFormat::text));
   call.console.print_json(fmt::format("{{\"parts\": {}, \"findings\": {}}}",

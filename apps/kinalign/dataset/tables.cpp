@@ -53,7 +53,7 @@ Result<int> run_tables(Tables& o, Call& call) {
     call.console.print_json("{" + json + "}");
   } else {
     call.console.put(harmless(text));
-    if (o.format == "text") KA_TRY(say_not_built(index, folder_of(o.folder), call));
+    if (o.format == "text") KA_TRY(print_not_built(index, folder_of(o.folder), call));
   }
   return index.findings().empty() ? 0 : 1;
 }

@@ -78,7 +78,7 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder, call));
   const Catalogue& catalogue = index.catalogue();
-  KA_TRY(say_not_built(index, folder, call));
+  KA_TRY(print_not_built(index, folder, call));
   WindowSource source{folder, catalogue.name, catalogue.licence, catalogue.citation, {"all"}, {}};
   auto takes = KA_TRY(built_takes(files, folder, index, o.where));
   if (o.split.empty()) {

@@ -225,16 +225,16 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::s
     out.tensors["seen"] = {{body.frames(), body.joints}, {body.seen.begin(), body.seen.end()}};
     return write_safetensors(out);
   };
-  TensorFile told =
+  TensorFile answer_file =
       KA_TRY(read_safetensors(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), in));
   SeenJoints out;
-  out.stream = told.metadata["stream"];
-  out.frames.start = utc_time(std::stoll(told.metadata["start_ns"]));
-  Json::parse(told.metadata["warnings"]).get_to(out.warnings);
+  out.stream = answer_file.metadata["stream"];
+  out.frames.start = utc_time(std::stoll(answer_file.metadata["start_ns"]));
+  Json::parse(answer_file.metadata["warnings"]).get_to(out.warnings);
   out.frames.rate_hz = layout.rate_hz;
   out.frames.body.joints = layout.inputs.size();
-  out.frames.body.positions = std::move(told.tensors["positions"].values);
-  const auto& seen = told.tensors["seen"].values;
+  out.frames.body.positions = std::move(answer_file.tensors["positions"].values);
+  const auto& seen = answer_file.tensors["seen"].values;
   out.frames.body.seen.assign(seen.begin(), seen.end());
   return out;
 }
@@ -309,13 +309,14 @@ void print(const Json& about, const std::string& out, Call& call) {
         about.at("radius_90_cm").get<double>());
   }
   if (about.contains("projected")) {
-    const auto said = [&](const char* what, std::size_t i) {
+    const auto value_of = [&](const char* what, std::size_t i) {
       return about.at("projected").at(what).at(i).get<double>();
     };
     text += fmt::format(
         "project  standing feet move {:.2f} cm per frame, before {:.2f}; bones vary by {:.1f} cm, "
         "before {:.1f}\n",
-        said("feet_cm", 1), said("feet_cm", 0), said("bone_cm", 1), said("bone_cm", 0));
+        value_of("feet_cm", 1), value_of("feet_cm", 0), value_of("bone_cm", 1),
+        value_of("bone_cm", 0));
   }
   print_answer(std::move(text), about, call);
 }

@@ -74,8 +74,8 @@ Usage describe_fuse(FuseWords& o) {
 
 /// Adds each node's heading correction at the end of the run, and warnings where the Kinect
 /// corrects it by much or can't find it.
-void tell_headings(const std::vector<std::string>& names, const std::vector<HeadingState>& states,
-                   Json& about) {
+void add_heading_warnings(const std::vector<std::string>& names,
+                          const std::vector<HeadingState>& states, Json& about) {
   Json found = Json::object();
   for (std::size_t n = 0; n < names.size(); ++n) {
     const HeadingState& last = states[states.size() - names.size() + n];
@@ -108,7 +108,7 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
   const std::string by = given.is_sized ? "the Kinect" : "the model";
   about["body"] = about_body(fuser.model().body.skeleton, own ? "--body" : by);
   const auto headings = fuser.headings(given.input);
-  tell_headings(layout.nodes, headings, about);
+  add_heading_warnings(layout.nodes, headings, about);
   KA_TRY(
       write_answer(fuser.clip(given.input, headings, given.start), layout.rate_hz, o.model, call));
   return about;

@@ -105,7 +105,7 @@ std::vector<std::string> read_lines(Child& child) {
   return out;
 }
 
-Error told_error(const nlohmann::json& error) {
+Error reported_error(const nlohmann::json& error) {
   return {error.value("file", ""), 0, error.value("expected", ""), error.value("found", "")};
 }
 
@@ -222,7 +222,7 @@ class Workers {
   // The error that the child reported, else its exit code or signal.
   Error error_of(const Child& child) const {
     const auto json = nlohmann::json::parse(child.last, nullptr, false);
-    if (json.is_object() && json.contains("error")) return told_error(json.at("error"));
+    if (json.is_object() && json.contains("error")) return reported_error(json.at("error"));
     std::string who = "kinalign-learn";
     if (children_.size() > 1) {
       who = "process " + std::to_string(&child - children_.data()) + " (of 0 to " +

@@ -175,11 +175,11 @@ std::string restless_nodes(const PoseLayout& layout, const NodeCalibration& cali
 std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibration& calibration,
                                      const std::string& headings) {
   std::string names, tilts;
-  std::size_t as_told = 0, off = 0;
+  std::size_t as_described = 0, off = 0;
   bool arms_alone = true;  // hanging arms tilt in the same way
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const auto& worn = calibration.nodes[n];
-    if (worn && worn->tilt_deg <= most_tilt_deg) ++as_told;
+    if (worn && worn->tilt_deg <= most_tilt_deg) ++as_described;
     if (!worn || worn->tilt_deg <= sure_tilt_deg) continue;
     if (!worn_place(layout.nodes[n])->on_arm) arms_alone = false;
     names += (off == 0 ? "" : " and ") + layout.nodes[n];
@@ -192,7 +192,7 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
                   " m/s2 in the T-pose are not gravity: the unit of the accelerations, gravity in "
                   "them, or the order of the quaternion's numbers is wrong");
   }
-  if (headings == "auto" && as_told >= 2 && off >= 2 && !arms_alone) {
+  if (headings == "auto" && as_described >= 2 && off >= 2 && !arms_alone) {
     out.push_back(names + " are worn " + tilts +
                   " deg away from the orientation in docs/pose.md, the others are as described "
                   "there: were these nodes swapped?");

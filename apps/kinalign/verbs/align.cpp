@@ -41,7 +41,7 @@ struct AlignVerb {
 /// is needed.
 Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& given) {
   const bool quick = !o.quick.mocap.empty();
-  if (!o.manifest.empty()) KA_TRY(refuse_beside(o.manifest.front(), given));
+  if (!o.manifest.empty()) KA_TRY(refuse_with_input(o.manifest.front(), given));
   if (o.manifest.empty() && !quick) {
     return Failure(Error{"", 0, "either a recording.toml or --mocap FILE", "neither"});
   }
@@ -164,12 +164,12 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     const Time own = first_of(s);
     const bool apart = own > last || last_of(s) < first;
     const auto near = [](Time t) {
-      return to_ns(t) > -furthest_stamp_ns && to_ns(t) < furthest_stamp_ns;
+      return to_ns(t) > -largest_stamp_ns && to_ns(t) < largest_stamp_ns;
     };
-    const bool told = near(own) && near(first);
+    const bool is_known = near(own) && near(first);
     const bool quick = o.manifest.empty();
     const bool placed = s.step_ns || std::holds_alternative<PointInput>(s.data);
-    if (!placed || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
+    if (!placed || !apart || first > last || !is_known || (quick && s.name != "mocap")) continue;
     const std::int64_t start =
         s.step_ns ? options_of(manifest, s.name).start_ns.value_or(0) : to_ns(s.survey.first);
     const std::int64_t latency = to_ns(own) - start;

@@ -161,7 +161,7 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
     append(found, judge_stamps(stream, options(stream)));
     append(found, judge_arrivals(stream, arrivals[i], role(stream)));
     append(found, judge_start(stream, options(stream), arrivals[i]));
-    append(out, said_of(stream, recording, std::move(found)));
+    append(out, with_stream_name(stream, recording, std::move(found)));
   }
   return out;
 }

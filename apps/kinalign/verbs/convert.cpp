@@ -170,7 +170,7 @@ Findings findings_of(const Recording& recording) {
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     if (const SharedFile* file = newly_read_file(recording, i)) append(all, file->findings);
     const RecordedStream& stream = recording.streams[i];
-    append(all, said_of(stream, recording, all_findings(stream)));
+    append(all, with_stream_name(stream, recording, all_findings(stream)));
   }
   return all;
 }

@@ -148,7 +148,7 @@ Fields QuickFlags::fields() {
            &joints}};
 }
 
-Result<void> refuse_beside(const std::string& path, const Sources& given) {
+Result<void> refuse_with_input(const std::string& path, const Sources& given) {
   for (const Twin& twin : twins) {
     if (!is_given(twin.flag, given)) continue;
     if (path.ends_with(".mcap")) {

@@ -26,7 +26,7 @@ struct QuickFlags {
 
 /// Fails if one of these flags is given with the manifest `path`. The error names the manifest's
 /// key for it.
-Result<void> refuse_beside(const std::string& path, const Sources& given);
+Result<void> refuse_with_input(const std::string& path, const Sources& given);
 
 /// Fails if a flag is given without the file that it describes, or with a method of --space that
 /// does not use it.

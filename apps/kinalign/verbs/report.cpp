@@ -240,8 +240,8 @@ std::string size_text(std::size_t bytes) {
 }
 
 /// The printed text: file, size, verdicts, the most serious concerns.
-std::string said(const std::string& out, std::size_t bytes, const nlohmann::ordered_json& about,
-                 Call& call) {
+std::string summary_text(const std::string& out, std::size_t bytes,
+                         const nlohmann::ordered_json& about, Call& call) {
   std::string streams;
   for (const auto& verdict : about["verdicts"]) {
     const auto quality = verdict["quality"].get<std::string>();
@@ -304,7 +304,7 @@ Result<Written> write_page(const std::string& take, const TakeFigureOptions& opt
 int say(const Written& written, bool has_raw, Call& call) {
   const std::string& out = call.common.out;
   call.console.wrote(out);
-  call.console.print(said(out, written.bytes, written.about, call));
+  call.console.print(summary_text(out, written.bytes, written.about, call));
   nlohmann::ordered_json json{{"path", out}, {"bytes", written.bytes}};
   json.update(written.about);
   json["raw_samples"] = has_raw;

@@ -101,14 +101,14 @@ Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, Files
                               "",
                               fmt::format("{}", take.name().run)};
   const std::string motion = bids_path(entities, "motion.tsv");
-  const BidsSidecars beside = KA_TRY(write_motion(take, group, folder_ + "/" + motion));
-  KA_TRY(write(bids_path(entities, "channels.tsv"), beside.channels_tsv));
-  KA_TRY(write(bids_path(entities, "channels.json"), beside.channels_json));
-  KA_TRY(write(bids_path(entities, "motion.json"), beside.motion_json));
+  const BidsSidecars sidecars = KA_TRY(write_motion(take, group, folder_ + "/" + motion));
+  KA_TRY(write(bids_path(entities, "channels.tsv"), sidecars.channels_tsv));
+  KA_TRY(write(bids_path(entities, "channels.json"), sidecars.channels_json));
+  KA_TRY(write(bids_path(entities, "motion.json"), sidecars.motion_json));
   const std::string below = bids_subject_folder(entities);
-  const bool is_dated = !released_ && beside.onset >= first_date;
+  const bool is_dated = !released_ && sidecars.onset >= first_date;
   scans_[entities.subject].emplace_back(motion.substr(below.size()),
-                                        is_dated ? std::optional(beside.onset) : std::nullopt);
+                                        is_dated ? std::optional(sidecars.onset) : std::nullopt);
   made.paths.push_back(folder_ + "/" + motion);
   return {};
 }

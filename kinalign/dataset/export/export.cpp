@@ -247,10 +247,10 @@ Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, c
   limits.cpu_seconds += 600 * job.takes.size();
   limits.wall_seconds += 3600.0 * static_cast<double>(job.takes.size());
   const Error blame{job.folder, 0, "takes that HDF5 can read", ""};
-  const std::string text =
-      KA_TRY(run_guarded(limits, blame, progress, [&](const Progress& tell) -> Result<std::string> {
+  const std::string text = KA_TRY(run_guarded(
+      limits, blame, progress, [&](const Progress& child_progress) -> Result<std::string> {
         Exporting exporting(files, catalogue, job, part.path);
-        KA_TRY(exporting.run(tell));
+        KA_TRY(exporting.run(child_progress));
         KA_TRY(exporting.made.holds_something(job, needs_of(job.format)));
         return text_of(exporting.made);
       }));

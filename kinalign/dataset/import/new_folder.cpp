@@ -79,19 +79,19 @@ Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
   // The process id is in the name, since another process may unpack the same source.
   const std::string lead = "." + own + "-";
   remove_abandoned(parent, lead);
-  const fs::path beside = fs::path(parent) / (lead + std::to_string(::getpid()));
-  UnfinishedFolder unfinished(beside.string());
-  KA_TRY(make_folders(beside.string()));
+  const fs::path sibling = fs::path(parent) / (lead + std::to_string(::getpid()));
+  UnfinishedFolder unfinished(sibling.string());
+  KA_TRY(make_folders(sibling.string()));
   KA_TRY(fill([&](const std::string& file) -> Result<OutputFile> {
-    const fs::path path = beside / file;
+    const fs::path path = sibling / file;
     KA_TRY(make_folders(path.parent_path().string()));
     return OutputFile::create(files, path.string(), Overwrite::no);
   }));
   std::error_code fault;
-  fs::rename(beside, to, fault);
+  fs::rename(sibling, to, fault);
   if (!fault) unfinished.keep();
   if (fault && is_there(to.string())) {
-    KA_TRY(fill_in(beside, to));
+    KA_TRY(fill_in(sibling, to));
   } else if (fault) {
     return Failure(Error{to.string(), 0, "a folder that can be named", fault.message()});
   }

@@ -33,7 +33,7 @@ std::string plain(std::string_view text) {
   return out;
 }
 
-std::string or_not_said(const std::string& text) {
+std::string or_not_stated(const std::string& text) {
   return text.empty() ? "not stated in dataset.toml" : plain(text);
 }
 
@@ -225,15 +225,15 @@ class Card {
 
   void put_terms() {
     title("Terms");
-    line("- Licence: " + or_not_said(catalogue_.licence));
-    line("- Citation: " + or_not_said(catalogue_.citation));
-    line("- Contact: " + or_not_said(catalogue_.contact));
+    line("- Licence: " + or_not_stated(catalogue_.licence));
+    line("- Citation: " + or_not_stated(catalogue_.citation));
+    line("- Contact: " + or_not_stated(catalogue_.contact));
     std::map<std::string, std::vector<std::string>> consents;
     for (const Subject& one : catalogue_.subjects) {
       consents[one.consent].push_back(one.id);
     }
     for (const auto& [consent, people] : consents) {
-      line(fmt::format("- Consent of {}: {}", fmt::join(people, ", "), or_not_said(consent)));
+      line(fmt::format("- Consent of {}: {}", fmt::join(people, ", "), or_not_stated(consent)));
     }
     line("- People have pseudonyms. The list of names is kept elsewhere.");
     line("\nWritten by " + plain(software_) + ".");

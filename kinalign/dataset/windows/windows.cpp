@@ -271,8 +271,8 @@ Result<WindowsMade> write_windows(FileSystem& files, const WindowSource& source,
   limits.cpu_seconds += 60 * source.takes.size();
   limits.wall_seconds += 600.0 * static_cast<double>(source.takes.size());
   const Error blame{source.folder, 0, "takes that HDF5 can read", ""};
-  const auto work = [&](const Progress& tell) -> Result<std::string> {
-    Job job(files, source, options, tell);
+  const auto work = [&](const Progress& child_progress) -> Result<std::string> {
+    Job job(files, source, options, child_progress);
     KA_TRY(job.find(names));
     KA_TRY(job.write(target));
     return text_of(job.made);

@@ -118,14 +118,14 @@ class ArchiveReader {
       if (++entries > limits_.entries) {
         return refuse(fmt::format("at most {} entries", limits_.entries), "more");
       }
-      const std::string said = name_of(entry);
-      KA_TRY(check_kind(entry, said));
-      auto safe = safe_archive_name(said);
-      if (!safe && archive_entry_filetype(entry) == AE_IFDIR && is_top(said)) continue;
-      if (!safe) return refuse(safe.error().expected, shown(said));
+      const std::string stated_name = name_of(entry);
+      KA_TRY(check_kind(entry, stated_name));
+      auto safe = safe_archive_name(stated_name);
+      if (!safe && archive_entry_filetype(entry) == AE_IFDIR && is_top(stated_name)) continue;
+      if (!safe) return refuse(safe.error().expected, shown(stated_name));
       if (archive_entry_filetype(entry) == AE_IFDIR) continue;
-      if (!given_.add(*safe)) return refuse("each name once", shown(said) + " again");
-      KA_TRY(use(*safe, [this, said] { return next_piece(said); }));
+      if (!given_.add(*safe)) return refuse("each name once", shown(stated_name) + " again");
+      KA_TRY(use(*safe, [this, stated_name] { return next_piece(stated_name); }));
     }
   }
 
@@ -149,9 +149,9 @@ class ArchiveReader {
 
   Error damage(const std::string& expected) const {
     if (feed_.failure) return *feed_.failure;
-    const char* const said = archive_error_string(archive_.get());
+    const char* const stated_name = archive_error_string(archive_.get());
     return Error{feed_.bytes.name, 0, expected + " that can be read",
-                 said == nullptr ? "damaged bytes" : shown(said)};
+                 stated_name == nullptr ? "damaged bytes" : shown(stated_name)};
   }
 
   /// True for an entry that names the archive's top folder, such as "./".

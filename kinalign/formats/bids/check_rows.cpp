@@ -79,19 +79,19 @@ class RowsCheck {
 
   /// Turns the counted faults into findings, one for each kind of fault.
   void report(const std::string& path, BidsCheck& check) const {
-    const auto tell = [&](const Repeated& fault, const std::string& expected) {
+    const auto report_rows = [&](const Repeated& fault, const std::string& expected) {
       if (fault.times > 0) check.error(path, expected, fault.found(), fault.line);
     };
-    tell(names_, "only rows of numbers, without a line of column names");
-    tell(blank_, "no empty lines");
-    tell(lengths_, fmt::format("rows of {} cells, like the first row", width_));
+    report_rows(names_, "only rows of numbers, without a line of column names");
+    report_rows(blank_, "no empty lines");
+    report_rows(lengths_, fmt::format("rows of {} cells, like the first row", width_));
     if (!channels_.empty() && width_ > 0 && width_ != channels_.size()) {
       check.error(path, fmt::format("{} columns, one per row of channels.tsv", channels_.size()),
                   std::to_string(width_));
     }
-    tell(nan_, "n/a for what is missing");
-    tell(no_number_, "a number or n/a");
-    tell(latencies_, "rising latencies");
+    report_rows(nan_, "n/a for what is missing");
+    report_rows(no_number_, "a number or n/a");
+    report_rows(latencies_, "rising latencies");
     if (quaternion_.times > 0) {
       check.warning(path, "quaternions of length 1", quaternion_.found(), quaternion_.line);
     }

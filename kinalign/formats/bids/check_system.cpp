@@ -172,10 +172,10 @@ void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>&
   const auto paths = check.inherited(motion_tsv, "channels.json");
   std::set<std::string> described;
   for (const std::string& path : paths) described.merge(described_frames(path, check));
-  const std::string beside = motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.json";
+  const std::string channels_json = motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.json";
   for (const std::string& one : frames) {
     if (described.contains(one)) continue;
-    check.warning(paths.empty() ? beside : paths.back(), "the reference frame " + shown(one),
+    check.warning(paths.empty() ? channels_json : paths.back(), "the reference frame " + shown(one),
                   "none");
   }
 }

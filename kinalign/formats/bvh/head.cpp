@@ -258,7 +258,7 @@ class HierarchyParser {
 
 /// The names, made unique: a repeated name gets #2, #3, ..., the first number that gives no other
 /// joint's name.
-std::vector<std::string> told_apart(const std::vector<std::string>& names) {
+std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
   std::set<std::string> taken(names.begin(), names.end());
   std::map<std::string_view, int> times;
   std::vector<std::string> out;
@@ -315,7 +315,7 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
   out.parents = hierarchy.parents;
   std::vector<std::string> names;
   for (const std::string& written : hierarchy.names) names.push_back(as_utf8(written));
-  out.joint_names = told_apart(names);
+  out.joint_names = distinct_names(names);
   for (std::size_t j = 0; j < out.joint_names.size(); ++j) {
     const std::string& written = names[j];
     if (out.joint_names[j] == written) continue;

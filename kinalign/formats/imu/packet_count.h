@@ -62,9 +62,11 @@ class PacketCount {
     State& s = now_;
     // The first counter may be a wrong value. A counter that falls far behind it begins a new
     // count.
-    const bool anew = s.rows == 1 && counter < s.last && !follows(counter, s);
-    const std::int64_t step = s.rows == 0 ? counter : anew ? counter - s.last : around(counter, s);
-    if (anew) {
+    const bool restarted = s.rows == 1 && counter < s.last && !follows(counter, s);
+    const std::int64_t step = s.rows == 0 ? counter
+                              : restarted ? counter - s.last
+                                          : around(counter, s);
+    if (restarted) {
       s.highest = counter - 1;
       s.wrap = narrow;
     }

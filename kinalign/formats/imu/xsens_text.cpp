@@ -262,7 +262,8 @@ class XsensReader final : public ImuReader {
   void settle(ImuSamples& out) {
     if (waiting_.empty()) return;
     const auto best = std::max_element(
-        turns_.begin(), turns_.end(), [](const Told& a, const Told& b) { return a.rows < b.rows; });
+        turns_.begin(), turns_.end(),
+        [](const Orientation& a, const Orientation& b) { return a.rows < b.rows; });
     orientation_ = best->group;
     seen_.orientation = best->rows > 0;
     seen_.acceleration = with_gravity_ + free_ > 0;
@@ -283,7 +284,7 @@ class XsensReader final : public ImuReader {
     const std::int64_t since =
         stamp_at_rate(static_cast<std::uint64_t>(std::abs(packets)), rate_hz_);
     const std::int64_t ns = options_.start_ns.value_or(0) + (packets < 0 ? -since : since);
-    if (std::abs(ns) <= furthest_stamp_ns) return utc_time(ns);
+    if (std::abs(ns) <= largest_stamp_ns) return utc_time(ns);
     return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(count) + " packets"});
   }
 
@@ -355,11 +356,12 @@ class XsensReader final : public ImuReader {
   static constexpr std::size_t patience = 32;  // rows until the quantities are decided
   std::vector<Waiting> waiting_;
   /// One form of the orientation.
-  struct Told {
+  struct Orientation {
     const XsensGroup* group;
     std::size_t rows = 0;  // number of kept rows that have it
   };
-  std::array<Told, 3> turns_{{{&columns_.quaternion}, {&columns_.matrix}, {&columns_.euler}}};
+  std::array<Orientation, 3> turns_{
+      {{&columns_.quaternion}, {&columns_.matrix}, {&columns_.euler}}};
   std::size_t with_gravity_ = 0, free_ = 0;
   ImuContent seen_;
   LateQuantities late_;  // quantities that none of the kept rows had

@@ -23,9 +23,9 @@ Result<void> MvnxStamps::begin(const MvnxHead& head, const MvnxFrame& frame) {
   }
   first_index_ = frame.index.value_or(0.0);
   first_ms_ = frame.ms.value_or(0.0);
-  constexpr double furthest_ms = 1e-6 * static_cast<double>(furthest_stamp_ns);
+  constexpr double largest_ms = 1e-6 * static_cast<double>(largest_stamp_ns);
   const double unix_ms = frame.unix_ms.value_or(0.0);
-  const double start_ms = std::abs(unix_ms) < furthest_ms ? unix_ms : 0.0;
+  const double start_ms = std::abs(unix_ms) < largest_ms ? unix_ms : 0.0;
   start_ns_ = options_.start_ns.value_or(std::llround(start_ms) * 1'000'000);
   return {};
 }
@@ -50,7 +50,7 @@ Result<std::optional<Time>> MvnxStamps::next(const MvnxHead& head, const MvnxFra
   std::int64_t ns = 0;
   const bool overflow = __builtin_add_overflow(
       start_ns_, stamp_at_rate(static_cast<std::uint64_t>(since), rate_hz_), &ns);
-  if (overflow || ns > furthest_stamp_ns || ns < -furthest_stamp_ns) {
+  if (overflow || ns > largest_stamp_ns || ns < -largest_stamp_ns) {
     return Failure(Error{"", 0, "a stamp inside +-4e18 ns", fmt::format("frame {}", index)});
   }
   return std::optional(utc_time(ns));

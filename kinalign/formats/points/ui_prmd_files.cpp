@@ -57,10 +57,10 @@ Result<std::string> ui_prmd_angles_of(FileSystem& files, const std::string& path
         "UI-PRMD's file of positions, ..._positions.txt; the file of angles is found by its name",
         named_as_ui_prmd_angles(path) ? "the file of angles" : "another name"});
   }
-  std::string beside = angles_path(path);
+  std::string found_path = angles_path(path);
   const std::string here = std::string(folder(path)) + angles_for(file_name(path));
-  auto opened = InputFile::open(files, beside);
-  if (opened) return beside;
+  auto opened = InputFile::open(files, found_path);
+  if (opened) return found_path;
   if (here != path && InputFile::open(files, here)) return here;
   return Failure(std::move(opened).error());
 }

@@ -120,12 +120,13 @@ std::string packed(const Step& step, std::string_view what) {
     }
     return {};
   };
-  const Progress tell = [pipe](std::string_view what, std::uint64_t done, std::uint64_t total) {
+  const Progress child_progress = [pipe](std::string_view what, std::uint64_t done,
+                                         std::uint64_t total) {
     return send(pipe, 'p', packed(Step{done, total}, what));
   };
-  const Result<void> done = work(send_data, tell);
-  const bool told = done ? send(pipe, '.', "") : send(pipe, 'e', packed(done.error()));
-  ::_exit(told ? 0 : 1);  // skips destructors and buffers that belong to the parent
+  const Result<void> done = work(send_data, child_progress);
+  const bool is_sent = done ? send(pipe, '.', "") : send(pipe, 'e', packed(done.error()));
+  ::_exit(is_sent ? 0 : 1);  // skips destructors and buffers that belong to the parent
 }
 
 // ---- the parent
@@ -318,8 +319,9 @@ Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
                                 const Progress& progress,
                                 const std::function<Result<std::string>(const Progress&)>& work) {
   std::string text;
-  const auto send_text = [&](const GuardSend& send_data, const Progress& tell) -> Result<void> {
-    const std::string result = KA_TRY(work(tell));
+  const auto send_text = [&](const GuardSend& send_data,
+                             const Progress& child_progress) -> Result<void> {
+    const std::string result = KA_TRY(work(child_progress));
     return send_data(result);
   };
   const auto keep = [&](std::string_view bytes) -> Result<void> {

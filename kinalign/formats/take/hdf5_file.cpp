@@ -174,8 +174,8 @@ Handle access_to(Bytes& bytes) {
 }
 
 /// Keeps the message of the innermost function, which is the first one in HDF5's error stack.
-herr_t keep_innermost(unsigned, const H5E_error2_t* said, void* into) {
-  if (said->desc != nullptr) *static_cast<std::string*>(into) = said->desc;
+herr_t keep_innermost(unsigned, const H5E_error2_t* reason, void* into) {
+  if (reason->desc != nullptr) *static_cast<std::string*>(into) = reason->desc;
   return 0;
 }
 
@@ -189,10 +189,10 @@ Result<void> Bytes::write(std::uint64_t at, std::string_view bytes) {
 
 Failure failure(const Bytes& bytes, std::string expected) {
   if (bytes.failure) return Failure(*bytes.failure);
-  std::string said;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &said);
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
   return Failure(Error{bytes.path(), 0, std::move(expected),
-                       said.empty() ? "something of another kind" : "an HDF5 error: " + said});
+                       reason.empty() ? "something of another kind" : "an HDF5 error: " + reason});
 }
 
 Result<Handle> create(Bytes& bytes) {

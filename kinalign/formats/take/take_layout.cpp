@@ -57,11 +57,11 @@ std::vector<TakeColumn> imu_columns(const ImuGroup& group, Stored number) {
     out.push_back({"orientation", number, {nodes, 4}, rotation_facts(turned)});
   }
   if (group.content.acceleration) {
-    Facts said = facts("m/s2", space);
+    Facts described = facts("m/s2", space);
     const std::string gravity = group.content.gravity ? gravity_included : gravity_removed;
     const bool differs = group.content.gravity && !root.empty();
-    said.emplace_back("gravity", gravity + (differs ? " in " + root + " only" : ""));
-    out.push_back({"acceleration", number, {nodes, 3}, std::move(said)});
+    described.emplace_back("gravity", gravity + (differs ? " in " + root + " only" : ""));
+    out.push_back({"acceleration", number, {nodes, 3}, std::move(described)});
   }
   if (group.content.angular_velocity) {
     out.push_back({"angular_velocity", number, {nodes, 3}, facts("rad/s", space)});

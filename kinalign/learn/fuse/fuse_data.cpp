@@ -79,18 +79,19 @@ RigidTransform camera_of(const PoseSequence& sequence, const RandomStream& rando
 }
 
 /// Selects the joints that fusion uses from all 25, and brings them into the world.
-JointFrames seen_in_world(const PointFrames& said, const RigidTransform& world_from_kinect) {
+JointFrames seen_in_world(const PointFrames& measured, const RigidTransform& world_from_kinect) {
   JointFrames out{.joints = fuse_joints.size(), .positions = {}, .seen = {}};
-  for (std::size_t t = 0; t < said.size(); ++t) {
+  for (std::size_t t = 0; t < measured.size(); ++t) {
     for (const FuseJoint& joint : fuse_joints) {
       const auto k = static_cast<std::size_t>(
           std::find(kinect_joints.begin(), kinect_joints.end(), joint.kinect) -
           kinect_joints.begin());
       const std::size_t at = t * kinect_joint_count + k;
-      const bool there = said.state[at] != Tracking::missing;
-      const Vec3 place = there ? world_from_kinect * Vec3(vec3(said.positions, at)) : Vec3::Zero();
+      const bool there = measured.state[at] != Tracking::missing;
+      const Vec3 place =
+          there ? world_from_kinect * Vec3(vec3(measured.positions, at)) : Vec3::Zero();
       for (const double value : place) out.positions.push_back(static_cast<float>(value));
-      out.seen.push_back(static_cast<std::uint8_t>(said.state[at]));
+      out.seen.push_back(static_cast<std::uint8_t>(measured.state[at]));
     }
   }
   return out;
@@ -127,9 +128,9 @@ JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
         joints.begin() + static_cast<std::ptrdiff_t>(at) * static_cast<std::ptrdiff_t>(width);
     std::copy(from, from + static_cast<std::ptrdiff_t>(width), out.begin());
   };
-  const PointFrames said =
+  const PointFrames measured =
       simulate_kinect(joints_at, ticks, options, {.seed = seed, .person = person, .take = take});
-  return seen_in_world(said, options.world_from_kinect);
+  return seen_in_world(measured, options.world_from_kinect);
 }
 
 namespace {

@@ -78,11 +78,12 @@ struct MeanOf {
 };
 
 /// The rotation about the vertical from the answer's headings to the true ones.
-Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& said,
+Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& predicted,
                                 const std::vector<Eigen::Quaternionf>& roots) {
   double sine = 0.0, cosine = 0.0;
-  for (std::size_t t = 0; t < said.size(); ++t) {
-    const double yaw = heading_of(roots[t].cast<double>()) - heading_of(said[t].cast<double>());
+  for (std::size_t t = 0; t < predicted.size(); ++t) {
+    const double yaw =
+        heading_of(roots[t].cast<double>()) - heading_of(predicted[t].cast<double>());
     sine += std::sin(yaw);
     cosine += std::cos(yaw);
   }
@@ -99,7 +100,7 @@ class FuseScore {
   /// `kinect`: the Kinect's joints before any device was removed.
   void add(const PoseSequence& truth, const JointFrames& kinect, const FusedPose& answer) {
     const auto roots = true_roots(truth);
-    const auto said = bone_positions(body_, truth.rest_offsets, answer.rotations);
+    const auto predicted = bone_positions(body_, truth.rest_offsets, answer.rotations);
     const auto real = bone_positions(body_, truth.rest_offsets, truth.rotations);
     const Eigen::Quaternionf turn = devices_ == Devices::nodes ? heading_turn(answer.root, roots)
                                                                : Eigen::Quaternionf::Identity();
@@ -113,7 +114,7 @@ class FuseScore {
               Eigen::Map<const Eigen::Vector3f>(&places[3 * (t * joints + joint.body)]));
         };
         const Eigen::Vector3f place = roots[t] * at(real);
-        const double off_cm = 100.0 * static_cast<double>((root * at(said) - place).norm());
+        const double off_cm = 100.0 * static_cast<double>((root * at(predicted) - place).norm());
         all_.add(off_cm);
         if (!joint.kinect) continue;
         const Eigen::Vector3f in_world = place + truth.places[t].cast<float>();
@@ -154,8 +155,8 @@ class FuseScore {
                         const Eigen::Vector3f& true_place) {
     const std::size_t at = t * kinect.joints + j;
     if (kinect.seen[at] != 2) return true;
-    const Eigen::Map<const Eigen::Vector3f> said(&kinect.positions[3 * at]);
-    return (said - true_place).norm() > invented_m;
+    const Eigen::Map<const Eigen::Vector3f> measured(&kinect.positions[3 * at]);
+    return (measured - true_place).norm() > invented_m;
   }
 
   Devices devices_;
@@ -215,10 +216,10 @@ NodeErrors session_errors(double yaw_deg) {
 
 /// The rotation about the vertical from a node's orientation to that of its bone, rad; mean over
 /// frames.
-double heading_error(const NodeFrames& clean, const NodeFrames& said, std::size_t n) {
+double heading_error(const NodeFrames& clean, const NodeFrames& measured, std::size_t n) {
   double sum = 0.0, count = 0.0;
-  for (std::size_t t = 0; t < said.frames(); ++t) {
-    const auto a = orientation_at(clean, t, n), b = orientation_at(said, t, n);
+  for (std::size_t t = 0; t < measured.frames(); ++t) {
+    const auto a = orientation_at(clean, t, n), b = orientation_at(measured, t, n);
     if (!a || !b) continue;
     const Eigen::Quaternionf turn = *a * b->conjugate();
     const double yaw =

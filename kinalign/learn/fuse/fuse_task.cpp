@@ -23,9 +23,9 @@ constexpr float least_scale_of_fusion = 0.05F;  // flags that hardly vary must n
 Eigen::Quaternionf truth_turn(const FuseInput& input, const Eigen::Quaternionf& root) {
   const bool is_seen = std::any_of(input.kinect.seen.begin(), input.kinect.seen.end(),
                                    [](std::uint8_t seen) { return seen != 0; });
-  const auto said = orientation_at(input.nodes, 0, input.nodes.nodes - 1);
-  if (is_seen || !said) return Eigen::Quaternionf::Identity();
-  const double yaw = heading_of(said->cast<double>()) - heading_of(root.cast<double>());
+  const auto measured = orientation_at(input.nodes, 0, input.nodes.nodes - 1);
+  if (is_seen || !measured) return Eigen::Quaternionf::Identity();
+  const double yaw = heading_of(measured->cast<double>()) - heading_of(root.cast<double>());
   return Eigen::Quaternionf(Eigen::AngleAxisf(static_cast<float>(yaw), Eigen::Vector3f::UnitY()));
 }
 

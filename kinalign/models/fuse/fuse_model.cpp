@@ -50,14 +50,14 @@ Fuser::Fuser(FuseModel model, Network network)
   }
 }
 
-FusedPose Fuser::pose_of(const FuseAnswers& said) const {
+FusedPose Fuser::pose_of(const FuseAnswers& output) const {
   const std::size_t bones = model_.layout.nodes.bones.size(), width = model_.layout.answers();
   FusedPose out;
-  out.rotations.resize((said.end - said.first) * bones);
-  for (std::size_t t = said.first; t < said.end; ++t) {
+  out.rotations.resize((output.end - output.first) * bones);
+  for (std::size_t t = output.first; t < output.end; ++t) {
     const FusedFrame frame =
-        fused_frame(said.spaces[t], said.answers.subspan(t * width, width),
-                    std::span(out.rotations).subspan((t - said.first) * bones, bones));
+        fused_frame(output.spaces[t], output.answers.subspan(t * width, width),
+                    std::span(out.rotations).subspan((t - output.first) * bones, bones));
     out.root.push_back(frame.root);
     out.place.push_back(frame.place);
   }
@@ -97,10 +97,10 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
   return measured_pose_of({features.space, answers, 0, own.frames()}, own);
 }
 
-FusedPose Fuser::measured_pose_of(const FuseAnswers& said, const FuseInput& input) const {
-  FusedPose out = pose_of(said);
-  turn_to_measured(input, said.first, out);
-  place_at_seen(input, said.first, out);
+FusedPose Fuser::measured_pose_of(const FuseAnswers& output, const FuseInput& input) const {
+  FusedPose out = pose_of(output);
+  turn_to_measured(input, output.first, out);
+  place_at_seen(input, output.first, out);
   if (!model_.smoothing) return out;
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
   std::vector<Turn> roots;

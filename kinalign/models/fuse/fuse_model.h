@@ -67,10 +67,10 @@ class Fuser {
 
   const Network& network() const { return network_; }
   /// The pose of the rows `said.first` ... `said.end` - 1 of a network's output.
-  FusedPose pose_of(const FuseAnswers& said) const;
+  FusedPose pose_of(const FuseAnswers& output) const;
   /// The same pose, turned towards the measurements of `input` [T] and smoothed. Near both ends the
   /// smoothing uses fewer rows.
-  FusedPose measured_pose_of(const FuseAnswers& said, const FuseInput& input) const;
+  FusedPose measured_pose_of(const FuseAnswers& output, const FuseInput& input) const;
 
   /// The result of solve() as a clip: a skeleton with constant bones at its place in the Kinect's
   /// world. If no Kinect has seen anything, x and z of the root are 0 and the lowest joint is at y

@@ -67,9 +67,10 @@ void LiveNodes::add(std::size_t number, const NodeReadings& sample) {
     node.has_angular_velocity = sample.angular_velocity.has_value();
     track.gravity = sample.gravity;
   }
-  const bool overtaken = !node.has_orientation && node.filtered && sample.stamp <= *node.filtered;
+  const bool out_of_order =
+      !node.has_orientation && node.filtered && sample.stamp <= *node.filtered;
   const bool twice = std::binary_search(track.stamps.begin(), track.stamps.end(), sample.stamp);
-  if (!fits(node, sample) || overtaken || twice || track.stamps.size() == most_kept) {
+  if (!fits(node, sample) || out_of_order || twice || track.stamps.size() == most_kept) {
     ++left_out_;
     return;
   }

@@ -9,25 +9,28 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t smoothed_beside = 2;  // frames on each side, used by smooth_turns()
+constexpr std::size_t smoothed_each_side = 2;  // frames on each side, used by smooth_turns()
 /// Earlier frames kept if the network uses the whole sequence: two seconds at 30 Hz, six times the
 /// number that Huang et al. («Deep inertial poser», SIGGRAPH Asia 2018) use.
 constexpr std::size_t remembered = 60;
 
 // frames on each side that the smoothing needs
-std::size_t beside(const PoseModel& model) { return model.smoothing ? smoothed_beside : 0; }
+std::size_t smoothing_rows(const PoseModel& model) {
+  return model.smoothing ? smoothed_each_side : 0;
+}
 
 }  // namespace
 
 std::optional<std::size_t> WindowSolver::most_ahead(const PoseModel& model) {
   const auto network = kinalign::look_ahead(model.architecture);
-  return network ? std::optional(*network + beside(model)) : std::nullopt;
+  return network ? std::optional(*network + smoothing_rows(model)) : std::nullopt;
 }
 
 WindowSolver::WindowSolver(const PoseSolver& solver, std::size_t look_ahead)
     : solver_(&solver),
       ahead_(std::min(look_ahead, most_ahead(solver.model()).value_or(look_ahead))),
-      behind_(look_back(solver.model().architecture).value_or(remembered) + beside(solver.model())),
+      behind_(look_back(solver.model().architecture).value_or(remembered) +
+              smoothing_rows(solver.model())),
       maker_(solver.model().layout),
       network_(solver.network_) {}
 
@@ -53,8 +56,8 @@ std::optional<FramePose> WindowSolver::finish() {
 std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
   const std::size_t bones = solver_->model().layout.bones.size();
   const std::size_t frames = roots_.size();
-  const std::size_t first = row - std::min(row, smoothed_beside);
-  const std::size_t end = std::min(row + smoothed_beside + 1, frames);
+  const std::size_t first = row - std::min(row, smoothed_each_side);
+  const std::size_t end = std::min(row + smoothed_each_side + 1, frames);
   const auto answers = network_.run(rows_, frames, frames, end);
   std::vector<Turn> turns;
   for (std::size_t at = first * bones; at < end * bones; ++at) {

@@ -229,8 +229,9 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
   if (raw == options.raw.end() || !first) return;
   RawMove move;
   if (const PageSpace* space = space_of(bodies[detail.body])) {
-    const auto said = header.parameters.spaces.find(body.name);
-    const SpaceOptions how = said == header.parameters.spaces.end() ? SpaceOptions{} : said->second;
+    const auto moved = header.parameters.spaces.find(body.name);
+    const SpaceOptions how =
+        moved == header.parameters.spaces.end() ? SpaceOptions{} : moved->second;
     const PageBody& onto = page.bodies[space->onto];
     move.space = &space->report;
     move.root = index_of(body.joint_names, how.root);
