@@ -58,7 +58,7 @@ TEST_CASE("a take's span is the one of the corrected stamps") {
   CHECK(to_ns(take.all.stamps.back()) == 6990 * ms);  // the reference's end
 }
 
-TEST_CASE("the doubt about a stamp stands beside it: none only where the clock was shared") {
+TEST_CASE("each stamp has its uncertainty; it is zero only with a shared clock") {
   TimeModelPiece clock;
   const Take unknown = seen_through(clock);
   CHECK_FALSE(unknown.header.groups[1].interval_known);
@@ -97,7 +97,7 @@ TEST_CASE(
   CHECK(take->header.groups[1].interval_known);
 }
 
-TEST_CASE("samples of a stretch without an interval are told from those that have one") {
+TEST_CASE("samples without an interval are distinguished from samples with an interval") {
   Recording recording =
       two(points(joints, every(10 * ms, 400), wander), points(joints, every(30 * ms, 134), wander));
   TimeModelPiece certified, doubtful;
@@ -172,7 +172,7 @@ TEST_CASE("the header promises as many rows as come, wherever the span cuts, wha
   }
 }
 
-TEST_CASE("of a fixed step the rows are counted by arithmetic, to the very stamp") {
+TEST_CASE("rows of a stream with a fixed step are counted exactly") {
   for (const double step_ns : {8.3333e6, 16'666'667.0, 1e9 / 59.94}) {
     for (std::size_t count = 1; count < 40; ++count) {
       CAPTURE(step_ns);

@@ -58,7 +58,7 @@ Take aligned(PointStream kinect, double rate_hz = 0.0) {
 
 }  // namespace
 
-TEST_CASE("of samples on the heels of the next ones none is used, wherever they stand") {
+TEST_CASE("samples just before the next sample are dropped, wherever they are") {
   for (const auto seed : fresh_seeds(200)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -118,7 +118,7 @@ TEST_CASE("rows in which nothing was seen hold no sample back") {
   CHECK(worst_of(take) <= 1e-9);
 }
 
-TEST_CASE("of a stretch at a much higher rate eight samples are left out, where it begins") {
+TEST_CASE("a stretch at a much higher rate loses eight samples at its begin") {
   std::vector<Time> stamps = every(1000 * ms, 60);
   for (std::int64_t k = 1; k <= 500; ++k) stamps.push_back(stamps.back() + Duration{10 * ms});
   for (std::int64_t k = 1; k <= 700; ++k) stamps.push_back(stamps.back() + Duration{1000 * ms});
@@ -186,7 +186,7 @@ TEST_CASE("nodes in rows of their own hold none of each other's back") {
   }
 }
 
-TEST_CASE("of nodes in rows of their own each one's late samples go, whoever stands first") {
+TEST_CASE("late samples are dropped for each node separately, in any order of nodes") {
   for (const std::size_t polled : {0, 1}) {
     for (const std::size_t begins : {0, 1}) {
       CAPTURE(polled);
@@ -224,7 +224,7 @@ TEST_CASE("of nodes in rows of their own each one's late samples go, whoever sta
   }
 }
 
-TEST_CASE("of a row that was held back by half only that half goes") {
+TEST_CASE("if half of a row was delayed, only this half is dropped") {
   PointStream half = points(joints, every(step, 200), hand);
   PointFrames& rows = half.frames;  // 0.1 ms after each row another row with one hand as it is then
   PointStream out;
@@ -285,7 +285,7 @@ TEST_CASE("a wild stamp between a late sample and the next one hides nothing") {
   }
 }
 
-TEST_CASE("what waited in a stall and was sent quicker than it was taken is a warning") {
+TEST_CASE("samples sent in a burst after a stall are a warning") {
   std::vector<Time> arrived = every(step, 200);
   for (std::size_t k = 100; k < 200; ++k) {  // a second without samples, and then 10 ms each
     const Time sent = k == 100 ? arrived[130] : arrived[k - 1] + Duration{10 * ms};
@@ -308,7 +308,7 @@ TEST_CASE("a stated rate that is a tenth off makes no sample late, nor a stamp t
   CHECK(aligned(stamped(stamps, stamps)).report.streams[1].arrivals.late == 0);
 }
 
-TEST_CASE("of a whole stretch of samples that waited one a step stays") {
+TEST_CASE("one sample per step stays of a delayed stretch") {
   std::vector<Time> arrived = every(step, 60);
   for (std::int64_t k = 0; k < 150; ++k) {  // five seconds' silence, and then all within 4.5 steps
     arrived.push_back(arrived[59] + Duration{5000 * ms + k * ms});

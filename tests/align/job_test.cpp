@@ -93,7 +93,7 @@ TEST_CASE("two threads make the rows that one makes") {
   CHECK(all[0] == all[2]);
 }
 
-TEST_CASE("progress is told of the fit, then of the rows, up to the last") {
+TEST_CASE("progress is reported for the fit, then for the rows, up to the last row") {
   Watched watched;
   REQUIRE(align(long_recording(), fitted(), nowhere(), watched.progress()));
   CHECK(watched.rises);
@@ -103,7 +103,7 @@ TEST_CASE("progress is told of the fit, then of the rows, up to the last") {
   CHECK(watched.total == 7000);
 }
 
-TEST_CASE("a job that is told to stop ends with an interruption, in the fit and in the rows") {
+TEST_CASE("a stopped job ends with an interruption, in the fit and in the rows") {
   for (const std::size_t calls : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
     CAPTURE(calls);
     Watched watched;
@@ -115,7 +115,7 @@ TEST_CASE("a job that is told to stop ends with an interruption, in the fit and 
   }
 }
 
-TEST_CASE("what the sink says is the end of the job, unchanged") {
+TEST_CASE("an error of the sink ends the job unchanged") {
   const Failure full(Error{"take.h5", 0, "room on the disk", "none"});
   TakeSink sink = nowhere();
   sink.begin = [&](const TakeHeader&) -> Result<void> { return full; };

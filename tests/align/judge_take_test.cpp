@@ -27,7 +27,7 @@ Findings judged(TakeHeader header, std::vector<RecordedStream> streams = {kinect
 
 }  // namespace
 
-TEST_CASE("points that nobody placed say how to place them; what was said is not asked again") {
+TEST_CASE("a note says how to place points without a space; a stated method gets no note") {
   TakeHeader header;
   header.groups = {{"mocap", ClipGroup{}, false, false, {}, "take"},
                    {"kinect", PointGroup{}, true, false, {}, "kinect"},

@@ -48,7 +48,7 @@ TEST_CASE("stamps that repeat are a note, those that ran ahead or back a warning
         "1.500 s; these samples were left out; if there are many, check the device's clock");
 }
 
-TEST_CASE("samples held back are a warning that says what to do about it") {
+TEST_CASE("delayed samples are a warning with a repair") {
   CHECK(judge_arrivals(kinect(), {}, Role::resampled).empty());
   CHECK(judge_arrivals(kinect(), {}, Role::reference).empty());
   const Findings found = judge_arrivals(kinect(), {3, 0, 0}, Role::resampled);
@@ -94,7 +94,7 @@ TEST_CASE("a start_ns at a first sample that was late or wild is a warning") {
   CHECK(judge_start(s, options, {1, 0, 0, true}).at(0).what.found == "a delayed sample");
 }
 
-TEST_CASE("where no step is known to tell late samples by, a note says so") {
+TEST_CASE("if late samples can't be detected without a step, a note says so") {
   RecordedStream s = kinect();
   s.survey.usual_step_ns = 27'500'000;
   Arrivals arrivals;
@@ -113,7 +113,7 @@ TEST_CASE("stamps that repeat in one of twenty samples and more are no chance") 
   CHECK(judge_stamps(s, {}).at(0).severity == Severity::warning);
 }
 
-TEST_CASE("from one sample in twenty on, a clock that stepped back is an error") {
+TEST_CASE("a clock that steps back is an error from 5 % of the samples on") {
   RecordedStream s = kinect();
   s.survey.backward = 51;
   s.survey.largest_step_back_ns = 3'600'000'000'000;
@@ -125,7 +125,7 @@ TEST_CASE("from one sample in twenty on, a clock that stepped back is an error")
         "there, or remove the time column from its layout and set rate_hz");
 }
 
-TEST_CASE("a stream that stands still for half its time is told as what the stamps allow") {
+TEST_CASE("a stream that pauses for half its time gives a warning with both causes") {
   RecordedStream s = kinect();
   s.survey.last = utc_time(65'934'000'000);
   s.survey.long_steps = 500;
@@ -175,7 +175,7 @@ TEST_CASE("a stated rate is held against the stamps, and says that long steps ar
   CHECK(judge_stamps(s, options).size() == 1);
 }
 
-TEST_CASE("bursts of any size are told, and a pause now and then is none") {
+TEST_CASE("bursts of any size are reported, single pauses are not") {
   const auto meaning_of = [](const std::vector<std::int64_t>& ms) {
     std::vector<Time> stamps;
     for (const std::int64_t t : ms) stamps.push_back(utc_time(t * 1'000'000));
@@ -244,7 +244,7 @@ TEST_CASE("a grid that loses more than a tenth of a joint's motion names the wor
   CHECK(judge_content(kinect(), count, 29.97).empty());
 }
 
-TEST_CASE("of nodes both quantities are judged, each against a sensor's own noise") {
+TEST_CASE("both quantities of nodes are judged, each against a sensor's noise") {
   RecordedStream imu = kinect();
   imu.name = "imu";
   imu.data = ImuInput{{"waist", "wrist_left"}, {}, {}};

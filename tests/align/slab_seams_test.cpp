@@ -176,7 +176,7 @@ TEST_CASE("an empty sample of a node is none: it shortens no distance and hides 
   CHECK(report.worst_nearest_ns == 40 * ms);
 }
 
-TEST_CASE("distances to raw samples are told up to ten seconds") {
+TEST_CASE("distances to raw samples are stored up to ten seconds") {
   auto stamps = every(30 * ms, 100);
   for (const Time t : every(30 * ms, 100, 60'000 * ms)) stamps.push_back(t);
   PointStream kinect = points({"a"}, stamps, wander);

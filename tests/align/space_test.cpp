@@ -116,7 +116,7 @@ TEST_CASE("the paper's table in centimetres: m = 100 and the mocap's root in met
   }
 }
 
-TEST_CASE("a stream that nobody places says so, and whose space it is in") {
+TEST_CASE("a stream without a space says so, and names its space") {
   const auto stream = points(joints, every(10 * ms, 300), wander);
   Manifest manifest;
   const auto take = align(two(stream, stream), manifest);

@@ -61,7 +61,7 @@ TEST_CASE(
   CHECK(of_clip(root) == "expected for 'some' only options of a skeleton, found root_node");
 }
 
-TEST_CASE("of what a recording knows itself nothing can be said: start, clock, drift, interval") {
+TEST_CASE("options that a recording states itself are refused: start, clock, drift, interval") {
   const auto recording = [](RecordedStream stream) {
     stream.format = "recording";
     return stream;
@@ -108,7 +108,7 @@ TEST_CASE("an interval is of another clock than the reference's, and of one that
   CHECK(fault_of("").empty());
 }
 
-TEST_CASE("of points a rate and a unit can be said, clicks can't") {
+TEST_CASE("points accept a rate and a unit, but no clicks") {
   for (const auto& say : {rate, unit}) CHECK(of_points(say).empty());
   CHECK(of_points(end) == "expected for 'some' only options of points, found end_ns");
   CHECK(of_points(latency) == "expected for 'some' only options of points, found click_latency_ms");
@@ -125,7 +125,7 @@ TEST_CASE("mountings are of nodes, and a refusal names the file") {
         "expected for 'some' (walk.bvh) only options of a skeleton, found mounting");
 }
 
-TEST_CASE("of nodes a rate and a root can be said, clicks and a length can't") {
+TEST_CASE("nodes accept a rate and a root, but no clicks and no unit") {
   for (const auto& say : {rate, root}) CHECK(of_nodes(say).empty());
   CHECK(of_nodes(end) == "expected for 'some' only options of nodes, found end_ns");
   CHECK(of_nodes(latency) == "expected for 'some' only options of nodes, found click_latency_ms");

@@ -36,7 +36,7 @@ TEST_CASE(
   CHECK(stamp->certainty == Certainty::certified);
 }
 
-TEST_CASE("of offsets that no double has, not a nanosecond is lost") {
+TEST_CASE("offsets beyond a double's precision lose no nanosecond") {
   const Duration far = -130 * 365 * 24h - 123'456'789ns;  // the counter was set to the time of day
   ClockPieceModel piece = one_piece().pieces[0];
   for (ClockKnot& knot : piece.knots) {
@@ -65,7 +65,7 @@ TEST_CASE("beyond the knots the interval opens by the greatest rate") {
   CHECK(*stamp->latest == host(103s + 2ms + 201us));
 }
 
-TEST_CASE("another life, another time, and a piece of which nothing is known have no stamp") {
+TEST_CASE("another boot, another time, and an unknown piece have no stamp") {
   HostFromNode model = one_piece();
   CHECK(!host_from_node(model, 8, node(10s), host(101s)));
   CHECK(!host_from_node(model, 7, node(10s), host(111s)));

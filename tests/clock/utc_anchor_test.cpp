@@ -21,7 +21,7 @@ std::vector<ClockPair> a_minute(Duration stepped_by, Duration slewed_by_each) {
 
 }  // namespace
 
-TEST_CASE("fault 17 host_step: an hour's step of the wall clock moves no stamp, and is told") {
+TEST_CASE("fault 17 host_step: an hour's step of the wall clock moves no stamp, and is reported") {
   for (const Duration step : {Duration{3600s}, Duration{-3600s}}) {
     const auto anchor = utc_anchor(a_minute(step, 0s));
     REQUIRE(anchor);

@@ -27,7 +27,7 @@ Result<int> eighth(int n) { return KA_TRY(half(KA_TRY(half(KA_TRY(half(n)))))); 
 
 }  // namespace
 
-TEST_CASE("an error is said with its place, as far as that is known") {
+TEST_CASE("an error is printed with its place, as far as it is known") {
   CHECK(to_string(Error{"walk.bvh", 12, "2 frames", "1"}) ==
         "walk.bvh:12: expected 2 frames, found 1");
   CHECK(to_string(Error{"walk.bvh", 0, "a readable file", ""}) ==

@@ -71,7 +71,7 @@ Result<void> write_file(FileSystem& files, const std::string& path, Model& model
 
 }  // namespace
 
-TEST_CASE("what is written anywhere, in any order and however little at a time, stands there") {
+TEST_CASE("bytes written anywhere, in any order and in small pieces, can be read back") {
   for (const auto seed : fresh_seeds(100)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -104,7 +104,7 @@ TEST_CASE("whichever call of whatever writing fails, the old file stands there o
   }
 }
 
-TEST_CASE("of two that write to one name the last to end has it whole") {
+TEST_CASE("if two write to one name, the last to finish has the complete file") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -127,7 +127,7 @@ TEST_CASE("of two that write to one name the last to end has it whole") {
   }
 }
 
-TEST_CASE("a file reads the same however short the reads are, and whatever is read beside") {
+TEST_CASE("a file reads the same however short the reads are, and whatever else is read") {
   for (const auto seed : fresh_seeds(50)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

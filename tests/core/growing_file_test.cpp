@@ -77,7 +77,7 @@ TEST_CASE("whichever call fails, a growing file holds whole appends alone") {
   }
 }
 
-TEST_CASE("where an append and the cut behind it fail, the next append mends that") {
+TEST_CASE("if an append and the following truncation fail, the next append repairs the file") {
   struct TwoFail : PosixFiles {
     bool failing = false;
     ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {

@@ -24,7 +24,7 @@ TEST_CASE("a name that is like none has no nearest one") {
   CHECK(nearest_name("align", {}).empty());
 }
 
-TEST_CASE("of a long name from a file only the beginning is compared") {
+TEST_CASE("only the beginning of a long name is compared") {
   CHECK(nearest_name(std::string(1 << 20, 'a'), {std::string(64, 'a')}) == std::string(64, 'a'));
 }
 

@@ -36,7 +36,7 @@ TEST_CASE("the empty template reads, and an unknown one is named") {
   CHECK_FALSE(catalogue_template("hfut", "x"));
 }
 
-TEST_CASE("what a data set says of people and devices is read with its units") {
+TEST_CASE("facts about people and devices are read with their units") {
   const auto made = read_catalogue(
       "name = \"x\"\n[subject.01]\nsex = \"f\"\nheight_cm = 165.5\nhandedness = \"left\"\n"
       "consent = \"form 12\"\nsegments_m = { upper_arm_left = 0.31 }\n"
@@ -51,7 +51,7 @@ TEST_CASE("what a data set says of people and devices is read with its units") {
   CHECK(made->align.gap_ms == 50.0);
 }
 
-TEST_CASE("a fault in dataset.toml is told with its line and the nearest key") {
+TEST_CASE("a fault in dataset.toml is reported with its line and the nearest key") {
   CHECK(fault_of("name = \"x\"\nlicense = \"MIT\"\n").find("dataset.toml:2: ") == 0);
   CHECK(fault_of("license = \"MIT\"\n").find("licence") != std::string::npos);
   CHECK(fault_of("[subject.01]\nheigth_cm = 3\n").find("height_cm") != std::string::npos);

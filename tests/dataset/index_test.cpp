@@ -134,7 +134,7 @@ TEST_CASE("a person's folder that can't be read is an error, and the index stays
   CHECK(!scan_takes(set.folder.path()));
 }
 
-TEST_CASE("an index that is damaged or of another program is made anew") {
+TEST_CASE("an index that is damaged or of another program is made again") {
   Listed set;
   set.put({"01", "S1A01", 1}, 600);
   (void)set.open();

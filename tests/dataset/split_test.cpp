@@ -73,7 +73,7 @@ TEST_CASE("whatever the seed, every take is in one part and the shares are those
   }
 }
 
-TEST_CASE("a split by people has nobody in two parts") {
+TEST_CASE("a split by people has no person in two parts") {
   const auto takes = many();
   for (std::int64_t seed = 0; seed < 50; ++seed) {
     const auto split = make_split(takes, catalogue(), {"subject", 0.25, 0.0, seed, false});

@@ -40,7 +40,7 @@ TEST_CASE("the next frame echoes a reply, with the counter read first when it ha
   CHECK(!bench.last().has_echo);  // each reply is echoed once
 }
 
-TEST_CASE("of several replies the newest is echoed") {
+TEST_CASE("the newest of several replies is echoed") {
   Bench bench;
   bench.run(360'000);
   arrive(bench, reply_to(bench.frame(1), 900));
@@ -63,7 +63,7 @@ TEST_CASE("a reply that comes back a second time is ignored") {
   CHECK(bench.node.counts().replies.not_newer == 1);
 }
 
-TEST_CASE("a host that starts anew is heard at once, whatever its reply sequence") {
+TEST_CASE("a restarted host is accepted at once, whatever its reply sequence") {
   Bench bench;
   bench.run(60'000);
   arrive(bench, reply_to(bench.last(), 900'000));
@@ -104,7 +104,7 @@ TEST_CASE(
   CHECK(counts.accepted == 0);
 }
 
-TEST_CASE("a host that has the key is heard") {
+TEST_CASE("a host with the key is accepted") {
   Bench bench(keyed());
   bench.run(60'000);
   arrive(bench, reply_to(bench.last(), 900, &node_key));
@@ -152,7 +152,7 @@ TEST_CASE("a frame that the radio does not take loses its number and nothing els
   CHECK(bench.node.counts().frames.send_fails == 2);
 }
 
-TEST_CASE("without a link no frame is begun, and samples wait") {
+TEST_CASE("without a link no frame is started, and samples wait") {
   Bench bench;
   bench.run(60'000);
   bench.node.set_link(false);

@@ -36,7 +36,7 @@ TEST_CASE("a node joins at once, and then in ever longer steps") {
         Wanted{"join 0", "join 1", "join 3", "join 7", "join 15", "join 31", "join 47", "join 63"});
 }
 
-TEST_CASE("a link that is heard is left alone, and asked for at once when it is lost") {
+TEST_CASE("a working link is left alone, and joined at once when it is lost") {
   Run run;
   run.go(5, false, false);
   run.go(3600, true, true);
@@ -56,7 +56,7 @@ TEST_CASE("a link that comes and goes without an answer is not stormed") {
   CHECK(run.wanted.size() == 20);  // one join each time the link is lost
 }
 
-TEST_CASE("a link over which nobody answers is joined anew, ever more seldom") {
+TEST_CASE("a link without answers is joined again, less and less often") {
   Run run;
   run.go(1, true, true);
   run.go(1800, true, false);
@@ -64,7 +64,7 @@ TEST_CASE("a link over which nobody answers is joined anew, ever more seldom") {
         Wanted{"join 30", "join 90", "join 210", "join 450", "join 930", "join 1410"});
 }
 
-TEST_CASE("ten minutes without a link: the board starts anew") {
+TEST_CASE("ten minutes without a link: the board restarts") {
   Run run;
   run.go(1, true, true);
   run.go(600, false, false);

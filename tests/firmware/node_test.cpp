@@ -11,7 +11,7 @@ TEST_CASE("sampling asks for the counter and the sensor alone") {
   CHECK(bench.board.calls == "ci");
 }
 
-TEST_CASE("frames go on at their rate though nobody answers") {
+TEST_CASE("frames continue at their rate without answers") {
   Bench bench;
   bench.run(10'000'000);
   CHECK(bench.board.sent.size() == 100);
@@ -111,7 +111,7 @@ TEST_CASE("fault 36 sample_batch: of 200 Hz each sample keeps its stamp") {
   CHECK(received == stamps);
 }
 
-TEST_CASE("fault 37 firmware_overload: a frame sent 50 ms after its samples says so") {
+TEST_CASE("fault 37 firmware_overload: a frame sent 50 ms after its samples states this") {
   Bench bench;
   const std::uint64_t taken = bench.board.now_us + 1;
   bench.node.tick(1);

@@ -79,7 +79,7 @@ TEST_CASE("z up becomes y up by a quarter turn about x: x stays, z rises, y come
   CHECK(determinant(y_up) == 1);
 }
 
-TEST_CASE("what the user says is up wins over the format, silence leaves the format's axes") {
+TEST_CASE("the user's up axis takes precedence over the format's") {
   const Axes odd{-3, 2, 1};
   CHECK(axes_of(odd, up("")) == odd);
   CHECK(axes_of(odd, up("y")) == y_up);

@@ -159,11 +159,11 @@ TEST_CASE(
         Stamps{1'000, 10'001'000, 20'001'000, 30'001'000});
 }
 
-TEST_CASE("a column that moves keeps its stamps whatever the rate is said to be") {
+TEST_CASE("a changing time column keeps its stamps, whatever rate is given") {
   CHECK(stamps_of(RowStamps(true, 100, {}), {7, 7, 8, 8, 8}) == Stamps{7, 7, 8, 8, 8});
 }
 
-TEST_CASE("a stuck column is said with what became of the rows") {
+TEST_CASE("a constant time column is reported with the effect on the rows") {
   const auto said = [](double rate_hz, std::size_t rows) {
     RowStamps stamps(true, rate_hz, {});
     for (std::size_t i = 0; i < rows; ++i) REQUIRE(stamps.next(7));

@@ -109,7 +109,7 @@ TEST_CASE("both builds of the kernels agree") {
   }
 }
 
-TEST_CASE("tensors may have a prefix, and others may stand beside them") {
+TEST_CASE("tensors may have a prefix, and other tensors may be in the file") {
   const Architecture architecture{1, {layer(linear, 1)}};
   const Tensors tensors{{"head.0.weight", {{1, 1}, {2.0F}}},
                         {"head.0.bias", {{1}, {1.0F}}},

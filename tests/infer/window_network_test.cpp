@@ -78,7 +78,7 @@ TEST_CASE("results in a moving window are those of all frames since the start, b
   }
 }
 
-TEST_CASE("rows that change are computed anew") {
+TEST_CASE("changed rows are computed again") {
   const Architecture architecture = windowed_architecture();
   const Network network = network_of(architecture, random_tensors(architecture, 3));
   WindowNetwork window(network);

@@ -183,7 +183,7 @@ TEST_CASE("trainer: a loss that is no number five times in a row is refused") {
   CHECK(to_string(out.error()) == "expected a finite loss, found NaN or infinity at steps up to 4");
 }
 
-TEST_CASE("trainer: it stops where it is told to") {
+TEST_CASE("trainer: it stops on request") {
   LineTask task;
   TorchNetwork network = line_network(1);
   const TrainingHooks hooks{

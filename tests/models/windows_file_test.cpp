@@ -200,7 +200,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("pairs: of the input the joints of a Kinect, seen as state and validity say") {
+TEST_CASE("pairs: the joints of a Kinect in the input, seen as state and validity state") {
   const auto pairs = pairs_of(windows_of(numpy_file()), "kinect", "mocap", 1);
   REQUIRE(pairs);
   CHECK(pairs->inputs == std::vector<std::string>{"SpineBase", "HipLeft", "HipRight"});
@@ -267,7 +267,8 @@ TEST_CASE("pairs: of a Kinect's 25 joints and others the Kinect's are taken") {
   CHECK(pairs->all[0].input.seen == std::vector<std::uint8_t>(10, 2));
 }
 
-TEST_CASE("pairs: for a model, joints are found by the Kinect's names and missing ones are told") {
+TEST_CASE(
+    "pairs: for a model, joints are found by the Kinect's names and missing joints are reported") {
   const Windows windows = windows_of(numpy_file());
   const Pairs joints{{"HipRight", "Head", "SpineBase"}, {"HipLeft", "LeftLeg"}, 30.0};
   const auto pairs = pairs_for(windows, "kinect", "mocap", joints, 1);

@@ -91,7 +91,7 @@ TEST_CASE("what waited in a stall is counted, and how late the first of it was, 
   }
 }
 
-TEST_CASE("what waited before the first sample could be sent is told too") {
+TEST_CASE("samples delayed before the first one was sent are reported, too") {
   const auto flushed = stalled(1000, 10 * ms, 0, 40, ms / 2);
   const Arrivals found = arrivals(flushed, 10 * ms);
   CHECK(found.late > 30);
@@ -128,7 +128,7 @@ TEST_CASE("a device that quickens, without a pause, has not waited") {
   }
 }
 
-TEST_CASE("where the step is not known no more than near ones are told") {
+TEST_CASE("without a known step only near samples are reported") {
   ArrivalSurveyor unsteady(10 * ms, false);
   for (const std::int64_t t : stalled(1000, 10 * ms, 300, 340, ms)) unsteady.add(t);
   CHECK(unsteady.result().late == 0);
@@ -145,7 +145,7 @@ TEST_CASE("bursts at the stated rate are late by what the last one of each shows
   CHECK(found.worst_late_ns == 76'500'000);
 }
 
-TEST_CASE("a loop that reads a little slower than the device measures finds pairs, all told") {
+TEST_CASE("a loop that reads slightly slower than the device finds pairs, all reported") {
   for (const double loop_ms : {33.4, 34.0, 35.0, 40.0}) {
     CAPTURE(loop_ms);
     std::vector<std::int64_t> stamps;
@@ -209,6 +209,6 @@ TEST_CASE("a wild stamp that is taken back leaves nothing behind") {
   }
 }
 
-TEST_CASE("without a step nothing is told") {
+TEST_CASE("without a step no sample is reported") {
   CHECK(arrivals({0, 1, 2, 1000, 1001, 1002}, 0) == Arrivals{});
 }

@@ -68,7 +68,7 @@ TEST_CASE("a skeleton is valid as long as each parent stands before its child, a
   }
 }
 
-TEST_CASE("a name that any two joints share is told, whichever they are") {
+TEST_CASE("a name shared by any two joints is reported") {
   for (const auto seed : fresh_seeds(100)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

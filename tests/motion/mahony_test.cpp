@@ -152,7 +152,7 @@ TEST_CASE("sample by sample it is what the paper's matrices give in NumPy") {
   }
 }
 
-TEST_CASE("behind a gap the tilt starts anew from gravity, heading and bias stay") {
+TEST_CASE("after a gap the tilt restarts from gravity, heading and bias stay") {
   const Vec3 bias(0.0, 0.02, 0.0);
   MahonyFilter filter({.heading = 0.4, .gyroscope_bias = bias, .longest_step_s = 0.5});
   filter.update(0.01, {bias, upright});
@@ -168,7 +168,7 @@ TEST_CASE("behind a gap the tilt starts anew from gravity, heading and bias stay
   CHECK(angle_between(turns.orientation(), rotation(Vec3(0.5, 0, 0))) < 1e-12);
 }
 
-TEST_CASE("an acceleration that says nothing corrects nothing, and the rate still turns") {
+TEST_CASE("an uninformative acceleration corrects nothing, and the rate still turns") {
   for (const Vec3& nothing : {Vec3(0, 0, 0), Vec3(0.3, 0.5, 0.2), Vec3(0, no_number, 0),
                               Vec3(0, std::numeric_limits<double>::infinity(), 0)}) {
     MahonyFilter filter({.tilt_gain = 1.0, .bias_gain = 0.3});

@@ -31,7 +31,7 @@ TEST_CASE("the series agree with the C library") {
   }
 }
 
-TEST_CASE("a rotation vector becomes the rotation that it says") {
+TEST_CASE("a rotation vector becomes its rotation") {
   for (const Vec3& v : awkward_vectors()) {
     CAPTURE(v.transpose());
     const Quat q = rotation(v);

@@ -72,7 +72,7 @@ StampSurvey survey(const Stamps& stamps) {
 
 }  // namespace
 
-TEST_CASE("whatever the stamps, those kept rise, and the survey tells of them and no others") {
+TEST_CASE("whatever the stamps, the kept ones rise, and the survey describes exactly these") {
   for (const auto seed : fresh_seeds(300)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -160,7 +160,8 @@ TEST_CASE("one wild stamp anywhere in a steady stream costs itself alone") {
   }
 }
 
-TEST_CASE("a pause does not become the usual step: a wild stamp right behind it is told") {
+TEST_CASE(
+    "a pause does not become the usual step: an implausible stamp right after it is reported") {
   Stamps stamps;
   for (int i = 0; i < 20; ++i) stamps.push_back(utc_time(i * 10'000'000LL));
   stamps.push_back(stamps.back() + Duration{30'000'000});  // three steps

@@ -60,7 +60,7 @@ TEST_CASE("a stamp that runs ahead by some steps costs one sample too") {
   CHECK(found.kept() == 99);
 }
 
-TEST_CASE("of a slow stream no sample waits for the next one") {
+TEST_CASE("samples of a slow stream do not wait for the next one") {
   StampRule rule;
   for (std::int64_t i = 0; i < 10; ++i) {
     CHECK(rule.judge(utc_time(i * 60'000'000'000)) == StampFate::kept);

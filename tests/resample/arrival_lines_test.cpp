@@ -67,7 +67,7 @@ TEST_CASE("a row that was none leaves its line as it was") {
   CHECK(lines.shown_late(0, 2 * step + ms) == 2 * step);
 }
 
-TEST_CASE("of the reference near rows are counted and none is left out") {
+TEST_CASE("near rows of the reference are counted and none is left out") {
   ArrivalLines lines({step, Role::reference});
   for (std::int64_t k = 0; k < 10; ++k) added(lines, k / 2 * 2 * step + k % 2 * ms / 10, waist);
   CHECK(lines.result().near == 5);

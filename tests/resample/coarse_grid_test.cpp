@@ -40,7 +40,7 @@ TEST_CASE("a sine of 5 Hz lies within what a 60 Hz grid carries") {
   CHECK(findings_of(5.0, 2.0, 60.0).empty());
 }
 
-TEST_CASE("a sine of 40 Hz does not, and the warning says how much of it is lost") {
+TEST_CASE("a sine of 40 Hz does not, and the warning states the lost part") {
   const auto found = findings_of(40.0, 2.0, 60.0);
   REQUIRE(found.size() == 1);
   CHECK(found[0].severity == Severity::warning);

@@ -82,14 +82,15 @@ TEST_CASE("a stated rate that is a tenth off is not believed, one that is quite 
   CHECK(ms_of(taken(stamps, 300.0)) == doctest::Approx(1000.0 / 300));
 }
 
-TEST_CASE("of rates that swing about the stated one the median stays, and is steady within 8 %") {
+TEST_CASE("the median stays for rates around the stated one, and is steady within 8 %") {
   const auto seven = stretches({{930, 1000.0 / 93}, {1070, 1000.0 / 107}});
   CHECK(ms_of(taken(seven, 100.0)) == doctest::Approx(1000.0 / 107).epsilon(0.01));
   CHECK(taken(stretches({{700, 30.0}, {300, 37.0}})).steady);        // 7 % on average
   CHECK_FALSE(taken(stretches({{700, 30.0}, {300, 40.0}})).steady);  // 10 %
 }
 
-TEST_CASE("losses of 3 % beside stalls of 10 % leave no steady step, nor do rounded stamps") {
+TEST_CASE(
+    "losses of 3 % together with stalls of 10 % leave no steady step, nor do rounded stamps") {
   // A stall of one second in each ten, drained at 0.75 of the step, with samples of `lost_ms` lost.
   const auto lossy = [](double lost_ms) {
     return stretches({{183, 100.0 / 3}, {1, 1000.0 + lost_ms}, {116, 25.0}}, 6);

@@ -320,7 +320,7 @@ TEST_CASE("fault 32 node_returns: a crystal that warmed while its node was away 
   }
 }
 
-TEST_CASE("fault 11 reorder: what comes in another order tells the same within a microsecond") {
+TEST_CASE("fault 11 reorder: frames out of order give the same within a microsecond") {
   std::vector<double> moved;
   const auto seeds = fresh_seeds(10);
   for (const auto seed : seeds) {

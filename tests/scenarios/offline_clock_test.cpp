@@ -79,7 +79,7 @@ TEST_CASE("over ten minutes of roaming the offset is carried from route to route
   }
 }
 
-TEST_CASE("pieces are those of the node's lives and steps, and no stamp that stays is wrong") {
+TEST_CASE("pieces are those of the node's boots and steps, and no kept stamp is wrong") {
   for (const auto seed : fresh_seeds(10)) {
     CAPTURE(seed);
     ExchangeOptions options = minutes(Link::paper, 1.0);
@@ -154,7 +154,7 @@ TEST_CASE("a clock that bends more than assumed is certified once that has shown
   }
 }
 
-TEST_CASE("behind a step that was shown an offline stamp is certified a second later") {
+TEST_CASE("after a detected step an offline stamp is certified a second later") {
   for (const auto seed : fresh_seeds(10)) {
     CAPTURE(seed);
     ExchangeOptions options = minutes(Link::wired, 1.0);
@@ -190,7 +190,7 @@ TEST_CASE("a stretch of doubt within a longer one does not end that") {
   }
 }
 
-TEST_CASE("a life of one frame, and one without a reply, are pieces of which nothing is claimed") {
+TEST_CASE("a boot of one frame, and one without a reply, are pieces without certificates") {
   using namespace std::chrono_literals;
   const std::vector<Exchange> exchanges{
       {1, NodeTime{5s}, HostTime{10s}, std::nullopt},
@@ -205,7 +205,7 @@ TEST_CASE("a life of one frame, and one without a reply, are pieces of which not
   CHECK(fit_offline_clock({}).model.pieces.empty());
 }
 
-TEST_CASE("nothing is claimed of a counter that says a day where the host saw a second") {
+TEST_CASE("a counter that runs a day in a second of the host gets no certificate") {
   using namespace std::chrono_literals;
   for (const Duration counted : {Duration(1s), Duration(24h)}) {
     CAPTURE(counted.count());
@@ -223,7 +223,7 @@ TEST_CASE("nothing is claimed of a counter that says a day where the host saw a 
   }
 }
 
-TEST_CASE("a frame of the life before, that comes after the first of the next, spoils neither") {
+TEST_CASE("a frame of the previous boot after the first of the next one harms neither") {
   for (const auto seed : fresh_seeds(5)) {
     CAPTURE(seed);
     ExchangeOptions options = minutes(Link::quiet, 1.0);

@@ -64,7 +64,7 @@ double good_after(const JudgedRun& run, double first_heard, double limit) {
 
 }  // namespace
 
-TEST_CASE("fault 1 reboot: the new piece begins with the first frame that is heard") {
+TEST_CASE("fault 1 reboot: the new piece begins with the first frame received") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     for (int link = 0; link < links; ++link) {
@@ -119,7 +119,7 @@ TEST_CASE("fault 1 reboot: after it the bars of a start hold") {
   }
 }
 
-TEST_CASE("fault 1 reboot: it is good no later than a node which is first heard then") {
+TEST_CASE("fault 1 reboot: it is good no later than a node that first sends then") {
   for (const StartBars& bar : start_bars) {
     CAPTURE(letter(bar.link));
     int later = 0, sooner = 0;
@@ -139,7 +139,7 @@ TEST_CASE("fault 1 reboot: it is good no later than a node which is first heard 
   }
 }
 
-TEST_CASE("fault 3 reboot_storm: each life is a piece, certified from two up and one down on") {
+TEST_CASE("fault 3 reboot_storm: each boot is a piece, certified from two up and one down on") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     for (const Link link : {Link::quiet, Link::paper, Link::congested}) {

@@ -17,7 +17,7 @@ TEST_CASE("a true time lies on the line between its neighbours, and goes on beyo
   CHECK(to_ns(true_time(clock, utc_time(-1'000'000'000)).value()) == utc - 1'000'000'100);
 }
 
-TEST_CASE("of fewer than two pairs there is no line") {
+TEST_CASE("fewer than two pairs give no line") {
   CHECK(!true_time({}, utc_time(5)));
   CHECK(!true_time({{1}, {1}}, utc_time(5)));
 }

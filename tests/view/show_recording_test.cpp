@@ -118,7 +118,7 @@ TEST_CASE("skeletons are frame transforms, at most 30 a second, from the world t
   }
 }
 
-TEST_CASE("of a recording in parts the marks and clocks of all are shown, each once") {
+TEST_CASE("marks and clocks of all parts of a recording are shown, each once") {
   const FreshFolder folder;
   RecordedLab lab(20261123);
   lab.add_node(12, 1, {3.0, -35.0}, 0.0, 10.0);

@@ -109,7 +109,7 @@ TEST_CASE("so is a recording of as many JSON channels") {
   CHECK(folder.names() == std::vector<std::string>{"many_in.mcap"});
 }
 
-TEST_CASE("streams of an XDF that have one name are told apart by their ids") {
+TEST_CASE("streams of an XDF with the same name are distinguished by their ids") {
   const FreshFolder folder;
   PosixFiles files;
   const auto named = [](std::uint32_t id, const std::string& name) {

@@ -55,7 +55,7 @@ std::vector<Time> jittered(Duration jitter, std::size_t n, std::mt19937_64& rand
 
 }  // namespace
 
-TEST_CASE("of a device at twice 30 Hz or four times every second frame is shown, or every fourth") {
+TEST_CASE("every second or fourth frame of a device at twice or four times 30 Hz is shown") {
   for (const int times : {1, 2, 4}) {
     CAPTURE(times);
     const auto frames = frames_each(third / times, 20s);
@@ -115,7 +115,7 @@ TEST_CASE("whatever the rate, no second has more than 31 and the long run no mor
   }
 }
 
-TEST_CASE("behind a gap, and where the time steps back, the next frame is shown") {
+TEST_CASE("after a gap, and after a step back in time, the next frame is shown") {
   CHECK(shown_of({origin, origin + 10s, origin + 10s + third}).size() == 3);
   CHECK(shown_of({origin, origin - 1s, origin - 1s + 10ms, origin - 1s + third}) ==
         std::vector<Time>{origin, origin - 1s, origin - 1s + third});

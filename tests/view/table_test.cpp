@@ -27,7 +27,7 @@ TEST_CASE("a table as text has columns of one width, numbers at the right, thous
         "a|b,\"c\"_&           –  -1,234,567\n");
 }
 
-TEST_CASE("a table in Markdown and LaTeX shows what its cells say, whatever letters they have") {
+TEST_CASE("a table in Markdown and LaTeX shows its cells, whatever letters they have") {
   CHECK(written(heights(), TableFormat::markdown) ==
         "People\n\n"
         "| person | height, cm | frames |\n"

@@ -27,7 +27,7 @@ TEST_CASE("fields stand in network order, one behind another") {
   CHECK(reader.left() == 0);
 }
 
-TEST_CASE("a field past the end is zero, nothing behind it is read and the reader says so") {
+TEST_CASE("a field past the end is zero, nothing after it is read and the reader reports it") {
   const std::array<std::uint8_t, 3> bytes{1, 2, 3};
   ByteReader reader(bytes);
   CHECK(reader.take<std::uint32_t>() == 0);
@@ -35,7 +35,7 @@ TEST_CASE("a field past the end is zero, nothing behind it is read and the reade
   CHECK(reader.take<std::uint8_t>() == 0);
 }
 
-TEST_CASE("a field without room is not written and the writer says so") {
+TEST_CASE("a field without space is not written and the writer reports it") {
   std::array<std::uint8_t, 3> bytes{};
   ByteWriter writer(bytes);
   writer.put(std::uint16_t{0x0102});

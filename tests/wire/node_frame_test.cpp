@@ -49,7 +49,7 @@ std::string fate_of_byte(std::size_t at, std::uint8_t value) {
 
 }  // namespace
 
-TEST_CASE("frames have the sizes that the page says") {
+TEST_CASE("frames have the sizes stated on the page") {
   CHECK(encoded(frame_of(0), nullptr).size() == 52);
   CHECK(encoded(frame_of(0), &counted_key).size() == 60);
   CHECK(encoded(frame_of(1), nullptr).size() == 81);
@@ -128,7 +128,7 @@ TEST_CASE("fields are not looked at before the MAC is right") {
   CHECK(fate<NodeFrame>(altered(frame_of(1), &other, change), &counted_key) == "wrong_mac");
 }
 
-TEST_CASE("of a frame that is refused for its second sample nothing is left") {
+TEST_CASE("a frame refused for its second sample leaves nothing") {
   NodeFrame arrived = frame_of(3);
   const auto change = [](Bytes& bytes) { bytes[52 + 29] = 255; };  // the flags of the second sample
   CHECK(received(altered(frame_of(2), nullptr, change), nullptr, arrived) ==

@@ -62,7 +62,7 @@ TEST_CASE("words that are no flags go to the positionals, behind -- all of them"
   CHECK(after({}).message == "expected FILE (a file to mix), found nothing");
 }
 
-TEST_CASE("of two words the one that is missing is named") {
+TEST_CASE("if one of two words is missing, the error names it") {
   std::vector<std::string> from, to;
   Usage usage;
   usage.positionals = {{"IN", "a file", &from}, {"OUT", "a new file", &to}};

@@ -176,7 +176,7 @@ TEST_CASE(
   CHECK(terminal.run(job, {"mix", "a", "-q"}).err.empty());
 }
 
-TEST_CASE("what is said while lines are shown stands above them, from stdout too") {
+TEST_CASE("messages printed while status lines are shown stand above them, also from stdout") {
   const auto job = [](Mix&, Call& call) -> Result<int> {
     call.console.show({{"a line", Colour::plain}});
     call.console.note("a note");
@@ -199,7 +199,7 @@ TEST_CASE("what is said while lines are shown stands above them, from stdout too
             "kinalign mix: expected an end, found none\n" + again);  // no results stand there
 }
 
-TEST_CASE("lines that a narrower terminal has broken anew are erased all the same") {
+TEST_CASE("lines wrapped by a narrower terminal are erased, too") {
   Pty pty;
   pty.resize(80);
   PosixFiles files;

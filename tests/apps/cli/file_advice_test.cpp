@@ -13,7 +13,7 @@ using Lines = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("for a folder the first recording in it is named, if it has one") {
+TEST_CASE("the advice for a folder names its first recording") {
   const FreshFolder folder;
   const Error error{folder.path(), 0, "any words", "others", ErrorKind::directory};
   CHECK(file_advice(error) == Lines{"name a file in this folder"});

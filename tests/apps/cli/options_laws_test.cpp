@@ -87,7 +87,7 @@ std::string toml_of(const Field& field) {
 
 }  // namespace
 
-TEST_CASE("what an option says as text sets it to the same value, to the last bit") {
+TEST_CASE("the text of an option sets it to exactly the same value") {
   for (const auto seed : fresh_seeds(500)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -181,7 +181,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("of the projects' files the nearest one above the folder counts, and no other") {
+TEST_CASE("only the nearest kinalign.toml above the folder is used") {
   for (const auto seed : fresh_seeds(50)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

@@ -56,7 +56,7 @@ TEST_CASE("what is put is written in order, at the latest when it is flushed") {
   CHECK(pipe.read() == "one\ntwo\n");
 }
 
-TEST_CASE("nor is a terminal that nobody reads") {
+TEST_CASE("a blocked terminal is not waited for") {
   int master = -1, slave = -1;
   REQUIRE(::openpty(&master, &slave, nullptr, nullptr, nullptr) == 0);
   termios raw{};

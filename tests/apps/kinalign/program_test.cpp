@@ -43,7 +43,7 @@ TEST_CASE("an unknown verb is answered with the nearest known one") {
         "  did you mean mix? kinalign --help lists the verbs\n");
 }
 
-TEST_CASE("a flag in front of the verb is told where it belongs") {
+TEST_CASE("a flag before the verb is refused with its right place") {
   CHECK(Machine{}
             .run(nothing, {"--json", "mix"})
             .err.starts_with("kinalign: expected a verb before its flags, found --json\n"));
@@ -97,7 +97,7 @@ TEST_CASE("--config takes the place of the project's file") {
       "such file or directory\n  the variable KINALIGN_CONFIG names this file\n"));
 }
 
-TEST_CASE("a fault in a file of settings is told with its line") {
+TEST_CASE("a fault in a settings file is reported with its line") {
   const FreshFolder folder;
   const Machine machine = machine_in(folder);
   const std::string path = folder / "project/kinalign.toml";
@@ -133,7 +133,7 @@ TEST_CASE("a fault in a file of settings is told with its line") {
   CHECK(message("[mix\n").find(":1: expected TOML, found ") != std::string::npos);
 }
 
-TEST_CASE("a value in the environment is told by the variable's name") {
+TEST_CASE("a fault in the environment is reported with the variable's name") {
   const Machine machine{.variables = {{"KINALIGN_ROWS", "many"}}};
   CHECK(machine.run(show, {"mix", "a"})
             .err.starts_with("kinalign mix: KINALIGN_ROWS: expected a whole number from 1 to 10"));

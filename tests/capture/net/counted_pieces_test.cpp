@@ -39,7 +39,7 @@ TEST_CASE(
   CHECK(live.session().streams().at(0).counts.order.lost == 9);
 }
 
-TEST_CASE("what is refused on the trackers' port is counted, and told where somebody can mend it") {
+TEST_CASE("refused datagrams of trackers are counted, and reported if the user can act") {
   LiveSession live({"imu=slimevr:udp:127.0.0.1:0"});
   std::uint64_t sent = 0;
   const auto send = [&](const Client& from, const std::vector<std::uint8_t>& bytes) {
@@ -67,7 +67,7 @@ TEST_CASE("what is refused on the trackers' port is counted, and told where some
   CHECK(streams[2].counts.refused == 3);
 }
 
-TEST_CASE("what has come to each port, and what it lost, stands in the file") {
+TEST_CASE("the file states what each port received and lost") {
   LiveSession live({"mocap=noitom:udp:127.0.0.1:0", "kinect=kinect:udp:127.0.0.1:0"});
   const Client one;
   one.send("127.0.0.1", live.port(), bytes_of("one"));
@@ -140,7 +140,7 @@ TEST_CASE("a datagram of rubbish is refused once, however much of it there is") 
   }
 }
 
-TEST_CASE("what a Kinect's frames are dropped for is counted") {
+TEST_CASE("dropped Kinect frames are counted by cause") {
   LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
   const Client sender;
   const auto send = [&](std::uint32_t session, std::uint32_t sequence) {
@@ -220,7 +220,7 @@ TEST_CASE("two Kinects with one id: the newest session is counted, and a finding
   CHECK(streams[1].counts.order.restarts == 1);
 }
 
-TEST_CASE("a Kinect that begins anew with its old session on another connection is a restart") {
+TEST_CASE("a Kinect that restarts with its old session on another connection is a restart") {
   LiveSession live({"kinect=kinect:tcp-listen:127.0.0.1:0"});
   std::uint64_t sent = 0;
   const auto send = [&](const Connection& way, std::uint32_t sequence, std::int64_t ticks) {
@@ -338,7 +338,7 @@ void check_restarts(LiveSession& live, std::size_t senders, const Sender& sender
 
 }  // namespace
 
-TEST_CASE("a Kinect's sender that is started anew is a restart, in the counts as by the frames") {
+TEST_CASE("a restarted Kinect sender is a restart, in the counts and in the frames") {
   using Bytes = std::vector<std::uint8_t>;
   LiveSession one_port({"kinect=kinect:udp:127.0.0.1:0"});
   const Client same;
@@ -379,7 +379,7 @@ TEST_CASE("a suit's datagram that is cut short costs one frame") {
   CHECK(counts.refused == 2);
 }
 
-TEST_CASE("a device that sends to another one's port is told of while recording, once") {
+TEST_CASE("a device that sends to another device's port is reported once while recording") {
   LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
   NoitomFrame frame;
   frame.values.assign(noitom_values(false, false), 0.0F);

@@ -45,7 +45,7 @@ TEST_CASE("a sender's clock is known within its round trip, and with its drift, 
   CHECK(clock.now()->drift == doctest::Approx(-1e-6 * ppm_fast).epsilon(0.2));
 }
 
-TEST_CASE("one ping tells no interval, and after the host has slept the clock begins anew") {
+TEST_CASE("one ping gives no interval, and after suspend the clock is learnt again") {
   FollowedClock clock;
   clock.push(nth_exchange(0), 1);
   CHECK((!clock.now() || !clock.now()->half_interval));

@@ -43,7 +43,7 @@ TEST_CASE("a network has the addresses that begin as it does") {
   CHECK(has("::/0", "203.0.113.9"));
 }
 
-TEST_CASE("what is no network is refused with what stood there") {
+TEST_CASE("a text that is not a network is refused and shown") {
   for (const std::string text : {"", "lab", "192.168.7", "192.168.7.0/33", "::1/129", "1.2.3.4/",
                                  "1.2.3.4/x", "1.2.3.4/-1", "1.2.3.4/8 ", "fd00::/8/8"}) {
     const auto network = parse_network(text);
@@ -53,7 +53,7 @@ TEST_CASE("what is no network is refused with what stood there") {
   }
 }
 
-TEST_CASE("one stranger is an IPv4 address, or the 64 bits of an IPv6 network") {
+TEST_CASE("one unknown client is an IPv4 address, or an IPv6 network of 64 bits") {
   CHECK(one_stranger("192.0.2.1", "192.0.2.1"));
   CHECK(!one_stranger("192.0.2.1", "192.0.2.2"));
   CHECK(one_stranger("2001:db8::1", "2001:db8::ffff:0:0:9"));

@@ -84,7 +84,7 @@ TEST_CASE("without a stamp, or one from the future, an arrival is now") {
   CHECK(axis.arrival(clocks.utc_now + hours(1)) == axis.arrival(std::nullopt));
 }
 
-TEST_CASE("fault 17 host_step: a step of the wall clock moves no stamp, and is told") {
+TEST_CASE("fault 17 host_step: a step of the wall clock moves no stamp, and is reported") {
   for (const Duration step : {Duration(hours(1)), -Duration(hours(1)), Duration(milliseconds(5))}) {
     FakeClocks clocks;
     HostAxis axis(clocks);
@@ -116,7 +116,7 @@ TEST_CASE("fault 17 host_step: a step of the wall clock moves no stamp, and is t
   }
 }
 
-TEST_CASE("a step too small to tell from a slew moves no stamp either: the system tells of it") {
+TEST_CASE("a step too small to distinguish from a slew moves no stamp: the system reports it") {
   for (const auto& [step, watched] :
        {std::pair{microseconds(40), false}, std::pair{microseconds(-40), false},
         std::pair{microseconds(40), true}}) {
@@ -189,7 +189,7 @@ TEST_CASE("fault 20 host_backwards: the axis stands still for a moment and goes 
   CHECK(kinds(axis) == std::vector{Kind::backwards});
 }
 
-TEST_CASE("of what nobody asks for 64 events are kept, and the others are counted") {
+TEST_CASE("up to 64 unread events are kept, the others are counted") {
   FakeClocks clocks;
   HostAxis axis(clocks);
   axis.watch();

@@ -39,7 +39,7 @@ class Bucket {
 
 }  // namespace
 
-TEST_CASE("a stranger gets eight answers at once, then one in two seconds") {
+TEST_CASE("an unknown client gets eight answers at once, then one in two seconds") {
   RateLimit limit;
   for (int i = 0; i < 8; ++i) CHECK(answered(limit, 1, start));
   CHECK(!answered(limit, 1, start));
@@ -50,7 +50,7 @@ TEST_CASE("a stranger gets eight answers at once, then one in two seconds") {
   CHECK(!answered(limit, 1, start + 60s));
 }
 
-TEST_CASE("who asks on while refused is not refused for longer") {
+TEST_CASE("requests while refused do not prolong the refusal") {
   RateLimit limit;
   int answers = 0;
   for (int ms = 0; ms < 100'000; ++ms) {
@@ -79,7 +79,7 @@ TEST_CASE("law: the limit is the token bucket of the books, for any pattern of r
   }
 }
 
-TEST_CASE("of the refusals at most one in 16 is a kiss") {
+TEST_CASE("at most one refusal in 16 is a kiss of death") {
   RateLimit limit;
   int drops = 0, kisses = 0;
   for (int i = 0; i < 1608; ++i) {

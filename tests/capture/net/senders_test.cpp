@@ -20,7 +20,7 @@ constexpr HostTime begin{100s};
 
 }  // namespace
 
-TEST_CASE("a sender keeps its number and its life as long as it speaks") {
+TEST_CASE("a sender keeps its number and its life while it sends") {
   Senders senders;
   CHECK(senders.number(host(0, 1), 7, begin) == 0);
   CHECK(senders.number(host(0, 1), 8, begin) == 1);
@@ -44,7 +44,7 @@ TEST_CASE("a device that comes late gets its place although forged senders come 
   CHECK(senders.at(*number).host == device);
 }
 
-TEST_CASE("who has said much keeps its place for a minute's silence, and newcomers wait") {
+TEST_CASE("a sender of many messages keeps its place for a minute of silence, and newcomers wait") {
   Senders senders;
   for (std::uint8_t k = 0; k < Senders::most; ++k) {
     for (int i = 0; i < 10; ++i) CHECK(senders.number(host(0, k), 7, begin + i * 1ms));
@@ -63,7 +63,7 @@ TEST_CASE("a device that returned 64 times within a minute is not locked out by 
   }
 }
 
-TEST_CASE("after 1000 lives a device goes on with one of its own, and strangers share one") {
+TEST_CASE("after 1000 lives a device continues an earlier life, and unknown senders share one") {
   Senders senders;
   const HostAddress device = host(0, 1);
   for (std::uint16_t k = 0; k < 3000; ++k) {
@@ -82,7 +82,7 @@ TEST_CASE("after 1000 lives a device goes on with one of its own, and strangers 
   }
 }
 
-TEST_CASE("a sender with another port for every frame loses none, and takes nobody else's place") {
+TEST_CASE("a sender with a new port for each frame loses none, and displaces no other sender") {
   Senders senders;
   const HostAddress device = host(0, 1), other = host(0, 2);
   REQUIRE(senders.number(other, 7, begin) == 0);

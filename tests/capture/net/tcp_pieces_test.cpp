@@ -55,7 +55,7 @@ struct LateClocks : SystemClocks {
 
 }  // namespace
 
-TEST_CASE("a connection that nobody answers is given up within seconds, and tried anew") {
+TEST_CASE("an unanswered connection is given up within seconds, and tried again") {
   const FullDevice device;
   SystemClocks clocks;
   HostAxis axis(clocks);
@@ -79,7 +79,7 @@ TEST_CASE("a connection that nobody answers is given up within seconds, and trie
   CHECK(pieces->counts().links == 0);
 }
 
-TEST_CASE("what waited in a connection is read in small pieces, each with its own stamp") {
+TEST_CASE("buffered bytes of a connection are read in small pieces, each with its own stamp") {
   LateClocks clocks;
   HostAxis axis(clocks);
   auto pieces = TcpPieces::listen("127.0.0.1", 0);
@@ -94,7 +94,7 @@ TEST_CASE("what waited in a connection is read in small pieces, each with its ow
   CHECK(bytes == 20'000);
 }
 
-TEST_CASE("what a connection brought has the kernel's stamp, however late it is read") {
+TEST_CASE("bytes of a connection have the kernel's stamp, however late they are read") {
   auto pieces = TcpPieces::listen("127.0.0.1", 0);
   REQUIRE(pieces);
   const auto seems_to_take = [&] {

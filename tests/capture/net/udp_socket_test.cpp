@@ -40,7 +40,7 @@ TEST_CASE("an address is spelt in one way, and a name is none") {
   CHECK_FALSE(spelt_address("localhost"));
 }
 
-TEST_CASE("clients are told addresses that they can send to, never one that stands for all") {
+TEST_CASE("printed addresses are reachable ones, never the wildcard address") {
   using List = std::vector<std::string>;
   const List own{"192.168.7.1", "10.0.0.1", "fd00::1"};
   CHECK(reachable_at({}, own) == own);
@@ -70,7 +70,7 @@ TEST_CASE("a port is free again once its socket is gone, or was moved over") {
   CHECK(message(UdpSocket::open("127.0.0.1", port)) == "opened");
 }
 
-TEST_CASE("who is followed has a socket of its own, and the port is no other program's for that") {
+TEST_CASE("a followed sender has a socket of its own, and no other program can use the port") {
   const Client friend_of_ours, stranger;
   for (const std::string here : {"127.0.0.1", "0.0.0.0"}) {
     CAPTURE(here);
@@ -106,7 +106,7 @@ TEST_CASE("an address that this host has not, or that is none, is named") {
   }
 }
 
-TEST_CASE("what stands in the way of a port is said in words and as the error's kind") {
+TEST_CASE("the obstacle to a port is stated in words and as the error's kind") {
   const auto said = [](int code, std::uint16_t port) {
     const Error error = no_port("127.0.0.1:80", "a UDP port", code, port);
     CHECK(error.file == "127.0.0.1:80");

@@ -181,7 +181,8 @@ TEST_CASE("fault 25 spoofed_frame: no MAC, a wrong one, another node's: each by 
   CHECK(host.events() == std::vector{Kind::wrong_key});  // one a second
 }
 
-TEST_CASE("fault 25 spoofed_frame: a node with a wrong key is told, a flood of them now and then") {
+TEST_CASE(
+    "fault 25 spoofed_frame: a node with a wrong key is reported, a flood only now and then") {
   TestDesk host(lab);
   LabKey other = lab;
   other[0] ^= 1;
@@ -291,7 +292,7 @@ TEST_CASE("fault 34 echo_future: n_rx behind n_tx is left out and counted") {
   CHECK(host.count(EchoVerdict::future) == 3);
 }
 
-TEST_CASE("fault 35 bad_crc, truncated, unknown_newer_version: counted, and the version told") {
+TEST_CASE("fault 35 bad_crc, truncated, unknown_newer_version: counted, and the version reported") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   const Bytes frame = node.frame(host_s(0));

@@ -65,7 +65,7 @@ TEST_CASE("a lab key is read from a file that its owner alone may read") {
   CHECK(read_lab_key(files, folder.file(digits, 0640)).error().found == "mode 0640");
 }
 
-TEST_CASE("what is no lab key is refused, and no byte of it is shown") {
+TEST_CASE("a text that is not a lab key is refused, and no byte of it is shown") {
   const Folder folder;
   PosixFiles files;
   const std::vector<std::string> wrong{"",
@@ -104,7 +104,7 @@ TEST_CASE("a key is written for its owner alone, and never over anything") {
   CHECK(*read_lab_key(files, path) == *key);
 }
 
-TEST_CASE("a lab key of another user's is told with whose it is") {
+TEST_CASE("a lab key of another user is refused with the owner's name") {
   struct Forbidden : PosixFiles {
     int open(const char*, int, mode_t) override {
       errno = EACCES;

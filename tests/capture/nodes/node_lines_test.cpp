@@ -80,7 +80,7 @@ TEST_CASE("one that sends to two addresses in turn has its line moved once a sec
   CHECK(!server.sent_to("127.0.0.1").over_a_line);
 }
 
-TEST_CASE("where no socket was to be had one is asked for a second later") {
+TEST_CASE("if no socket is available, the next attempt is a second later") {
   Server server;
   const auto way = server.sent_to("127.0.0.1").way;
   auto nowhere = way;

@@ -123,7 +123,7 @@ TEST_CASE("a replay of many old starts leaves room for the true one") {
   CHECK(host.exchange(node, address_of(250), t).verdict == NodeVerdict::accepted);
 }
 
-TEST_CASE("an address that nobody was taken from starts eight sessions at once") {
+TEST_CASE("an unknown address starts eight sessions at once") {
   const LabKey lab{};
   TestDesk host(lab);
   for (std::uint32_t i = 0; i < 20; ++i) {

@@ -136,7 +136,7 @@ TEST_CASE("a node's clock is certified after a few frames, and its stamps hold t
   CHECK(status[0].stamp->certainty == Certainty::certified);
 }
 
-TEST_CASE("the kernel keeps rubbish out, and says how much of it") {
+TEST_CASE("the kernel drops invalid datagrams and counts them") {
   Bench bench;
   Bytes wrong_length = bench.node.frame(bench.clocks.raw()), wrong_magic = wrong_length,
         newer = wrong_length;
@@ -154,7 +154,7 @@ TEST_CASE("the kernel keeps rubbish out, and says how much of it") {
   CHECK(bench.receiver.counts().newest_version == 9);
 }
 
-TEST_CASE("strangers who fill the open socket cost a known node no frame") {
+TEST_CASE("unknown senders that fill the open socket cost a known node no frame") {
   for (const std::string address : {"127.0.0.1", "0.0.0.0", "::1"}) {
     if (address == "::1" && !has_ipv6_loopback()) continue;
     CAPTURE(address);
@@ -182,7 +182,7 @@ TEST_CASE("a frame that many would answer is counted, and not looked into") {
   CHECK(bench.receiver.counts().verdicts.total() == 0);
 }
 
-TEST_CASE("a batch is answered before the clocks hear of it, each frame with its own readings") {
+TEST_CASE("a batch is answered before the clocks are updated, each frame with its own readings") {
   Bench bench;
   bench.talk(2);
   std::vector<Duration> ages;
@@ -202,7 +202,7 @@ TEST_CASE("a batch is answered before the clocks hear of it, each frame with its
                                       microseconds(1), microseconds(2), microseconds(3)});
 }
 
-TEST_CASE("frames are told in the order in which they came, however slowly clocks are read") {
+TEST_CASE("frames are reported in the order of arrival, however slowly clocks are read") {
   Bench<SlowClocks> bench;
   bench.talk(2);
   std::vector<HostTime> arrivals;
@@ -222,7 +222,8 @@ TEST_CASE("frames are told in the order in which they came, however slowly clock
   }
 }
 
-TEST_CASE("fault 19 host_suspend: clocks begin anew, and what the earlier ones told is not lost") {
+TEST_CASE(
+    "fault 19 host_suspend: clocks are learnt again, and events of the earlier clocks are kept") {
   Bench<OddClocks> bench;
   const auto talk_as = [&](std::uint32_t id) {
     TestNode node = node_ahead(id);
@@ -245,7 +246,7 @@ TEST_CASE("fault 19 host_suspend: clocks begin anew, and what the earlier ones t
   CHECK(status.back().stream == 0);
 }
 
-TEST_CASE("events and pairs that nobody takes are counted, whichever list has no room") {
+TEST_CASE("lost events and pairs are counted, whichever list is full") {
   Bench<OddClocks> bench;
   for (int i = 0; i < 66; ++i) {
     bench.clocks.later += 1s;

@@ -26,7 +26,7 @@ const NodeAddress home = address_of(20), elsewhere = address_of(21);
 
 }  // namespace
 
-TEST_CASE("fault 2 reboot_same_id: a counter that begins anew is a new life, once it echoes") {
+TEST_CASE("fault 2 reboot_same_id: a counter that restarts is a new session, once it echoes") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   for (int k = 0; k < 100; ++k) host.exchange(node, home, 0.1 * k);
@@ -41,7 +41,7 @@ TEST_CASE("fault 2 reboot_same_id: a counter that begins anew is a new life, onc
   CHECK(is_warning(Kind::restarted));
 }
 
-TEST_CASE("fault 2 reboot_same_id: a new life that outlasts the one before is still one node") {
+TEST_CASE("fault 2 reboot_same_id: a new session longer than the previous one is still one node") {
   for (const auto& key : {std::optional(lab), std::optional<LabKey>()}) {
     for (const double back_s : {15.0, 1.5}) {  // all of its counter, or a step of it
       CAPTURE(key.has_value());
@@ -65,7 +65,7 @@ TEST_CASE("fault 2 reboot_same_id: a new life that outlasts the one before is st
   }
 }
 
-TEST_CASE("fault 2 reboot_same_id: a counter that could have gone round is told by its numbers") {
+TEST_CASE("fault 2 reboot_same_id: a counter that may have wrapped is recognised by its numbers") {
   for (const double uptime_s : {4265.0, 4280.0, 4294.0, 4296.0, 8589.9, 8591.0}) {
     CAPTURE(uptime_s);
     TestDesk host(lab);
@@ -122,7 +122,7 @@ TEST_CASE("replies go where the newest frame came from, not where a late one did
   CHECK(host.responder.session_of(host.responder.stream(0)).address == elsewhere);
 }
 
-TEST_CASE("of a node that has echoed nothing four starts are held, each for a second at least") {
+TEST_CASE("four starts of a node without echoes are held, each for at least a second") {
   NodeTable table;
   const auto start = [](std::uint32_t node, std::uint32_t boot, double t) {
     return NodeSign{node,      boot, address_of(20, static_cast<std::uint16_t>(4000 + boot)),
@@ -197,7 +197,7 @@ TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") 
   }
 }
 
-TEST_CASE("fault 30 node_id_change: a new stream, with a note who it was") {
+TEST_CASE("fault 30 node_id_change: a new stream, with a note about the earlier id") {
   TestDesk host(lab);
   TestNode seven(7, 1, lab), nine(9, 2, lab);
   for (int k = 0; k < 5; ++k) host.exchange(seven, home, 0.1 * k);
@@ -210,7 +210,7 @@ TEST_CASE("fault 30 node_id_change: a new stream, with a note who it was") {
   CHECK(events[2].stream != events[0].stream);
 }
 
-TEST_CASE("fault 31 address_change: the same life of the same stream") {
+TEST_CASE("fault 31 address_change: the same session of the same stream") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   host.exchange(node, home, 0.0);
@@ -253,7 +253,8 @@ TEST_CASE("fault 31 address_change: the rate limit follows, that of a node and t
   CHECK(host.exchange(begins, elsewhere, 0.8).verdict == Verdict::accepted);
 }
 
-TEST_CASE("fault 32 late_node, node_leaves, node_returns: after ten minutes it is the same life") {
+TEST_CASE(
+    "fault 32 late_node, node_leaves, node_returns: after ten minutes it is the same session") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   host.exchange(node, home, 300.0);
@@ -314,7 +315,7 @@ TEST_CASE("fault 32 node_returns: the same piece if its counter agrees within 10
   }
 }
 
-TEST_CASE("fault 32 node_returns: with another boot id it is another life") {
+TEST_CASE("fault 32 node_returns: with another boot id it is another session") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   for (int k = 0; k < 10; ++k) host.exchange(node, home, 0.1 * k);

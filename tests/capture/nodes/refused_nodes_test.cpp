@@ -11,7 +11,7 @@ HostTime at(double s) { return HostTime{Duration{static_cast<std::int64_t>(s * 1
 
 }  // namespace
 
-TEST_CASE("each node that is refused is told within a second of the one before, and seldom again") {
+TEST_CASE("each refused node is reported within a second of the previous one, and seldom again") {
   RefusedNodes refused;
   int told = 0;
   for (int k = 0; k < 6000; ++k) {

@@ -78,7 +78,7 @@ TEST_CASE("it is asked every two seconds, and an answer to an old question is no
   CHECK(query.latest(start + 3s));  // the answer to the second request; the first one's was skipped
 }
 
-TEST_CASE("where there is no chronyd nothing waits and nothing comes") {
+TEST_CASE("without chronyd no call waits and no answer comes") {
   std::uint16_t port = 0;
   {
     const Chronyd gone;

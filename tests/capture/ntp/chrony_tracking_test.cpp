@@ -64,7 +64,7 @@ TEST_CASE("an answer to something else, a refusal or a part of one is none") {
   }
 }
 
-TEST_CASE("garbage: any numbers in an answer give values that NTP can say") {
+TEST_CASE("garbage: any numbers in an answer give values that NTP can represent") {
   for (const auto seed : fresh_seeds(2000)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

@@ -54,7 +54,7 @@ TEST_CASE("an answer byte by byte") {
   CHECK(bytes == expected);
 }
 
-TEST_CASE("of a request only version, poll and transmit stamp show in the answer") {
+TEST_CASE("the answer repeats only version, poll and transmit stamp of the request") {
   NtpPacket bare;
   bare.version = 3;
   bare.mode = ntp_mode_client;

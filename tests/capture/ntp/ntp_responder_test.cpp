@@ -64,7 +64,7 @@ TEST_CASE("a request is answered with its own stamp and the server's two") {
   CHECK(time_from_ntp(answer.transmit, arrival) == arrival + 20us);
 }
 
-TEST_CASE("each cause of refusal is told apart, and none of them writes an answer") {
+TEST_CASE("each cause of refusal is distinguished, and none writes an answer") {
   Bench bench;
   CHECK(bench.respond_to({}) == NtpOutcome::too_short);
   CHECK(bench.respond_to(std::vector<std::uint8_t>(47, 0x23)) == NtpOutcome::too_short);
@@ -80,7 +80,7 @@ TEST_CASE("each cause of refusal is told apart, and none of them writes an answe
   CHECK(bench.answer == std::array<std::uint8_t, 48>{});
 }
 
-TEST_CASE("a node's datagram is told apart from a client's, which its first byte looks like") {
+TEST_CASE("a node's datagram is distinguished from a client's with a similar first byte") {
   Bench bench;
   TestNode node(7, 1);
   CHECK(bench.respond_to(node.frame(host_s(0.0))) == NtpOutcome::from_node);
@@ -97,7 +97,7 @@ TEST_CASE("a request that was cut on arrival is not judged by the part that came
   CHECK(bench.respond() == NtpOutcome::wrong_trailer);
 }
 
-TEST_CASE("no answer goes to port 0, to the server itself or to who asked a whole network") {
+TEST_CASE("no answer goes to port 0, to the server itself or to a broadcast request") {
   Bench bench;
   bench.asked.from_port = 0;
   CHECK(bench.respond() == NtpOutcome::from_port_0);
@@ -131,7 +131,7 @@ TEST_CASE("an address is limited whatever port it asks from, and others are not"
   CHECK(bench.respond(2s) == NtpOutcome::answered);
 }
 
-TEST_CASE("an IPv6 network of 64 bits is one stranger") {
+TEST_CASE("an IPv6 network of 64 bits is one client") {
   Bench bench;
   for (int i = 0; i < 8; ++i) {
     bench.asked.from = address("2001:db8::" + std::to_string(i));
@@ -149,7 +149,7 @@ TEST_CASE("what is refused costs its address nothing") {
   CHECK(bench.respond_to(request()) == NtpOutcome::answered);
 }
 
-TEST_CASE("fault 27 kod: one in 16 refusals by the limit is told RATE") {
+TEST_CASE("fault 27 kod: one in 16 refusals by the limit gets RATE") {
   Bench bench;
   NtpCounts counts;
   for (int i = 0; i < 8 + 160; ++i) ++counts[bench.respond()];

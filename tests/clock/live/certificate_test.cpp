@@ -92,6 +92,6 @@ TEST_CASE("a function that bends more contradicts itself, and under a greater cu
   CHECK(range->high >= 1.8e-3);
 }
 
-TEST_CASE("assumptions say themselves with their units") {
+TEST_CASE("assumptions are printed with their units") {
   CHECK(to_string(Assumptions{}) == "H1-H5 rate<=100ppm curvature<=0.05ppm/s");
 }

@@ -163,7 +163,7 @@ TEST_CASE("the third violator ends a piece; the next begins with the first of th
   CHECK(next.estimate().slope().deviation >= believed + 1.9e-6);
 }
 
-TEST_CASE("what came since the last crossing that speaks for the old counter is in doubt") {
+TEST_CASE("stamps since the last crossing that fits the old counter are in doubt") {
   Talk talk;
   talk.run(0s, 200s, 100ms);
   talk.down = talk.up = 20ms;  // slow packets, which support neither counter
@@ -248,7 +248,7 @@ TEST_CASE("a step that leaves the truth inside is a warning, a greater one ends 
   }
 }
 
-TEST_CASE("where both floors are seen to move, what came five seconds before is in doubt") {
+TEST_CASE("if both floors move, the stamps of the previous five seconds are in doubt") {
   Jittery talk;
   talk.up_floor = talk.down_floor = 3ms;
   CHECK(talk.run(0s, 101s) == Verdict::taken);

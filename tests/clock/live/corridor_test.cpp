@@ -121,7 +121,7 @@ TEST_CASE("bounds that contradict each other leave no range") {
   CHECK(!value_range(corridor, 0.5, beta, line));
 }
 
-TEST_CASE("behind the last bound of a kind its end opens by the greatest rate") {
+TEST_CASE("after the last bound of a kind its end opens by the greatest rate") {
   Corridor corridor(0.0);
   corridor.above.add(0.0, 1e-3);
   corridor.below.add(0.0, 0.0);

@@ -34,7 +34,7 @@ Told log_of(double until, double step, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("a window tells the least round trip and the offset between the floors") {
+TEST_CASE("a window gives the least round trip and the offset between the floors") {
   const FloorLog log = log_of(25.0, 0.0, 1).log;
   REQUIRE(log.window(0));
   CHECK(log.window(0)->s == 15.0);

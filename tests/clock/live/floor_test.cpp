@@ -34,7 +34,7 @@ TEST_CASE("a bound's excess is how far it lies above a line") {
   CHECK(line.excess({-90.0, 0.0}) == about(-1e-3));
 }
 
-TEST_CASE("of delays that stand evenly above a floor the density is one by their distance") {
+TEST_CASE("the density of evenly spaced delays above a floor is one by their distance") {
   for (std::size_t count : {2U, 3U, 6U, 7U, 8U, 100U}) {
     CAPTURE(count);
     std::vector<double> excess;
@@ -44,7 +44,7 @@ TEST_CASE("of delays that stand evenly above a floor the density is one by their
   }
 }
 
-TEST_CASE("a density is told by the seven nearest, and not from fewer than two") {
+TEST_CASE("a density is estimated from the seven nearest, and not from fewer than two") {
   std::vector<double> none, one{20 * us};
   CHECK(density_above(none) == 0.0);
   CHECK(density_above(one) == 0.0);
@@ -56,7 +56,7 @@ TEST_CASE("a density is told by the seven nearest, and not from fewer than two")
   CHECK(density_above(all_there) == about(6.0 / (0.25 * us)));
 }
 
-TEST_CASE("of random delays the density is right on the average") {
+TEST_CASE("the density of random delays is right on average") {
   // The seventh point of a Poisson process of density r follows Gamma(7, r). For that 6 / x has the
   // mean r and the deviation r / sqrt(5): 0.0032 r over 20,000.
   const auto seed = fresh_seeds(1).front();

@@ -48,7 +48,7 @@ TEST_CASE("a stamp lies in the middle of its interval, which a millisecond each 
   CHECK(*stamp->latest - *stamp->earliest < 2100us);
 }
 
-TEST_CASE("nothing is said of a node that was not heard, or of which no reply came back") {
+TEST_CASE("a node without frames, or without echoed replies, has no stamp") {
   LiveClock clock;
   CHECK(!clock.host_from_node(7, node(0s)));
   clock.push_up(7, node(0s), host(1ms));
@@ -59,7 +59,7 @@ TEST_CASE("nothing is said of a node that was not heard, or of which no reply ca
   CHECK(stamp->certainty == Certainty::one_sided);  // one frame alone is not believed
 }
 
-TEST_CASE("a new life begins a piece; frames of earlier ones are counted and change nothing") {
+TEST_CASE("a new boot begins a piece; frames of earlier boots are counted and change nothing") {
   LiveClock clock;
   run(clock, 7, 0s, 10s);
   run(clock, 8, 20s, 30s);
@@ -105,7 +105,7 @@ TEST_CASE("fault 20 host_backwards: the piece ends") {
   CHECK(count(clock.take_events(), ClockEvent::Kind::host_backwards) == 1);
 }
 
-TEST_CASE("of what is withdrawn nothing is lost where nobody asks for events") {
+TEST_CASE("no withdrawal is lost if events are not read") {
   LiveClock clock;
   run(clock, 7, 0s, 100s);
   Duration t = 100s;
@@ -136,7 +136,7 @@ TEST_CASE("events beyond sixty-four are counted") {
   CHECK(clock.take_events().empty());
 }
 
-TEST_CASE("a clock holds no more than 64 KiB, whatever a node says") {
+TEST_CASE("a clock uses at most 64 KiB, whatever a node sends") {
   const auto held = [] { return ::mallinfo2().uordblks; };
   const auto before = held();
   const auto clock = std::make_unique<LiveClock>();
@@ -248,7 +248,7 @@ TEST_CASE("the echo of the frame that shows a step is of before it, and bounds n
   CHECK(clock.host_from_node(7, node(34s))->certainty == Certainty::certified);
 }
 
-TEST_CASE("a crystal is believed to run as in the life before, to two millionths") {
+TEST_CASE("a crystal is assumed to run as in the previous boot, to two millionths") {
   LiveClock clock;
   run(clock, 7, 0s, 60s);
   const SlopeBelief before = clock.piece()->estimate().slope();
@@ -258,7 +258,7 @@ TEST_CASE("a crystal is believed to run as in the life before, to two millionths
   CHECK(after.deviation == about(before.deviation + 2e-6));
 }
 
-TEST_CASE("a step of a node that is heard every five seconds is found") {
+TEST_CASE("a step of a node that sends every five seconds is found") {
   LiveClock clock;
   for (Duration t = 0s; t < 900s; t += 5s) {
     const Duration stepped = t < 600s ? 0s : 1s;
@@ -271,7 +271,7 @@ TEST_CASE("a step of a node that is heard every five seconds is found") {
   CHECK(std::chrono::abs(stamp->time - host(900s)) < 1ms);
 }
 
-TEST_CASE("a late frame of ten lives ago does not take the present one's place") {
+TEST_CASE("a late frame of ten boots ago does not replace the present boot") {
   LiveClock clock;
   for (BootKey boot = 1; boot <= 10; ++boot) {
     const Duration begin = 10s * static_cast<int>(boot);

@@ -32,7 +32,7 @@ struct Packets {
 
 }  // namespace
 
-TEST_CASE("nothing is told before a bound of each kind") {
+TEST_CASE("no estimate before a bound of each kind") {
   OffsetEstimate estimate;
   CHECK(!estimate.at(0.0));
   estimate.add({0.0, 3e-3, Side::above});
@@ -77,7 +77,7 @@ TEST_CASE("the offset is carried over a longer and a shorter route, of either wa
   }
 }
 
-TEST_CASE("a step of the counter is told from a route, and followed") {
+TEST_CASE("a step of the counter is distinguished from a route, and followed") {
   // In 5000 seeds one step was taken for a change of route, and five steps were estimated more than
   // 5 % wrong.
   const auto seeds = fresh_seeds(20);

@@ -90,7 +90,7 @@ TEST_CASE("half of the first second's delays lie nearer than half of what the le
   CHECK(seen_behind(16.0) == about(3.0, 0.05));
 }
 
-TEST_CASE("one bound near the old floor begins the seconds anew") {
+TEST_CASE("one bound near the old floor restarts the seconds") {
   Watched watched;
   for (int i = 0; i < 300; ++i) {
     const bool near = i % 9 == 0;
@@ -99,7 +99,7 @@ TEST_CASE("one bound near the old floor begins the seconds anew") {
   CHECK(!watched.moved);
 }
 
-TEST_CASE("where delays were often as long before it takes three seconds, or nine, to be sure") {
+TEST_CASE("if delays were often as long before, a decision takes three seconds, or nine") {
   const auto seen_behind = [](int near, int far) {
     Watched watched;
     watched.counts = counts_of(0, near, 1 * ms);
@@ -117,7 +117,7 @@ TEST_CASE("where delays were often as long before it takes three seconds, or nin
   CHECK(seen_behind(150, 850) == about(9.0, 0.02));
 }
 
-TEST_CASE("who is heard seldom is watched for three seconds or nine, and for six bounds in them") {
+TEST_CASE("a node that sends seldom is watched for three or nine seconds, and for six bounds") {
   const auto bounds_until_seen = [](double step) {
     Watched watched;
     for (int i = 1; i <= 30; ++i) watched.add(step * i, 5 * ms, Standing::above);
@@ -130,7 +130,7 @@ TEST_CASE("who is heard seldom is watched for three seconds or nine, and for six
   CHECK(bounds_until_seen(2.0) == 0);
 }
 
-TEST_CASE("a floor is said to have moved where the old one has such delays once in e^25") {
+TEST_CASE("a floor has moved if the old floor has such delays once in e^25") {
   const auto moves = [](int points, const ExcessCounts& counts) {
     // `points` bounds in the last second, and some before: each third is looked at.
     RecentBounds bounds;

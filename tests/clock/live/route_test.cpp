@@ -200,7 +200,7 @@ TEST_CASE("law: value, slope and round trip are the mean over all slopes by how 
   }
 }
 
-TEST_CASE("of random delays the round trip between the floors is right on the average") {
+TEST_CASE("the round trip between the floors is right on average for random delays") {
   // The lowest of a hundred packets, of density 4000, lie 5 us above both floors together. Route
   // subtracts that and a sixth more (see 6 / x in floor_test.cpp). Over 400 seeds the mean is known
   // to 0.15 us.
@@ -218,7 +218,7 @@ TEST_CASE("of random delays the round trip between the floors is right on the av
   CHECK(std::abs(off) < (seeds.size() > 1 ? 2.5e-6 : 50e-6));
 }
 
-TEST_CASE("where floors are not known a slope is as likely as it was before") {
+TEST_CASE("without known floors a slope is as likely as before") {
   Route route({20 * ppm, 10 * ppm});
   route.add(Side::above, {10.0, 3 * ms}, {});
   route.add(Side::below, {10.0, -1 * ms}, {});
@@ -240,7 +240,7 @@ TEST_CASE("where floors are not known a slope is as likely as it was before") {
   CHECK(route.belief().deviation == about(10 * ppm * std::sqrt(squares / sum), 0.01));
 }
 
-TEST_CASE("no crystal is believed to be more than 100 ppm off, whatever the floors say") {
+TEST_CASE("no crystal is assumed to be more than 100 ppm off, whatever the floors show") {
   for (const double slope : {300 * ppm, -300 * ppm}) {
     CAPTURE(slope);
     Route route({});

@@ -77,7 +77,7 @@ TEST_CASE("a node's stamps are its counter's readings, its model holds the truth
   }
 }
 
-TEST_CASE("behind a restart stamps go on rising, by as long as the host counted, and stay true") {
+TEST_CASE("after a restart stamps continue to rise, by the host's time, and stay true") {
   Node node;
   node.live(1, HostTime{50s}, 10s, 40s, true);
   node.live(2, HostTime{95s}, 1s, 31s, true);
@@ -99,7 +99,7 @@ TEST_CASE("behind a restart stamps go on rising, by as long as the host counted,
   CHECK(std::abs((take_time(clock.time, *older) - truth).count()) < 500'000);
 }
 
-TEST_CASE("a life that was never answered is told by its arrivals, and claims no interval") {
+TEST_CASE("a boot without replies gets a clock from its arrivals, and no interval") {
   Node node;
   node.live(1, HostTime{50s}, 10s, 40s, true);
   node.live(2, HostTime{95s}, 1s, 31s, false);
@@ -112,7 +112,7 @@ TEST_CASE("a life that was never answered is told by its arrivals, and claims no
   REQUIRE(told.front().half_width);
 }
 
-TEST_CASE("of lives that were never heard there are no stamps, and of nothing no clock") {
+TEST_CASE("boots without frames have no stamps, and no exchange gives no clock") {
   Node node;
   node.live(1, HostTime{50s}, 10s, 12s, true);
   const DeviceClock clock = device_clock(node.exchanges, utc_minus_host);

@@ -37,7 +37,7 @@ HostTime host(Duration t) { return HostTime{t}; }
 
 }  // namespace
 
-TEST_CASE("of two lives whose frames arrive at one moment each has its own") {
+TEST_CASE("two boots whose frames arrive at one moment have a piece each") {
   Talk talk;
   talk.run(1000s, 1010s);
   talk.offset = 1009s + 900ms;
@@ -52,7 +52,7 @@ TEST_CASE("of two lives whose frames arrive at one moment each has its own") {
   CHECK(range_of(walk, 1).end == 201);
 }
 
-TEST_CASE("what the first frame behind a step echoes is of before it") {
+TEST_CASE("the first frame after a step echoes a reply from before the step") {
   for (const Duration by : {Duration{1s}, -Duration{1s}, Duration{20ms}, -Duration{20ms}}) {
     CAPTURE(by.count());
     Talk talk;
@@ -129,7 +129,7 @@ TEST_CASE("a piece that never settles is in doubt, be it for a reboot or the end
   }
 }
 
-TEST_CASE("a piece that begins with a step reaches back over late frames of an earlier life") {
+TEST_CASE("a piece that begins with a step reaches back over late frames of an earlier boot") {
   Talk talk;
   talk.run(1000s, 1010s);
   const Exchange late{1, NodeTime{14s}, host(1040s + 50ms), std::nullopt};

@@ -98,7 +98,7 @@ TEST_CASE("packets that a radio holds back for two seconds do not move the clock
   CHECK(lateness(model, device, 0, device.exchanges.size()).most < least_way + 500us);
 }
 
-TEST_CASE("each life has a piece, a single packet too, and nothing gives none") {
+TEST_CASE("each boot has a piece, also with a single packet; no packets give no piece") {
   CHECK(fit_one_way_clock({}).pieces.empty());
   Device device;
   device.send(1, NodeTime{5s}, HostTime{100s});

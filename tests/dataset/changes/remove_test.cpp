@@ -103,7 +103,7 @@ TEST_CASE("raw files that another take is made of are not removed") {
   CHECK(set.contents() == before);
 }
 
-TEST_CASE("names of which nothing is there are told, and are an error where there are no others") {
+TEST_CASE("unknown names are reported, and are an error if all are unknown") {
   ChangedSet set;
   const auto plan = plan_removal(set.files, set.folder.path(), {"sub-02", "sub-33"}, false);
   REQUIRE(plan);

@@ -37,7 +37,7 @@ TEST_CASE("an id that stands in another form, or in a text of several lines, is 
   }
 }
 
-TEST_CASE("a manifest keeps its comments, and loses them rather than say something else") {
+TEST_CASE("a manifest keeps its comments, and loses them rather than change its meaning") {
   const TakeName from{"03", "S1A01", 1}, to{"13", "S1A02", 4};
   const std::string plain =
       "subject = '03' # who\naction=\"S1A01\"\n[stream.mocap]\nfile = "

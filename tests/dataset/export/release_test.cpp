@@ -25,7 +25,7 @@ std::vector<Severity> severities(const Catalogue& catalogue) {
 
 }  // namespace
 
-TEST_CASE("release: numbers as ids and names of products give nobody away") {
+TEST_CASE("release: numbers as ids and names of products identify no person") {
   CHECK(severities(plain()).empty());
 }
 

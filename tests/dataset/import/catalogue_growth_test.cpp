@@ -13,7 +13,7 @@ const CatalogueNeeds needs{{"01", "02"},
 
 }  // namespace
 
-TEST_CASE("what a data set lacks stands at the end, and what its user wrote stays") {
+TEST_CASE("missing entries are appended, and the user's text is kept") {
   const std::string own = "name = \"x\"  # mine\n[subject.02]\nsex = \"f\"";
   const auto grown = grown_catalogue(own, "dataset.toml", needs);
   REQUIRE(grown);

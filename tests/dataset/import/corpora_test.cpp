@@ -37,7 +37,7 @@ TEST_CASE("pairs for learning are made only where they are asked for") {
   CHECK(kind_of({"s07.npz"}) == "ui-prmd");
 }
 
-TEST_CASE("a corpus of its own goes before files of a kind that lie beside it") {
+TEST_CASE("a known corpus takes precedence over single files next to it") {
   CHECK(kind_of({"asf_00.npz", "extra/walk.bvh"}) == "cmu");
   CHECK(kind_of({"asf_00.npz", "extra/walk.bvh"}, "bvh") == "bvh");
   CHECK(kind_of({"a.bvh", "a.c3d"}).find("--from") != std::string::npos);

@@ -41,6 +41,6 @@ TEST_CASE("a folder per person names the subjects, also below folders that all f
   CHECK(said({"set/anna/walk.bvh", "set/anna/run.bvh"}) == Said{"anna walk 0", "anna run 0"});
 }
 
-TEST_CASE("folders are no people where some files lie beside them") {
+TEST_CASE("folders are not people if files lie next to them") {
   CHECK(said({"walk.bvh", "odd/run.bvh"}) == Said{" walk 0", " run 0"});
 }

@@ -25,7 +25,7 @@ bool has(const std::string& text, std::string_view what) {
 
 }  // namespace
 
-TEST_CASE("the card says what the data set is, how it is read and on what terms") {
+TEST_CASE("the card describes the data set, how to read it and its licence") {
   CardSet set;
   const auto card = set.card();
   REQUIRE(card);

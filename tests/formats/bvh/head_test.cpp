@@ -35,7 +35,7 @@ const std::string motion = "}\nMOTION\nFrames: 1\nFrame Time: 0.01\n7\n";
 
 }  // namespace
 
-TEST_CASE("what a BVH's head lacks is said where it should stand") {
+TEST_CASE("a missing part of a BVH's head is reported at its place") {
   const std::vector<std::array<std::string, 2>> refused{
       {"HIERARCHY\nROOT\n{\n", "a.bvh:2: expected a name, found 'nothing'"},
       {"HIERARCHY\nROOT a\nOFFSET 0 0 0\n", "a.bvh:3: expected {, found 'OFFSET'"},

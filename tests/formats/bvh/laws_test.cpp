@@ -50,7 +50,7 @@ Said by_survey(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("of any skeleton, written in any way, all that stands there is read") {
+TEST_CASE("any skeleton, written in any way, is read completely") {
   for (const std::uint64_t seed : fresh_seeds(200)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

@@ -76,7 +76,7 @@ TEST_CASE("a row that lost a value is an error where frames stand on a line each
         "walk.bvh:15: expected 6 values in the frame, found 7");
 }
 
-TEST_CASE("what no number says is refused with its line") {
+TEST_CASE("a text that is not a number is refused with its line") {
   const std::string head = one_joint + "MOTION\nFrames: 2\nFrame Time: 0.01\n";
   CHECK(fault(head + "0 90 0 0 nan 0\n") == "walk.bvh:14: expected a number, found 'nan'");
   CHECK(fault(head + "0 90 0 0 0,5 0\n") == "walk.bvh:14: expected a number, found '0,5'");
@@ -156,7 +156,7 @@ TEST_CASE("blank lines and control characters in front are no part of a BVH, as 
   CHECK(file->hierarchy.names == std::vector<std::string>{"a b"});
 }
 
-TEST_CASE("a repeated name is told apart, and written as it was") {
+TEST_CASE("a repeated name is made distinct, and written as it was") {
   const auto file = read(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Zrotation\nJOINT b\n{\n"
       "OFFSET 1 0 0\n}\nJOINT b\n{\nOFFSET 2 0 0\n}\n}\nMOTION\nFrames: 0\nFrame Time: 0.01\n");

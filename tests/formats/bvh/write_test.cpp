@@ -59,7 +59,7 @@ TEST_CASE("a BVH is copied in pieces, number by number") {
   CHECK(copied(folder.write("b.bvh", made.text)).text == made.text);
 }
 
-TEST_CASE("copying a BVH stops when it is told to, in either pass") {
+TEST_CASE("copying a BVH can be stopped in either pass") {
   const FreshFolder folder;
   const std::string path = folder.write("a.bvh", head + "MOTION\nFrames: 0\nFrame Time: 0.01\n");
   PosixFiles files;

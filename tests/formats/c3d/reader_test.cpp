@@ -146,7 +146,7 @@ TEST_CASE("rows of a C3D do not depend on where it is cut into pieces") {
   }
 }
 
-TEST_CASE("unit, up, rate and start are those of the user where they are said") {
+TEST_CASE("unit, up, rate and start are the user's if they are given") {
   const std::string file = small_file();
   StreamOptions options;
   options.metres_per_unit = 1.0;
@@ -193,7 +193,7 @@ TEST_CASE("a C3D that is cut, or longer than it states, gives its frames with a 
         std::vector<std::string>{"walk.c3d: expected POINT:RATE 200 as in the header, found 100"});
 }
 
-TEST_CASE("names that are missing or repeated are told") {
+TEST_CASE("missing and repeated names are reported") {
   const std::string file = small_file();
   const std::size_t at = values_of(file, "LABELS", 2);
   const auto repeated = read_c3d(patched(file, at, "LASILASI"));

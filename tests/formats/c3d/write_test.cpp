@@ -124,7 +124,7 @@ TEST_CASE("what a C3D can't hold is refused") {
         "expected names that fit into 130 KB of C3D parameters, found 20000 names that do not fit");
 }
 
-TEST_CASE("a disk that refuses is told") {
+TEST_CASE("a disk that refuses is reported") {
   std::mt19937_64 random(2);
   const PointStream stream = any_points(2, 3, rate_hz, start_ns, random);
   auto writer =

@@ -100,7 +100,7 @@ TEST_CASE("a named quantity that is empty is absent") {
   CHECK(read.rows.stamps == std::vector<Time>{utc_time(20'000'000)});
 }
 
-TEST_CASE("a quantity may begin within the first 32 rows; one that begins later is said") {
+TEST_CASE("a quantity may begin within the first 32 rows; a later one is reported") {
   const auto with_gyr_from = [](int first) {
     std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n";
     for (int row = 1; row <= 40; ++row) {
@@ -175,7 +175,7 @@ TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets
   CHECK(counters({10, 11, 12}).findings.empty());
 }
 
-TEST_CASE("a packet that was overtaken steps back, and nothing behind it moves") {
+TEST_CASE("a packet out of order steps back, and later packets do not move") {
   const auto overtaken = counters({10, 11, 13, 12, 14});
   CHECK(packets(overtaken) == Packets{10, 11, 13, 12, 14});
   CHECK(overtaken.findings.empty());  // no packet was lost
@@ -209,13 +209,13 @@ TEST_CASE("a first counter that is wild moves nothing behind it") {
   CHECK(packets(counters({1 << 20, 65535, 0, 1})) == Packets{1 << 20, 65535, 65536, 65537});
 }
 
-TEST_CASE("a packet is overtaken by up to a thousand, and a loss is believed that goes on") {
+TEST_CASE("a packet may be late by up to a thousand packets, and a lasting loss is accepted") {
   CHECK(packets(counters({4999, 5000, 4000, 5001}))[2] == 4000);
   // The counter fell, so it began anew.
   CHECK(packets(counters({4999, 5000, 3999, 4000}))[2] == 3999 + 65536);
 }
 
-TEST_CASE("a counter of 32 bits that falls began anew, whatever its lower 16 bits say") {
+TEST_CASE("a counter of 32 bits that falls was restarted, whatever its lower 16 bits are") {
   const auto anew = counters({100'000, 131'078, 131'079, 3, 4, 5});
   const std::int64_t fall = (std::int64_t{1} << 32) - 131'076;
   CHECK(packets(anew).back() - packets(anew)[2] == fall + 2);
@@ -226,7 +226,7 @@ TEST_CASE("a counter of 32 bits that falls began anew, whatever its lower 16 bit
         Packets{131'078, 131'080, 131'079, 131'081});
 }
 
-TEST_CASE("of what is told in two ways the one that more of the first rows have whole is read") {
+TEST_CASE("if a quantity is given in two forms, the form with more complete first rows is read") {
   std::string text = rate +
                      "PacketCounter,Acc_X,Acc_Y,Acc_Z,FreeAcc_X,FreeAcc_Y,FreeAcc_Z,"
                      "Quat_q0,Quat_q1,Quat_q2,Quat_q3,Roll,Pitch,Yaw\n";
@@ -243,7 +243,7 @@ TEST_CASE("of what is told in two ways the one that more of the first rows have 
   CHECK(std::count(read.rows.valid.begin(), read.rows.valid.end(), 1) == 40);
 }
 
-TEST_CASE("of several orientations the quaternion is taken, then the matrix, then the angles") {
+TEST_CASE("orientations are read from the quaternion, else the matrix, else the angles") {
   const std::string names =
       "PacketCounter,Roll,Pitch,Yaw,Mat[1][1],Mat[1][2],Mat[1][3],Mat[2][1],Mat[2][2],Mat[2][3],"
       "Mat[3][1],Mat[3][2],Mat[3][3],Quat_q0,Quat_q1,Quat_q2,Quat_q3\n";

@@ -203,7 +203,7 @@ TEST_CASE("what is no motion of segments is an error with its line") {
         "a.mvnx: expected a whole gzip archive, found damaged bytes");
 }
 
-TEST_CASE("a second subject is told and not read") {
+TEST_CASE("a second subject is reported and not read") {
   std::string text = mvnx_of(two_frames);
   text.replace(text.find("</mvnx>"), 7,
                "<subject label=\"B\"><frames>" + two_frames + "</frames></subject></mvnx>");

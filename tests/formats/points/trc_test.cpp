@@ -79,7 +79,7 @@ TEST_CASE("a head of a TRC file that can't be understood is an error with its li
         "walk.trc:5: expected 3 labels X1, Y1, Z1, ..., found ??X1?Y1");
 }
 
-TEST_CASE("a TRC file says its unit and its counts where its keys stand, or is refused") {
+TEST_CASE("a TRC file has its unit and its counts at its keys, or is refused") {
   const std::string rest =
       "Frame#\tTime\tHEAD\t\t\tR.TOE\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n1\t0\t1\t2\t3\t4\t5\t6\n";
   const auto with_facts = [&](const std::string& keys, const std::string& facts) {
@@ -124,7 +124,7 @@ TEST_CASE("a TRC file's unit is a length, and the user's word on unit, axis and 
   CHECK(read.rows.stamps == std::vector<Time>{utc_time(77), utc_time(250'000'077)});
 }
 
-TEST_CASE("of a marker with one number missing nothing is kept") {
+TEST_CASE("a marker with one missing number is dropped") {
   const auto read = read_trc(head("1") + "1\t0\t1\t\t3\t4\t5\tnan\n");
   CHECK(read.rows.state == std::vector<Tracking>{Tracking::missing, Tracking::missing});
   CHECK(read.rows.positions == std::vector<double>(6, 0.0));
@@ -146,7 +146,7 @@ TEST_CASE("a TRC file that was cut off ends with its last whole line") {
         "walk.trc:7: expected a line end after the last value, found the end of the file");
 }
 
-TEST_CASE("a TRC file whose time stands still is said, and stamped by a rate where one is known") {
+TEST_CASE("a TRC file with constant time is reported, and stamped by a known rate") {
   std::string text = head("3");
   for (int i = 1; i <= 3; ++i) text += std::to_string(i) + "\t4\t1\t2\t3\t4\t5\t6\n";
   const auto stuck = read_trc(text);

@@ -98,7 +98,7 @@ TEST_CASE("two Kinects of one log are taken apart" * doctest::skip(!shared_data(
   CHECK(read_points("kinect_multitrack", path, options).rows.stamps == second.rows.stamps);
 }
 
-TEST_CASE("a Kinect beside a phone is read, frames without a body too" *
+TEST_CASE("a Kinect next to a phone is read, also frames without a body" *
           doctest::skip(!shared_data())) {
   const auto read =
       read_points("kinect2_phone_skip", "imu_pose/kinect2_phone_skip/kinect_joints.csv");

@@ -92,7 +92,7 @@ TEST_CASE("time, states and axes of a layout are tables of known keys and values
   });
 }
 
-TEST_CASE("joints and their fields are said whole") {
+TEST_CASE("joints and their fields must be complete") {
   const Refused refused{
       {"joints = ['A']\n", "2: expected joints as a table, found a list"},
       {"[joints]\nfields = ['x', 'y', 'z']\n", "2: expected names in [joints], found none"},
@@ -152,7 +152,7 @@ TEST_CASE("first_column and skip leave out what a table holds besides") {
   CHECK(read.rows.positions == std::vector<double>{1, 2, 3, 4, 5, 6});
 }
 
-TEST_CASE("a layout's own selection holds where the user says nothing of that column") {
+TEST_CASE("a layout's own selection is used if the user gives none for that column") {
   const std::string toml =
       "name = 'n'\nrate_hz = 1\n[select]\nid = 1\n[joints]\nnames = ['A']\n"
       "fields = { x = 'x', y = 'y', z = 'z' }\n";

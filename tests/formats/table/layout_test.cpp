@@ -21,7 +21,7 @@ const std::string members = "[joints]\nnames = [\"A\"]\nfields = [\"x\", \"y\", 
 
 }  // namespace
 
-TEST_CASE("a layout says all there is to say of a table of points") {
+TEST_CASE("a layout describes a table of points completely") {
   const TableLayout layout = layout_of(R"(
 name = "lab"
 kind = "points"

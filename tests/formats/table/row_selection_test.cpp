@@ -36,7 +36,7 @@ TEST_CASE("rows are selected by a column, numbers by their value") {
         "p.csv:1: expected an existing column in select (nearest: who), found \"whom\"");
 }
 
-TEST_CASE("what a wrong selection means and what mends it is said with it") {
+TEST_CASE("a wrong selection is reported with meaning and repair") {
   const std::string layout = std::string("name = 's'\nrate_hz = 1\nbody = 'id'\n[joints]\n") +
                              "names = ['A']\nfields = { x = 'x', y = 'y', z = 'z' }\n";
   const std::string text = "id,x,y,z\n7,1,0,0\n,2,0,0\n";

@@ -84,7 +84,7 @@ TEST_CASE("line ends of two characters change no row of any format") {
   }
 }
 
-TEST_CASE("cut short at any byte a file keeps its whole rows and says what is missing") {
+TEST_CASE("a file truncated at any byte keeps its complete rows and reports the missing ones") {
   for (const TextFormat& format : all_text_formats()) {
     CAPTURE(format.file);
     const Outcome whole = read_whole(format, format.text);

@@ -32,7 +32,7 @@ TEST_CASE("what is no HDF5 is refused with what it is") {
   CHECK(said(std::string(5000, '\0')) == wanted + "bytes that are no plain text");
 }
 
-TEST_CASE("HDF5 of another program is told from a take, whatever version wrote it") {
+TEST_CASE("HDF5 of another program is distinguished from a take, whatever version wrote it") {
   const FreshFolder folder;
   REQUIRE(run_witness("hdf5_kinds.py", folder.path()) == 0);
   for (const std::string libver : {"earliest", "v108", "v110", "latest"}) {

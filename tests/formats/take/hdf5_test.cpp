@@ -192,7 +192,7 @@ TEST_CASE("whichever file call fails, no take is left and the error names it") {
   }
 }
 
-TEST_CASE("a full disk is said before the work, with the room that is needed") {
+TEST_CASE("a full disk is reported before the work, with the space needed") {
   const FreshFolder folder;
   bool seen = false;
   for (int call = 1; call < 60 && !seen; ++call) {
@@ -221,7 +221,7 @@ TEST_CASE("a file size limit is an ordinary error") {
   CHECK(folder.empty());
 }
 
-TEST_CASE("a take is not written over another without being told to") {
+TEST_CASE("a take does not overwrite another without --force") {
   const FreshFolder folder;
   write_or_fail(folder / "take.h5", sample_take(5));
   PosixFiles files;

@@ -51,7 +51,7 @@ const Skeleton skeleton{{"Hips", "Spine"}, {-1, 0}, {Vec3::Zero(), Vec3::UnitY()
 
 }  // namespace
 
-TEST_CASE("a stream's name can be a group beside what else stands in a take") {
+TEST_CASE("a stream's name can be a group next to the other contents of a take") {
   for (const std::string name :
        {"a/b", "time_ns", "seconds", "t0_ns", "report_json", "parameters_json", ".", ".."}) {
     CHECK(fault_of(of({points(name)})) ==
@@ -124,7 +124,8 @@ TEST_CASE("nodes have the quantities that were measured, in the world's space or
                 "valid uint8 [2] values 0 no, 1 yes", "nearest_raw_ns int64 [2] units ns"});
 }
 
-TEST_CASE("below a root node gravity is in the root's acceleration alone, as the file says") {
+TEST_CASE(
+    "in a root node's space only the root's acceleration contains gravity, as the file states") {
   const auto said = [](bool gravity, std::string root) {
     const ImuGroup imu{{"wrist", "waist"}, {true, true, true, gravity}, std::move(root)};
     Columns out = columns({"imu", imu, true, false, {}, "take"});

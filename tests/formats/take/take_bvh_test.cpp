@@ -68,7 +68,7 @@ std::string written(const FreshFolder& folder, const Take& take) {
 
 }  // namespace
 
-TEST_CASE("of a take, rows that are not valid hold the last valid pose, with a finding") {
+TEST_CASE("invalid rows of a take have the last valid pose, with a finding") {
   const FreshFolder folder;
   std::vector<std::uint8_t> valid(9000, 1);  // more than two slabs
   for (const std::size_t gap : {0, 1, 4095, 4096, 8999}) valid[gap] = 0;
@@ -92,13 +92,13 @@ TEST_CASE("of a take, rows that are not valid hold the last valid pose, with a f
   CHECK(made.findings[1].what.found == "5 of 9000 rows that are not valid");
 }
 
-TEST_CASE("of a take whose rows are all invalid no BVH is made") {
+TEST_CASE("a take without valid rows gives no BVH") {
   const FreshFolder folder;
   const std::string path = written(folder, take_of({0, 0}, {10}));
   CHECK(converted(path).error == path + ": expected a valid row of mocap, found none");
 }
 
-TEST_CASE("of a take that holds no skeleton's stream, or places beyond measure, no BVH is made") {
+TEST_CASE("a take without a skeleton, or with huge positions, gives no BVH") {
   const FreshFolder folder;
   Take points = take_of({1, 1}, {10'000'000});
   points.header.groups = {{"kinect", PointGroup{{"Head"}}, false, false, {}}};
@@ -112,7 +112,7 @@ TEST_CASE("of a take that holds no skeleton's stream, or places beyond measure, 
         (folder / "take.h5") + ": expected positions below 1e12 m, found larger positions");
 }
 
-TEST_CASE("of several skeletons the first is written, and the note says what holds them all") {
+TEST_CASE("the first of several skeletons is written, and a note names the format for all") {
   const FreshFolder folder;
   const auto made = converted(written(folder, take_of({1, 1, 1}, {10'000'000})));
   REQUIRE(made.findings.size() == 1);

@@ -154,7 +154,7 @@ TEST_CASE("whichever file call fails, no NPZ is left and the error names it") {
   }
 }
 
-TEST_CASE("texts become numpy's UTF-32, a stray byte stands for itself") {
+TEST_CASE("texts become numpy's UTF-32, an invalid byte stands for itself") {
   const NpzTexts texts = npz_texts("names", {"a", "H\xc3\xa4", "\xff", "\xe2\x82", ""});
   CHECK(texts.array.descr == "<U2");
   CHECK(texts.array.bytes() == 5 * 8);

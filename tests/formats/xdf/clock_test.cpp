@@ -47,7 +47,7 @@ TEST_CASE("xdf clock: no offset moves nothing, one moves all alike") {
   CHECK(corrected_xdf_stamp(fit_xdf_clock(one), 100.0) == 99.875);
 }
 
-TEST_CASE("xdf clock: outliers do not bend the line, and its residual tells of them") {
+TEST_CASE("xdf clock: outliers do not bend the line, and its residual shows them") {
   auto offsets = line(0.0, 60, 0.5, 10e-6);
   offsets[10].offset += 0.3;
   offsets[40].offset -= 5.0;  // the offset leaves and comes back: no reset

@@ -20,7 +20,7 @@ std::size_t count_of(const std::vector<std::uint8_t>& flags) {
 
 }  // namespace
 
-TEST_CASE("crops lack a device as often as is said, and never both") {
+TEST_CASE("crops lack a device as often as stated, and never both") {
   const FuseLayout layout = fuse_test_layout();
   const FusePerson person = fuse_person(64);
   FuseDraws draws;
@@ -40,7 +40,7 @@ TEST_CASE("crops lack a device as often as is said, and never both") {
   CHECK(without_nodes < 240);
 }
 
-TEST_CASE("a lost part is one limb or one node, for no longer than is said") {
+TEST_CASE("a lost part is one limb or one node, for no longer than stated") {
   const FuseLayout layout = fuse_test_layout();
   const FusePerson person = fuse_person(120);
   FuseDraws draws;

@@ -56,7 +56,7 @@ TEST_CASE("the same stream gives the same errors, another one others") {
   CHECK(with_errors(nodes, {}, RandomStream(1, 2)).acceleration != first.acceleration);
 }
 
-TEST_CASE("errors are as large as they say") {
+TEST_CASE("errors are as large as stated") {
   // Over 4,000 draws a root mean square is accurate to about 1.5 %.
   NodeErrors one = no_node_errors();
   one.mount_deg = 5.0;

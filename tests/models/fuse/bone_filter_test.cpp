@@ -37,7 +37,7 @@ double error_cm(const FusePerson& person, const FusedPose& answer, std::string_v
 
 }  // namespace
 
-TEST_CASE("of clean devices the filter finds hands and feet within 5 cm") {
+TEST_CASE("with clean devices the filter finds hands and feet within 5 cm") {
   const FusePerson person = fuse_person(120);
   const FusedPose pose = filtered_pose(fuse_test_layout(), pose_body(test_offsets()), person.input);
   for (const char* joint : {"lhand", "rhand", "lfoot", "rfoot", "ltibia", "lradius"}) {

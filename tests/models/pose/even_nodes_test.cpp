@@ -101,7 +101,7 @@ TEST_CASE("over a gap of more than 0.2 s a node is not valid, over a shorter one
   CHECK((acceleration_of(*even, 3 * 17).cast<double>() - push(17.0 / 30.0)).norm() < 0.05);
 }
 
-TEST_CASE("a node that says no orientation gets one, with its own heading") {
+TEST_CASE("a node without orientation gets one, with its own heading") {
   NodeTrack track = turning_node(100.0);
   track.orientation.clear();
   for (std::size_t i = 0; i < track.stamps.size(); ++i) {
@@ -112,7 +112,7 @@ TEST_CASE("a node that says no orientation gets one, with its own heading") {
   CHECK((quat(track.orientation, 100) * Vec3::UnitZ() - Vec3::UnitY()).norm() < 1e-6);
 }
 
-TEST_CASE("a node that says no angular velocity gets that of its turns") {
+TEST_CASE("a node without angular velocity gets it from its orientations") {
   NodeTrack track = turning_node(100.0);
   const std::vector<double> said = track.angular_velocity;
   track.angular_velocity.clear();

@@ -130,7 +130,7 @@ TEST_CASE("nodes worn anyhow that share a heading are found by arms that come do
   }
 }
 
-TEST_CASE("nodes worn as told have a heading each, which their mounting shows") {
+TEST_CASE("nodes worn as described have a heading each, which their mounting shows") {
   for (const std::uint64_t seed : fresh_seeds(20)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -148,7 +148,8 @@ TEST_CASE("nodes worn as told have a heading each, which their mounting shows") 
   }
 }
 
-TEST_CASE("nodes worn as told in one world share a heading, and errors of wearing are averaged") {
+TEST_CASE(
+    "nodes worn as described in one world share a heading, and errors of wearing are averaged") {
   for (const std::uint64_t seed : fresh_seeds(20)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -207,7 +208,7 @@ TEST_CASE("arms that hang in place of a T-pose are seen by where up is for their
   CHECK(found->nodes[4]->tilt_deg < 1.0);
 }
 
-TEST_CASE("what an accelerometer says at rest is taken off in its own space") {
+TEST_CASE("an accelerometer's reading at rest is subtracted in its own space") {
   std::mt19937_64 random(4);
   const Person truth = person();
   const Worn worn = worn_as_told(truth, random, 0.0);
@@ -239,7 +240,7 @@ TEST_CASE("a node without samples in the T-pose is lost, and without the root's 
   CHECK(to_string(none.error()) == "expected samples of the node waist in the T-pose, found none");
 }
 
-TEST_CASE("where neither wearing nor arms show it, nobody knows where the person faces") {
+TEST_CASE("if neither wearing nor arms show it, the direction of the person is unknown") {
   const Person truth = person();
   Worn worn{std::vector<Quat>(worn_count, Quat::Identity()),
             std::vector<Quat>(worn_count, turned(pi, 0.0, 0.0))};
@@ -254,7 +255,7 @@ TEST_CASE("where neither wearing nor arms show it, nobody knows where the person
         "so the direction of the person is unknown");
 }
 
-TEST_CASE("a stated wearing stands in place of the told one") {
+TEST_CASE("a stated mounting replaces the described one") {
   const Person truth = person();
   const Worn worn{std::vector<Quat>(worn_count, turned(0.0, 1.0, 0.0)),
                   std::vector<Quat>(worn_count, Quat::Identity())};

@@ -31,7 +31,7 @@ TEST_CASE("a model's own word for a node comes before others") {
   CHECK_FALSE(node_at(names, "wrist_right"));
 }
 
-TEST_CASE("worn as told, x lies along the bone and z points away from the body") {
+TEST_CASE("worn as described, x lies along the bone and z points away from the body") {
   for (const WornPlace& place : worn_places()) {
     CAPTURE(place.name);
     const Quat worn = worn_in_t_pose(place);

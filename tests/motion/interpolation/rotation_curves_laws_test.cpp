@@ -130,7 +130,7 @@ TEST_CASE("a curve of rotations is the same one whenever it begins and however f
   }
 }
 
-TEST_CASE("what a curve gives at a place does not depend on the places asked for beside it") {
+TEST_CASE("the value of a curve at a place does not depend on other requested places") {
   for (const auto seed : fresh_seeds(100)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -184,7 +184,7 @@ TEST_CASE("a knot put in where the slerp runs anyway changes nothing") {
   }
 }
 
-TEST_CASE("a slerp depends on the two knots beside a place alone") {
+TEST_CASE("a slerp depends only on the two knots around a place") {
   for (const auto seed : fresh_seeds(100)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

@@ -97,7 +97,7 @@ TEST_CASE("each joint has the number that the SDK gives it") {
   }
 }
 
-TEST_CASE("a camera without errors says the truth in its own space") {
+TEST_CASE("a camera without errors measures the truth in its own space") {
   const KinectOptions options = in_front(nothing);
   const PointFrames frames = simulated(standing(0.3), options, 1.0);
   REQUIRE(frames.size() > 28);
@@ -131,7 +131,7 @@ TEST_CASE("the same seed gives the same bytes, another one others") {
   }
 }
 
-TEST_CASE("a joint beside the image or too far is missing, legs below it are inferred") {
+TEST_CASE("a joint outside the image or too far is missing, legs below it are inferred") {
   KinectParts parts = nothing;
   parts.view = true;
   KinectOptions options = in_front(parts);
@@ -346,7 +346,7 @@ TEST_CASE("soft bones let half of a bone's error through") {
   CHECK((vec3(joints, head) - vec3(scene.truth, head)).norm() == 0.0);
 }
 
-TEST_CASE("a capsule hides what lies behind it and nothing beside it") {
+TEST_CASE("a capsule hides points behind it and no others") {
   std::array<double, 3 * kinect_joint_count> joints{};
   const std::span<double> body(joints);
   stand(std::numbers::pi, body);  // faces -z: the camera at the origin, 2.5 m away

@@ -58,7 +58,7 @@ TEST_CASE("each frame echoes the newest reply that came since the one before, an
   }
 }
 
-TEST_CASE("no stamp of a node says that a packet was faster than light") {
+TEST_CASE("no stamp of a node implies a packet faster than light") {
   for (const auto seed : fresh_seeds(5)) {
     CAPTURE(seed);
     const auto run = simulate_exchanges(on(Link::congested), seed);
@@ -70,7 +70,7 @@ TEST_CASE("no stamp of a node says that a packet was faster than light") {
   }
 }
 
-TEST_CASE("a reboot starts counter and sequence anew, under another boot id or the same") {
+TEST_CASE("a reboot restarts counter and sequence, under another boot id or the same") {
   ExchangeOptions options = on(Link::quiet);
   options.reboots = {{.at = 20.0, .gap = 2.0}, {.at = 40.0, .gap = 0.5, .same_id = true}};
   const auto run = simulate_exchanges(options, 11);

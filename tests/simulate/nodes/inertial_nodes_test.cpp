@@ -123,7 +123,7 @@ TEST_CASE("samples come at the node's rate, and their stamps name when they were
   }
 }
 
-TEST_CASE("the truth beside a sample is the motion's at its time") {
+TEST_CASE("the truth of a sample is the motion at its time") {
   const Motion motion = person({{Piece::walk, 8.0}});
   const auto nodes = nodes_on(motion, {.rate_hz = 15});
   Pose pose;
@@ -189,7 +189,7 @@ TEST_CASE("a node on a body that stands reads gravity, and its orientation keeps
   }
 }
 
-TEST_CASE("orientation tilts and drifts on a walk, as much as the page says and no more") {
+TEST_CASE("orientation tilts and drifts on a walk, as much as the page states") {
   double tilt_square = 0.0, worst_drift = 0.0, worst_tilt = 0.0;
   std::size_t count = 0;
   for (const std::uint64_t seed : {1U, 2U}) {
@@ -291,7 +291,7 @@ TEST_CASE("the same seed gives the same samples, another one others") {
   }
 }
 
-TEST_CASE("a rate that is none, and a mounting beside the skeleton, are refused") {
+TEST_CASE("a rate of zero, and a mounting outside the skeleton, are refused") {
   const Motion motion = person({{Piece::stand, 1.0}});
   const auto message = [&](const std::vector<Mounting>& mountings, std::uint32_t rate) {
     const auto nodes = simulate_nodes(motion, mountings, {.rate_hz = rate}, 1);

@@ -82,7 +82,7 @@ TEST_CASE("no packet is faster than its floor, and what is not reordered keeps i
   }
 }
 
-TEST_CASE("packets are lost as often as the link says") {
+TEST_CASE("packets are lost as often as the link states") {
   const auto sent = each_fifteenth(20000);
   for (const auto seed : fresh_seeds(3)) {
     CAPTURE(seed);

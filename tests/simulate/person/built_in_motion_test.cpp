@@ -257,7 +257,7 @@ TEST_CASE("T-pose comes first: arms out, upright, legs nearly straight, facing +
   }
 }
 
-TEST_CASE("each piece does what its name says") {
+TEST_CASE("each piece moves as its name states") {
   const auto highest = [](const Motion& motion, NeuronJoint joint) {
     double most = -1.0;
     for (double t = 4.0; t < 16.0; t += 0.05) {
@@ -284,7 +284,7 @@ TEST_CASE("each piece does what its name says") {
   CHECK(highest(stand, NeuronJoint::left_foot) < 0.09);
 }
 
-TEST_CASE("slow pieces do what their names say") {
+TEST_CASE("slow pieces move as their names state") {
   struct Reached {
     double high = -1.0, low_head = 9.0, low_hips = 9.0, wide = 0.0, ahead = 0.0, yaw = 0.0;
   };

@@ -12,7 +12,7 @@
 
 using namespace kinalign;
 
-TEST_CASE("every piece has a name that finds it, and a wrong one is told the right ones") {
+TEST_CASE("every piece has a name that finds it, and a wrong name is refused with the right ones") {
   for (const auto name : piece_names) {
     const auto piece = piece_named(name);
     REQUIRE(piece);
@@ -56,7 +56,7 @@ TEST_CASE("the order and the lengths differ from round to round and from seed to
   CHECK(pieces(one, 1) != pieces(two, 1));
 }
 
-TEST_CASE("acts stand one behind the other, each drawn anew and within its ranges") {
+TEST_CASE("acts follow each other, each drawn again within its ranges") {
   const auto acts = acts_of({{Piece::wave, 4.0}, {Piece::walk, 0.0}, {Piece::wave, 5.0}}, 3);
   REQUIRE(acts.size() == 2);
   CHECK(acts[0].first);

@@ -94,7 +94,7 @@ TEST_CASE("a clock that is 3 ms off is found so, and outside what it states") {
   CHECK(judged->worst_s < 1e-4);
 }
 
-TEST_CASE("a node is known by its number too, a stranger is refused") {
+TEST_CASE("a node is known by its number, too; an unknown node is refused") {
   Rehearsed all;
   RecordedStream& waist = all.recording.streams[2];
   std::get<ImuInput>(waist.data).node_names = {"1"};
@@ -105,7 +105,7 @@ TEST_CASE("a node is known by its number too, a stranger is refused") {
   CHECK(judged.error().found == "imu hat");
 }
 
-TEST_CASE("of a device that the truth lacks it is said which ones it has") {
+TEST_CASE("an unknown device is refused with the devices of the truth") {
   Rehearsed all;
   all.recording.streams[0].name = "suit";
   const auto judged = judge_time(all.recording.streams[0], all.truth, {});
@@ -115,7 +115,7 @@ TEST_CASE("of a device that the truth lacks it is said which ones it has") {
         "wrist_right, imu ankle_left, imu ankle_right), found suit");
 }
 
-TEST_CASE("points that are true have no error, those 1 cm beside have one of 1 cm") {
+TEST_CASE("true points have no error, points 1 cm away have 1 cm") {
   const Rehearsed all;
   for (const double off : {0.0, 0.01}) {
     const Take take = true_points(all, Vec3(0, off, 0));

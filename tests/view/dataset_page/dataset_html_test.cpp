@@ -67,7 +67,7 @@ TEST_CASE(
   CHECK(html == dataset_html(small_page()));
 }
 
-TEST_CASE("a take with a page is a link, and a page of all takes says nothing of others") {
+TEST_CASE("a take with a page is a link, and a page of all takes mentions no others") {
   DatasetPage page = small_page();
   page.worst[0].page = "report/sub-03_task-S2A03_run-01.html";
   page.takes_without_page = 0;

@@ -43,7 +43,8 @@ TEST_CASE("a tilted Kinect keeps its direction along the floor") {
   CHECK((floor->forward - Vec3::UnitZ()).norm() < 1e-12);
 }
 
-TEST_CASE("no place is known of a Kinect that looks straight down or is put anew in every frame") {
+TEST_CASE(
+    "a Kinect that looks straight down, or is placed again in every frame, has no known place") {
   const Quat down(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
   CHECK(!floor_of(space_of({down, Vec3::Zero()}), 0));
   SpaceReport paper = space_of({});
@@ -51,7 +52,7 @@ TEST_CASE("no place is known of a Kinect that looks straight down or is put anew
   CHECK(!floor_of(paper, 0));
 }
 
-TEST_CASE("zones end where the paper says, heights do not matter") {
+TEST_CASE("zones end as in the paper, heights do not matter") {
   const PageFloor floor = sideways();
   CHECK(zone_of(floor, before_it(0.49, 0.0)) == Zone::outside);
   CHECK(zone_of(floor, before_it(0.51, 0.0)) == Zone::largest);

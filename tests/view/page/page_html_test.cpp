@@ -99,7 +99,8 @@ TEST_CASE("a page loads nothing and runs its own script alone" *
   }
 }
 
-TEST_CASE("a page says what its take has, and no more" * doctest::skip(built_without_script())) {
+TEST_CASE("a page shows the contents of its take, and no more" *
+          doctest::skip(built_without_script())) {
   const std::string html = html_of(walking_take(30));
   CHECK(html.find("kinect was moved onto mocap by one rotation and translation") !=
         std::string::npos);

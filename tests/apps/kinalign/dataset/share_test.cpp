@@ -30,7 +30,7 @@ void check(const Environment& environment, std::size_t rank, std::size_t size,
 
 }  // namespace
 
-TEST_CASE("a build that nobody started as one of several makes all of it") {
+TEST_CASE("a build outside a cluster makes all takes") {
   check({}, 0, 1);
   check({{"SLURM_NTASKS", "8"}, {"SLURM_PROCID", "0"}}, 0, 1);  // a batch script, not srun
 }

@@ -6,7 +6,7 @@
 using namespace kinalign;
 using namespace std::chrono_literals;
 
-TEST_CASE("of a hundred latencies of 1 to 100 ms half are at most 50, and 99 in 100 at most 99") {
+TEST_CASE("percentiles of the latencies 1 to 100 ms: p50 is 50, p99 is 99") {
   LiveLatency latency;
   for (int i = 100; i >= 1; --i) latency.add(i * 1ms, i * 2ms);
   CHECK(latency.after_arrival_ms(0.5) == doctest::Approx(50.0));

@@ -14,7 +14,7 @@ TEST_CASE("a port alone is one of this machine, and a host may stand before it")
   CHECK(parse_endpoint("[::1]:7040", "--live")->host == "::1");
 }
 
-TEST_CASE("what is no port is refused with the flag that said it") {
+TEST_CASE("a wrong port is refused with its flag") {
   for (const char* text : {"", "0", "65536", "-1", "7040x", ":7040", "a:", "7040:"}) {
     CAPTURE(text);
     const auto refused = parse_endpoint(text, "--live");

@@ -58,7 +58,7 @@ std::uint16_t port_of_nobody() { return Listener().port(); }
 
 }  // namespace
 
-TEST_CASE("every datagram that nobody listens for is counted, of a device that hears too") {
+TEST_CASE("every datagram to a closed port is counted, also for a device that receives") {
   for (const bool hears : {false, true}) {
     CAPTURE(hears);
     LiveSocket socket = opened(port_of_nobody());

@@ -58,14 +58,14 @@ TEST_CASE("a rehearsal that was stopped says when, and no next step as if it wer
   CHECK(text.next.empty());
 }
 
-TEST_CASE("who is stopped before anybody could answer says nothing of nobody") {
+TEST_CASE("a rehearsal stopped before any reply has no line about missing replies") {
   SentRehearsal sent = well_sent();
   sent.counts = {.mocap = {1, 0, 0}};
   sent.sent_s = 0.1;
   CHECK(sent_text(sent).no_reply.empty());
 }
 
-TEST_CASE("where nobody was there it is said of every device alike, and of all together") {
+TEST_CASE("if no port was open, each device and the whole rehearsal say so") {
   const SentText text = sent_text(sent_to_nobody());
   CHECK(text.no_reply ==
         "  datagrams refused by the host: 400 of 400 on mocap port 7012, 290 of 290 on kinect port "
@@ -77,7 +77,7 @@ TEST_CASE("where nobody was there it is said of every device alike, and of all t
   CHECK(text.next.empty());
 }
 
-TEST_CASE("another program on one port is somebody, who does not answer") {
+TEST_CASE("another program on a port receives but does not reply") {
   SentRehearsal sent = sent_to_nobody();
   sent.counts.mocap.refused = 0;
   const SentText text = sent_text(sent);
@@ -88,7 +88,7 @@ TEST_CASE("another program on one port is somebody, who does not answer") {
   CHECK(text.next.empty());
 }
 
-TEST_CASE("a recorder that comes late, or for some devices only, is told what it missed") {
+TEST_CASE("refused datagrams are reported if the recorder starts late or has only some ports") {
   SentRehearsal sent = well_sent();
   sent.counts.kinect.refused = 30;
   const SentText text = sent_text(sent);

@@ -35,7 +35,7 @@ std::string withdrawn(const std::string& s) {
 
 }  // namespace
 
-TEST_CASE("a step is told before the stamps that it cost, and these once") {
+TEST_CASE("a step is printed before its withdrawn stamps, and these once") {
   ClockEventLines events;
   for (const double s : {20.0, 20.1}) {
     events.add(0, 7, event(Kind::violator, s, s), at(s));
@@ -50,7 +50,7 @@ TEST_CASE("a step is told before the stamps that it cost, and these once") {
   CHECK(events.lines(at(25)) == Lines{"node 7: its counter runs evenly again"});
 }
 
-TEST_CASE("a withdrawal without a step is told within a second, or at the end") {
+TEST_CASE("a withdrawal without a step is printed within a second, or at the end") {
   ClockEventLines events;
   events.add(0, 7, event(Kind::withdrawn, 15, 20), at(20));
   events.add(1, 8, event(Kind::withdrawn, 16, 20), at(20.5));
@@ -95,7 +95,7 @@ TEST_CASE("each line has the node's name in its lab") {
   CHECK(lines[3] == "imu 8: its counter runs evenly again");
 }
 
-TEST_CASE("steps of a node a long time apart, and those of others, are told each") {
+TEST_CASE("steps far apart in time, and steps of other nodes, are printed each") {
   ClockEventLines events;
   for (const double s : {20.0, 26.0, 32.0, 38.0}) {
     step(events, s);

@@ -132,7 +132,7 @@ TEST_CASE("stamps from near zero have no date, later ones that of the calendar, 
             .find("  from 1.500 to 61.500 s, no date known\n") != std::string::npos);
 }
 
-TEST_CASE("whatever a stranger's take says in the place of anything, its page is made") {
+TEST_CASE("a take with wrong types in its report still gets its page") {
   std::mt19937_64 random(1);
   const Json whole = facts(full_report(random)), flat = whole.flatten();
   const std::vector<Json> others{nullptr,      true,           -1,           7,

@@ -47,7 +47,7 @@ std::vector<std::string> told(const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("info tells an XDF's streams: what they are, their samples, stamps and clocks") {
+TEST_CASE("info prints an XDF's streams: kind, samples, stamps and clocks") {
   const XdfSurvey survey = surveyed(two_streams());
   CHECK(describe_xdf("rec.xdf", survey, Names::no).text ==
         "rec.xdf\n"
@@ -64,7 +64,7 @@ TEST_CASE("info tells an XDF's streams: what they are, their samples, stamps and
             .text.find("    channel   Fp1, uV\n    channel   Fp2\n") != std::string::npos);
 }
 
-TEST_CASE("info --json has an XDF's streams with all that their headers say") {
+TEST_CASE("info --json has an XDF's streams with their whole headers") {
   const Json json = Json::parse(describe_xdf("rec.xdf", surveyed(two_streams()), Names::no).json);
   REQUIRE(json["streams"].size() == 2);
   const Json& one = json["streams"][0];
@@ -85,7 +85,7 @@ TEST_CASE("info --json has an XDF's streams with all that their headers say") {
   CHECK(json["streams"][1]["first_s"].is_null());
 }
 
-TEST_CASE("check tells what is wrong with an XDF, and nothing of a sound one") {
+TEST_CASE("check reports the faults of an XDF, and nothing for a sound file") {
   const std::string sound = xdf_begin + xdf_header(1, "double64", 1) + xdf_offset(1, 1.0, 0.5) +
                             xdf_samples(1, 1, xdf_sample(1.0, little_text(2.5)));
   CHECK(told(sound).empty());

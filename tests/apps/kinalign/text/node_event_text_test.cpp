@@ -49,7 +49,7 @@ TEST_CASE("every event has a text and a name, and warnings say that they are") {
         "warning: this machine slept for 30.0 s; the nodes' clocks are learnt again");
 }
 
-TEST_CASE("a node that is refused for its key is told with what mends it") {
+TEST_CASE("a node refused for its key is reported with a repair") {
   NodeEvent event;
   event.kind = NodeEvent::Kind::wrong_key;
   event.node_id = 7;

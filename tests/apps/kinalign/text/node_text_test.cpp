@@ -51,7 +51,7 @@ TEST_CASE("a node's status is one line, and JSON with times in ns") {
   CHECK_FALSE(json.contains("d_ms"));
 }
 
-TEST_CASE("a node without a certificate, a counter or a voice says so") {
+TEST_CASE("a node without a certificate, a counter or samples says so") {
   NodeStatus status = some_status();
   status.stamp->certainty = Certainty::one_sided;
   CHECK(status_text(status, now).find(", not locked: too few exchanges, ") != std::string::npos);
@@ -92,7 +92,7 @@ TEST_CASE("what is not known of a node is left out") {
   }
 }
 
-TEST_CASE("what was refused is counted for people by its causes") {
+TEST_CASE("refused datagrams are printed by cause") {
   NodeCounts counts;
   CHECK(refused_text(counts).empty());
   counts.refusals[NodeRefusal::no_mac] = 1234;
@@ -100,7 +100,7 @@ TEST_CASE("what was refused is counted for people by its causes") {
   CHECK(refused_text(counts) == "2 bad crc, 1,234 no mac");
 }
 
-TEST_CASE("who was refused for a key is listed by what he says he is") {
+TEST_CASE("senders refused for a key are listed by their stated ids") {
   NodeCounts counts;
   RefusedNodes refused;
   CHECK(claims_text(refused, counts).empty());

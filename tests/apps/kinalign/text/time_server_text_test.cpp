@@ -23,7 +23,8 @@ NtpServerState local_reference() {
 
 }  // namespace
 
-TEST_CASE("the first lines say where it serves, how good the clock is and what clients are told") {
+TEST_CASE(
+    "the first lines state the addresses, the quality of the clock and the clients' settings") {
   const ServedPort everywhere{{"0.0.0.0", "::"}, {"192.168.7.1", "fd00::2"}, 123};
   CHECK(start_lines(everywhere, local_reference()) ==
         "serving time on 0.0.0.0:123 and [::]:123, UDP\n"

@@ -39,7 +39,7 @@ std::set<std::string> topics_in(const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("of a recording the devices that give no rows are left out by name, all else is shown") {
+TEST_CASE("devices of a recording without rows are left out by name, all others are shown") {
   const FreshFolder folder;
   RecordedLab lab(20261123);
   lab.add_node(12, 1, {3.0, -35.0}, 0.0, 5.0);

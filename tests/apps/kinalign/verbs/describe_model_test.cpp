@@ -23,7 +23,7 @@ DenoiseModel model_with_facts() {
 
 }  // namespace
 
-TEST_CASE("info tells a model: joints, network, training, metrics, steadying") {
+TEST_CASE("info prints a model: joints, network, training, metrics, smoothing") {
   const auto found = describe_model("m.safetensors", write_denoise_model(model_with_facts()));
   REQUIRE(found);
   CHECK(found->text ==
@@ -49,7 +49,7 @@ TEST_CASE("info tells a model: joints, network, training, metrics, steadying") {
   CHECK(json.at("metrics").at("mpjpe_cm") == 3.5);
 }
 
-TEST_CASE("info tells branches, and what a network does not see") {
+TEST_CASE("info prints branches and unused channels") {
   DenoiseModel model = small_model(1);
   model.architecture.layers = {
       branches(sum, {{}, {causal_conv(35, 3, 2), {.kind = LayerKind::dropout, .rate = 0.25}}}),
@@ -69,7 +69,7 @@ TEST_CASE("info tells branches, and what a network does not see") {
                          "              lstm 10, both directions\n") != std::string::npos);
 }
 
-TEST_CASE("info tells no model that can't be used, and takes facts of any shape") {
+TEST_CASE("info refuses an unusable model, and accepts facts of any shape") {
   DenoiseModel model = small_model(1);
   model.tensors.erase("net.0.bias");
   const auto broken = describe_model("m", write_denoise_model(model));
@@ -87,7 +87,7 @@ TEST_CASE("info tells no model that can't be used, and takes facts of any shape"
   }
 }
 
-TEST_CASE("info tells a model for poses: nodes, bones, body, network, training, metrics") {
+TEST_CASE("info prints a model for poses: nodes, bones, body, network, training, metrics") {
   std::ifstream in(KINALIGN_SOURCE_DIR "/tests/data/fuzz/pose_model_fuzz/two.safetensors",
                    std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(in), {});
@@ -119,7 +119,7 @@ TEST_CASE("info tells a model for poses: nodes, bones, body, network, training, 
   CHECK(json.at("metrics").at("calibrated_position_cm") == 12.5);
 }
 
-TEST_CASE("info tells what a model went on from, with the terms of that data") {
+TEST_CASE("info prints the model that training continued from, with its licence") {
   DenoiseModel model = small_model(1);
   model.facts.training =
       R"({"data":[{"name":"own","frames":9}],"from":{"data":[{"name":"base","licence":"PDDL"}]}})";

@@ -32,7 +32,7 @@ TEST_CASE("notes do not make an exit code of 1, warnings and errors do") {
   CHECK(code_of({{Severity::error, {}, "", ""}}) == 1);
 }
 
-TEST_CASE("what is wrong with a recording is said of it under the name that the user gave") {
+TEST_CASE("a fault of a recording is reported under the name that the user gave") {
   RecordingSurvey survey;
   const auto refusal = [&survey] {
     const auto manifest = recorded_manifest(survey, "t/take.mcap");
@@ -49,7 +49,7 @@ TEST_CASE("what is wrong with a recording is said of it under the name that the 
   CHECK(recorded_manifest(survey, "t/take.mcap").error().kind == ErrorKind::no_rows_in_recording);
 }
 
-TEST_CASE("where names stand is said for a joint or node that is not there, whatever its words") {
+TEST_CASE("errors about unknown joints and nodes say where names are listed") {
   const std::string advice = "kinalign info FILE -v lists the names of joints and nodes";
   CHECK(name_advice({"", 0, "any words", "any", ErrorKind::no_such_joint}) == advice);
   CHECK(name_advice({"", 0, "any words", "any", ErrorKind::no_such_node}) == advice);

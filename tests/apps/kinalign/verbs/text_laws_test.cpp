@@ -132,7 +132,7 @@ TEST_CASE("a number is grouped in threes and loses no digit") {
   }
 }
 
-TEST_CASE("a duration says its seconds") {
+TEST_CASE("a duration is printed with its seconds") {
   for (const auto seed : fresh_seeds(300)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -154,7 +154,7 @@ TEST_CASE("a duration says its seconds") {
   }
 }
 
-TEST_CASE("a share is what it says to a digit, and never nothing where there is something") {
+TEST_CASE("a share is printed to one digit, and never as zero if it is not zero") {
   for (const auto seed : fresh_seeds(300)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
