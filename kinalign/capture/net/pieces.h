@@ -45,7 +45,7 @@ class Senders {
     HostAddress host{};
     std::uint16_t port = 0;
     // Last arrival.
-    HostTime heard{};
+    HostTime last_arrival{};
     // serial number of this sender among all senders that ever had a number
     std::uint64_t life = 0;
     std::uint64_t times = 0;  // messages received
@@ -70,7 +70,7 @@ class Senders {
   std::size_t size() const { return senders_.size(); }
 
  private:
-  void hear(std::size_t number, HostTime now);
+  void note_arrival(std::size_t number, HostTime now);
   std::optional<std::size_t> add(const HostAddress& host, std::uint16_t port, HostTime now);
   std::optional<std::size_t> place_for(const HostAddress& host, HostTime now);
   std::optional<std::size_t> own_past(const HostAddress& host) const;
@@ -128,7 +128,7 @@ class TcpPieces {
  private:
   struct Link {
     Handle socket;
-    HostTime heard{};  // last arrival, or the time when the connection was made
+    HostTime last_arrival{};  // last arrival, or the time when the connection was made
     bool connected = false;
     HostAddress host{};  // address of the device
     std::uint16_t port = 0;

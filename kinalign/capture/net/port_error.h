@@ -13,7 +13,7 @@ namespace kinalign {
 /// Example: "mocap: expected a UDP port to serve on at 0.0.0.0:7012, found a port that another
 /// program uses". The device's name replaces the address and port at the beginning.
 template <class T>
-Result<T> told_of(const std::string& name, Result<T> opened) {
+Result<T> with_name(const std::string& name, Result<T> opened) {
   return std::move(opened).map_error([&name](Error error) {
     if (!error.file.empty()) error.expected += " at " + error.file;
     error.file = name;

@@ -9,7 +9,7 @@ std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_
                                            HostTime now) {
   auto number = find(host, port);
   if (!number) number = add(host, port, now);
-  if (number) hear(*number, now);
+  if (number) note_arrival(*number, now);
   return number;
 }
 
@@ -23,12 +23,12 @@ std::optional<std::size_t> Senders::number(std::optional<Known>& known, const Ho
     if (!number) return std::nullopt;
     known = {*number, senders_[*number].life};
   }
-  hear(known->number, now);
+  note_arrival(known->number, now);
   return known->number;
 }
 
-void Senders::hear(std::size_t number, HostTime now) {
-  senders_[number].heard = now;
+void Senders::note_arrival(std::size_t number, HostTime now) {
+  senders_[number].last_arrival = now;
   ++senders_[number].times;
 }
 
@@ -67,8 +67,8 @@ std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime 
     Duration patience = std::chrono::minutes(1);
     if (stranger || same_host) patience = std::chrono::seconds(2);
     if (stranger && same_host && crowds) patience = Duration::zero();
-    if (now - sender.heard < patience) continue;
-    if (!found || sender.heard < senders_[*found].heard) found = i;
+    if (now - sender.last_arrival < patience) continue;
+    if (!found || sender.last_arrival < senders_[*found].last_arrival) found = i;
   }
   return found;
 }
@@ -78,7 +78,7 @@ std::optional<std::size_t> Senders::own_past(const HostAddress& host) const {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < senders_.size(); ++i) {
     if (senders_[i].host != host) continue;
-    if (!found || senders_[i].heard < senders_[*found].heard) found = i;
+    if (!found || senders_[i].last_arrival < senders_[*found].last_arrival) found = i;
   }
   return found;
 }

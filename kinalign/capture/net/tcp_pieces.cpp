@@ -152,8 +152,9 @@ void TcpPieces::accept(HostTime now) {
 /// enough.
 bool TcpPieces::give_up_idle(HostTime now) {
   const auto idlest = std::min_element(
-      links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.heard < b.heard; });
-  if (now - idlest->heard < idle_after) return false;
+      links_.begin(), links_.end(),
+      [](const Link& a, const Link& b) { return a.last_arrival < b.last_arrival; });
+  if (now - idlest->last_arrival < idle_after) return false;
   links_.erase(idlest);
   return true;
 }
@@ -220,7 +221,7 @@ bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
     if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (got == 0) return false;
     axis.look();
-    const HostTime arrival = link.heard = axis.arrival(stamp);
+    const HostTime arrival = link.last_arrival = axis.arrival(stamp);
     const auto sender = senders_.number(link.sender, link.host, link.port, arrival);
     ++(sender ? counts_.pieces : counts_.refused);
     if (!sender) continue;

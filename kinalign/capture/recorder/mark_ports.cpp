@@ -34,7 +34,7 @@ Severity severity_of(ViconRefusal refusal) {
 }  // namespace
 
 Result<MarkPort> MarkPort::open(Form form, std::uint16_t port) {
-  return MarkPort(form, KA_TRY(told_of(port_name(form), UdpPieces::open("", port))));
+  return MarkPort(form, KA_TRY(with_name(port_name(form), UdpPieces::open("", port))));
 }
 
 MarkPort::MarkPort(Form form, UdpPieces pieces)

@@ -37,7 +37,7 @@ Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& 
   if (!device.address.empty()) options.addresses = {device.address};
   options.port = static_cast<std::uint16_t>(device.port);
   options.responder = desk;
-  NodeReceiver receiver = KA_TRY(told_of(device.name, NodeReceiver::open(options, clocks)));
+  NodeReceiver receiver = KA_TRY(with_name(device.name, NodeReceiver::open(options, clocks)));
   return std::unique_ptr<RecordedNodes>(
       new RecordedNodes(device, desk.lab_key.has_value(), std::move(receiver), recorder));
 }
