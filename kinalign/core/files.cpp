@@ -208,12 +208,12 @@ Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overw
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) {
     return failed(file.path_, "a folder that can be written", errno);
   }
-  file.beside_ = hidden_name(file.path_);
-  file.unfinished_ = file.beside_;
-  file.fd_ = files.open(file.beside_.c_str(), O_RDWR | O_CREAT | O_EXCL, 0644);
+  file.hidden_path_ = hidden_name(file.path_);
+  file.unfinished_ = file.hidden_path_;
+  file.fd_ = files.open(file.hidden_path_.c_str(), O_RDWR | O_CREAT | O_EXCL, 0644);
   if (file.fd_ < 0) {
     const int code = errno;
-    file.beside_.clear();
+    file.hidden_path_.clear();
     return failed(file.path_, "a folder that can be written", code);
   }
   return file;
@@ -228,7 +228,7 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
       overwrite_(other.overwrite_),
       fd_(std::exchange(other.fd_, -1)),
       unfinished_(std::move(other.unfinished_)),
-      beside_(std::exchange(other.beside_, {})) {}
+      hidden_path_(std::exchange(other.hidden_path_, {})) {}
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   std::swap(files_, other.files_);
@@ -236,7 +236,7 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   std::swap(overwrite_, other.overwrite_);
   std::swap(fd_, other.fd_);
   std::swap(unfinished_, other.unfinished_);
-  std::swap(beside_, other.beside_);
+  std::swap(hidden_path_, other.hidden_path_);
   return *this;
 }
 
@@ -244,9 +244,9 @@ OutputFile::~OutputFile() { discard(); }
 
 void OutputFile::discard() {
   if (fd_ >= 0) files_->close(fd_);
-  if (!beside_.empty()) files_->remove(beside_.c_str());
+  if (!hidden_path_.empty()) files_->remove(hidden_path_.c_str());
   fd_ = -1;
-  beside_.clear();
+  hidden_path_.clear();
 }
 
 Result<void> OutputFile::spoiled(const std::string& expected, int code) {
@@ -283,28 +283,28 @@ Result<std::size_t> OutputFile::read_at(std::uint64_t at, std::span<char> to) co
 
 Result<void> OutputFile::place() {
   // link() to a free name, not rename(): it fails if another program has taken the name meanwhile.
-  const std::string from = beside_.empty() ? unfinished_ : beside_;
+  const std::string from = hidden_path_.empty() ? unfinished_ : hidden_path_;
   if (files_->link(from.c_str(), path_.c_str()) == 0) return {};
   if (errno != EEXIST) return failed(path_, "a folder that can be written", errno);
   if (overwrite_ == Overwrite::no) {
     return Failure(
         Error{path_, 0, "no file of that name (--force overwrites)", "an existing file"});
   }
-  if (beside_.empty()) {
+  if (hidden_path_.empty()) {
     // A nameless file can only be linked to a free name. It is linked to a temporary name, which is
     // then renamed over the old file. If the program is killed between both steps, the complete new
     // file remains under the temporary name.
-    beside_ = hidden_name(path_);
-    if (files_->link(unfinished_.c_str(), beside_.c_str()) != 0) {
+    hidden_path_ = hidden_name(path_);
+    if (files_->link(unfinished_.c_str(), hidden_path_.c_str()) != 0) {
       const int code = errno;
-      beside_.clear();
+      hidden_path_.clear();
       return failed(path_, "a folder that can be written", code);
     }
   }
-  if (files_->rename(beside_.c_str(), path_.c_str()) != 0) {
+  if (files_->rename(hidden_path_.c_str(), path_.c_str()) != 0) {
     return failed(path_, "a file that can be replaced", errno);
   }
-  beside_.clear();
+  hidden_path_.clear();
   return {};
 }
 

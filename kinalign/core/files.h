@@ -145,7 +145,7 @@ class OutputFile {
   Overwrite overwrite_;
   int fd_ = -1;
   std::string unfinished_;
-  std::string beside_;  // the name with a dot; empty if the file has no name
+  std::string hidden_path_;  // the name with a dot; empty if the file has no name
 };
 
 /// Writes a file with these bytes.

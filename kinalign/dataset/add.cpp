@@ -88,9 +88,9 @@ class CopyPlan {
   /// there.
   Manifest plan(Manifest manifest) {
     for (StreamOptions& stream : manifest.streams) {
-      const StreamOptions as_said = stream;
+      const StreamOptions given_stream = stream;
       for (std::size_t i = 0; i < stream.files.size(); ++i) {
-        stream.files[i].path = place(as_said, as_said.files[i]);
+        stream.files[i].path = place(given_stream, given_stream.files[i]);
       }
       if (stream.own_layout()) stream.layout = place_alone(stream.name, stream.layout);
       if (!stream.skeleton.empty()) stream.skeleton = place_alone(stream.name, stream.skeleton);
@@ -226,12 +226,12 @@ Result<std::optional<TakeName>> TakeAdder::find_same(const Known& known, const M
   return std::nullopt;
 }
 
-Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
+Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
                              const AddRequest& request) {
-  TakeName name{request.subject.empty() ? said.subject : request.subject,
-                request.action.empty() ? said.action : request.action, 1};
+  TakeName name{request.subject.empty() ? given.subject : request.subject,
+                request.action.empty() ? given.action : request.action, 1};
   KA_TRY(check_known(catalogue_, request, name.subject, name.action));
-  Manifest manifest = said;
+  Manifest manifest = given;
   for (std::string* path : paths_in(manifest)) *path = path_in(base, *path);
   for (;;) {  // repeat until no other process takes the same run
     Known& there = *KA_TRY(known(name.subject, name.action));
@@ -275,12 +275,12 @@ Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress
 /// A take states its subject and action in its own bytes, so the request can't change them.
 Result<Added> TakeAdder::add_take(const AddRequest& request) {
   const Error blame{request.path, 0, "a take that HDF5 can read", ""};
-  const std::string said = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {
+  const std::string ids = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {
     const TakeReader reader = KA_TRY(TakeReader::open(files_, request.path));
     return reader.header().subject + "\n" + reader.header().action;
   }));
-  const std::string subject = said.substr(0, said.find('\n'));
-  const std::string action = said.substr(said.find('\n') + 1);
+  const std::string subject = ids.substr(0, ids.find('\n'));
+  const std::string action = ids.substr(ids.find('\n') + 1);
   const auto differs = [&](const std::string& wanted, const std::string& own) {
     return !wanted.empty() && wanted != own;
   };

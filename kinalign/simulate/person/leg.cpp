@@ -16,9 +16,9 @@ BentLeg reach(const LegBones& bones, const Vec3& hip, const Vec3& ankle, const V
   const Vec3 front = (forward - forward.dot(up) * up).normalized();
   Eigen::Matrix3d axes;
   axes << up.cross(front), up, front;
-  const auto corner = [](double beside, double other, double opposite) {
+  const auto corner = [](double adjacent, double other, double opposite) {
     const double cosine =
-        (beside * beside + other * other - opposite * opposite) / (2.0 * beside * other);
+        (adjacent * adjacent + other * other - opposite * opposite) / (2.0 * adjacent * other);
     return std::acos(std::clamp(cosine, -1.0, 1.0));
   };
   const double at_hip = corner(a, d, b), at_ankle = corner(b, d, a);
