@@ -109,7 +109,7 @@ struct ScannedRecording {
   std::optional<RecordingFacts> facts;
   std::map<std::uint16_t, DeviceChannel> channels;
   std::vector<const DeviceChannel*> in_order;      // in the order of definition
-  std::map<std::string, SenderTable> senders;       // by stream; nodes are not included
+  std::map<std::string, SenderTable> senders;      // by stream; nodes are not included
   std::map<std::string, std::string> attachments;  // BVH headers, by name
   std::map<DeviceKey, Listening> listening;
   std::vector<JsonChannel> json;

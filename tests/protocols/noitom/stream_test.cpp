@@ -305,8 +305,8 @@ TEST_CASE("noitom: a lost piece costs its own frame alone, wherever it was") {
   for (std::size_t lost = 1; lost < one.size(); ++lost) {
     Bytes bytes(one.begin(), one.end() - static_cast<std::ptrdiff_t>(lost));
     for (int k = 0; k < 3; ++k) bytes += one;
-    // The next frame's header ends the incomplete frame if at least ten of its bytes lie in the torn
-    // frame's room.
+    // The next frame's header ends the incomplete frame if at least ten of its bytes lie in its
+    // room.
     const std::size_t fewest = lost < 10 ? 2 : 3;
     CAPTURE(lost);
     CHECK(read_noitom(bytes).frames.size() >= fewest);
