@@ -85,8 +85,7 @@ InputFile::InputFile(InputFile&& other) noexcept
       fd_(std::exchange(other.fd_, -1)),
       size_(other.size_),
       buffer_(std::move(other.buffer_)),
-      at_(other.at_),
-      unread_(other.unread_) {}
+      at_(other.at_) {}
 
 InputFile& InputFile::operator=(InputFile&& other) noexcept {
   std::swap(files_, other.files_);
@@ -95,7 +94,6 @@ InputFile& InputFile::operator=(InputFile&& other) noexcept {
   std::swap(size_, other.size_);
   std::swap(buffer_, other.buffer_);
   std::swap(at_, other.at_);
-  std::swap(unread_, other.unread_);
   return *this;
 }
 
@@ -114,27 +112,6 @@ Result<std::string_view> InputFile::next() {
     }
     at_ += static_cast<std::uint64_t>(got);
     return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
-  }
-}
-
-Result<std::string_view> InputFile::next_or_zeros() {
-  constexpr std::uint64_t page = 4096;  // the kernel's smallest read
-  for (std::size_t want = buffer_.size();;) {
-    const ssize_t got = files_->read_at(fd_, buffer_.data(), want, static_cast<off_t>(at_));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0 && errno == EIO && want > page) {  // some of the bytes may be readable
-      want = page - at_ % page;
-      continue;
-    }
-    if (got < 0 && errno != EIO) return unreadable(path_, errno);
-    auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
-    if (got < 0 && at_ < size_) {
-      size = static_cast<std::size_t>(std::min(page - at_ % page, size_ - at_));
-      std::fill_n(buffer_.begin(), size, '\0');
-      unread_ += size;
-    }
-    at_ += size;
-    return std::string_view(buffer_.data(), size);
   }
 }
 

@@ -74,11 +74,6 @@ class InputFile {
   /// The next piece; empty at the end. Valid until the next call.
   Result<std::string_view> next();
 
-  /// Like next(), but for a damaged disk (do not mix both). If a page can't be read (EIO), its
-  /// remaining bytes are returned as zeros, in a piece of their own.
-  Result<std::string_view> next_or_zeros();
-  std::uint64_t unread() const { return unread_; }  // number of bytes replaced by zeros
-
   /// Fills `to` from byte `at` on and returns the number of bytes, fewer at the end of the file.
   /// Does not change the position of next().
   Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
@@ -95,7 +90,7 @@ class InputFile {
   int fd_;
   std::uint64_t size_;
   std::vector<char> buffer_;
-  std::uint64_t at_ = 0, unread_ = 0;  // at_: position of next_or_zeros(); unread_: see unread()
+  std::uint64_t at_ = 0;  // position of next()
 };
 
 /// Reads a whole file, for small ones (manifests, layouts). Fails above `most` bytes.

@@ -72,9 +72,11 @@ Result<int> run(Recover& o, Call& call) {
         fmt::format("  {} of them have no checksum (a truncated end, or a writer that made none)\n",
                     grouped(done.unchecked));
   }
-  if (done.twice > 0) text += fmt::format("  {} were in several files, and were taken once\n", grouped(done.twice));
+  if (done.twice > 0)
+    text += fmt::format("  {} were in several files, and were taken once\n", grouped(done.twice));
   if (done.nameless > 0) {
-    text += fmt::format("  {} left out: the definition of their channel is lost\n", grouped(done.nameless));
+    text += fmt::format("  {} left out: the definition of their channel is lost\n",
+                        grouped(done.nameless));
   }
   call.console.print(harmless(text) + finding_lines(done.findings, call.console));
   call.console.print_json(json_text(nlohmann::ordered_json{
@@ -101,10 +103,9 @@ Verb recover_verb() {
                "The old files stay as they are. Exit code "
                "1 where something was damaged, could not be read or is not there; a file that only "
                "lacks its index and end is made whole with 0.",
-       .examples =
-           {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
-            {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
-             "after a disk failed: a message in both files is taken once"}},
+       .examples = {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
+                    {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
+                     "after a disk failed: a message in both files is taken once"}},
        .common = {"out", "force", "json"}},
       describe_recover, run);
 }
