@@ -22,8 +22,8 @@ std::string encoded(const KinectPong& pong, bool as_line) {
 Result<RecordedPort> RecordedPort::open(const DeviceOptions& device, const SipHashKey& secret) {
   const auto protocol = find_protocol(device.protocol);
   if (!protocol) return Failure(unknown_protocol(device.protocol));
-  return RecordedPort(device, row_of(*protocol), KA_TRY(with_name(device.name, open_pieces(device))),
-                      secret);
+  return RecordedPort(device, row_of(*protocol),
+                      KA_TRY(with_name(device.name, open_pieces(device))), secret);
 }
 
 Result<RecordedPort::Pieces> RecordedPort::open_pieces(const DeviceOptions& device) {
