@@ -78,7 +78,7 @@ def the_page_names_every_kind_of_line(_):
     root = pathlib.Path(__file__).parents[2]
     table = (root / "docs/recording.md").read_text().split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
     listed = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1])}
-    source = (root / "apps/kinalign/record/record_herald.cpp").read_text()
+    source = (root / "apps/kinalign/record/record_printer.cpp").read_text()
     made = set(re.findall(r'"(\w+)"', " ".join(re.findall(r'"event", ([^}]+)}', source))))
     words = (root / "apps/kinalign/text/node_event_text.cpp").read_text()  # time-server's, for the same
     made |= set(re.findall(r'"((?:host|node|clock)_event)"', words))

@@ -253,7 +253,7 @@ def a_take_whose_folder_is_gone_when_it_begins_waits_for_one_and_has_all_that_ca
 
 
 @case
-def trials_that_begin_and_end_while_the_disk_stands_still_have_files_of_their_own_in_their_order(folder):
+def trials_that_begin_and_end_while_the_disk_stands_still_are_kept_in_two_files_and_the_merged_ones_are_told(folder):
     with standing_still() as (still, env):
         recording = Recording(folder / "takes", "--wait", "--repeat", "--marks-port", "0", "--pre-roll-s", "0",
                               first="waiting", env=env)
@@ -269,12 +269,12 @@ def trials_that_begin_and_end_while_the_disk_stands_still_have_files_of_their_ow
                 recording.until("mark")
         time.sleep(2)
         still.unlink()
-        files = [recording.until("stopped")[-1]["files"] for _ in range(3)]
+        said = [recording.until("stopped") for _ in range(2)]
         code, _, err = recording.end()
-    assert code == 0, err
-    assert [[pathlib.Path(file).name for file in each] for each in files] == [
-        ["take_01.mcap"], ["take_02.mcap"], ["take_03.mcap"]], files
-    assert [numbers(Walk(pathlib.Path(file))) for [file] in files] == [[0], [1], [2]]
+    assert code == 1 and err.count("begins no take") == 1, err
+    files = [each[-1]["files"] for each in said]
+    assert [[pathlib.Path(file).name for file in each] for each in files] == [["take_01.mcap"], ["take_02.mcap"]], files
+    assert [numbers(Walk(pathlib.Path(file))) for [file] in files] == [[0], [1, 2]]
 
 
 @case

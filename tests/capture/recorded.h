@@ -28,12 +28,13 @@ struct RecordingMachine {
 
 inline void start(RecordingSession& session, const std::string& path,
                   const std::string& subject = "", const std::string& action = "") {
+  while (!session.takes().empty()) session.release_take();
   session.start({[path] { return path; }, subject, action});
 }
 
 inline void finish(RecordingSession& session) {
   session.stop();
-  while (!session.newest_take()->disk.status().finished) std::this_thread::yield();
+  while (!session.takes().back()->disk.status().finished) std::this_thread::yield();
 }
 
 /// Payloads by topic, in their order.

@@ -5,9 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <iterator>
 
 namespace kinalign {
 
@@ -24,27 +22,20 @@ std::string minutes_text(double minutes) {
 
 void DiskForecast::look(HostTime now, std::uint64_t written, std::uint64_t free) {
   constexpr Duration window = std::chrono::seconds(30);
-  constexpr Duration lately = std::chrono::seconds(5);
-  constexpr double least_s = 2.0;  // a rate over less time is not used
   free_ = free;
   looks_.push_back({now, written});
   while (now - looks_.front().at > window) looks_.pop_front();
-  const auto before = std::find_if(
-      looks_.rbegin(), std::prev(looks_.rend()),
-      [&](const Look& look) { return now - look.at >= lately; });  // else the oldest look
-  const double s = seconds(now - before->at);
-  rate_ = 0.0;
-  if (s >= least_s && written > before->written) {
-    rate_ = static_cast<double>(written - before->written) / s;
-  }
-  if (now - before->at >= lately) looks_.back().rate = rate_;
-  for (const Look& look : looks_) rate_ = std::max(rate_, look.rate);
 }
 
 std::optional<double> DiskForecast::minutes_left() const {
-  if (!(rate_ > 0.0)) return std::nullopt;
-  const double left = free_ > reserve ? static_cast<double>(*free_ - reserve) : 0.0;
-  return left / rate_ / 60.0;
+  constexpr double least_s = 2.0;  // a rate over less time is too inaccurate
+  if (looks_.empty()) return std::nullopt;
+  const auto& [begin, written_before] = looks_.front();
+  const auto& [end, written] = looks_.back();
+  const double s = seconds(end - begin);
+  if (s < least_s || written <= written_before) return std::nullopt;
+  const double left = *free_ > reserve ? static_cast<double>(*free_ - reserve) : 0.0;
+  return left * s / static_cast<double>(written - written_before) / 60.0;
 }
 
 bool DiskForecast::take_warning() {

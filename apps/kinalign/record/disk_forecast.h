@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forecasts the time until the disk is full, from the bytes written lately.
+// Forecasts the time until the disk is full, from the bytes written in the last half minute.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -23,9 +23,8 @@ class DiskForecast {
   std::optional<std::uint64_t> free() const { return free_; }
   /// Only the reserve is left: the recording has to end.
   bool full() const { return free_ && *free_ <= reserve; }
-  /// The time until only the reserve is left, at the fastest five seconds of the last half minute.
-  /// A device that has just started thus counts soon, and one that sends in bursts still counts
-  /// between them. Absent if nothing is written.
+  /// The time until only the reserve is left, at the mean rate of the last half minute. Absent if
+  /// nothing is written.
   std::optional<double> minutes_left() const;
   /// True if a warning is due: at 10, 5, 2 and 1 minutes left, once each.
   bool take_warning();
@@ -34,10 +33,8 @@ class DiskForecast {
   struct Look {
     HostTime at{};
     std::uint64_t written = 0;
-    double rate = 0.0;  // bytes/s over the five seconds before; 0: no look is that old
   };
   std::deque<Look> looks_;  // the looks of the last half minute
-  double rate_ = 0.0;       // bytes/s, the fastest of looks_
   std::optional<std::uint64_t> free_;
   double warned_ = 1e9;  // minutes left at the last warning
 };

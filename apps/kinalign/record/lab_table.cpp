@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -34,10 +34,6 @@ enum Column : std::size_t {
 };
 constexpr std::size_t columns = 11;
 using Cells = std::array<std::string, columns>;
-
-/// If the terminal is narrow, these columns are left out in this order: --json and the final lines
-/// state them too.
-constexpr std::array<Column, 7> worth_least{link, recorded, twice, late, drift, battery, offset};
 
 /// One line before layout: cells, or the device and a text.
 struct Row {
@@ -121,7 +117,7 @@ void add_device(const DeviceOptions& options, const LabStatus& status, std::vect
     const bool bad = options.required && silent && !replaced;
     rows.push_back({cells_of(stream, options, status), std::nullopt, bad});
   }
-  for (const std::string& name : unheard_of(options, status)) {
+  for (const std::string& name : unseen(options, status)) {
     rows.push_back(note(name,
                         fmt::format("{}nothing yet, {:.0f} s", options.required ? "missing: " : "",
                                     seconds(status.now - status.begun)),
@@ -137,7 +133,7 @@ bool only_devices(const Widths& wide) {
   return std::all_of(wide.begin() + 1, wide.end(), [](std::size_t places) { return places == 0; });
 }
 
-/// The widths of the columns; the least important ones are dropped until the row fits.
+/// The widths of the columns. If the row does not fit, columns are left out from the right.
 Widths widths_of(const std::vector<Row>& rows, std::size_t width) {
   Widths wide{};
   for (const Row& row : rows) {
@@ -145,15 +141,11 @@ Widths widths_of(const std::vector<Row>& rows, std::size_t width) {
     for (std::size_t i = 0; i < columns; ++i) wide[i] = std::max(wide[i], places(row.cells[i]));
   }
   if (only_devices(wide)) return wide;
-  std::size_t all = 0;
-  for (std::size_t i = 0; i < columns; ++i) {
+  std::size_t all = wide[device] = std::max(wide[device], places(rows.front().cells[device]));
+  for (std::size_t i = device + 1; i < columns; ++i) {
     if (wide[i] > 0) wide[i] = std::max(wide[i], places(rows.front().cells[i]));
-    all += wide[i] > 0 ? wide[i] + (i == 0 ? 0U : 1U) : 0U;
-  }
-  for (const Column column : worth_least) {
-    if (all <= width) break;
-    const std::size_t none = std::exchange(wide[column], 0);
-    all -= none > 0 ? none + 1 : 0;
+    all += wide[i] > 0 ? wide[i] + 1 : 0;
+    if (all > width && i > heard) wide[i] = 0;
   }
   return wide;
 }
@@ -170,14 +162,6 @@ std::string line_of(const Row& row, const Widths& wide) {
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line;
-}
-
-/// The last line of that kind, `bad` or not, except the head; the end if there is none.
-std::vector<TableLine>::iterator last_of(std::vector<TableLine>& table, bool bad) {
-  const auto found = std::find_if(table.rbegin(), table.rend(), [bad](const TableLine& line) {
-    return !line.head && line.bad == bad;
-  });
-  return found == table.rend() ? table.end() : std::prev(found.base());
 }
 
 }  // namespace
@@ -198,22 +182,14 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::s
 
 std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows) {
   if (table.size() <= rows) return table;
-  if (rows < 3 && table.front().head) {  // the lines below a head are worth more than the head
-    table.erase(table.begin());
-    return fitted(std::move(table), rows);
-  }
   if (rows == 0) return {};
-  std::size_t out = 0, amiss = 0;
-  while (table.size() + 1 > rows) {
-    auto last = last_of(table, false);
-    if (last == table.end()) last = last_of(table, true);
-    ++out;
-    amiss += last->bad ? 1 : 0;
-    table.erase(last);
-  }
-  table.push_back(
-      {fmt::format("… {} more{}", out, amiss > 0 ? fmt::format(", {} amiss", amiss) : ""),
-       amiss > 0});
+  const auto is_bad = [](const TableLine& line) { return line.bad; };
+  std::stable_partition(table.begin() + (table.front().head ? 1 : 0), table.end(), is_bad);
+  const auto out = table.begin() + static_cast<std::ptrdiff_t>(rows) - 1;
+  const bool any_bad = std::any_of(out, table.end(), is_bad);
+  const std::string text = fmt::format("… {} more", table.end() - out);
+  table.erase(out, table.end());
+  table.push_back({text, any_bad});
   return table;
 }
 

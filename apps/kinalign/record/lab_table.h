@@ -19,12 +19,12 @@ struct TableLine {
 
 /// The table: a head if there are columns besides the device, and a line for each sender, each
 /// device that has sent nothing, and each port that lost data. Columns without a value are left
-/// out; then less important ones until the lines fit into `width` columns of the terminal. Lines
+/// out; then columns from the right until the lines fit into `width` columns of the terminal. Lines
 /// that are still wider stay so.
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::size_t width);
 
-/// The table cut to `rows` lines. Good lines are left out first, from the bottom, then bad ones,
-/// the head last. The last line then states their number.
+/// The table in `rows` lines. If there are more, bad lines come first, and the last line states the
+/// number of the others.
 std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows);
 
 }  // namespace kinalign

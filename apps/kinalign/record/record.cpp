@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/cli/program.h"
-#include "apps/kinalign/record/record_job.h"
-#include "apps/kinalign/record/record_stage.h"
+#include "apps/kinalign/record/record_run.h"
 #include "apps/kinalign/record/steady_memory.h"
-#include "apps/kinalign/record/take_path.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/recorder/recording_session.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 namespace kinalign {
@@ -68,119 +59,6 @@ Usage describe_record(RecordJob& o) {
   return usage;
 }
 
-/// Makes the folder and its parent folders.
-Result<void> make_folder(const std::string& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (std::error_code none; std::filesystem::is_directory(folder, none)) return {};
-  const std::string why = failed ? failed.message() : "something else of that name";
-  return Failure(Error{folder, 0, "a folder for the files", why});
-}
-
-/// Ends the process while the disk does not answer and the user has given up. The disk's threads
-/// still use the objects of main(), so the process ends without destroying them.
-[[noreturn]] void leave(Call& call, RecordingSession& session, Stage& stage,
-                        std::shared_ptr<SessionTake> take) {
-  for (; take; take = session.next_take()) {
-    const DiskStatus disk = take->disk.status();
-    if (disk.finished && !disk.refused) continue;  // the whole take is on the disk
-    const auto& paths = disk.paths;
-    call.console.report(Error{paths.empty() ? call.common.out : paths.front(), 0,
-                              paths.empty() ? "a disk that begins the take's file"
-                                            : "a disk that takes the end of the take",
-                              "one that stands still"});
-  }
-  (void)call.console.finish();
-  stage.leave();
-  std::_Exit(failed);
-}
-
-/// The exit code of a take: 0 if all of it is on the disk and nothing was wrong.
-int written(const SessionTake& take, Call& call, RecordHerald& herald) {
-  const DiskStatus disk = take.disk.status();
-  const bool warned = herald.take_warned();
-  if (disk.refused) {
-    call.console.report(*disk.refused);
-    return failed;
-  }
-  const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !herald.disk_full();
-  return whole && herald.unheard_required().empty() && !warned ? 0 : 1;
-}
-
-/// Records one take and returns its exit code.
-int record_take(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage,
-                const std::shared_ptr<SessionTake>& take) {
-  RecordHerald& herald = stage.herald();
-  stage.begin(*take, o.wait);
-  const auto tell_start = [&] {
-    const auto paths = take->disk.status().paths;
-    if (!paths.empty()) herald.tell_start(paths.front());
-    return !paths.empty();
-  };
-  bool begun = tell_start();
-  if (begun || !take->disk.status().finished) {
-    stage.record(*take);
-    if (!o.repeat) stage.end();
-    if (!stage.write_rest(*take)) leave(call, session, stage, take);
-    if (!begun) begun = tell_start();
-  }
-  if (begun) {
-    herald.tell_end();
-  } else {
-    herald.tell_never_begun(take->disk.status());
-  }
-  return written(*take, call, herald);
-}
-
-/// The last line of --repeat: the number of takes, and the takes whose exit code was not 0.
-void tell_takes(Console& console, std::size_t takes, std::vector<std::string> amiss, int worst) {
-  constexpr std::size_t most_named = 8;
-  std::string text = fmt::format("kinalign record: {} take{}", takes, takes == 1 ? "" : "s");
-  if (amiss.size() > most_named) {
-    const std::size_t more = amiss.size() - most_named;
-    amiss.resize(most_named);
-    amiss.push_back(fmt::format("{} more", more));
-  }
-  if (!amiss.empty()) {
-    text += fmt::format("; exit code {} for what was told above before the end of {}", worst,
-                        fmt::join(amiss, ", "));
-  }
-  console.note(harmless(text));
-}
-
-/// Records one take, or with --repeat one after another. Returns the worst exit code.
-int record_takes(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage) {
-  const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
-    (void)make_folder(folder);  // the folder may have been removed; if it can't be made, opening
-                                // the file fails
-    return free_take_path(folder, subject, action);
-  };
-  const TakePlan plan{free_path, o.subject, o.action};
-  if (o.wait) {
-    session.obey_marks(plan,
-                       o.repeat ? RecordingSession::Starts::each : RecordingSession::Starts::next);
-  } else {
-    session.start(plan);
-  }
-  std::size_t takes = 0;
-  int worst = 0;
-  std::vector<std::string> amiss;
-  while (const auto take = stage.next_take()) {
-    ++takes;
-    const int code = record_take(o, call, session, stage, take);
-    worst = std::max(worst, code);
-    if (!o.repeat) return worst;
-    const auto paths = take->disk.status().paths;
-    if (code != 0) amiss.push_back(paths.empty() ? "one that never had a file" : paths.front());
-  }
-  if (takes > 0) {
-    tell_takes(call.console, takes, amiss, worst);
-    return worst;
-  }
-  call.console.note("kinalign record: stopped before a start came; nothing was recorded");
-  return 1;
-}
-
 /// Records until the end. From its beginning on signals are only noted, so that Ctrl-C ends
 /// a recording in order.
 Result<int> run(RecordJob& o, Call& call) {
@@ -196,9 +74,7 @@ Result<int> run(RecordJob& o, Call& call) {
   const auto session = KA_TRY(RecordingSession::open(
       std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
   console.if_it_fails({});
-  RecordHerald herald(*session, console);
-  Stage stage(*session, herald, o.seconds);
-  const int code = record_takes(o, call, *session, stage);
+  const int code = RecordRun(o, call, *session)();
   session->end_live();
   take_signals();  // from here on a signal may end the program at once
   return code;

@@ -18,8 +18,6 @@ using EventKind = ClockEvent::Kind;
 constexpr Duration steps_within = std::chrono::seconds(10);
 /// Such a clock is trusted again after this time without an event.
 constexpr Duration quiet = std::chrono::minutes(1);
-/// A withdrawal without a cause is printed after this time.
-constexpr Duration patience = std::chrono::seconds(1);
 
 bool is_step(EventKind kind) { return kind == EventKind::step || kind == EventKind::slip; }
 
@@ -32,77 +30,35 @@ bool is_trouble(EventKind kind) {
 
 }  // namespace
 
-/// The stream's clock. A stream may have passed to another node; then the clock starts anew.
-ClockEventLines::Clock& ClockEventLines::clock_of(std::size_t stream, std::uint32_t node_id) {
+// A stream may have passed to another node; then the clock starts anew. Each further event of one
+// cause withdraws the same stretch again; only the first withdrawal has a line.
+std::string ClockEventLines::line(std::size_t stream, std::uint32_t node_id,
+                                  const ClockEvent& event, HostTime now) {
   Clock& clock = clocks_[stream];
-  if (clock.node_id != node_id) {
-    print_waiting(clock);
-    clock = {};
-    clock.node_id = node_id;
-  }
-  return clock;
-}
-
-void ClockEventLines::add(std::size_t stream, std::uint32_t node_id, const ClockEvent& event,
-                          HostTime now) {
-  Clock& clock = clock_of(stream, node_id);
-  if (!is_trouble(event.kind)) return;
-  if (!contradicts(stream, node_id, now)) clock.contradicts = false;
+  if (clock.node_id != node_id) clock = {};
+  clock.node_id = node_id;
+  if (!is_trouble(event.kind)) return "";
+  clock.contradicts = contradicts(stream, node_id, now);
   clock.troubled = now;
-  if (is_step(event.kind)) return take_step(clock, event);
-  if (clock.contradicts) return;
-  if (event.kind == EventKind::withdrawn) return withdraw(clock, event, now);
-  clock.settled = event.kind == EventKind::settled;
-  const std::string text = event_text(event, node_id, names_);
-  if (!text.empty()) lines_.push_back(text);
-}
-
-/// Keeps the last three steps. From the third step within `steps_within` on, one line replaces the
-/// lines for single steps.
-void ClockEventLines::take_step(Clock& clock, const ClockEvent& event) {
-  std::rotate(clock.steps.begin(), clock.steps.begin() + 1, clock.steps.end());
-  clock.steps.back() = event.end;
-  clock.settled = false;
-  if (clock.contradicts) return;
-  const HostTime first = clock.steps.front();
-  clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
-  if (!clock.contradicts) return lines_.push_back(event_text(event, clock.node_id, names_));
-  clock.waiting.reset();
-  lines_.push_back(
-      fmt::format("{}: warning: {}, so none of its stamps are certified; its steps are reported "
-                  "again after a minute without steps",
-                  names_.name(clock.node_id), contradiction));
-}
-
-/// Collects withdrawn stretches; overlapping ones become one. A stretch withdrawn right after the
-/// clock settled is not printed if it was printed before.
-void ClockEventLines::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
-  const bool known =
-      clock.printed && event.begin >= clock.printed->begin && event.begin <= clock.printed->end;
-  if (std::exchange(clock.settled, false) && known) return;
-  if (!clock.waiting) {
-    clock.waiting = Stretch{event.begin, event.end, now};
-    return;
+  if (clock.contradicts) return "";
+  if (is_step(event.kind)) {
+    std::rotate(clock.steps.begin(), clock.steps.begin() + 1, clock.steps.end());
+    clock.steps.back() = event.end;
+    const HostTime first = clock.steps.front();
+    clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
+    if (clock.contradicts) {
+      return fmt::format(
+          "{}: warning: {}, so nothing of it is certified; its steps are reported again after a "
+          "quiet minute",
+          names_.name(node_id), contradiction);
+    }
   }
-  clock.waiting->begin = std::min(clock.waiting->begin, event.begin);
-  clock.waiting->end = std::max(clock.waiting->end, event.end);
-}
-
-/// Prints the collected withdrawal as one line, and remembers it.
-void ClockEventLines::print_waiting(Clock& clock) {
-  if (!clock.waiting) return;
-  const ClockEvent whole{EventKind::withdrawn, 0, clock.waiting->begin, clock.waiting->end};
-  lines_.push_back(event_text(whole, clock.node_id, names_));
-  clock.printed = std::exchange(clock.waiting, std::nullopt);
-}
-
-std::vector<std::string> ClockEventLines::lines(HostTime now) {
-  for (auto& [stream, clock] : clocks_) {
-    if (!clock.waiting) continue;
-    const bool caused = clock.steps.back() >= clock.waiting->end;
-    if (caused || now - clock.waiting->since >= patience) print_waiting(clock);
+  if (event.kind == EventKind::withdrawn) {
+    const HostTime printed = clock.withdrawn;
+    clock.withdrawn = std::max(printed, event.end);
+    if (event.begin < printed) return "";
   }
-  return std::exchange(lines_, {});
+  return event_text(event, node_id, names_);
 }
 
 bool ClockEventLines::contradicts(std::size_t stream, std::uint32_t node_id, HostTime now) const {

@@ -173,7 +173,7 @@ std::string came_unheard(const std::string& device, const RecordingSurvey& surve
   const auto port = std::find_if(survey.ports.begin(), survey.ports.end(),
                                  [&](const CountedPort& one) { return one.stream == device; });
   if (heard || port == survey.ports.end()) return "";
-  return unheard_but_came(port->counts, "to its port");
+  return unusable_data(port->counts, "to its port");
 }
 
 /// Warnings about required devices that are missing in the recording.

@@ -21,19 +21,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The names of the device's nodes that have a place and have never sent.
-std::vector<std::string> unheard_nodes(const DeviceOptions& device, const LabStatus& status) {
+std::vector<std::string> unseen_nodes(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names;
   for (const auto& node : device.nodes) {  // clang 14 can't hand a structured binding on
-    const bool heard =
+    const bool seen =
         std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& stream) {
           return stream.stream == device.name && stream.node == node.first;
         });
-    if (!heard) names.push_back(sender_name(device.name, node.first, node.second));
+    if (!seen) names.push_back(sender_name(device.name, node.first, node.second));
   }
   return names;
 }
 
-bool is_heard(const DeviceOptions& device, const LabStatus& status) {
+bool is_seen(const DeviceOptions& device, const LabStatus& status) {
   return std::any_of(status.streams.begin(), status.streams.end(),
                      [&](const StreamStatus& stream) { return stream.stream == device.name; });
 }
@@ -44,11 +44,6 @@ PortCounts counts_of(const DeviceOptions& device, const LabStatus& status) {
   return found == status.ports.end() ? PortCounts() : found->second;
 }
 
-void forget_unheard(LabStatus& status) {
-  std::erase_if(status.streams,
-                [](const StreamStatus& stream) { return stream.counts.messages == 0; });
-}
-
 /// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
 std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
   if (!counts.sifted) return "dropped by the kernel";
@@ -56,12 +51,6 @@ std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
   if (least == counts.dropped) return "thrown away: no frames of nodes";
   if (least == 0) return "thrown away: no frames of nodes, or no room for them";
   return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
-}
-
-/// The text about datagrams at the port of a device that has never sent. Empty if none came.
-std::string came_unheard(const DeviceOptions& device, const LabStatus& status, std::uint16_t port) {
-  if (is_heard(device, status)) return "";
-  return unheard_but_came(counts_of(device, status), fmt::format("to port {}", port));
 }
 
 /// The text about a device from which nothing has come yet.
@@ -90,7 +79,7 @@ const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStat
   const NodeStatus* found = nullptr;
   for (const NodeStatus& node : nodes) {
     if (std::to_string(node.node_id) != stream.node) continue;
-    if (found == nullptr || node.heard > found->heard) found = &node;
+    if (found == nullptr || node.last_arrival > found->last_arrival) found = &node;
   }
   return found;
 }
@@ -101,9 +90,9 @@ std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus
   return sender_clock(*node->stamp, *node->n, node->drift);
 }
 
-std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status) {
-  std::vector<std::string> names = unheard_nodes(device, status);
-  if (names.empty() && !is_heard(device, status)) names.push_back(device.name);
+std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& status) {
+  std::vector<std::string> names = unseen_nodes(device, status);
+  if (names.empty() && !is_seen(device, status)) names.push_back(device.name);
   return names;
 }
 
@@ -118,7 +107,7 @@ std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
   return text;
 }
 
-std::string unheard_but_came(const PortCounts& counts, const std::string& to) {
+std::string unusable_data(const PortCounts& counts, const std::string& to) {
   const std::uint64_t came = counts.dropped + counts.refused;
   if (!counts.sifted || came == 0) return "";
   return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
@@ -129,37 +118,24 @@ std::string name_of(const StreamStatus& stream) {
   return sender_name(stream.stream, stream.node, stream.place);
 }
 
-std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status) {
-  forget_unheard(status);
+std::vector<std::string> unseen(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> all;
   for (const DeviceOptions& device : lab.devices) {
-    const auto of_one = unheard_of(device, status);
-    all.insert(all.end(), of_one.begin(), of_one.end());
+    const auto names = unseen(device, status);
+    all.insert(all.end(), names.begin(), names.end());
   }
   return all;
 }
 
-std::vector<std::string> end_lines_of_unheard(const Lab& lab, LabStatus status,
-                                              const Ports& ports) {
-  forget_unheard(status);
+std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> lines;
   for (const DeviceOptions& device : lab.devices) {
-    const std::string what = came_unheard(device, status, ports.at(device.name));
-    for (const std::string& name : unheard_of(device, status)) {
-      lines.push_back(fmt::format("{}: {}", name, what.empty() ? "nothing came" : what));
-    }
-  }
-  return lines;
-}
-
-std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& status,
-                                          const Ports& ports) {
-  std::vector<std::string> lines;
-  for (const DeviceOptions& device : lab.devices) {
-    const std::uint16_t port = ports.at(device.name);
-    std::string what = came_unheard(device, status, port);
-    if (what.empty()) what = nothing_yet(device, counts_of(device, status), port);
-    for (const std::string& name : unheard_of(device, status)) {
+    const std::uint16_t port = status.port_numbers.at(device.name);
+    const PortCounts counts = counts_of(device, status);
+    std::string what;
+    if (!is_seen(device, status)) what = unusable_data(counts, fmt::format("to port {}", port));
+    if (what.empty()) what = status.ended ? "nothing came" : nothing_yet(device, counts, port);
+    for (const std::string& name : unseen(device, status)) {
       lines.push_back(fmt::format("{}: {}", name, what));
     }
   }
@@ -179,8 +155,8 @@ std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
       alive = alive || !silent;
       if (silent && !stream.place.empty()) names.push_back(name_of(stream));
     }
-    const auto unheard = unheard_nodes(device, status);
-    names.insert(names.end(), unheard.begin(), unheard.end());
+    const auto nodes = unseen_nodes(device, status);
+    names.insert(names.end(), nodes.begin(), nodes.end());
     if (!alive && device.nodes.empty()) names.push_back(device.name);
   }
   return names;
@@ -222,7 +198,6 @@ std::string counts_text(const SenderCounts& counts) {
 }
 
 std::string end_line(const StreamStatus& stream) {
-  if (stream.counts.messages == 0) return "";
   return fmt::format("  {} from {}: {}\n", name_of(stream), stream.sender,
                      counts_text(stream.counts));
 }

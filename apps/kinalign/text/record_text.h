@@ -27,6 +27,8 @@ struct LabStatus {
   std::vector<StreamStatus> streams;
   std::vector<NodeStatus> nodes;
   std::vector<std::pair<std::string, PortCounts>> ports{};  // by the device's name
+  std::map<std::string, std::uint16_t> port_numbers{};      // by the device's name
+  bool ended = false;  // the status of a take at its end; streams without data are not in it
 };
 
 bool is_silent(const StreamStatus& stream, HostTime now);
@@ -54,23 +56,15 @@ std::uint64_t frames_lost(const std::string& device, const std::vector<Sender>& 
 
 /// "181 datagrams came to port 6969, none a frame of nodes": for a nodes' port to which something
 /// came, though no node has sent. Empty if nothing came. `to`: "to port 6969".
-std::string unheard_but_came(const PortCounts& counts, const std::string& to);
+std::string unusable_data(const PortCounts& counts, const std::string& to);
 
-using Ports = std::map<std::string, std::uint16_t>;  // by the device's name
-
-/// The device's nodes that have places and have never sent; the device itself if nothing came from
-/// it.
-std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status);
-
-/// The devices, and nodes with places, from which nothing came in the present or last take.
-std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status);
-/// A line for each of them: "kinect: nothing came".
-std::vector<std::string> end_lines_of_unheard(const Lab& lab, LabStatus status, const Ports& ports);
-
-/// A line for each device or node that has not sent yet: "kinect: nobody has connected to port
-/// 7201 yet".
-std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& status,
-                                          const Ports& ports);
+/// The device's nodes that have places and sent nothing; the device itself if nothing came from it.
+std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& status);
+/// The devices, and nodes with places, that sent nothing.
+std::vector<std::string> unseen(const Lab& lab, const LabStatus& status);
+/// A line for each of them: "kinect: nobody has connected to port 7201 yet"; at the end "kinect:
+/// nothing came".
+std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status);
 
 /// The required devices, and their nodes with places, from which nothing comes now: "mocap", "imu
 /// waist".
@@ -87,7 +81,7 @@ std::string name_of(const StreamStatus& stream);
 /// "7,500 messages, 11.1 MB; 3 lost, 1 late"
 std::string counts_text(const SenderCounts& counts);
 /// "  mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 lost
-/// ". Empty if nothing came.
+/// ".
 std::string end_line(const StreamStatus& stream);
 /// "  port of mocap: 12 dropped by the kernel
 /// ". Empty if nothing was lost.

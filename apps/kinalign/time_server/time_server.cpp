@@ -4,7 +4,7 @@
 #include "apps/kinalign/text/advice.h"
 #include "apps/kinalign/text/summary.h"
 #include "apps/kinalign/text/time_server_text.h"
-#include "apps/kinalign/time_server/node_event_printer.h"
+#include "apps/kinalign/time_server/node_printer.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/net/own_addresses.h"
@@ -153,7 +153,7 @@ ServedPort served_port(const TimeServer& server, const std::optional<NodeReceive
 /// Reports changes while the server runs.
 class ServerPrinter {
  public:
-  ServerPrinter(const TimeServer& server, std::optional<NodeEventPrinter>& nodes, Console& console)
+  ServerPrinter(const TimeServer& server, std::optional<NodePrinter>& nodes, Console& console)
       : server_(server),
         nodes_(nodes),
         console_(console),
@@ -185,7 +185,7 @@ class ServerPrinter {
     const NtpServerState& now = server_.state();
     if (now.leap == printed_.leap && now.stratum == printed_.stratum) return;
     printed_ = now;
-    print_line(console_, "the clock is now " + clock_text(now));
+    print_live(console_, "the clock is now " + clock_text(now));
     console_.print_json(clock_json(now));
     console_.flush();
   }
@@ -193,7 +193,7 @@ class ServerPrinter {
   void print_misdirected() {
     if (misdirected_printed_ || server_.counts()[NtpOutcome::from_node] == 0) return;
     misdirected_printed_ = true;
-    print_line(console_,
+    print_live(console_,
                "warning: a node sends to the NTP port; it must send to the port of --node-port");
   }
   /// Reports each fault of stdout once, as long as it lasts: otherwise nobody may notice it for
@@ -201,7 +201,7 @@ class ServerPrinter {
   void print_trouble() {
     const std::string trouble = console_.out_trouble();
     if (std::exchange(out_trouble_, trouble) == trouble) return;
-    print_line(console_, trouble.empty()
+    print_live(console_, trouble.empty()
                              ? "standard output accepts lines again"
                              : "warning: standard output is blocked (" + trouble +
                                    "): up to 1 MiB of lines is kept; serving continues");
@@ -215,7 +215,7 @@ class ServerPrinter {
   }
 
   const TimeServer& server_;
-  std::optional<NodeEventPrinter>& nodes_;
+  std::optional<NodePrinter>& nodes_;
   Console& console_;
   Progress progress_;
   NtpServerState printed_;
@@ -244,7 +244,7 @@ Result<int> run(TimeServerFlags& o, Call& call) {
         "not follow it; if the lab has no other clock, use --local-stratum 10");
   }
   console.flush();
-  std::optional<NodeEventPrinter> node_printer;
+  std::optional<NodePrinter> node_printer;
   if (nodes) node_printer.emplace(*nodes, console, call.surroundings.files, lab);
   ServerPrinter printer(server, node_printer, console);
   server.serve([&printer] { return printer(); }, nodes ? &*nodes : nullptr);

@@ -97,13 +97,6 @@ HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time ste
   return behind.after - share(since, 1.0 - most_slew);
 }
 
-// The tolerance is the error that most_slew leaves for arrivals that waited for five seconds.
-bool is_behind(const Moment& one, const Moment& other) {
-  constexpr Duration most_doubt = std::chrono::milliseconds(5);
-  if (!one.stamp || !other.stamp) return one.at > other.at;
-  return *one.stamp > *other.stamp && one.at - other.at > -most_doubt;
-}
-
 HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {
   static_cast<void>(reader_.wall_was_set());  // discards earlier settings of the wall clock
   bracket_ = read();

@@ -88,16 +88,6 @@ inline constexpr double most_slew = 1e-3;
 /// end of the bracket.
 HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady);
 
-/// An arrival: its time as converted by arrival(), and the kernel's stamp if there is one.
-struct Moment {
-  HostTime at{};
-  std::optional<Time> stamp{};
-};
-/// Returns whether `one` arrived later than `other`, as far as is known. Each converted time has
-/// its own error, but stamps have none unless the wall clock is set between them. Both the stamps
-/// and the converted times must therefore agree.
-bool is_behind(const Moment& one, const Moment& other);
-
 struct HostClockEvent {
   enum class Kind : std::uint8_t {
     suspended,    // the host was suspended; earlier knowledge of node clocks is void

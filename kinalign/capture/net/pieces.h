@@ -26,7 +26,6 @@ struct Piece {
   std::size_t sender = 0;
   std::string_view bytes;  // valid only during the call
   HostTime arrival{};
-  std::optional<Time> stamp{};  // the kernel's stamp; absent for a connection
 };
 using TakePiece = std::function<void(const Piece& piece)>;
 

@@ -47,7 +47,7 @@ void UdpPieces::take_datagram(const Datagram& datagram, const HostAxis& axis,
   if (!sender) return;
   counts_.bytes += datagram.bytes.size();
   senders_.remember(*sender, datagram);
-  take({*sender, text_of(datagram.bytes), arrival, datagram.received});
+  take({*sender, text_of(datagram.bytes), arrival});
 }
 
 void UdpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {

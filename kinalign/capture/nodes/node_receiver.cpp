@@ -83,10 +83,8 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
   for (std::size_t i = 0; i < datagrams; ++i) {
     const Datagram datagram = batch_->at(i);
     if (!may_answer(datagram)) continue;
-    const NodeArrival arrival{datagram.bytes,
-                              {datagram.from, datagram.from_port},
-                              axis_.arrival(datagram.received),
-                              datagram.received};
+    const NodeArrival arrival{
+        datagram.bytes, {datagram.from, datagram.from_port}, axis_.arrival(datagram.received)};
     const NodeMessage message = responder_->receive(arrival);
     const auto answer = responder_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());

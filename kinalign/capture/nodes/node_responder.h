@@ -24,8 +24,7 @@ namespace kinalign {
 struct NodeArrival {
   std::span<const std::uint8_t> bytes;
   NodeAddress from;
-  HostTime h_rx{};              // T2 of RFC 5905; for a confirm T6
-  std::optional<Time> stamp{};  // the kernel's stamp
+  HostTime h_rx{};  // T2 of RFC 5905; for a confirm T6
 };
 
 /// A sample and the counter when it was taken. If the node has no counter, n is the zero of

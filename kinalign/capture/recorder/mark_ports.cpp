@@ -94,19 +94,19 @@ PortCounts MarkPort::port_counts() const {
 // A repeated mark is answered again, because its sender may have missed the first answer. It is
 // passed on only once.
 void MarkPort::take_piece(const Piece& piece, const TakeMark& take) {
-  RecordedMark heard;
-  if (!decode(piece, heard.mark)) return;
-  const bool again = repeats_.is_repeat(heard.mark, piece.arrival);
+  RecordedMark received;
+  if (!decode(piece, received.mark)) return;
+  const bool again = repeats_.is_repeat(received.mark, piece.arrival);
   ++(again ? counts_.repeats : counts_.marks);
   if (form_ == Form::call) {
     const MarkAnswer answer = again ? MarkAnswer::repeat : MarkAnswer::fresh;
-    const std::string text = answer_to_mark_call(heard.mark, answer, piece.bytes.size());
+    const std::string text = answer_to_mark_call(received.mark, answer, piece.bytes.size());
     if (!text.empty()) pieces_.send(piece.sender, octets(text));
   }
   if (again) return;
-  heard.source = form_ == Form::call ? "call" : "trigger";
-  heard.sender = sender_of(piece);
-  take(heard, {piece.arrival, piece.stamp});
+  received.source = form_ == Form::call ? "call" : "trigger";
+  received.sender = sender_of(piece);
+  take(received, piece.arrival);
 }
 
 }  // namespace kinalign

@@ -31,7 +31,7 @@ class MarkPort {
   };
   static Result<MarkPort> open(Form form, std::uint16_t port);
 
-  using TakeMark = std::function<void(const RecordedMark& mark, const Moment& came)>;
+  using TakeMark = std::function<void(const RecordedMark& mark, HostTime at)>;
   void add_fds(std::vector<int>& fds) const { pieces_.add_fds(fds); }
   /// Reads what has arrived. Passes on each mark once.
   void drain(HostAxis& axis, const TakeMark& take);

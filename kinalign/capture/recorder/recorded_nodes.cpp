@@ -42,8 +42,6 @@ Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& 
       new RecordedNodes(device, desk.lab_key.has_value(), std::move(receiver), recorder));
 }
 
-// Datagrams that arrived after `until_` are copied, since their bytes are valid only during the
-// call.
 RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver,
                              Recorder& recorder)
     : device_(std::move(device)),
@@ -51,30 +49,7 @@ RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver rece
       receiver_(std::move(receiver)),
       recorder_(recorder) {
   receiver_.watch([this](const NodeArrival& arrival, const NodeMessage& news, LiveClock*) {
-    const Moment came{arrival.h_rx, arrival.stamp};
-    if (held_.must_hold(came, news.node_id, until_)) {
-      held_.hold(came, news.node_id,
-                 {arrival,
-                  news,
-                  {arrival.bytes.begin(), arrival.bytes.end()},
-                  {news.readings.begin(), news.readings.end()}});
-    } else {
-      take(arrival, news);
-    }
-  });
-}
-
-void RecordedNodes::drain(const std::optional<Moment>& until) {
-  until_ = until;
-  receiver_.drain();
-  until_.reset();
-}
-
-void RecordedNodes::release(const std::optional<Moment>& until) {
-  held_.release(until, [&](Held& held) {
-    held.arrival.bytes = held.bytes;
-    held.news.readings = held.readings;
-    take(held.arrival, held.news);
+    take(arrival, news);
   });
 }
 
@@ -159,7 +134,7 @@ void RecordedNodes::look(HostTime now) {
 /// recorded, so the user must learn of it during the take. Lost frames are subtracted; a frame
 /// dropped for lack of buffer space counts as lost only when the next frame of its node has
 /// arrived. Therefore the number of dropped datagrams of one second ago is used.
-void RecordedNodes::find_strays() {
+void RecordedNodes::find_foreign() {
   PortCounts counts = this->counts();
   counts.dropped = std::exchange(dropped_, counts.dropped);
   std::uint64_t lost = 0;
@@ -201,14 +176,14 @@ void RecordedNodes::begin(std::uint64_t chunk) {
   for (auto& [id, node] : nodes_) node.raw.begin(chunk);
 }
 
-void RecordedNodes::tell(std::uint16_t counts, HostTime now) const {
-  for (const auto& [id, node] : nodes_) node.raw.tell(recorder_, counts, now);
+void RecordedNodes::record_counts(std::uint16_t counts, HostTime now) const {
+  for (const auto& [id, node] : nodes_) node.raw.record_counts(recorder_, counts, now);
 }
 
 PortCounts RecordedNodes::counts() const {
   const NodeCounts& counts = receiver_.counts();
   PortCounts out;
-  out.pieces = counts.verdicts.total() - no_frames(counts) - held_.size();
+  out.pieces = counts.verdicts.total() - no_frames(counts);
   out.bytes = bytes_;
   out.refused = counts.verdicts[NodeVerdict::refused] - no_frames(counts) +
                 receiver_.not_unicast() + receiver_.from_port_0() + crowded_;

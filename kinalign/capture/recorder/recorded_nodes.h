@@ -7,7 +7,6 @@
 #include "kinalign/capture/net/pieces.h"
 #include "kinalign/capture/nodes/node_receiver.h"
 #include "kinalign/capture/recorder/findings_once.h"
-#include "kinalign/capture/recorder/held_back.h"
 #include "kinalign/capture/recorder/recorded_source.h"
 #include "kinalign/take/lab.h"
 
@@ -30,10 +29,7 @@ class RecordedNodes {
   ~RecordedNodes() = default;
 
   /// See RecordedPort.
-  void drain(const std::optional<Moment>& until = std::nullopt);
-  void release(const std::optional<Moment>& until = std::nullopt);
-
-  std::size_t held() const { return held_.size(); }
+  void drain() { receiver_.drain(); }
 
   NodeReceiver& receiver() { return receiver_; }
   const NodeReceiver& receiver() const { return receiver_; }
@@ -41,13 +37,13 @@ class RecordedNodes {
   void look(HostTime now);
   void remember(std::uint64_t chunk, std::uint64_t first);
   void begin(std::uint64_t chunk);
-  void tell(std::uint16_t counts, HostTime now) const;
+  void record_counts(std::uint16_t counts, HostTime now) const;
 
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const { return receiver_.sockets().front().port(); }
   PortCounts counts() const;
   /// Call once a second. Checks whether other devices than nodes send to this port.
-  void find_strays();
+  void find_foreign();
   /// See RecordedPort.
   Findings take_findings() { return findings_.take(); }
   void add_streams(std::vector<StreamStatus>& all) const;
@@ -66,13 +62,6 @@ class RecordedNodes {
     std::map<std::size_t, Lost> lost{};
   };
 
-  struct Held {
-    NodeArrival arrival;
-    NodeMessage news;
-    std::vector<std::uint8_t> bytes;
-    std::vector<NodeReading> readings;
-  };
-
   RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver, Recorder& recorder);
   void take(const NodeArrival& arrival, const NodeMessage& news);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
@@ -84,11 +73,9 @@ class RecordedNodes {
   NodeReceiver receiver_;
   Recorder& recorder_;
   std::map<std::uint32_t, Node> nodes_;
-  std::optional<Moment> until_;  // datagrams that arrived later are held back
-  HeldBack<Held> held_;
   std::uint64_t bytes_ = 0;
   std::uint64_t crowded_ = 0;  // datagrams of nodes that got no channel
-  std::uint64_t dropped_ = 0;  // dropped datagrams at the last call of find_strays()
+  std::uint64_t dropped_ = 0;  // dropped datagrams at the last call of find_foreign()
   FindingsOnce findings_;
 };
 

@@ -61,33 +61,15 @@ void RecordedPort::add_fds(std::vector<int>& fds) const {
   std::visit([&](const auto& pieces) { pieces.add_fds(fds); }, pieces_);
 }
 
-void RecordedPort::drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
-  const bool may_hold = until && has_datagrams();
-  const TakePiece to = [&](const Piece& piece) {
-    const Moment came{piece.arrival, piece.stamp};
-    if (may_hold && held_.must_hold(came, piece.sender, until)) {
-      held_.hold(came, piece.sender, {piece, sender_of(piece), std::string(piece.bytes)});
-      held_bytes_ += piece.bytes.size();
-    } else {
-      take(piece, sender_of(piece), axis, recorder);
-    }
-  };
+void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
+  const TakePiece to = [&](const Piece& piece) { take(piece, axis, recorder); };
   std::visit([&](auto& pieces) { pieces.drain(axis, to); }, pieces_);
-}
-
-void RecordedPort::release(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
-  held_.release(until, [&](Held& held) {
-    held.piece.bytes = held.bytes;
-    held_bytes_ -= held.bytes.size();
-    take(held.piece, held.sender, axis, recorder);
-  });
 }
 
 /// Answers are sent before anything is recorded, because work in between would delay one direction
 /// only.
-void RecordedPort::take(const Piece& piece, const Senders::Sender& sender, HostAxis& axis,
-                        Recorder& recorder) {
-  Source& source = source_of(sender, piece.sender, recorder);
+void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
+  Source& source = source_of(sender_of(piece), piece.sender, recorder);
   source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
   if (kinect_responder_) answer_pings(source, piece, axis, recorder);
   if (slimes_) answer_trackers(source, piece);
@@ -216,9 +198,9 @@ void RecordedPort::begin(std::uint64_t chunk) {
   for_each_source(*this, [&](Source& source) { source.recorded.begin(chunk); });
 }
 
-void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, HostTime now) const {
-  for_each_source(*this,
-                  [&](const Source& source) { source.recorded.tell(recorder, counts, now); });
+void RecordedPort::record_counts(Recorder& recorder, std::uint16_t counts, HostTime now) const {
+  for_each_source(
+      *this, [&](const Source& source) { source.recorded.record_counts(recorder, counts, now); });
 }
 
 /// Updates the status of a sender except its messages and bytes.
@@ -262,10 +244,7 @@ std::uint16_t RecordedPort::port() const {
 }
 
 PortCounts RecordedPort::counts() const {
-  PortCounts counts = std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
-  counts.pieces -= held_.size();
-  counts.bytes -= held_bytes_;
-  return counts;
+  return std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
 }
 
 std::uint64_t RecordedPort::heard() const {

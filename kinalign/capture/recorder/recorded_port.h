@@ -6,7 +6,6 @@
 #include "kinalign/capture/net/followed_clock.h"
 #include "kinalign/capture/net/pieces.h"
 #include "kinalign/capture/recorder/findings_once.h"
-#include "kinalign/capture/recorder/held_back.h"
 #include "kinalign/capture/recorder/kinect_responder.h"
 #include "kinalign/capture/recorder/recorded_source.h"
 #include "kinalign/capture/recorder/slimevr_desk.h"
@@ -30,13 +29,8 @@ class RecordedPort {
   static Result<RecordedPort> open(const DeviceOptions& device, const SipHashKey& secret);
 
   void add_fds(std::vector<int>& fds) const;
-  /// Reads, answers and records what has arrived. Datagrams that arrived after `until` are held
-  /// back for release(), and are counted then. Data of a connection is never held, because its
-  /// arrival is known only from when it is read.
-  void drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until = std::nullopt);
-  /// Records held datagrams. If `until` is given, those that arrived after it stay held.
-  void release(HostAxis& axis, Recorder& recorder,
-               const std::optional<Moment>& until = std::nullopt);
+  /// Reads, answers and records what has arrived, a limited amount.
+  void drain(HostAxis& axis, Recorder& recorder);
   /// Call about ten times a second. Sends messages that are due without a request.
   void tick(HostTime now);
   /// See RecordedSource; these apply to each sender. look() also looks for faults; call it once a
@@ -44,14 +38,13 @@ class RecordedPort {
   void look(HostTime now);
   void remember(std::uint64_t chunk, std::uint64_t first);
   void begin(std::uint64_t chunk);
-  void tell(Recorder& recorder, std::uint16_t counts, HostTime now) const;
+  void record_counts(Recorder& recorder, std::uint16_t counts, HostTime now) const;
 
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const;
   PortCounts counts() const;
   /// Pieces since the port was opened, including refused ones.
   std::uint64_t heard() const;
-  std::size_t held() const { return held_.size(); }
   void add_streams(std::vector<StreamStatus>& all) const;
   /// Findings about senders since the previous call. Each fault of a host is reported once.
   Findings take_findings() { return findings_.take(); }
@@ -76,12 +69,7 @@ class RecordedPort {
   RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pieces pieces,
                const SipHashKey& secret);
   static Result<Pieces> open_pieces(const DeviceOptions& device);
-  struct Held {
-    Piece piece;
-    Senders::Sender sender;  // a copy, since the number may be reused while the piece is held
-    std::string bytes;
-  };
-  void take(const Piece& piece, const Senders::Sender& sender, HostAxis& axis, Recorder& recorder);
+  void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
   const Senders::Sender& sender_of(const Piece& piece) const;
   Source& source_of(const Senders::Sender& sender, std::size_t number, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t life) const;
@@ -100,8 +88,6 @@ class RecordedPort {
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // indexed by the sender's number
   std::optional<Source> others_;                // shared by senders beyond Senders::most_lives
-  HeldBack<Held> held_;
-  std::uint64_t held_bytes_ = 0;
   NewestKinectFrames newest_frames_;
   FindingsOnce findings_;
   std::unique_ptr<SlimeDesk> slimes_;

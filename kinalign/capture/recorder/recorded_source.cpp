@@ -41,7 +41,7 @@ StreamStatus RecordedSource::of_take() const {
   return taken;
 }
 
-void RecordedSource::tell(Recorder& recorder, std::uint16_t counts, HostTime now) const {
+void RecordedSource::record_counts(Recorder& recorder, std::uint16_t counts, HostTime now) const {
   const SenderCounts taken = since(before_, status.counts);
   if (taken.messages == 0) return;
   recorder.record(counts, now,

@@ -30,7 +30,7 @@ class RecordedSource {
   /// A take begins with chunk `chunk`.
   void begin(std::uint64_t chunk) { before_ = past_.before(chunk); }
   /// Records the take's counts on the channel `counts`, if this take has a message of this source.
-  void tell(Recorder& recorder, std::uint16_t counts, HostTime now) const;
+  void record_counts(Recorder& recorder, std::uint16_t counts, HostTime now) const;
   StreamStatus of_take() const;
 
   StreamStatus status;  // counts since the first message

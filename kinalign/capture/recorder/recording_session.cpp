@@ -3,8 +3,10 @@
 
 #include "kinalign/protocols/protocols.h"
 
+#include <poll.h>
+
 #include <algorithm>
-#include <span>
+#include <array>
 #include <thread>
 #include <utility>
 
@@ -37,20 +39,6 @@ ExpectedDevices expected_of(const Lab& lab) {
     }
   }
   return expected;
-}
-
-/// Returns whether the kernel's stamps give the order of these marks. All marks must have a stamp,
-/// and the wall clock must not have been set between them.
-bool have_like_stamps(const std::vector<std::pair<RecordedMark, Moment>>& marks) {
-  constexpr Duration doubt = std::chrono::milliseconds(50);
-  std::optional<Duration> first;
-  return std::all_of(marks.begin(), marks.end(), [&](const auto& one) {
-    const Moment& came = one.second;
-    if (!came.stamp) return false;
-    const Duration apart = came.at.time_since_epoch() - came.stamp->time_since_epoch();
-    if (!first) first = apart;
-    return std::chrono::abs(apart - *first) < doubt;
-  });
 }
 
 /// A separate key for each port, so that no two ports draw the same nonces.
@@ -136,16 +124,10 @@ void RecordingSession::end_live() {
   if (live_) live_->end();
 }
 
-std::uint64_t RecordingSession::heard() const {
-  std::uint64_t heard = nodes_ ? nodes_->receiver().heard() : 0;
-  for (const RecordedPort& port : ports_) heard += port.heard();
-  return heard;
-}
-
-std::uint64_t RecordingSession::held() const {
-  std::uint64_t held = nodes_ ? nodes_->held() : 0;
-  for (const RecordedPort& port : ports_) held += port.held();
-  return held;
+std::uint64_t RecordingSession::received() const {
+  std::uint64_t all = nodes_ ? nodes_->receiver().heard() : 0;
+  for (const RecordedPort& port : ports_) all += port.heard();
+  return all;
 }
 
 /// Waking up costs more than processing a message. At a lab's rates the messages of 20 ms are
@@ -155,8 +137,8 @@ std::uint64_t RecordingSession::held() const {
 void RecordingSession::rest(Duration patience) {
   constexpr Duration short_rest = std::chrono::milliseconds(20);
   constexpr std::uint64_t few = 32;  // in a turn; the kernel's buffers hold twice as many
-  const std::uint64_t all = heard();
-  const std::uint64_t came = all - std::exchange(heard_before_, all);
+  const std::uint64_t all = received();
+  const std::uint64_t came = all - std::exchange(received_before_, all);
   const HostTime now = axis_.now();
   if (came > few) awake_until_ = now + std::chrono::seconds(1);
   const bool hurries = live_ && live_->has_clients();
@@ -165,72 +147,87 @@ void RecordingSession::rest(Duration patience) {
   }
 }
 
-/// A device's port is read only when data is waiting; connections are also checked at each look
-/// (every 100 ms). All marks are processed first, because data that arrives after a stop does not
-/// belong to its take. Data that arrives while ports are read is held back until marks are read
-/// again.
-bool RecordingSession::turn(Duration patience, std::optional<int> also) {
-  if (held() > 0) patience = {};
+/// Marks are read before the devices. Each stop mark reads all data that has arrived by then, so
+/// data that was sent before a stop is in its take.
+void RecordingSession::turn(Duration patience, std::optional<int> also) {
   rest(patience);
-  const bool some = wait(patience, also);
+  wait(patience, also);
   const HostTime now = axis_.now();
-  const bool look_after = now >= next_look_;
-  if (look_after) next_look_ = now + between_looks;
-  const auto until = mark_ports_.empty() ? std::nullopt : std::optional(Moment{now});
   drain_marks();
-  release(until);
-  if (look_after && nodes_) nodes_->receiver().tick();
-  if (nodes_ && some && waiting_.front().revents != 0) nodes_->drain(until);
-  for (std::size_t i = 0; i < ports_.size(); ++i) {
-    if (look_after) ports_[i].tick(now);
-    if (look_after || (some && is_ready(i))) ports_[i].drain(axis_, *recorder_, until);
+  if (now >= next_look_) {
+    next_look_ = now + between_looks;
+    if (nodes_) nodes_->receiver().tick();
+    for (RecordedPort& port : ports_) port.tick(now);
   }
+  drain_devices();
   tick(now);
   if (live_) live_->turn();
-  takes_.run();
-  return some;
+  end_take_if_due();
+  start_disks();
 }
 
-/// Returns whether data waits at a port. Index into ports_, then mark_ports_.
-bool RecordingSession::is_ready(std::size_t port) const {
-  const std::size_t begin = port > 0 ? fds_end_[port - 1] : nodes_ ? 1 : 0;
-  const auto of_port = std::span(waiting_).subspan(begin, fds_end_[port] - begin);
-  return std::any_of(of_port.begin(), of_port.end(),
-                     [](const pollfd& one) { return one.revents != 0; });
-}
-
-/// Waits for data. Returns whether any has arrived; waiting_ says at which descriptors.
-bool RecordingSession::wait(Duration patience, std::optional<int> also) {
-  fds_.clear();
-  fds_end_.clear();
-  if (nodes_) fds_.push_back(nodes_->receiver().fd());
-  for (const RecordedPort& port : ports_) {
-    port.add_fds(fds_);
-    fds_end_.push_back(fds_.size());
-  }
-  for (const MarkPort& port : mark_ports_) {
-    port.add_fds(fds_);
-    fds_end_.push_back(fds_.size());
-  }
-  if (live_) fds_.push_back(live_->fd());
-  if (also) fds_.push_back(*also);
-  waiting_.clear();
-  for (const int fd : fds_) waiting_.push_back({fd, POLLIN, 0});
+void RecordingSession::wait(Duration patience, std::optional<int> also) {
+  std::vector<int> fds;
+  if (nodes_) fds.push_back(nodes_->receiver().fd());
+  for (const RecordedPort& port : ports_) port.add_fds(fds);
+  for (const MarkPort& port : mark_ports_) port.add_fds(fds);
+  if (live_) fds.push_back(live_->fd());
+  if (also) fds.push_back(*also);
+  std::vector<pollfd> polled;
+  for (const int fd : fds) polled.push_back({fd, POLLIN, 0});
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
-  return ::poll(waiting_.data(), waiting_.size(), static_cast<int>(ms)) > 0;
+  ::poll(polled.data(), polled.size(), static_cast<int>(ms));
+}
+
+/// Reads what has arrived, a limited amount per port.
+void RecordingSession::drain_devices() {
+  if (nodes_) nodes_->drain();
+  for (RecordedPort& port : ports_) port.drain(axis_, *recorder_);
+}
+
+/// Stops after 200 ms, so that a flood cannot delay the end of a take further.
+void RecordingSession::drain_until_empty() {
+  constexpr Duration longest = std::chrono::milliseconds(200);
+  const HostTime begun = axis_.now();
+  std::uint64_t before = 0;
+  do {
+    before = received();
+    drain_devices();
+  } while (received() != before && axis_.now() - begun < longest);
+}
+
+/// Processes the marks of all ports in the order of arrival, because a start may come to one port
+/// and its stop to another.
+void RecordingSession::drain_marks() {
+  std::vector<ReceivedMark> all;
+  for (MarkPort& port : mark_ports_) {
+    port.drain(axis_, [&](const RecordedMark& mark, HostTime at) { all.emplace_back(mark, at); });
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.second < b.second; });
+  for (const auto& [received, at] : all) mark(received, at);
 }
 
 /// A start mark is recorded in the take that it begins, a stop mark in the take that it ends.
-void RecordingSession::mark(const RecordedMark& mark, const Moment& came) {
+void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
   using Kind = Mark::Kind;
   const Kind kind = mark.mark.kind;
-  if (kind == Kind::start && by_marks_ && by_marks_->starts != Starts::none && !recording()) {
+  if (kind == Kind::start && may_start()) {
     if (by_marks_->starts == Starts::next) by_marks_->starts = Starts::none;
-    start(by_marks_->plan, came.at);
+    if (!recording()) start(by_marks_->plan, at);
+    if (std::exchange(stop_is_due_, false)) {
+      findings_.push_back(
+          {Severity::warning,
+           Error{"marks", 0, "a start after the take before is on the disk", "one before that"},
+           "it begins no take: the data goes on into the same file, with all marks",
+           "see what delays the disk, or who sends so many marks"});
+    }
   }
-  recorder_->record(mark_channel_, came.at, to_json(mark));
-  if (kind == Kind::stop && by_marks_ && recording() && has_room_for_takes()) end_take(came);
-  if (marks_.size() < most_untaken) marks_.emplace_back(mark, came.at);
+  recorder_->record(mark_channel_, at, to_json(mark));
+  if (marks_.size() < most_untaken) marks_.emplace_back(mark, at);
+  if (kind != Kind::stop || !by_marks_) return;
+  stop_is_due_ = recording();
+  end_take_if_due();
 }
 
 void RecordingSession::obey_no_start() {
@@ -241,18 +238,18 @@ void RecordingSession::tick(HostTime now) {
   recorder_->tick(now);
   if (now < next_second_) return;
   next_second_ = now + std::chrono::seconds(1);
-  tell(now);
-  if (nodes_) nodes_->find_strays();
+  record_counts(now);
+  if (nodes_) nodes_->find_foreign();
 }
 
 /// Records both clocks of the host. During a take it records the counts too.
-void RecordingSession::tell(HostTime now) {
+void RecordingSession::record_counts(HostTime now) {
   recorder_->record(pairs_, now, to_json(axis_.watch()));
   for (RecordedPort& port : ports_) port.look(now);
   if (nodes_) nodes_->look(now);
   if (!recording()) return;
-  for (const RecordedPort& port : ports_) port.tell(*recorder_, counts_, now);
-  if (nodes_) nodes_->tell(counts_, now);
+  for (const RecordedPort& port : ports_) port.record_counts(*recorder_, counts_, now);
+  if (nodes_) nodes_->record_counts(counts_, now);
   for (const auto& [name, counts] : port_counts()) {
     recorder_->record(port_counts_, now, to_json(CountedPort{name, counts}));
   }
@@ -277,85 +274,56 @@ void RecordingSession::start(const TakePlan& plan, HostTime at) {
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
   TakeHead head{facts_, expected_of(options_.lab), attachments_of(options_, facts_.anchor.utc)};
-  newest_ = begin_take(machine_.files, plan, std::move(head), compression);
-  newest_->begun = at;
-  takes_.add(newest_);
-  begin_counts(recorder_->start(at, [this](McapChunkContent chunk) {
-    newest_->disk.push(std::move(chunk), takes_.room(*newest_));
+  const auto take = begin_take(machine_.files, plan, std::move(head), compression);
+  take->begun = at;
+  takes_.push_back(take);
+  stop_is_due_ = false;
+  begin_counts(recorder_->start(at, [this, take](McapChunkContent chunk) {
+    const std::uint64_t others = waiting_bytes() - take->disk.status().waiting_bytes;
+    take->disk.push(std::move(chunk),
+                    DiskThread::most_waiting - std::min(others, DiskThread::most_waiting));
   }));
+  start_disks();
 }
 
-/// Reports a full queue once, until there is space again.
-bool RecordingSession::has_room_for_takes() {
-  const bool was_full = std::exchange(full_, takes_.is_full());
-  if (full_ && !was_full) {
-    findings_.push_back(
-        {Severity::warning,
-         Error{"marks", 0,
-               "at most " + std::to_string(TakeQueue::most) + " takes that wait for the disk",
-               "a mark that would end one more"},
-         "it ends none: what comes stands in the same file, with all marks",
-         "see what holds up the disk, or who sends so many marks"});
-  }
-  return !full_;
-}
-
-/// Reads all data of devices that arrived up to `until`, since one turn may not have emptied the
-/// kernel's buffers. Stops after 200 ms, so that a flood on a connection cannot delay the end of
-/// the take further.
-void RecordingSession::drain_devices(const Moment& until) {
-  constexpr Duration longest = std::chrono::milliseconds(200);
-  const HostTime begun = axis_.now();
-  std::uint64_t before = 0;
-  release(until);
-  do {
-    before = heard() - held();
-    if (nodes_) nodes_->drain(until);
-    for (RecordedPort& port : ports_) port.drain(axis_, *recorder_, until);
-  } while (heard() - held() != before && axis_.now() - begun < longest);
-}
-
-/// Records held data of devices, up to `until` or all.
-void RecordingSession::release(const std::optional<Moment>& until) {
-  if (nodes_) nodes_->release(until);
-  for (RecordedPort& port : ports_) port.release(axis_, *recorder_, until);
-}
-
-/// Processes the marks of all ports in the order of arrival, because a start may come to one port
-/// and its stop to another. Data that devices sent between two marks is recorded between them.
-void RecordingSession::drain_marks() {
-  std::vector<std::pair<RecordedMark, Moment>> all;
-  for (MarkPort& port : mark_ports_) {
-    port.drain(axis_,
-               [&](const RecordedMark& m, const Moment& came) { all.emplace_back(m, came); });
-  }
-  const bool stamped = have_like_stamps(all);
-  std::stable_sort(all.begin(), all.end(), [stamped](const auto& a, const auto& b) {
-    return stamped ? a.second.stamp < b.second.stamp : a.second.at < b.second.at;
-  });
-  for (const auto& [heard, came] : all) {
-    release(came);
-    mark(heard, came);
+/// Tries again if the system had no thread. The file of the take before is opened first, so that
+/// files are numbered in the order of takes.
+void RecordingSession::start_disks() {
+  for (const auto& take : takes_) {
+    const DiskStatus disk = take->disk.status();
+    if (disk.finished) continue;
+    if (!take->disk_started) take->disk_started = take->disk.start().has_value();
+    if (disk.paths.empty()) return;
   }
 }
 
+// Marks that have arrived are in the take, too. They may end it and begin another one, which is
+// then not ended.
 void RecordingSession::stop() {
   if (!recording()) return;
-  const std::shared_ptr<SessionTake> ending = newest_;
-  const Moment now{axis_.now()};
+  const auto ending = takes_.back();
   drain_marks();
-  if (recording() && newest_ == ending) end_take(now);
+  stop_is_due_ = stop_is_due_ || (recording() && takes_.back() == ending);
+  end_take_if_due();
 }
 
-/// Data that arrived later is held back. It belongs to the next take or to none.
-void RecordingSession::end_take(const Moment& came) {
-  drain_devices(came);
+void RecordingSession::end_take_if_due() {
+  if (!stop_is_due_ || (takes_.size() > 1 && may_start())) return;
+  stop_is_due_ = false;
+  drain_until_empty();
   const HostTime now = axis_.now();
-  tell(now);
+  record_counts(now);
   recorder_->stop();
-  newest_->end = TakeEnd{now, streams(), port_counts(), {}};
-  if (nodes_) newest_->end->nodes = nodes_->receiver().status();
-  newest_->disk.finish();
+  SessionTake& take = *takes_.back();
+  take.end = TakeEnd{now, streams(), port_counts(), {}};
+  if (nodes_) take.end->nodes = nodes_->receiver().status();
+  take.disk.finish();
+}
+
+std::uint64_t RecordingSession::waiting_bytes() const {
+  std::uint64_t all = 0;
+  for (const auto& take : takes_) all += take->disk.status().waiting_bytes;
+  return all;
 }
 
 std::vector<StreamStatus> RecordingSession::streams() const {

@@ -13,9 +13,8 @@
 #include "kinalign/recording/format.h"
 #include "kinalign/take/lab.h"
 
-#include <poll.h>
-
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -47,41 +46,37 @@ class RecordingSession {
   };
   static Result<std::unique_ptr<RecordingSession>> open(Options options, Machine machine);
 
-  /// Waits until data arrives, `patience` at most, and processes all of it. It does not wait while
-  /// data is held back. `also`: a descriptor of the caller that ends the wait too. Returns whether
-  /// any descriptor was ready.
-  bool turn(Duration patience, std::optional<int> also = std::nullopt);
+  /// Waits until data arrives, `patience` at most, and processes it. `also`: a descriptor of the
+  /// caller that ends the wait too.
+  void turn(Duration patience, std::optional<int> also = std::nullopt);
 
-  /// Begins a take, which contains the pre-roll and all later data. Its file is opened on the
-  /// disk's thread. The take's disk.status() says when that is done, or why it fails.
+  /// Begins a take, which contains the pre-roll and all later data. No take may be in progress. The
+  /// file is opened on the disk's thread. The take's disk.status() says when that is done, or why
+  /// it fails.
   void start(const TakePlan& plan) { start(plan, axis_.now()); }
   /// Which start marks begin a take: none, the next one only, or each.
   enum class Starts : std::uint8_t { none, next, each };
-  /// Makes marks begin and end takes. A start mark begins a take if none is in progress, and a stop
-  /// mark ends it, in the turn in which the mark arrives, regardless of the disk. While takes_ is
-  /// full, no take is ended and data goes into the same file.
+  /// Makes marks begin and end takes. A start mark begins a take if none is in progress. A stop
+  /// mark ends it, see stop(). The boundary is the turn in which the mark is read.
   void obey_marks(TakePlan plan, Starts starts) { by_marks_ = ByMarks{std::move(plan), starts}; }
   /// Start marks begin no more takes. A stop mark still ends a take in progress.
   void obey_no_start();
-  /// Ends the take in progress. Data that has arrived is written to the disk during further calls
-  /// of turn(); see the take's disk. A start mark that arrived before the call may have begun
-  /// another take.
+  /// Ends the take in progress. All data and marks that have arrived are in it. If another take may
+  /// begin while the take before this one is not released, this take continues until then.
   void stop();
   bool recording() const { return recorder_->started(); }
-  /// The takes that have begun, in order, each once. nullptr: no more.
-  std::shared_ptr<SessionTake> next_take() { return takes_.next(); }
-  /// The present or last take. nullptr before the first.
-  const std::shared_ptr<SessionTake>& newest_take() const { return newest_; }
+  /// The takes that are not released, two at most: the last one is in progress or has ended, the
+  /// one before it has ended.
+  const std::deque<std::shared_ptr<SessionTake>>& takes() const { return takes_; }
+  /// Forgets the oldest take. Call when it is written or given up.
+  void release_take() { takes_.pop_front(); }
   /// Bytes of all takes that are not yet safely on the disk.
-  std::uint64_t waiting_bytes() const { return takes_.waiting_bytes(); }
+  std::uint64_t waiting_bytes() const;
 
   /// Records a mark. Before a take it goes into the pre-roll. The mark may begin or end a take.
-  void mark(const RecordedMark& mark, HostTime at) {
-    drain_marks();  // marks that arrived earlier come first
-    this->mark(mark, Moment{at});
-  }
+  void mark(const RecordedMark& mark, HostTime at);
   /// Marks since the previous call, 256 at most.
-  std::vector<HeardMark> take_marks() { return std::exchange(marks_, {}); }
+  std::vector<ReceivedMark> take_marks() { return std::exchange(marks_, {}); }
 
   std::vector<StreamStatus> streams() const;
   /// Findings about the devices' data, each once. They are looked for once a second.
@@ -108,21 +103,19 @@ class RecordingSession {
   Result<void> open_ports();
   Result<void> open_live_port(std::uint16_t port);
   void rest(Duration patience);
-  std::uint64_t heard() const;
-  std::uint64_t held() const;
-  bool wait(Duration patience, std::optional<int> also);
-  bool is_ready(std::size_t port) const;
-  void mark(const RecordedMark& mark, const Moment& came);
-  void drain_devices(const Moment& until);
-  void release(const std::optional<Moment>& until);
+  void wait(Duration patience, std::optional<int> also);
+  std::uint64_t received() const;
+  void drain_devices();
+  void drain_until_empty();
   void drain_marks();
-  bool has_room_for_takes();
+  bool may_start() const { return by_marks_ && by_marks_->starts != Starts::none; }
+  void end_take_if_due();
+  void start_disks();
   void tick(HostTime now);
-  void tell(HostTime now);
+  void record_counts(HostTime now);
   void remember_counts(std::uint64_t chunk, std::uint64_t first);
   void begin_counts(std::uint64_t chunk);
   void start(const TakePlan& plan, HostTime at);
-  void end_take(const Moment& came);
   std::vector<std::pair<std::string, PortCounts>> running_port_counts() const;
 
   struct PortPast {
@@ -143,22 +136,18 @@ class RecordingSession {
   std::vector<RecordedPort> ports_;
   std::vector<MarkPort> mark_ports_;
   std::optional<LivePort> live_;
-  std::vector<HeardMark> marks_;
+  std::vector<ReceivedMark> marks_;
   std::uint16_t pairs_ = 0, counts_ = 0, port_counts_ = 0, mark_channel_ = 0;
   RecordingFacts facts_;
   HostTime next_second_ = HostTime::min(), next_look_ = HostTime::min();
   std::map<std::string, PortPast> port_counts_past_;
-  std::vector<int> fds_;              // descriptors of this turn
-  std::vector<std::size_t> fds_end_;  // end of each port's descriptors in fds_, mark ports last
-  std::vector<pollfd> waiting_;
-  std::uint64_t heard_before_ = 0;  // heard() at the last turn
+  std::uint64_t received_before_ = 0;  // received() at the last turn
   // No rest before this time, because of a flood.
   HostTime awake_until_ = HostTime::min();
   std::optional<ByMarks> by_marks_;
-  std::shared_ptr<SessionTake> newest_;
-  TakeQueue takes_;
+  std::deque<std::shared_ptr<SessionTake>> takes_;
+  bool stop_is_due_ = false;  // the take in progress ends as soon as it may
   Findings findings_;
-  bool full_ = false;  // takes_ is full, and this was reported
 };
 
 }  // namespace kinalign

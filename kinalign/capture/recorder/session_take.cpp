@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/recorder/session_take.h"
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace kinalign {
@@ -49,51 +47,7 @@ std::shared_ptr<SessionTake> begin_take(FileSystem& files, const TakePlan& plan,
   head.facts.subject = plan.subject;
   head.facts.action = plan.action;
   return std::shared_ptr<SessionTake>(new SessionTake{
-      {}, std::nullopt, {TakeFiles{&files, plan.free_path, std::move(head)}, compression}});
-}
-
-void TakeQueue::add(std::shared_ptr<SessionTake> take) {
-  added_.push_back(take);
-  queued_.push_back(std::move(take));
-  run();
-}
-
-std::shared_ptr<SessionTake> TakeQueue::next() {
-  if (added_.empty()) return nullptr;
-  std::shared_ptr<SessionTake> next = std::move(added_.front());
-  added_.pop_front();
-  return next;
-}
-
-// A take whose disk gave up before it was started is skipped.
-void TakeQueue::run() {
-  std::erase_if(writing_, [](const auto& take) { return take->disk.status().finished; });
-  while (!queued_.empty() && next_may()) {
-    const std::shared_ptr<SessionTake>& next = queued_.front();
-    const bool given_up = next->disk.status().finished;
-    if (!given_up && !next->disk.start()) return;
-    if (!given_up) writing_.push_back(next);
-    queued_.pop_front();
-  }
-}
-
-// The next disk starts only when the file of the one before is open, so that files are numbered in
-// the order of takes.
-bool TakeQueue::next_may() const {
-  if (writing_.empty()) return true;
-  return writing_.size() < most_writing && !writing_.back()->disk.status().paths.empty();
-}
-
-std::uint64_t TakeQueue::waiting_beside(const SessionTake* one) const {
-  const auto add = [one](std::uint64_t sum, const std::shared_ptr<SessionTake>& take) {
-    return take.get() == one ? sum : sum + take->disk.status().waiting_bytes;
-  };
-  const auto queued = std::accumulate(queued_.begin(), queued_.end(), std::uint64_t{0}, add);
-  return std::accumulate(writing_.begin(), writing_.end(), queued, add);
-}
-
-std::uint64_t TakeQueue::room(const SessionTake& take) const {
-  return DiskThread::most_waiting - std::min(waiting_beside(&take), DiskThread::most_waiting);
+      {}, std::nullopt, false, {TakeFiles{&files, plan.free_path, std::move(head)}, compression}});
 }
 
 }  // namespace kinalign

@@ -39,23 +39,6 @@ std::vector<Kind> kinds(HostAxis& axis) {
 
 }  // namespace
 
-TEST_CASE("stamps of the kernel say which came later, unless the clock was set between the two") {
-  const auto moment = [](Duration at, Duration stamp) {
-    return Moment{HostTime{at}, utc_time(1'700'000'000'000'000'000) + stamp};
-  };
-  const Moment first = moment(microseconds(900), microseconds(100));  // the datagram waited longer
-  const Moment second = moment(microseconds(800), microseconds(101));
-  CHECK(is_behind(second, first));
-  CHECK_FALSE(is_behind(first, second));
-  CHECK_FALSE(is_behind(first, first));
-  const Moment set_back = moment(milliseconds(1000), -milliseconds(5000));
-  CHECK_FALSE(is_behind(set_back, first));
-  CHECK_FALSE(is_behind(first, set_back));
-  const Moment unstamped{HostTime{milliseconds(2)}};
-  CHECK(is_behind(unstamped, first));
-  CHECK_FALSE(is_behind(first, unstamped));
-}
-
 TEST_CASE("an arrival is never moved to before it was, and by little behind it") {
   std::mt19937 random(1);
   FakeClocks clocks;

@@ -147,7 +147,7 @@ TEST_CASE("a name that another recorder takes first is left to it") {
     return folder / name;
   }});
   finish(**session);
-  CHECK((*session)->newest_take()->disk.status().paths ==
+  CHECK((*session)->takes().back()->disk.status().paths ==
         std::vector<std::string>{folder / "b.mcap"});
   CHECK(folder.read("a.mcap") == "another's");
 }
@@ -170,12 +170,12 @@ TEST_CASE("while a disk takes its time to begin a take's file, what comes is rec
     serve_until(**session, [&] { return came() == index; });
   }
   serve_until(**session, [&] {
-    return (*session)->newest_take()->disk.status().waiting_bytes > 0;
+    return (*session)->takes().back()->disk.status().waiting_bytes > 0;
   });  // a chunk
-  CHECK((*session)->newest_take()->disk.status().paths.empty());
+  CHECK((*session)->takes().back()->disk.status().paths.empty());
   files.still = false;
   finish(**session);
-  CHECK((*session)->newest_take()->disk.status().dropped == 0);
+  CHECK((*session)->takes().back()->disk.status().dropped == 0);
   CHECK(payloads_in(folder.read("a.mcap")).at("/mocap/raw").size() == 20);
 }
 
@@ -301,10 +301,10 @@ TEST_CASE("a second take needs a name of its own, and has its own file") {
   start(**session, folder / "a.mcap");
   finish(**session);
   start(**session, folder / "a.mcap");
-  (*session)->newest_take()->disk.give_up();
+  (*session)->takes().back()->disk.give_up();
   finish(**session);
-  CHECK((*session)->newest_take()->disk.status().refused->file == folder / "a.mcap");
-  CHECK((*session)->newest_take()->disk.status().paths.empty());
+  CHECK((*session)->takes().back()->disk.status().refused->file == folder / "a.mcap");
+  CHECK((*session)->takes().back()->disk.status().paths.empty());
   start(**session, folder / "b.mcap");
   finish(**session);
   CHECK(read_mcap(folder.read("a.mcap")).closed);

@@ -3,7 +3,6 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <vector>
 
 using namespace kinalign;
@@ -30,39 +29,12 @@ TEST_CASE("the minutes left are those until the reserve, at what comes") {
   CHECK(*forecast.minutes_left() == doctest::Approx(1.0));
 }
 
-TEST_CASE(
-    "a rate that rises counts at once, after five seconds alone, and one that falls in the end") {
-  DiskForecast forecast;
-  std::uint64_t written = 0;
-  const auto minutes_at = [&](double rate_mib_s) { return 600.0 / rate_mib_s / 60.0; };
-  for (int s = 0; s <= 28; ++s) forecast.look(at_s(s), written, 664 * mebibyte);
-  CHECK(!forecast.minutes_left());
-  for (int s = 29; s <= 60; ++s) {
-    written += mebibyte / 8;
-    forecast.look(at_s(s), written, 664 * mebibyte);
-    CAPTURE(s);
-    REQUIRE(forecast.minutes_left());
-    // The part of the last five seconds in which bytes were written.
-    const double share = std::min(1.0, (s - 28) / 5.0);
-    CHECK(*forecast.minutes_left() == doctest::Approx(minutes_at(share / 8)));
-  }
-  for (int s = 61; s <= 100; ++s) {
-    written += mebibyte / 80;
-    forecast.look(at_s(s), written, 664 * mebibyte);
-    CAPTURE(s);
-    const bool held = s <= 90;  // half a minute after the last fast second
-    if (held) CHECK(*forecast.minutes_left() == doctest::Approx(minutes_at(1.0 / 8)));
-    if (s >= 95)
-      CHECK(*forecast.minutes_left() == doctest::Approx(minutes_at(1.0 / 80)).epsilon(1e-4));
-  }
-}
-
-TEST_CASE("what comes by fits and starts is foretold by these, without leaping to and fro") {
+TEST_CASE("data that comes in bursts is forecast by the mean of the last half minute") {
   DiskForecast forecast;
   for (int s = 0; s <= 120; ++s) {
     forecast.look(at_s(s), s / 10 * mebibyte, 664 * mebibyte);  // a MiB each ten seconds
     CAPTURE(s);
-    if (s >= 10) CHECK(*forecast.minutes_left() == doctest::Approx(600.0 * 5 / 60));
+    if (s >= 30) CHECK(*forecast.minutes_left() == doctest::Approx(600.0 * 10 / 60));
   }
 }
 

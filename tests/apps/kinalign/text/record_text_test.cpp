@@ -20,30 +20,21 @@ TEST_CASE("of connections made anew from one port the newest says whether the de
   CHECK(newest[1].heard == scene.status.now);
 }
 
-TEST_CASE("of what has not come yet it is told where it would be heard") {
+TEST_CASE("a line about a device that has sent nothing names its port") {
   Scene scene;
   scene.lab.devices.push_back(*parse_device("suit=noitom:tcp:192.168.7.5:7001"));
   scene.lab.devices.push_back(*parse_device("camera=kinect:tcp-listen:7202"));
   scene.status.ports = {{"suit", {}}, {"camera", {}}};
-  const std::map<std::string, std::uint16_t> ports{
+  scene.status.port_numbers = {
       {"mocap", 7012}, {"kinect", 7201}, {"imu", 5005}, {"suit", 7001}, {"camera", 7202}};
-  CHECK(lines_of_unheard(scene.lab, scene.status, ports) ==
+  CHECK(unseen_lines(scene.lab, scene.status) ==
         std::vector<std::string>{"imu wrist: nothing has come to port 5005 yet",
                                  "suit: no connection to 192.168.7.5:7001 yet",
                                  "camera: nobody has connected to port 7202 yet"});
   for (auto& [name, counts] : scene.status.ports) counts.links = 1;
-  const auto linked = lines_of_unheard(scene.lab, scene.status, ports);
+  const auto linked = unseen_lines(scene.lab, scene.status);
   CHECK(linked[1] == "suit: nothing has come from 192.168.7.5:7001 yet");
   CHECK(linked[2] == "camera: nothing has come to port 7202 yet");
-}
-
-TEST_CASE("who came in an earlier take and not in this one did not come") {
-  Scene scene;
-  for (StreamStatus& stream : scene.status.streams) stream.counts.messages = 7;
-  CHECK(unheard_in_take(scene.lab, scene.status) == std::vector<std::string>{"imu wrist"});
-  scene.status.streams[0].counts.messages = 0;
-  CHECK(unheard_in_take(scene.lab, scene.status) == std::vector<std::string>{"mocap", "imu wrist"});
-  CHECK(end_line(scene.status.streams[0]).empty());
 }
 
 TEST_CASE("missing are required devices that are silent or were never heard, and nodes by place") {
@@ -96,25 +87,22 @@ TEST_CASE("of what a port of nodes threw away it is told what it was, as far as 
   CHECK(loss_of(counts, 500) == "419 thrown away: no frames of nodes, or no room for them");
 }
 
-TEST_CASE(
-    "where something came to a port of nodes and no node was heard, it is not said to be nothing") {
+TEST_CASE("data at a port of nodes from which no node can be seen is counted in the line") {
   Scene scene;
-  const std::map<std::string, std::uint16_t> ports{
-      {"mocap", 7012}, {"kinect", 7201}, {"imu", 5005}};
+  scene.status.port_numbers = {{"mocap", 7012}, {"kinect", 7201}, {"imu", 5005}};
   scene.lab.devices.erase(scene.lab.devices.begin(), scene.lab.devices.begin() + 2);
   scene.status.streams.clear();
   PortCounts counts;
   counts.sifted = true;
   scene.status.ports = {{"imu", counts}};
-  CHECK(lines_of_unheard(scene.lab, scene.status, ports)[0] ==
-        "imu wrist: nothing has come to port 5005 yet");
-  CHECK(end_lines_of_unheard(scene.lab, scene.status, ports)[0] == "imu wrist: nothing came");
+  CHECK(unseen_lines(scene.lab, scene.status)[0] == "imu wrist: nothing has come to port 5005 yet");
+  scene.status.ended = true;
+  CHECK(unseen_lines(scene.lab, scene.status)[0] == "imu wrist: nothing came");
   scene.status.ports[0].second.dropped = 1181;
   const std::string came = "imu wrist: 1,181 datagrams came to port 5005, none a frame of nodes";
-  CHECK(lines_of_unheard(scene.lab, scene.status, ports)[0] == came);
-  CHECK(end_lines_of_unheard(scene.lab, scene.status, ports)[0] == came);
+  CHECK(unseen_lines(scene.lab, scene.status)[0] == came);
   // Frames that were refused, for example because no key was given.
   scene.status.ports[0].second.refused = 4;
-  CHECK(lines_of_unheard(scene.lab, scene.status, ports)[1] ==
+  CHECK(unseen_lines(scene.lab, scene.status)[1] ==
         "imu waist: 1,185 datagrams came to port 5005, none was let in");
 }

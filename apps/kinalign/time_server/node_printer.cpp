@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/time_server/node_event_printer.h"
+#include "apps/kinalign/time_server/node_printer.h"
 
 #include "apps/kinalign/text/node_event_text.h"
 #include "apps/kinalign/text/node_text.h"
@@ -7,11 +7,11 @@
 
 namespace kinalign {
 
-void print_line(Console& console, std::string_view what) {
+void print_live(Console& console, std::string_view what) {
   console.note(live_line(SystemClocks{}.utc(), what));
 }
 
-std::string NodeEventPrinter::operator()() {
+std::string NodePrinter::operator()() {
   print_events();
   if (Clock::now() >= next_status_) {
     next_status_ += std::chrono::seconds(1);
@@ -23,28 +23,24 @@ std::string NodeEventPrinter::operator()() {
 }
 
 /// Reports events of this machine, of nodes and of their clocks.
-void NodeEventPrinter::print_events() {
+void NodePrinter::print_events() {
   for (const HostClockEvent& event : receiver_.take_host_events()) {
-    print_line(console_, event_text(event));
+    print_live(console_, event_text(event));
     console_.print_json(event_json(event));
   }
   for (const NodeEvent& event : receiver_.take_node_events()) {
-    print_line(console_, event_text(event));
+    print_live(console_, event_text(event));
     console_.print_json(event_json(event));
   }
   const HostTime now = SystemClocks{}.raw();
   for (const auto& [stream, node_id, event] : receiver_.take_clock_events()) {
-    clock_lines_.add(stream, node_id, event, now);
+    const std::string line = clock_lines_.line(stream, node_id, event, now);
+    if (!line.empty()) print_live(console_, line);
     console_.print_json(event_json(event, stream, node_id));
   }
-  print_clocks(clock_lines_.lines(now));
 }
 
-void NodeEventPrinter::print_clocks(const std::vector<std::string>& lines) {
-  for (const std::string& line : lines) print_line(console_, line);
-}
-
-void NodeEventPrinter::print_status() {
+void NodePrinter::print_status() {
   for (const ClockPair& pair : receiver_.take_pairs()) console_.print_json(pair_json(pair));
   for (const NodeStatus& status : receiver_.status()) console_.print_json(status_json(status));
   if (--counts_in_s_ > 0) return;
@@ -54,27 +50,27 @@ void NodeEventPrinter::print_status() {
 
 /// Reads the key file once a second. A file that can't be read, is half written or is missing
 /// leaves the keys as they are.
-void NodeEventPrinter::look_at_key() {
+void NodePrinter::look_at_key() {
   if (lab_.path.empty()) return;
   const auto key = read_lab_key(files_, lab_.path);
   print_key_trouble(key ? "" : to_string(key.error()));
   if (!key || *key == lab_.key) return;
   lab_.key = *key;
   receiver_.replace_key(*key);
-  print_line(console_, lab_.path + " has a new key; the old key stays valid for 60 s");
+  print_live(console_, lab_.path + " has a new key; the old key stays valid for 60 s");
   console_.print_json(R"({"event": "key_replaced"})");
 }
 
 /// Reports a fault of the key file once, as long as it lasts.
-void NodeEventPrinter::print_key_trouble(const std::string& trouble) {
+void NodePrinter::print_key_trouble(const std::string& trouble) {
   if (trouble == key_trouble_) return;
   key_trouble_ = trouble;
   if (trouble.empty()) return;
-  print_line(console_, "warning: " + trouble + "; the key that was read before stays in use");
+  print_live(console_, "warning: " + trouble + "; the key that was read before stays in use");
   console_.print_json(R"({"event": "key_unreadable"})");
 }
 
-std::string NodeEventPrinter::summary_of(const NodeStatus& status) const {
+std::string NodePrinter::summary_of(const NodeStatus& status) const {
   SystemClocks clocks;
   const ClockPair now{.raw = clocks.raw(), .utc = clocks.utc()};
   const bool bad = clock_lines_.contradicts(status.stream, status.node_id, now.raw);
@@ -82,9 +78,8 @@ std::string NodeEventPrinter::summary_of(const NodeStatus& status) const {
 }
 
 /// Reports the last events, each node's status, and refused nodes.
-void NodeEventPrinter::print_end() {
+void NodePrinter::print_end() {
   print_events();
-  print_clocks(clock_lines_.last_lines());
   for (const NodeStatus& status : receiver_.status()) {
     console_.print("  " + summary_of(status) + "\n");
     console_.print_json(status_json(status));

@@ -13,7 +13,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 namespace kinalign {
 
@@ -24,12 +23,12 @@ struct LabKeyFile {
 };
 
 /// Prints a message of a server that runs for days, on stderr with date and time.
-void print_line(Console& console, std::string_view what);
+void print_live(Console& console, std::string_view what);
 
-class NodeEventPrinter {
+class NodePrinter {
  public:
   /// `lab`: the key that the receiver has.
-  NodeEventPrinter(NodeReceiver& receiver, Console& console, FileSystem& files, LabKeyFile lab)
+  NodePrinter(NodeReceiver& receiver, Console& console, FileSystem& files, LabKeyFile lab)
       : receiver_(receiver), console_(console), files_(files), lab_(std::move(lab)) {}
 
   /// Called several times a second. Returns a short status: "3 nodes, 2 locked".
@@ -44,7 +43,6 @@ class NodeEventPrinter {
   void look_at_key();
   void print_key_trouble(const std::string& trouble);
 
-  void print_clocks(const std::vector<std::string>& lines);
   std::string summary_of(const NodeStatus& status) const;
 
   NodeReceiver& receiver_;

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/record/record_printer.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/record/lab_table.h"
+#include "apps/kinalign/record/mark_keys.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/node_event_text.h"
+#include "apps/kinalign/text/node_names.h"
+#include "apps/kinalign/text/node_text.h"
+#include "apps/kinalign/text/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace std::chrono_literals;
+
+std::string ports_text(const RecordingSession& session) {
+  std::string text;
+  for (const auto& [name, port] : session.ports()) {
+    text += fmt::format("{}{} on port {}", text.empty() ? "" : ", ", name, port);
+  }
+  if (session.live() != nullptr) text += fmt::format("; live on port {}", session.live()->port());
+  return text;
+}
+
+/// Adds the ports of devices and of live clients to an event.
+Json with_ports(Json event, const RecordingSession& session) {
+  event["ports"] = Json::object();
+  for (const auto& [name, port] : session.ports()) event["ports"][name] = port;
+  if (session.live() != nullptr) event["live_port"] = session.live()->port();
+  return event;
+}
+
+/// The keys that give up waiting. `ends`: recording ends anyway; else the first Ctrl-C only ends
+/// it.
+std::string_view to_give_up(bool ends) { return ends ? "another Ctrl-C" : "Ctrl-C pressed twice"; }
+
+}  // namespace
+
+RecordPrinter::RecordPrinter(RecordingSession& session, Console& console)
+    : session_(session),
+      console_(console),
+      names_(node_names(session.lab())),
+      clock_lines_(names_),
+      begun_(session.now()) {}
+
+void RecordPrinter::complain(const std::string& text, const Json& event) {
+  console_.complain(harmless("kinalign record: " + text));
+  console_.print_json(json_text(event));
+  console_.flush();
+}
+
+void RecordPrinter::print_waiting() {
+  ports_printed_ = true;
+  console_.print(harmless(fmt::format("waiting for a start\n  {}\n", ports_text(session_))));
+  console_.print_json(json_text(with_ports(Json{{"event", "waiting"}}, session_)));
+  console_.flush();
+}
+
+/// Prints the oldest take's file once, as soon as it is begun.
+void RecordPrinter::print_start() {
+  if (session_.takes().empty() || started_.lock() == session_.takes().front()) return;
+  const DiskStatus disk = session_.takes().front()->disk.status();
+  if (disk.paths.empty()) return;
+  started_ = session_.takes().front();
+  ports_printed_ = true;
+  const std::string& path = disk.paths.front();
+  console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
+  console_.print_json(json_text(with_ports(Json{{"event", "started"}, {"file", path}}, session_)));
+  console_.flush();
+}
+
+void RecordPrinter::print(const ReceivedMark& received) {
+  const auto& [recorded, at] = received;
+  const Mark& mark = recorded.mark;
+  console_.note(
+      harmless(fmt::format("mark: {}{}{}, by {}", kinalign::name_of(mark.kind),
+                           mark.text.empty() ? "" : " ", shown(mark.text), recorded.source)));
+  Json event{{"event", "mark"}};
+  event.update(Json::parse(to_json(recorded)));
+  event["raw_ns"] = at.time_since_epoch().count();
+  console_.print_json(json_text(event));
+  console_.flush();
+}
+
+/// Prints events ten times a second, and the status and the table once a second.
+void RecordPrinter::look(const std::optional<std::string>& typed) {
+  print_start();
+  if (!ports_printed_) return;
+  for (const ReceivedMark& mark : session_.take_marks()) print(mark);
+  const HostTime now = session_.now();
+  if (now < next_look_) return;
+  next_look_ = now + 100ms;
+  print_events();
+  const bool second = now >= next_second_;
+  if (!second && !(console_.shows() && typed)) return;
+  const RecordStatus status = status_now(session_, begun_);
+  if (second) {
+    next_second_ = now + 1s;
+    if (session_.recording()) look_at_disk(status);
+    print_unseen(status.lab);
+    print_silent(status.lab);
+    if (console_.prints_json()) print_status_json(status);
+    console_.flush();
+  }
+  show(status, typed);
+}
+
+/// Prints each event once, as soon as it is known.
+void RecordPrinter::print_events() {
+  for (const auto& take : session_.takes()) {
+    for (const PartFailure& failure : take->disk.take_failures()) print(failure);
+  }
+  for (const Finding& finding : session_.take_findings()) print(finding);
+  for (const HostClockEvent& event : session_.take_clock_events()) print(event);
+  if (NodeReceiver* nodes = session_.nodes()) print_node_events(*nodes);
+}
+
+/// Silent and returned nodes are left out of the lines: print_silent() prints them for all devices
+/// alike.
+void RecordPrinter::print_node_events(NodeReceiver& nodes) {
+  using Kind = NodeEvent::Kind;
+  for (const NodeEvent& event : nodes.take_node_events()) {
+    const bool printed = event.kind == Kind::left || event.kind == Kind::returned;
+    if (!printed) console_.note(harmless(event_text(event, names_)));
+    console_.print_json(event_json(event));
+  }
+  const HostTime now = session_.now();
+  for (const auto& [stream, node_id, event] : nodes.take_clock_events()) {
+    const std::string line = clock_lines_.line(stream, node_id, event, now);
+    if (!line.empty()) console_.note(line);
+    console_.print_json(event_json(event, stream, node_id));
+  }
+}
+
+/// Prints lost messages at once, and then each time the number has doubled.
+void RecordPrinter::print_dropped(std::uint64_t dropped) {
+  if (dropped == 0 || dropped < 2 * dropped_) return;
+  dropped_ = dropped;
+  complain(fmt::format("{} messages lost: memory is full, and the disk does not take them",
+                       grouped(dropped)),
+           Json{{"event", "dropped"}, {"dropped", dropped}});
+  console_.ring();
+}
+
+/// Updates the forecast of the disk, ends the take if the disk is full, and warns before. Bytes
+/// that still wait in memory count as written.
+void RecordPrinter::look_at_disk(const RecordStatus& status) {
+  if (forecast_of_.lock() != session_.takes().back()) {
+    forecast_of_ = session_.takes().back();
+    forecast_ = {};
+    dropped_ = 0;
+  }
+  const DiskStatus& disk = *status.disk;
+  print_dropped(disk.dropped);
+  if (!disk.free_bytes) return;
+  const std::uint64_t to_write = std::min(status.waiting_bytes, *disk.free_bytes);
+  forecast_.look(status.lab.now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
+  if (forecast_.full() && !std::exchange(disk_full_, true)) {
+    complain(fmt::format("the disk has {} MiB left; the take ends here, in order",
+                         *forecast_.free() >> 20U),
+             Json{{"event", "disk_full"}, {"free_bytes", *forecast_.free()}});
+  } else if (forecast_.take_warning()) {
+    const double minutes = *forecast_.minutes_left();
+    complain(fmt::format("warning: the disk is full in {:.0f} min at this rate", minutes),
+             Json{{"event", "disk_low"}, {"minutes_left", minutes}});
+    console_.ring();
+  }
+}
+
+/// Prints devices that have sent nothing, once, 5 s after the start.
+void RecordPrinter::print_unseen(const LabStatus& status) {
+  if (status.now - status.begun < 5s || std::exchange(unseen_printed_, true)) return;
+  for (const std::string& line : unseen_lines(session_.lab(), status)) {
+    console_.note(harmless(line));
+  }
+}
+
+/// Prints each sender that falls silent, with a bell, or comes back.
+void RecordPrinter::print_silent(const LabStatus& status) {
+  for (const auto& [stream, silent] : silent_senders_.changes(status)) {
+    if (silent) console_.ring();
+    console_.note(harmless(fmt::format("{} from {} {}", kinalign::name_of(stream), stream.sender,
+                                       silent ? "fell silent" : "is back")));
+    Json event{{"event", silent ? "silent" : "returned"},
+               {"stream", stream.stream},
+               {"sender", stream.sender}};
+    if (!stream.node.empty()) event["node"] = stream.node;
+    console_.print_json(json_text(event));
+  }
+}
+
+void RecordPrinter::print(const Finding& finding) {
+  std::string lines = finding_lines({finding}, console_);
+  lines.pop_back();  // complain() adds the line end
+  console_.complain(lines);
+  warned_ = warned_ || finding.severity != Severity::note;
+  console_.print_json(json_text(Json{{"event", "finding"},
+                                     {"severity", std::string(to_string(finding.severity))},
+                                     {"what", to_string(finding.what)},
+                                     {"meaning", finding.meaning},
+                                     {"repair", finding.repair}}));
+}
+
+void RecordPrinter::print(const HostClockEvent& event) {
+  console_.complain("kinalign record: " + event_text(event));
+  console_.print_json(event_json(event));
+}
+
+void RecordPrinter::print(const PartFailure& failure) {
+  const std::string why = to_string(failure.why);
+  complain(
+      why + ": " +
+          (failure.next.empty() ? "kept in memory and tried again" : "goes on in " + failure.next),
+      Json{{"event", "disk_failed"}, {"what", why}, {"goes_on_in", failure.next}});
+}
+
+void RecordPrinter::print_slow_begin() {
+  complain("the disk has not begun the take's file yet; what comes waits in memory",
+           Json{{"event", "begin_waits"}});
+}
+
+void RecordPrinter::print_refused_end(const Error& why, bool ends) {
+  complain(fmt::format("{}: the end of the take is kept in memory and tried again for 30 s: make "
+                       "room, or give it up with {}",
+                       to_string(why), to_give_up(ends)),
+           Json{{"event", "end_refused"}, {"what", to_string(why)}});
+}
+
+void RecordPrinter::print_slow_end(std::uint64_t waiting_bytes, bool ends) {
+  complain(fmt::format("{:.1f} MB wait for the disk; {} loses what it has not taken",
+                       megabytes(waiting_bytes), to_give_up(ends)),
+           Json{{"event", "end_waits"}, {"waiting_bytes", waiting_bytes}});
+}
+
+/// The event "status" for programs.
+void RecordPrinter::print_status_json(const RecordStatus& status) {
+  Json event{{"event", "status"}};
+  event.update(json_of(status));
+  if (status.disk) event["waiting_bytes"] = status.waiting_bytes;
+  if (const auto free = forecast_.free()) event["free_bytes"] = *free;
+  if (const auto left = forecast_.minutes_left()) event["minutes_left"] = *left;
+  console_.print_json(json_text(event));
+}
+
+/// The line about the disk, or what recording waits for.
+std::string RecordPrinter::disk_line() const {
+  if (session_.takes().empty()) return "waiting for a start";
+  const DiskStatus oldest = session_.takes().front()->disk.status();
+  if (session_.takes().front()->end && !oldest.finished && !oldest.paths.empty()) {
+    return "disk  writes the end of " + oldest.paths.back();
+  }
+  const DiskStatus disk = session_.takes().back()->disk.status();
+  if (disk.paths.empty()) return "disk  begins the take's file";
+  return disk_text(forecast_, disk.bytes, disk.paths.back());
+}
+
+/// Draws the table with the disk's line and the line of keys below it.
+void RecordPrinter::show(const RecordStatus& status, const std::optional<std::string>& typed) {
+  if (!console_.shows()) return;
+  constexpr std::size_t below = 2;  // the disk's line and the line of keys
+  std::vector<std::pair<std::string, Colour>> lines;
+  const std::size_t rows = console_.rows() - std::min(below, console_.rows());
+  for (const TableLine& line :
+       fitted(lab_table(session_.lab(), status.lab, console_.columns()), rows)) {
+    lines.emplace_back(harmless(line.text), line.bad ? Colour::bad : Colour::plain);
+  }
+  const auto left = forecast_.minutes_left();
+  lines.emplace_back(harmless(disk_line()), left && *left < 10 ? Colour::bad : Colour::plain);
+  lines.emplace_back(typed ? "text: " + harmless(*typed) : mark_keys_text, Colour::plain);
+  console_.show(lines);
+}
+
+/// Prints the result of a take, or that it was given up before it had a file.
+RecordStatus RecordPrinter::print_end() {
+  print_start();
+  print_events();
+  RecordStatus status = status_at_end(session_, begun_);
+  const DiskStatus& disk = *status.disk;
+  if (disk.paths.empty()) {
+    if (disk.dropped > 0) {
+      console_.complain(fmt::format("kinalign record: {} messages lost: the take never had a file",
+                                    grouped(disk.dropped)));
+    }
+    console_.print_json(json_text(Json{{"event", "never_begun"}, {"dropped", disk.dropped}}));
+    return status;
+  }
+  std::string lines = end_text(session_.lab(), status);
+  if (const NodeReceiver* nodes = session_.nodes()) lines += refused_lines(*nodes, names_);
+  Json event{{"event", "stopped"}, {"files", disk.paths}};
+  event.update(json_of(status));
+  console_.print(harmless(lines));
+  console_.print_json(json_text(event));
+  return status;
+}
+
+}  // namespace kinalign

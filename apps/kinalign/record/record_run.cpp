@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/record/record_run.h"
+
+#include "apps/cli/program.h"
+#include "apps/kinalign/record/take_path.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace kinalign {
+
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr Duration one_turn = 50ms;     // how long a turn waits for data
+constexpr Duration waiting_turn = 5ms;  // the same while the disk is waited for
+
+}  // namespace
+
+Result<void> make_folder(const std::string& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (std::error_code none; std::filesystem::is_directory(folder, none)) return {};
+  const std::string why = failed ? failed.message() : "something else of that name";
+  return Failure(Error{folder, 0, "a folder for the files", why});
+}
+
+int RecordRun::operator()() {
+  const auto free_path = [folder = call_.common.out, subject = job_.subject, action = job_.action] {
+    (void)make_folder(folder);  // the folder may have been removed; if it can't be made, opening
+                                // the file fails
+    return free_take_path(folder, subject, action);
+  };
+  const TakePlan plan{free_path, job_.subject, job_.action};
+  using Starts = RecordingSession::Starts;
+  if (job_.wait) {
+    session_.obey_marks(plan, job_.repeat ? Starts::each : Starts::next);
+  } else {
+    session_.start(plan);
+  }
+  std::size_t takes = 0;
+  int worst = 0;
+  std::vector<std::string> faulty;
+  for (; wait_for_take(); ++takes) {
+    const std::shared_ptr<SessionTake> take = session_.takes().front();
+    const int code = record(*take);
+    session_.release_take();
+    worst = std::max(worst, code);
+    if (!job_.repeat) return worst;
+    const auto paths = take->disk.status().paths;
+    if (code != 0) faulty.push_back(paths.empty() ? "one that never had a file" : paths.front());
+  }
+  if (takes > 0) {
+    print_takes(takes, std::move(faulty), worst);
+    return worst;
+  }
+  call_.console.note("kinalign record: stopped before a start came; nothing was recorded");
+  return 1;
+}
+
+/// One turn: receives for at most that time, handles keys and Ctrl-C, prints.
+void RecordRun::turn(Duration patience) {
+  session_.turn(patience, keyboard_.fd());
+  for (const char key : single_keys(keyboard_.read())) {
+    if (const auto pressed = keys_.take(key, session_.now())) {
+      session_.mark({pressed->first, "keyboard", ""}, pressed->second);
+    }
+  }
+  printer_.look(keys_.typed());
+  if (interrupted()) {
+    take_every_signal();
+    pressed_again_ = ends();
+    ends_ = true;
+  }
+  end_if_over();
+}
+
+/// Ends the take when its seconds are over or recording ends.
+void RecordRun::end_if_over() {
+  if (ends()) session_.obey_no_start();
+  if (!session_.recording()) return;
+  const HostTime begun = session_.takes().back()->begun;
+  const bool over = job_.seconds && seconds(session_.now() - begun) >= *job_.seconds;
+  if (over || ends()) session_.stop();
+}
+
+/// Waits until there is a take. False: recording ended first.
+bool RecordRun::wait_for_take() {
+  if (session_.takes().empty() && !ends()) printer_.print_waiting();
+  while (session_.takes().empty() && !ends()) turn(one_turn);
+  return !session_.takes().empty();
+}
+
+/// Records a take to its end and writes it. Returns its exit code.
+int RecordRun::record(SessionTake& take) {
+  record_until_end(take);
+  if (!job_.repeat) ends_ = true;
+  write_rest(take);
+  return exit_code(printer_.print_end());
+}
+
+/// Runs the session until a mark, the take's length, the user or a full disk ends the take. If the
+/// disk refuses the take's file, the file is tried again; without marks the take is given up.
+void RecordRun::record_until_end(SessionTake& take) {
+  const HostTime begun = session_.now();
+  bool slow = false, refused = false;
+  for (DiskStatus disk = take.disk.status(); !take.end && !disk.finished;
+       disk = take.disk.status()) {
+    turn(disk.paths.empty() ? waiting_turn : one_turn);
+    if (!disk.paths.empty()) continue;
+    if (disk.refused && !std::exchange(refused, true)) {
+      if (job_.wait) {
+        printer_.print(PartFailure{*disk.refused, ""});
+      } else {
+        take.disk.give_up();
+      }
+    }
+    if (!refused && session_.now() - begun > 2s && !std::exchange(slow, true)) {
+      printer_.print_slow_begin();
+    }
+  }
+}
+
+/// Waits until the rest of a take is written or given up. A refused write is tried again for 30 s,
+/// since the user may make room. Receiving, keys, prints and the next take go on meanwhile. If the
+/// disk neither writes nor refuses, the process ends with another Ctrl-C after that was printed.
+void RecordRun::write_rest(SessionTake& take) {
+  const HostTime begun = session_.now();
+  std::optional<HostTime> refused;
+  bool slow = false;  // printed as slow
+  for (DiskStatus disk = take.disk.status(); !disk.finished; disk = take.disk.status()) {
+    const HostTime now = session_.now();
+    if (disk.refused && !refused) {
+      refused = now;
+      pressed_again_ = false;
+      printer_.print_refused_end(*disk.refused, ends());
+    } else if (!refused && now - begun > 2s && !std::exchange(slow, true)) {
+      pressed_again_ = false;
+      printer_.print_slow_end(disk.waiting_bytes, ends());
+    }
+    turn(waiting_turn);
+    const bool again = (refused || slow) && std::exchange(pressed_again_, false);
+    if (again && !refused) leave();
+    if (again || (refused && now - *refused > 30s)) take.disk.give_up();
+  }
+}
+
+/// Ends the process while the disk does not answer and the user has given up. The disk's threads
+/// still use the objects of main(), so the process ends without destroying them.
+void RecordRun::leave() {
+  for (const auto& take : session_.takes()) {
+    const DiskStatus disk = take->disk.status();
+    if (disk.finished && !disk.refused) continue;  // the whole take is on the disk
+    const bool begun = !disk.paths.empty();
+    call_.console.report(Error{
+        begun ? disk.paths.front() : call_.common.out, 0,
+        begun ? "a disk that takes the end of the take" : "a disk that begins the take's file",
+        "one that stands still"});
+  }
+  (void)call_.console.finish();
+  keyboard_.leave();
+  std::_Exit(failed);
+}
+
+/// The exit code of a take: 0 if all of it is on the disk and nothing was wrong.
+int RecordRun::exit_code(const RecordStatus& status) {
+  const DiskStatus& disk = *status.disk;
+  const bool warned = printer_.take_warned();
+  if (disk.refused) {
+    call_.console.report(*disk.refused);
+    return failed;
+  }
+  const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !printer_.disk_full();
+  return whole && status.missing.empty() && !warned ? 0 : 1;
+}
+
+/// The last line of --repeat: the number of takes, and the takes whose exit code was not 0.
+void RecordRun::print_takes(std::size_t takes, std::vector<std::string> faulty, int worst) {
+  constexpr std::size_t most_named = 8;
+  std::string text = fmt::format("kinalign record: {} take{}", takes, takes == 1 ? "" : "s");
+  if (faulty.size() > most_named) {
+    const std::size_t more = faulty.size() - most_named;
+    faulty.resize(most_named);
+    faulty.push_back(fmt::format("{} more", more));
+  }
+  if (!faulty.empty()) {
+    text += fmt::format("; exit code {} for what was told above before the end of {}", worst,
+                        fmt::join(faulty, ", "));
+  }
+  call_.console.note(harmless(text));
+}
+
+}  // namespace kinalign

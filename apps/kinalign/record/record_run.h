@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a recording session: takes are begun, recorded and finished one after another. The next take
+// may begin while the disk still writes the end of the last.
+#pragma once
+
+#include "apps/kinalign/record/mark_keys.h"
+#include "apps/kinalign/record/record_job.h"
+#include "apps/kinalign/record/record_printer.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+class RecordRun {
+ public:
+  RecordRun(const RecordJob& job, Call& call, RecordingSession& session)
+      : job_(job), call_(call), session_(session), printer_(session, call.console) {}
+
+  /// Records one take, or with --repeat one after another, until the end. Returns the worst exit
+  /// code.
+  int operator()();
+
+ private:
+  void turn(Duration patience);
+  void end_if_over();
+  bool ends() const { return ends_ || printer_.disk_full(); }
+  bool wait_for_take();
+  int record(SessionTake& take);
+  void record_until_end(SessionTake& take);
+  void write_rest(SessionTake& take);
+  int exit_code(const RecordStatus& status);
+  [[noreturn]] void leave();
+  void print_takes(std::size_t takes, std::vector<std::string> faulty, int worst);
+
+  const RecordJob& job_;
+  Call& call_;
+  RecordingSession& session_;
+  RecordPrinter printer_;
+  Keyboard keyboard_;
+  MarkKeys keys_;
+  bool ends_ = false;
+  bool pressed_again_ = false;  // another Ctrl-C after the one that ended recording
+};
+
+/// Makes the folder and its parent folders.
+Result<void> make_folder(const std::string& folder);
+
+}  // namespace kinalign
