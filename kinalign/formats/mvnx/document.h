@@ -5,8 +5,8 @@
 
 #include "kinalign/core/error.h"
 #include "kinalign/formats/mvnx/gunzip.h"
-#include "kinalign/syntax/xml_feed.h"
 #include "kinalign/motion/arrays.h"
+#include "kinalign/syntax/xml_feed.h"
 
 #include <cstdint>
 #include <functional>

@@ -298,8 +298,7 @@ TEST_CASE("what a port for marks refuses is told by its cause, the first of each
   const auto refused = [&](MarkPort& port, const std::string& text) {
     caller.send("127.0.0.1", port.port(), bytes_of(text));
     const std::uint64_t before = port.port_counts().refused;
-    while (port.port_counts().refused == before)
-      port.drain(axis, [](const auto&, HostTime) {});
+    while (port.port_counts().refused == before) port.drain(axis, [](const auto&, HostTime) {});
     const Findings found = port.take_findings();
     return found.empty() ? "" : to_string(found.front().what);
   };
