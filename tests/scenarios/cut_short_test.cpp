@@ -29,7 +29,7 @@ bool wrong(const std::optional<ClockStamp>& stamp, double t) {
 
 /// The live stamp of a sample, given when its frame arrived.
 struct Given {
-  HostTime heard{};
+  HostTime arrival{};
   bool wrong = false, withdrawn = false;
 };
 
@@ -37,7 +37,7 @@ void withdraw(const std::vector<ClockEvent>& events, std::vector<Given>& all) {
   for (const ClockEvent& event : events) {
     if (event.kind != ClockEvent::Kind::withdrawn) continue;
     for (Given& given : all) {
-      given.withdrawn |= event.begin <= given.heard && given.heard <= event.end;
+      given.withdrawn |= event.begin <= given.arrival && given.arrival <= event.end;
     }
   }
 }

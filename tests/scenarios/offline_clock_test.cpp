@@ -19,10 +19,10 @@ namespace {
 
 /// Whether a frame after a step forward arrived too early to fit a reply before the step. If none
 /// did, the host got nothing that a counter without a step would not have sent.
-bool is_seen(const std::vector<Exchange>& heard, double step_at) {
-  for (const Exchange& behind : heard) {
-    if (seconds_of(behind.h_rx) < step_at || behind.boot != heard.front().boot) continue;
-    for (const Exchange& e : heard) {
+bool is_seen(const std::vector<Exchange>& received, double step_at) {
+  for (const Exchange& behind : received) {
+    if (seconds_of(behind.h_rx) < step_at || behind.boot != received.front().boot) continue;
+    for (const Exchange& e : received) {
       if (!e.echo || seconds_of(e.h_rx) > step_at) continue;
       const Duration host = behind.h_rx - e.echo->h_tx, node = behind.n_tx - e.echo->n_rx;
       if (seconds(node - host) > greatest_rate * seconds(node) + Violators::tolerated_s)

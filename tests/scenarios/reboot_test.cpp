@@ -55,9 +55,9 @@ double second_life(const SimulatedExchanges& simulated) {
 double good_after(const JudgedRun& run, double first_heard, double limit) {
   double good = first_heard;
   for (const JudgedStamp& stamp : run.stamps) {
-    if (stamp.heard < first_heard) continue;
-    if (stamp.heard - good > 10.0) break;
-    if (std::abs(stamp.error) > limit) good = stamp.heard;
+    if (stamp.arrival < first_heard) continue;
+    if (stamp.arrival - good > 10.0) break;
+    if (std::abs(stamp.error) > limit) good = stamp.arrival;
   }
   return good - first_heard;
 }
@@ -129,7 +129,7 @@ TEST_CASE("fault 1 reboot: it is good no later than a node that first sends then
       const double first = second_life(exchanges);
       const double after = good_after(judge_live(exchanges), first, bar.limit);
       for (SimulatedFrame& frame : exchanges.frames) {
-        if (frame.boot_id == exchanges.frames.front().boot_id) frame.heard.reset();
+        if (frame.boot_id == exchanges.frames.front().boot_id) frame.arrival.reset();
       }
       const double fresh = good_after(judge_live(exchanges), first, bar.limit);
       later += after > fresh + 1.0 ? 1 : 0;

@@ -31,10 +31,10 @@ std::uint64_t JudgedRun::lies() const {
 
 namespace {
 
-JudgedStamp judged(const ClockStamp& stamp, const SimulatedFrame& frame, double heard) {
+JudgedStamp judged(const ClockStamp& stamp, const SimulatedFrame& frame, double arrival) {
   JudgedStamp out;
   out.sent = frame.sent;
-  out.heard = heard;
+  out.arrival = arrival;
   out.error = seconds_of(stamp.time) - frame.truth;
   out.certified = stamp.certainty == Certainty::certified;
   const bool early = stamp.earliest && *stamp.earliest > arrival_time(frame.sent);
@@ -47,22 +47,22 @@ JudgedStamp judged(const ClockStamp& stamp, const SimulatedFrame& frame, double 
 
 void withdraw(const ClockEvent& event, std::vector<JudgedStamp>& stamps) {
   for (JudgedStamp& stamp : stamps) {
-    const HostTime heard = arrival_time(stamp.heard);
-    if (heard >= event.begin && heard <= event.end) stamp.withdrawn = true;
+    const HostTime arrival = arrival_time(stamp.arrival);
+    if (arrival >= event.begin && arrival <= event.end) stamp.withdrawn = true;
   }
 }
 
 /// The simulated frames that belong to exchanges_of(), in the same order.
-std::vector<std::size_t> heard_frames(const SimulatedExchanges& exchanges) {
+std::vector<std::size_t> arrived_frames(const SimulatedExchanges& exchanges) {
   std::vector<std::size_t> frames;
-  for (const Heard& heard : in_order_of_arrival(exchanges)) {
-    if (!heard.again) frames.push_back(heard.frame);
+  for (const ArrivedFrame& arrived : in_order_of_arrival(exchanges)) {
+    if (!arrived.again) frames.push_back(arrived.frame);
   }
   return frames;
 }
 
 Exchange exchange_of(const SimulatedExchanges& exchanges, const SimulatedFrame& frame) {
-  Exchange exchange{frame.boot_id, counter_time(frame.n_tx_us), arrival_time(*frame.heard), {}};
+  Exchange exchange{frame.boot_id, counter_time(frame.n_tx_us), arrival_time(*frame.arrival), {}};
   if (frame.echo) {
     const SimulatedFrame& answered = exchanges.frames[*frame.echo];
     exchange.echo = {counter_time(answered.n_rx_us), departure_time(answered.replied)};
@@ -80,7 +80,7 @@ JudgedRun judged_run(const SimulatedExchanges& exchanges) {
 
 std::vector<Exchange> exchanges_of(const SimulatedExchanges& exchanges) {
   std::vector<Exchange> out;
-  for (const std::size_t frame : heard_frames(exchanges)) {
+  for (const std::size_t frame : arrived_frames(exchanges)) {
     out.push_back(exchange_of(exchanges, exchanges.frames[frame]));
   }
   return out;
@@ -89,7 +89,7 @@ std::vector<Exchange> exchanges_of(const SimulatedExchanges& exchanges) {
 JudgedRun judge_live(const SimulatedExchanges& exchanges, const Assumptions& assumptions) {
   JudgedRun run = judged_run(exchanges);
   LiveClock clock(assumptions);
-  for (const std::size_t k : heard_frames(exchanges)) {
+  for (const std::size_t k : arrived_frames(exchanges)) {
     const SimulatedFrame& frame = exchanges.frames[k];
     const Exchange exchange = exchange_of(exchanges, frame);
     ++run.frames;
@@ -99,22 +99,23 @@ JudgedRun judge_live(const SimulatedExchanges& exchanges, const Assumptions& ass
       if (event.kind == ClockEvent::Kind::withdrawn) withdraw(event, run.stamps);
       run.events.push_back(event);
     }
-    if (stamp) run.stamps.push_back(judged(*stamp, frame, *frame.heard));
+    if (stamp) run.stamps.push_back(judged(*stamp, frame, *frame.arrival));
   }
   return run;
 }
 
 JudgedRun judge_offline(const SimulatedExchanges& exchanges, const Assumptions& assumptions) {
   JudgedRun run = judged_run(exchanges);
-  const std::vector<Exchange> heard = exchanges_of(exchanges);
-  const OfflineClock clock = fit_offline_clock(heard, assumptions);
+  const std::vector<Exchange> received = exchanges_of(exchanges);
+  const OfflineClock clock = fit_offline_clock(received, assumptions);
   run.events = clock.events;
-  const std::vector<std::size_t> frames = heard_frames(exchanges);
+  const std::vector<std::size_t> frames = arrived_frames(exchanges);
   run.frames = frames.size();
-  for (std::size_t i = 0; i < heard.size(); ++i) {
-    const auto stamp = host_from_node(clock.model, heard[i].boot, heard[i].n_tx, heard[i].h_rx);
+  for (std::size_t i = 0; i < received.size(); ++i) {
+    const auto stamp =
+        host_from_node(clock.model, received[i].boot, received[i].n_tx, received[i].h_rx);
     const SimulatedFrame& frame = exchanges.frames[frames[i]];
-    if (stamp) run.stamps.push_back(judged(*stamp, frame, *frame.heard));
+    if (stamp) run.stamps.push_back(judged(*stamp, frame, *frame.arrival));
   }
   return run;
 }

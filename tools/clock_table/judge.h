@@ -18,7 +18,7 @@ double seconds_of(HostTime t);
 
 /// A stamp as it was given when its frame arrived.
 struct JudgedStamp {
-  double sent = 0.0, heard = 0.0;
+  double sent = 0.0, arrival = 0.0;
   double error = 0.0;       // s, likeliest minus truth
   double half_width = 0.0;  // s, half of the interval; 0: an end is open
   bool certified = false;   // at the time when it was given

@@ -63,7 +63,7 @@ double start_time(const JudgedRun& run, double begin, double limit) {
   std::optional<double> last;
   for (const JudgedStamp& stamp : run.stamps) {
     if (stamp.sent < begin || stamp.sent >= begin + start_watched_s) continue;
-    if (!last || std::abs(stamp.error) > limit) last = stamp.heard - begin;
+    if (!last || std::abs(stamp.error) > limit) last = stamp.arrival - begin;
   }
   return last.value_or(0.0);
 }

@@ -17,10 +17,10 @@ namespace kinalign {
 namespace {
 
 /// Frames that arrived, in the order in which they were sent.
-std::vector<const SimulatedFrame*> heard_frames(const SimulatedExchanges& exchanges) {
+std::vector<const SimulatedFrame*> arrived_frames(const SimulatedExchanges& exchanges) {
   std::vector<const SimulatedFrame*> frames;
   for (const SimulatedFrame& frame : exchanges.frames) {
-    if (frame.heard) frames.push_back(&frame);
+    if (frame.arrival) frames.push_back(&frame);
   }
   return frames;
 }
@@ -38,12 +38,12 @@ struct TwoWay {
 std::vector<TwoWay> two_way_exchanges(const SimulatedExchanges& exchanges) {
   std::vector<TwoWay> found;
   for (const SimulatedFrame& carrier : exchanges.frames) {
-    if (!carrier.echo || !carrier.heard) continue;
+    if (!carrier.echo || !carrier.arrival) continue;
     const SimulatedFrame& f = exchanges.frames[*carrier.echo];
     const double n_tx = counter(f), n_rx = static_cast<double>(f.n_rx_us) * 1e-6;
-    found.push_back({*carrier.heard, (n_tx + n_rx) / 2.0,
-                     ((*f.heard - n_tx) + (f.replied - n_rx)) / 2.0,
-                     (n_rx - n_tx) - (f.replied - *f.heard)});
+    found.push_back({*carrier.arrival, (n_tx + n_rx) / 2.0,
+                     ((*f.arrival - n_tx) + (f.replied - n_rx)) / 2.0,
+                     (n_rx - n_tx) - (f.replied - *f.arrival)});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const TwoWay& a, const TwoWay& b) { return a.known_at < b.known_at; });
@@ -52,8 +52,8 @@ std::vector<TwoWay> two_way_exchanges(const SimulatedExchanges& exchanges) {
 
 std::vector<ClocklessExchange> clockless(const SimulatedExchanges& exchanges) {
   std::vector<ClocklessExchange> out;
-  for (const SimulatedFrame* f : heard_frames(exchanges)) {
-    ClocklessExchange e{f->sequence, arrival_time(*f->heard), departure_time(f->replied), {}};
+  for (const SimulatedFrame* f : arrived_frames(exchanges)) {
+    ClocklessExchange e{f->sequence, arrival_time(*f->arrival), departure_time(f->replied), {}};
     if (f->confirmed) e.t6 = arrival_time(*f->confirmed);
     out.push_back(e);
   }
@@ -63,7 +63,7 @@ std::vector<ClocklessExchange> clockless(const SimulatedExchanges& exchanges) {
 template <class Stamps>
 PeerErrors errors_of(const SimulatedExchanges& exchanges, const Stamps& stamps) {
   PeerErrors out;
-  const auto frames = heard_frames(exchanges);
+  const auto frames = arrived_frames(exchanges);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::optional<HostTime> stamp = stamps[i];
     if (!stamp) continue;
@@ -94,9 +94,9 @@ struct Line {
 /// Stamps each frame by the newest line that was known when it arrived.
 PeerErrors by_lines(const SimulatedExchanges& exchanges, const std::vector<Line>& lines) {
   PeerErrors out;
-  for (const SimulatedFrame* f : heard_frames(exchanges)) {
+  for (const SimulatedFrame* f : arrived_frames(exchanges)) {
     const auto behind =
-        std::upper_bound(lines.begin(), lines.end(), *f->heard,
+        std::upper_bound(lines.begin(), lines.end(), *f->arrival,
                          [](double t, const Line& line) { return t < line.known_at; });
     if (behind == lines.begin()) continue;
     const Line& line = *(behind - 1);
