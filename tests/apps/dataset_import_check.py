@@ -95,7 +95,7 @@ def what_a_user_wrote_into_dataset_toml_stays_as_it_is(folder):
     assert text.startswith(own) and text.count("[subject.anna]") == 1 and "[action.walk]" in text, text
     (folder / "set/dataset.toml").write_text("subject = { bert = { } }\n")
     before = contents(folder / "set")
-    assert "room for [subject.ID]" in said("import", folder / "set", source, code=3)
+    assert "a file to which [subject.ID]" in said("import", folder / "set", source, code=3)
     assert contents(folder / "set") == before
 
 
