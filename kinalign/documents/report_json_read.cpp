@@ -136,7 +136,7 @@ Finding finding_from(const Json& json) {
 Result<AlignmentReport> parse_report_json(std::string_view text, const std::string& path) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) {
-    return Failure(Error{path, 0, "a report as JSON", "a text that is none"});
+    return Failure(Error{path, 0, "a report as JSON", "text that is not JSON"});
   }
   AlignmentReport out;
   out.frames = count_at(json, "frames");

@@ -78,7 +78,7 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   }
   const auto protocol = find_protocol(device.protocol);
   if (protocol && row_of(*protocol).has_node_ids && other.protocol == device.protocol) {
-    return wrong(device, "one device for all nodes", other.name + " as well");
+    return wrong(device, "one device for all nodes", "a second one, " + other.name);
   }
   const bool serves = !connects(device);  // an address left out means every one
   const bool same_place = other.address == device.address ||

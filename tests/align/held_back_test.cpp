@@ -258,7 +258,7 @@ TEST_CASE("the reference keeps its rows, and blocks of any size hold back the sa
   // They are used, but a finding says that the stamps are not the device's.
   REQUIRE(take->report.findings.size() == 1);
   CHECK(take->report.findings[0].what.found.starts_with("4 closer to the next sample"));
-  CHECK(take->report.findings[0].meaning.find("as the reference") != std::string::npos);
+  CHECK(take->report.findings[0].meaning.find("is the reference") != std::string::npos);
   for (const std::size_t size : {1, 2, 7, 100}) {
     CAPTURE(size);
     Recording recording = two(points(joints, every(10 * ms, 400), wander), all);

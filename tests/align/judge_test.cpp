@@ -197,7 +197,7 @@ TEST_CASE("bursts of any size are reported, single pauses are not") {
   CHECK(meaning_of(steps(2, 160, 5)) == bursts);
   CHECK(meaning_of(steps(1, 91, 10)) == bursts);
   CHECK(meaning_of(steps(2, 902, 100)) == bursts);
-  CHECK(meaning_of(steps(33, 99, 2)).find("taken for gaps") != std::string::npos);
+  CHECK(meaning_of(steps(33, 99, 2)).find("count as gaps") != std::string::npos);
   CHECK(meaning_of(steps(33, 57'000, 500)).empty());  // three pauses
   CHECK(meaning_of(steps(33, 20'000, 200)).empty());  // nine pauses
   CHECK(meaning_of(steps(33, 66, 4)).empty());        // a loss now and then
@@ -235,7 +235,8 @@ TEST_CASE("a grid that loses more than a tenth of a joint's motion names the wor
   CHECK(whole(found[0]) ==
         "warning: kinect: expected a grid that can represent the stream's content, found 30 % of "
         "the rms "
-        "of Head's position beyond what a 29.97 Hz grid carries; fast changes between the rows of "
+        "of Head's position above what a 29.97 Hz grid can represent; fast changes between the "
+        "rows of "
         "the take are lost or look slower; choose a faster stream as the reference, or use this "
         "stream's original file");
   count.positions = {carried(0.1, 0.0099), carried(0.0, 0.0)};
@@ -254,7 +255,7 @@ TEST_CASE("both quantities of nodes are judged, each against a sensor's noise") 
   const Findings found = judge_content(imu, count, 60.0);
   REQUIRE(found.size() == 2);
   CHECK(found[0].what.found ==
-        "85 % of the rms of wrist_left's acceleration beyond what a 60 Hz grid carries");
+        "85 % of the rms of wrist_left's acceleration above what a 60 Hz grid can represent");
   CHECK(found[1].what.found ==
-        "55 % of the rms of waist's angular velocity beyond what a 60 Hz grid carries");
+        "55 % of the rms of waist's angular velocity above what a 60 Hz grid can represent");
 }

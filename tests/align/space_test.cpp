@@ -125,7 +125,8 @@ TEST_CASE("a stream without a space says so, and names its space") {
   CHECK(take->header.groups[1].space == "kinect");
   REQUIRE(take->report.findings.size() == 1);
   CHECK(take->report.findings[0].severity == Severity::note);
-  CHECK(to_string(take->report.findings[0].what) == "expected a space for 'kinect', found none");
+  CHECK(to_string(take->report.findings[0].what) ==
+        "expected a space for 'kinect', found no [space.kinect]");
 
   manifest.spaces["kinect"].method = "none";
   CHECK(align(two(stream, stream), manifest)->report.findings.empty());

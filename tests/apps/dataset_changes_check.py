@@ -65,7 +65,7 @@ def a_take_and_an_action_are_renamed_too_and_splits_are_told(folder):
     take = data / "sub-01/sub-01_task-S2A01_run-01_take.h5"
     bytes_ = take.read_bytes()
     said = done("rename", data, "sub-01_task-S2A01_run-01", "sub-01_task-S2A01_run-09")
-    assert "splits/a.json names 1 of them" in said, said
+    assert "splits/a.json names 1 of these takes" in said, said
     assert (data / "sub-01/sub-01_task-S2A01_run-09_take.h5").read_bytes() == bytes_ and not take.exists()
     assert answer("build", data)["made"] == 0, "a take that only has another run is made again"
     (data / "dataset.toml").write_text((data / "dataset.toml").read_text().replace("[action.S2A07]", "# [action.S2A07]"))
@@ -165,7 +165,7 @@ def raw_files_of_an_unpacked_corpus_go_and_verify_names_those_of_no_take(folder)
     assert not [one for one in answer("verify", data)["findings"] if one["file"] == "sourcedata"]
     (data / "sourcedata/more.txt").write_text("x")
     finding, = [one for one in answer("verify", data)["findings"] if one["file"] == "sourcedata"]
-    assert (finding["severity"], finding["found"]) == ("note", "1 that none names: sourcedata/more.txt"), finding
+    assert (finding["severity"], finding["found"]) == ("note", "1 other files: sourcedata/more.txt"), finding
     (data / "sourcedata/more.txt").unlink()
     answer("rm", data, second, "--raw", "--yes")
     assert not (data / "sourcedata").exists(), list(data.rglob("*"))

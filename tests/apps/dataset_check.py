@@ -151,7 +151,7 @@ def an_id_that_nobody_has_is_an_error_and_a_flag_without_effect_is_wrong_use(fol
     assert back == verdicts[::-1], back
     for words in (("--columns", "name"), ("--sort", "name"), ("--limit", "1")):
         ran = kinalign("dataset", "query", data, "select name from takes", *words)
-        assert ran.returncode == 2 and f"{words[0]}: expected it beside a condition" in law(ran, ("dataset", "query")), ran
+        assert ran.returncode == 2 and f"{words[0]}: expected it only with a condition" in law(ran, ("dataset", "query")), ran
         answer("query", data, "frames > 0", *words)
     text = (data / "dataset.toml").read_text()
     (data / "dataset.toml").write_text(text.replace("[subject.03]", "[subject.99]"))
@@ -303,7 +303,7 @@ def verify_finds_any_byte_that_was_altered_and_what_belongs_to_nothing(folder):
     (data / "sub-00/notes.txt").write_text("x")
     (data / "old").mkdir()
     said = answer("verify", data)
-    assert {one["file"] for one in said["findings"] if "does not know" in one["found"]} == {"sub-00/notes.txt", "old"}, said
+    assert {one["file"] for one in said["findings"] if "an unknown file" in one["found"]} == {"sub-00/notes.txt", "old"}, said
     manifest = next(data.glob("sub-01/*_recording.toml"))
     manifest.write_text(manifest.read_text().replace("[align]\n", "[align]\nrotations = \"slerp\"\n"))
     raw = sorted((folder / "raw").rglob("kinect.csv"))
@@ -312,14 +312,14 @@ def verify_finds_any_byte_that_was_altered_and_what_belongs_to_nothing(folder):
     said = answer("verify", data, code=1)
     wrong = {(one["severity"], one["file"].split("/")[0], one["expected"].split(" that")[0]) for one in said["findings"]
              if one["severity"] != "note"}
-    assert wrong == {("warning", "sub-01", "the parameters"), ("warning", "sub-00", "the raw file kinect.csv")}, wrong
+    assert wrong == {("warning", "sub-01", "the parameters of the take"), ("warning", "sub-00", "the raw file kinect.csv")}, wrong
     raw[0].write_text(text.replace("0", "1", 1))
     assert kinalign("dataset", "verify", data).returncode == 1  # the parameters
     said = answer("verify", data, "--deep", code=1)
-    assert any("raw files" in one["expected"] and one["severity"] == "error" for one in said["findings"]), said
+    assert any("the raw file that the take was made from" in one["expected"] and one["severity"] == "error" for one in said["findings"]), said
     next(data.glob("sub-01/*_take.h5")).unlink()
     said = answer("verify", data, code=1)
-    assert any(one["expected"] == "a take beside it" for one in said["findings"]), said
+    assert any(one["expected"] == "a take with this name" for one in said["findings"]), said
 
 
 @case

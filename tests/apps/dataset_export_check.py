@@ -170,7 +170,7 @@ def a_data_set_of_its_own_is_listed_and_verified_as_it_was_written(folder):
     summaries[1].write_text("{")
     said = [(one["file"], one["expected"], one["found"]) for one in answer("verify", free, code=1)["findings"]
             if one["severity"] == "error"]
-    assert said[0] == (str(summaries[0].relative_to(free)), "a summary next to the take", "none"), said
+    assert said[0] == (str(summaries[0].relative_to(free)), "a summary next to the take", "no summary"), said
     assert len(said) == 2 and said[1][1].startswith("a summary that can be read: ") and said[1][2] != "none", said
     assert (out / f"sub-00/{NAME}_take.h5").read_bytes() == (data / f"sub-00/{NAME}_take.h5").read_bytes()
     done("build", out)

@@ -103,13 +103,13 @@ def the_space_of_most_takes_decides_and_every_reason_is_counted(folder):
     manifest.write_text(text[:text.index("[space.kinect]")])
     done("build", data, code=None)
     said = answer("windows", data, "-o", folder / "w.npz", "--stream", "kinect")
-    assert said["takes_left_out"] == [{"take": "sub-00_task-S2A01_run-01", "why": "kinect in another space"}], said
+    assert said["takes_left_out"] == [{"take": "sub-00_task-S2A01_run-01", "why": "another space of kinect"}], said
     _, facts = read(folder / "w.npz")
     assert len(facts["takes"]) == 3, facts["takes"]
     ran = kinalign("dataset", "windows", data, "-o", folder / "none.npz", "--stream", "kinect", "--length", 5000)
     assert ran.returncode == 3 and not (folder / "none.npz").exists(), ran
     found = ran.stderr.decode().split("found ")[1]
-    assert found == "has no window: too short, or too few valid cells (3 takes); kinect in another space (1 take)\n", found
+    assert found == "another space of kinect (1 take); has no window: too short, or too few valid cells (3 takes)\n", found
 
 
 @case

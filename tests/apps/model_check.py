@@ -79,7 +79,7 @@ def a_kinect_that_is_upside_down_jumps_or_sends_nonsense_is_told(folder):
     assert "expected y up: a head above the hips, found a head below the hips in" in first, first
     mirrored = of_kinect(kinect, folder / "mirrored.csv", moved(1, lambda i, x: -x))
     said = told("denoise", mirrored, "--model", shipped, "-o", folder / "mirrored.bvh", code=1)
-    assert any("if it was mirrored, use a layout with" in one for one in said["warnings"]), said["warnings"]
+    assert any("if the file is mirrored, use a layout with" in one for one in said["warnings"]), said["warnings"]
     jump = of_kinect(kinect, folder / "jump.csv", moved(1, lambda i, x: x + 1.8 * (i > 60)))
     said = told("denoise", jump, "--model", shipped, "-o", folder / "jump.bvh", code=1)
     assert len(said["warnings"]) == 1 and said["warnings"][0].startswith("the body jumps at 2.0 s"), said["warnings"]

@@ -115,7 +115,7 @@ def one_parameter_altered_in_the_take_is_noticed(folder):
     whole = aligned(manifest, take)
     for key, old, new, says in (("gap_ms", 0.0, 20.0, b"the inputs are the same"),
                                 ("rotations", "spline", "slerp", b"the inputs are the same"),
-                                ("reference", "mocap", "nothing", b"differs: cannot be made again: ")):
+                                ("reference", "mocap", "nothing", b"differs: the take can't be made again: ")):
         take.write_bytes(whole)
         with h5py.File(take, "r+") as file:
             text = file["parameters_json"][()].decode().rstrip("\0")
@@ -149,7 +149,7 @@ def an_input_that_is_not_there_is_an_error_with_what_to_do(folder):
         assert done.returncode == 3, done
         said = done.stderr.decode()
         assert "none/mocap.bvh: expected a readable file" in said, said
-        assert "--inputs is one folder that has all 7 files of the take" in said, said
+        assert "--inputs must be one folder with all 7 files of the take" in said, said
 
 
 @case

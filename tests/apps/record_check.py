@@ -310,7 +310,7 @@ def a_node_that_is_not_heard_is_told_with_its_reason(folder):
     told = recording.until("node_event")[-1]
     assert (told["kind"], told["refusal"], told["node_id"]) == ("wrong_key", "no_key", 7), told
     code, _, err = recording.end()
-    assert code == 1 and "--lab-key FILE, the lab's, lets it in" in err, err
+    assert code == 1 and "to accept it, give the lab's key with --lab-key FILE" in err, err
 
 
 @case

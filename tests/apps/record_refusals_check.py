@@ -120,20 +120,20 @@ def port_30_without_rights_is_told_with_what_to_do(folder):
     said = refusal(3, folder, "--device", "mocap=noitom:0", "--trigger-port", 30, prefix=prefix)
     assert said[0] == ("trigger: expected a UDP port to serve on at 0.0.0.0:30, found no permission for a port below "
                        "1024"), said
-    assert "setcap" in said[1] and said[2].startswith("--trigger-port takes a port from 1024 on"), said
+    assert "setcap" in said[1] and said[2].startswith("--trigger-port sets a port from 1024 on"), said
 
 
 @case
 def what_is_wrong_in_a_lab_is_told_with_its_line_and_the_page_that_shows_the_keys(folder):
     for text, says in (('[device.a]\nprotocol = "nodes"\n[devices.mocap]\nport = 1\n',
-                        ":3: expected settings, or a device of a lab as [device.mocap], found [devices.mocap]"),
+                        ":3: expected settings, or a lab's device as [device.mocap], found [devices.mocap]"),
                        ("[device.mocap]\nprt = 1\n", ":2: expected a key of [device.mocap] (nearest: port), found \"prt\""),
                        ('[align]\ngap_ms = 50\n[space.kinect]\nmethod = "fit"\n',
-                        ":3: expected settings, or devices of a lab, found [space.kinect], which belongs in a manifest for kinalign align"),
+                        ":3: expected settings, or a lab's devices, found [space.kinect] of a manifest, which is for kinalign align"),
                        ('[device.a]\nprotocol = "nodes"\nport = 0\nnodes = { "1" = "2" }\n',
                         ":1: expected the name of a place, such as waist: a number may be another node's id, found 2 of node 1"),
                        ("[device]\nport = 1\n",
-                        ":2: expected [device.NAME], a table of its own for each, found port, a number")):
+                        ":2: expected [device.NAME], a table of its own for each, found port, 1")):
         config = lab(folder, text)
         assert refusal(2, folder, *config) == [f"{config[1]}{says}", PAGES]
 
@@ -157,7 +157,7 @@ def a_file_that_a_device_needs_is_told_with_the_device_and_the_key_that_names_it
     key, names = folder / "lab.key", f"lab_key of [device.imu] in {config[1]} names it"
     says, *more = refusal(3, folder, *config)
     assert says == f"{key}: expected a lab key, found No such file or directory" and more[0] == names, (says, more)
-    assert "--new-lab-key FILE makes one" in more[1], more
+    assert "--new-lab-key FILE makes the lab's key" in more[1], more
     key.write_text("12\n")
     key.chmod(0o600)
     assert refusal(3, folder, *config)[1] == names

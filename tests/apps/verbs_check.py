@@ -94,7 +94,7 @@ def what_align_warns_of_check_tells_of_the_manifest_as_well(folder):
     for words in (("check", manifest), ("align", manifest, "-o", folder / "t.h5")):
         said = json.loads(done_with(1, *words, "--json")[0])
         told.append([f["expected"] + " " + f["meaning"] for f in (said.get("report") or said)["findings"]])
-        for what in ("as the reference they keep", "start_ns at a first sample stamped", "gravity of 'wrist_left'",
+        for what in ("this stream is the reference, so they keep", "a first sample that was stamped when it was measured", "gravity of 'wrist_left'",
                      "orientations of 'wrist_left' that turn as the gyroscope says"):
             assert any(what in line for line in told[-1]), (words, what, told[-1])
     assert sorted(told[0]) == sorted(told[1]), told
@@ -110,7 +110,7 @@ def findings_name_a_lone_file_as_it_was_typed_and_of_one_file_the_stream(folder)
     (folder / "two.toml").write_text("".join(f'[stream.{name}]\nfile = "kinect.csv"\n' for name in ("a", "b")))
     said = json.loads(done_with(1, "check", folder / "two.toml", "--json")[0])
     near = sorted(f["expected"] for f in said["findings"] if "a fifth of a step" in f["expected"])
-    assert [line[:7] for line in near] == ["of 'a' ", "of 'b' "], near
+    assert [line[-7:] for line in near] == [" in 'a'", " in 'b'"], near
 
 
 @case
@@ -187,7 +187,7 @@ def a_take_that_cannot_be_made_again_differs(folder):
     assert out.startswith(f"{take}: differs: the take can't be made again: {folder}/kinect.csv:2: expected "), out
     (folder / "kinect.csv").write_text(samples.kinect(4, 9_000_000_000))
     out, _ = done_with(1, *verify)
-    assert "differs: cannot be made again: expected streams that overlap" in out, out
+    assert "differs: the take can't be made again: expected streams that overlap" in out, out
     assert "kinect.csv is not the file that the take was made from" in out, out
     said = json.loads(done_with(1, *verify, "--json")[0])
     assert said["same"] is False and "overlap" in said["failure"], said

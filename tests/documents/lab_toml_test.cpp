@@ -74,7 +74,7 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
         "labs/lab.toml:1: expected port to receive on (0: any free port), found no port");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nport = 1\n[device.b]\nprotocol = "
                  "\"nodes\"\nport = 2\n") ==
-        "labs/lab.toml:4: expected one device for all nodes, found a beside it");
+        "labs/lab.toml:4: expected one device for all nodes, found a second one, a");
   CHECK(error_of(mocap + "nodes = { \"1\" = \"Hips\" }\n") ==
         "labs/lab.toml:1: expected nodes only for protocol nodes, found protocol noitom");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nnodes = { waist = \"Hips\" }\n") ==
@@ -87,7 +87,7 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
         "node's id, found "
         "2 of node 1");
   CHECK(error_of(nodes + "{ \"1\" = \"02\" }\n")  // a node without a place too
-            .ends_with("a number is another node's id, found 02 of node 1"));
+            .ends_with("a number may be another node's id, found 02 of node 1"));
   CHECK(error_of(nodes + "{ \"1\" = \"1\", \"2\" = \"2nd\" }\n") == "none");
   CHECK(error_of("[device.a]\nprotocol = \"kinect\"\nskeleton = \"a.bvh\"\n") ==
         "labs/lab.toml:1: expected skeleton only for protocol noitom, found protocol kinect");

@@ -190,5 +190,6 @@ TEST_CASE("what is not of its type in a report keeps its default, and no text is
   CHECK(report->findings.empty());
   const auto none = parse_report_json("not JSON", "take.h5");
   REQUIRE(!none);
-  CHECK(to_string(none.error()) == "take.h5: expected a report as JSON, found a text that is none");
+  CHECK(to_string(none.error()) ==
+        "take.h5: expected a report as JSON, found text that is not JSON");
 }

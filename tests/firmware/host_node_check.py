@@ -340,8 +340,8 @@ def what_it_can_not_do_it_says_in_one_line(folder):
         done = subprocess.run([HOST_NODE, *options], capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr, done.stdout) == (code, f"host_node: {text}\n", ""), done
     for mode, text, expected in [
-            (0o644, KEY.hex(), "expected mode 0600, since nobody else may read a key, found 0644: chmod 600 " + key),
-            (0o640, KEY.hex(), "expected mode 0600, since nobody else may read a key, found 0640: chmod 600 " + key),
+            (0o644, KEY.hex(), "expected mode 0600, so that only you can read the key, found 0644: chmod 600 " + key),
+            (0o640, KEY.hex(), "expected mode 0600, so that only you can read the key, found 0640: chmod 600 " + key),
             (0o600, KEY.hex()[1:], "expected a key of 32 hexadecimal digits, found other text"),
             (0o600, KEY.hex() + "0", "expected a key of 32 hexadecimal digits, found other text"),
             (0o600, 2 * KEY.hex(), "expected a key of 32 hexadecimal digits, found 64 digits, the lab's key"),

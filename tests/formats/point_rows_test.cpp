@@ -43,7 +43,8 @@ TEST_CASE("a file is mirrored by most of the rows in which both shoulders were s
   REQUIRE(said.size() == 1);
   CHECK(said[0].severity == Severity::warning);
   CHECK(text_of(said[0]) ==
-        "k.csv: expected the left shoulder at smaller x than the right one, found it at larger x "
+        "k.csv: expected the left shoulder at smaller x than the right one, found the left "
+        "shoulder at larger x "
         "in 2 of 3 rows");
   CHECK(said[0].meaning == "the file is mirrored, or the person stood with the back to the sensor");
   CHECK(said[0].repair ==

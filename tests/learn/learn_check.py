@@ -342,7 +342,7 @@ def what_is_wrong_with_a_job_is_told_as_a_line(folder):
         assert code == 3, lines
         error = lines[-1]["error"]
         assert (error["expected"], error["found"]) == (expected, found), error
-    refused(folder / "none.json", "a job of schema kinalign.training_job/1", "a file of another kind")
+    refused(folder / "none.json", "a job of schema kinalign.training_job/1", "another file")
     refused(job(folder, "magic"), "a known method", "magic")
     refused(job(folder, "refine", input="imu"), 'a stream "imu" with names', "mocap, kinect")
     refused(job(folder, "refine", windows=str(folder / "none.npz")), "a readable file", "no readable file")

@@ -77,7 +77,8 @@ TEST_CASE("damage is told once, and of each stream what it has lost by it") {
   for (const std::string stream : {"mocap", "kinect", "imu 12", "imu 13"}) {
     CAPTURE(stream);
     CHECK(std::count_if(told.begin(), told.end(), [&stream](const std::string& text) {
-            return text.find("of '" + stream + "' every message") != std::string::npos;
+            return text.find("every message that reached the recorder in '" + stream + "'") !=
+                   std::string::npos;
           }) == 1);
   }
   for (const std::string& text : told) {

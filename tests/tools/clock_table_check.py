@@ -25,7 +25,7 @@ def run(*words):
 
 WRONG = {
     "--minuts 3": "expected a known flag (did you mean --minutes?), found --minuts",
-    "B": "expected no further word, found B",
+    "B": "expected no more words, found B",
     "--links Z": "--links: expected letters of ABCDEFG, each once, found Z",
     "--links CC": "--links: expected letters of ABCDEFG, each once, found CC",
     "--minutes 0.1": "--minutes: expected a number from 0.5 to 600, found 0.1",
@@ -34,7 +34,7 @@ WRONG = {
     "--seeds 0": "--seeds: expected a whole number from 1 to 10000, found 0",
     "--first -1": "--first: expected a whole number from 0 to 9e+15, found -1",
     "--first": "--first: expected a value after it (NUMBER), found nothing after it",
-    "--seeds 3 --seeds 4": "--seeds: expected to be given once, found given twice",
+    "--seeds 3 --seeds 4": "--seeds: expected this flag once, found it twice",
     "--bars --minutes 5": "--minutes: expected 1, 10 or 60, for which bars are stated, found 5",
     "--bars --bursts --minutes 10":
         "--minutes: expected 1, for which bars with --bursts are stated, found 10",

@@ -145,7 +145,7 @@ Widths widths_of(const std::vector<Row>& rows, std::size_t width) {
   for (std::size_t i = device + 1; i < columns; ++i) {
     if (wide[i] > 0) wide[i] = std::max(wide[i], places(rows.front().cells[i]));
     all += wide[i] > 0 ? wide[i] + 1 : 0;
-    if (all > width && i > heard) wide[i] = 0;
+    if (all > width && i > rate) wide[i] = 0;
   }
   return wide;
 }

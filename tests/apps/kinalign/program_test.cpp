@@ -124,10 +124,10 @@ TEST_CASE("a fault in a settings file is reported with its line") {
   CHECK(message("[mix]\nrows = {a = 1}\n").find(":2: expected settings, ") != std::string::npos);
   CHECK(message("[mix]\n[devices.mocap]\nport = 1\n") ==
         "kinalign mix: " + path +
-            ":2: expected settings, or a device of a lab as [device.mocap], found [devices.mocap]");
+            ":2: expected settings, or a lab's device as [device.mocap], found [devices.mocap]");
   CHECK(message("[[device]]\nport = 1\n") ==
         "kinalign mix: " + path +
-            ":1: expected settings, or a device of a lab as [device.NAME], found [[device]]");
+            ":1: expected settings, or a lab's device as [device.NAME], found [[device]]");
   CHECK(message("[devices]\nport = 1\n") ==
         "kinalign mix: " + path + ":2: expected a verb (did you mean device?), found devices");
   CHECK(message("[mix\n").find(":1: expected TOML, found ") != std::string::npos);

@@ -115,7 +115,7 @@ TEST_CASE("a lab key of another user is refused with the owner's name") {
   const passwd* me = ::getpwuid(::getuid());
   const std::string owner = me != nullptr ? me->pw_name : std::to_string(::getuid());
   CHECK(read_lab_key(files, folder.file(digits, 0400)).error().found ==
-        "no permission to read this file: it is " + owner + "'s, mode 0400");
+        "no permission to read this file: it belongs to " + owner + ", mode 0400");
   CHECK(read_lab_key(files, folder.path + "/none").error().found ==
         "no permission to read this file");
 }

@@ -361,6 +361,6 @@ TEST_CASE("a file that is removed is told, and the recording goes on in a new on
   wait_until([&] { return thread.status().finished; });
   const auto failures = thread.take_failures();
   REQUIRE(failures.size() == 1);
-  CHECK(failures[0].why.found == "none: it was removed");
+  CHECK(failures[0].why.found == "no file: it was removed");
   CHECK(read_mcap(folder.read("a.part2.mcap")).messages.size() == 10);
 }

@@ -239,7 +239,7 @@ TEST_CASE("raw files of a take whose manifest can't be read are not forgotten") 
   const auto failed = removed(files, set.folder.path(), {to_string(name)}, true);
   REQUIRE(!failed);
   CHECK(failed.error().file == path_of(name, TakeFile::manifest));
-  CHECK(failed.error().expected.starts_with("a manifest that says which raw files go"));
+  CHECK(failed.error().expected.starts_with("a manifest that lists the raw files to remove"));
   CHECK(set.contents() == before);
   CHECK(removed(files, set.folder.path(), {to_string(name)}, false));
   CHECK(set.contents().contains(unpacked + "Vicon/a.bvh"));

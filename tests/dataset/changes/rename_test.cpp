@@ -94,7 +94,8 @@ TEST_CASE(
         const auto other =
             plan_rename(set.files, set.folder.path(), Catalogue{}, "sub-02", "sub-12");
         REQUIRE(!other);
-        CHECK(other.error().expected.starts_with("first the rename that was stopped: kinalign "));
+        CHECK(other.error().expected.starts_with(
+            "the stopped rename to be finished first: kinalign "));
       }
       if (stopped) {
         const auto again = renamed(set.files, set.folder.path(), from, to);
@@ -131,8 +132,10 @@ TEST_CASE("a take that could not be made again is not renamed to another person"
   ChangedSet set;
   std::filesystem::remove(set.folder / "sourcedata/sub-02/sub-02_task-S1A01_run-01/mocap.bvh");
   CHECK(fault(set, "sub-02", "sub-12")
-            .starts_with("SET/sub-02/../sourcedata/sub-02/sub-02_task-S1A01_run-01/mocap.bvh: "
-                         "expected the raw file of sub-02_task-S1A01_run-01 (subject and action"));
+            .starts_with(
+                "SET/sub-02/../sourcedata/sub-02/sub-02_task-S1A01_run-01/mocap.bvh: "
+                "expected the raw file of sub-02_task-S1A01_run-01 (a take's file contains subject"
+                " and action"));
   std::filesystem::remove(set.folder / path_of({"02", "S1A01", 1}, TakeFile::manifest));
   CHECK(fault(set, "sub-02", "sub-12").ends_with("found a take that was added as a take"));
 }

@@ -28,6 +28,7 @@ TEST_CASE("missing entries are appended, and the user's text is kept") {
 TEST_CASE("a text that can't grow at its end is an error, and so is one that can't be read") {
   const auto grown = grown_catalogue("subject = { 05 = { } }\n", "dataset.toml", needs);
   REQUIRE_FALSE(grown);
-  CHECK(to_string(grown.error()).starts_with("dataset.toml: expected room for [subject.ID]"));
+  CHECK(
+      to_string(grown.error()).starts_with("dataset.toml: expected a file to which [subject.ID]"));
   CHECK_FALSE(grown_catalogue("subjects = 1\n", "dataset.toml", needs));
 }

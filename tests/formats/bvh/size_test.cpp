@@ -43,7 +43,7 @@ const std::string same_unit =
     "set --metres-per-unit (metres_per_unit in a manifest) if the file has another unit";
 
 std::string other_unit(const std::string& metres, const std::string& name) {
-  return "--metres-per-unit " + metres + " (metres_per_unit = " + metres +
+  return "set --metres-per-unit " + metres + " (metres_per_unit = " + metres +
          " in a manifest) if the file is in " + name;
 }
 

@@ -119,7 +119,7 @@ TEST_CASE("a quantity may begin within the first 32 rows; a later one is reporte
   REQUIRE(late.findings.size() == 1);
   CHECK(text_of(late.findings[0]) ==
         "MT_01_00B421E6.txt: expected every quantity within the first 32 rows, found 8 rows with "
-        "x velocity");
+        "values that begin later: angular velocity");
 }
 
 TEST_CASE("rate and start are the user's where given") {

@@ -209,10 +209,10 @@ TEST_CASE("a mirrored Kinect file is a finding") {
   for (int i = 0; i < 4; ++i) text += std::to_string(i) + ",1,0,2,2,-1,0,2,2\n";
   const auto read = read_all(two_reader(), text);
   REQUIRE(read.findings.size() == 1);
-  CHECK(
-      text_of(read.findings[0]) ==
-      "k.csv: expected the left shoulder at smaller x than the right one, found it at larger x in "
-      "4 of 4 rows");
+  CHECK(text_of(read.findings[0]) ==
+        "k.csv: expected the left shoulder at smaller x than the right one, found the left "
+        "shoulder at larger x in "
+        "4 of 4 rows");
 }
 
 TEST_CASE("a sample of a node comes out in our world, its sensor's space untouched") {

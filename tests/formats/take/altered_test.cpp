@@ -34,7 +34,7 @@ const std::vector<Altered> alterations{
     {"a soft link", "expected positions as a data set, found none"},
     {"another file's array", "expected positions as a data set, found none"},
     {"five dimensions",
-     "expected positions as an array of at most four dimensions, found something of another kind"},
+     "expected positions as an array of at most four dimensions, found another rank or no array"},
     {"four joints", "expected positions as [20,3,3], found [20,4,3]"},
     {"a row less", "expected valid as [20,2], found [19,2]"},
     {"a great array without bytes",

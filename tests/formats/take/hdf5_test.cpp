@@ -228,7 +228,8 @@ TEST_CASE("a take does not overwrite another without --force") {
   const auto again = write(files, folder / "take.h5", sample_take(6));
   REQUIRE_FALSE(again);
   CHECK(to_string(again.error()) ==
-        folder / "take.h5" + ": expected no file of that name (--force overwrites), found one");
+        folder / "take.h5" +
+            ": expected no file of that name (--force overwrites), found an existing file");
 }
 
 TEST_CASE("streams that can't be told apart are refused") {

@@ -101,8 +101,8 @@ TEST_CASE("what does not fit is refused by name") {
   Windows other = turning_person();
   other.facts.streams[0].names[7] = "foot";
   CHECK(refusal(other, usual_pose_nodes()) ==
-        "expected a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur), found none "
-        "named rfoot");
+        "expected a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur), found no "
+        "joint rfoot");
   other = turning_person();
   other.facts.rate_hz = 50.0;
   CHECK(refusal(other, usual_pose_nodes()).starts_with("expected a multiple of 30 Hz"));

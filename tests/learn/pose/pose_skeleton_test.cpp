@@ -107,8 +107,8 @@ TEST_CASE("the joints of a pose from a suit lie where the suit has them") {
 
 TEST_CASE("a skeleton of neither kind is refused by its first missing joint") {
   CHECK(to_string(pose_skeleton({"a", "b"}, {-1, 0}).error()) ==
-        "expected a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur), found none "
-        "named root");
+        "expected a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur), found no "
+        "joint root");
   CHECK(to_string(pose_skeleton({"Hips", "LeftUpLeg"}, {-1, 0}).error()).ends_with("LeftLeg"));
   CHECK(
       to_string(pose_skeleton({"Hips", "LeftUpLeg"}, {1, -1}).error()).ends_with("another order"));

@@ -398,7 +398,7 @@ TEST_CASE("a recording that changes after it was opened is read no further") {
   folder.write("take.mcap", bytes);
   const auto read = read_through(*recording);
   REQUIRE_FALSE(read);
-  CHECK(read.error().found == "one that changed");
+  CHECK(read.error().found == "a changed file");
 }
 
 TEST_CASE("a second pass over a recording says how far it is, and stops when it is told to") {

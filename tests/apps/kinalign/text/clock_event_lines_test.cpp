@@ -30,7 +30,7 @@ const std::string keeps =
     "asleep), so nothing of it is certified; its steps are reported again after a quiet minute";
 
 std::string withdrawn(const std::string& s) {
-  return "node 7: warning: the stamps of " + s + " s are not certified any more";
+  return "node 7: warning: the stamps of " + s + " s are no longer certified";
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST_CASE("check reports the faults of an XDF, and nothing for a sound file") {
             "note: finite values of stream 'N1'; 1 NaN or infinite values"});
   CHECK(told(sound + more.substr(0, 20)).front() ==
         "warning: a last chunk of 25 bytes; 15 bytes at byte " + std::to_string(sound.size()));
-  CHECK(told(two_streams()) == std::vector<std::string>{"note: of 'N8' samples; none"});
+  CHECK(told(two_streams()) == std::vector<std::string>{"note: samples of stream 'N8'; none"});
   const double nowhere = std::numeric_limits<double>::infinity();
   CHECK(told(xdf_begin + xdf_header(1, "double64", 1) +
              xdf_samples(1, 1, xdf_sample(nowhere, little_text(1.0)))) ==

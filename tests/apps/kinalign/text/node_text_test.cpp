@@ -60,7 +60,8 @@ TEST_CASE("a node without a certificate, a counter or samples says so") {
   CHECK(status_text(status, now).find("not locked: its exchanges contradict") != std::string::npos);
   NodeStatus unheard = status;
   unheard.stamp.reset();
-  CHECK(status_text(unheard, now).find("not locked: it has echoed no answer") != std::string::npos);
+  CHECK(status_text(unheard, now).find("not locked: no reply of this server has reached it") !=
+        std::string::npos);
   CHECK(nodes_text({some_status(), status}) == "2 nodes, 1 locked");
   NodeStatus bare;
   bare.node_id = 3;
@@ -85,7 +86,7 @@ TEST_CASE("what is not known of a node is left out") {
   for (const auto round_trip : {Duration{0}, Duration{-5000}}) {
     status.round_trip = round_trip;
     CHECK(status_text(status, now) ==
-          "node 7  just heard, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, 3.91 V");
+          "node 7  first frame, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, 3.91 V");
     const auto json = nlohmann::json::parse(status_json(status));
     CHECK_FALSE(json.contains("rate_hz"));
     CHECK_FALSE(json.contains("round_trip_ms"));
