@@ -20,6 +20,7 @@ bool is_control(char32_t code) {
 
 /// The text with '?' for control characters and for bytes that are not UTF-8. Control characters in
 /// `but` are kept.
+/// Each invalid byte becomes one '?', so the rest of a damaged text stays readable.
 std::string without_controls(std::string_view text, std::string_view but = "") {
   std::string out;
   while (!text.empty()) {
@@ -39,6 +40,7 @@ std::string without_controls(std::string_view text, std::string_view but = "") {
 
 std::string to_string(const Error& error) {
   std::string text = without_controls(error.file);  // a file name may contain any byte
+  // Without a file name the place reads "line 12".
   if (error.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(error.line);
   if (!text.empty()) text += ": ";
   text += "expected " + harmless(error.expected);
@@ -49,6 +51,7 @@ std::string to_string(const Error& error) {
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
   if (text.size() <= most) return without_controls(text);
+  // Bytes of the form 10xxxxxx continue a character. The cut moves back to a first byte.
   std::size_t cut = most;  // never within a UTF-8 character, which has at most four bytes
   while (cut > most - 3 && (static_cast<unsigned char>(text[cut]) & 0xc0U) == 0x80U) --cut;
   std::string out = without_controls(text.substr(0, cut)) + "...";

@@ -34,6 +34,8 @@ enum class ErrorKind : std::uint8_t {
   no_common_span,        // the streams do not overlap in time
   no_rows_in_recording,  // a recording has no device, or nothing of it can be read as the stream
 };
+/// The largest kind. The guarded process of kinalign/formats/take sends kinds as numbers and checks
+/// them against this limit.
 inline constexpr ErrorKind last_error_kind = ErrorKind::no_rows_in_recording;
 
 /// An error, worded for the person who has to repair the file.
@@ -76,10 +78,13 @@ inline void append(Findings& all, const Findings& more) {
 /// The word for people and for JSON, for example "warning".
 std::string_view to_string(Severity severity);
 
+/// A value, or the Error that prevented it. Exceptions of libraries are caught in the file that
+/// calls the library, so callers only check Results.
 template <class T>
 using Result = tl::expected<T, Error>;  // replace by std::expected when it is available
 using Failure = tl::unexpected<Error>;
 
+/// The value of KA_TRY. A function, because a Result<void> has no value that could be dereferenced.
 template <class T>
 T unwrap(Result<T>&& result) {
   if constexpr (!std::is_void_v<T>) return *std::move(result);
@@ -92,6 +97,7 @@ T unwrap(Result<T>&& result) {
 #define KA_TRY(expression) KA_TRY_AS(KA_TRY_JOIN(ka_result_, __COUNTER__), expression)
 #define KA_TRY_JOIN(a, b) KA_TRY_JOINED(a, b)
 #define KA_TRY_JOINED(a, b) a##b
+// A statement expression of GCC and Clang: its value is that of its last statement.
 #define KA_TRY_AS(result, expression)                                     \
   __extension__({                                                         \
     auto result((expression));                                            \

@@ -18,6 +18,7 @@ inline Failure failed(const std::string& path, std::string expected, int code) {
 
 /// The error for a file that could not be opened or read.
 inline Failure unreadable(const std::string& path, int code) {
+  // The advice for a failing disk differs from that for other errors (apps/cli/file_advice.cpp).
   const ErrorKind kind = code == EIO ? ErrorKind::unreadable_disk : ErrorKind::other;
   return Failure(Error{path, 0, "a readable file", std::strerror(code), kind});
 }
@@ -29,6 +30,7 @@ inline Result<std::size_t> fill(FileSystem& files, const std::string& path, int 
   while (done < to.size()) {
     const ssize_t got =
         files.read_at(fd, to.data() + done, to.size() - done, static_cast<off_t>(at + done));
+    // No byte without an error: the file ends here. The caller compares the count.
     if (got == 0) break;
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return unreadable(path, errno);
@@ -44,6 +46,7 @@ int put_all(std::string_view bytes, const Put& put) {
     const ssize_t taken = put(bytes);
     if (taken < 0 && errno == EINTR) continue;
     if (taken < 0) return errno;
+    // A call that takes no byte would be repeated for ever, so it counts as a full disk.
     if (taken == 0) return ENOSPC;
     bytes.remove_prefix(static_cast<std::size_t>(taken));
   }
@@ -51,11 +54,14 @@ int put_all(std::string_view bytes, const Put& put) {
 }
 
 /// The folder of a path in a form for open(2).
+/// A path without a folder names a file in the working directory.
 inline std::string place_of(const std::string& path) {
   return folder(path).empty() ? "." : std::string(folder(path));
 }
 
 /// Syncs the folder of a path, so that the file's name reaches the disk; true if it succeeded.
+/// fsync(2) of a file does not sync the entry in its folder; without this call the name may be
+/// lost.
 inline bool sync_folder(FileSystem& files, const std::string& path) {
   const int directory = files.open(place_of(path).c_str(), O_RDONLY | O_DIRECTORY, 0);
   if (directory < 0) return false;

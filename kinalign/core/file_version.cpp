@@ -6,6 +6,7 @@
 namespace kinalign {
 
 std::optional<FileVersion> version_of(const std::string& path) {
+  // stat() follows links, so a link and its target count as the same file.
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
   constexpr std::int64_t second_ns = 1'000'000'000;

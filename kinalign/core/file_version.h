@@ -9,6 +9,8 @@
 namespace kinalign {
 
 /// Changes whenever the file is written or replaced.
+/// Device and number identify the file, size and time its contents. A file that is replaced gets
+/// another number, and a file that is written gets another time.
 struct FileVersion {
   std::uint64_t device = 0, number = 0, size = 0;
   std::int64_t changed_ns = 0;  // time of the last change of its contents

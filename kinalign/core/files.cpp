@@ -34,6 +34,7 @@ std::string hidden_name(const std::string& path) {
 }  // namespace
 
 int PosixFiles::open(const char* path, int flags, mode_t mode) {
+  // O_CLOEXEC: programs that this program starts don't inherit open files.
   return ::open(path, flags | O_CLOEXEC, mode);
 }
 ssize_t PosixFiles::read(int fd, void* data, std::size_t size) { return ::read(fd, data, size); }
@@ -46,10 +47,12 @@ ssize_t PosixFiles::read_at(int fd, void* data, std::size_t size, off_t at) {
 ssize_t PosixFiles::write_at(int fd, const void* data, std::size_t size, off_t at) {
   return ::pwrite(fd, data, size, at);
 }
+// fallocate(), not posix_fallocate(), which writes zeros if the file system can't allocate.
 int PosixFiles::allocate(int fd, off_t size) { return ::fallocate(fd, 0, 0, size); }
 int PosixFiles::truncate(int fd, off_t size) { return ::ftruncate(fd, size); }
 int PosixFiles::sync(int fd) { return ::fsync(fd); }
 int PosixFiles::link(const char* from, const char* to) {
+  // AT_SYMLINK_FOLLOW links the open file and not the entry in /proc, see O_TMPFILE in open(2).
   return ::linkat(AT_FDCWD, from, AT_FDCWD, to, AT_SYMLINK_FOLLOW);
 }
 int PosixFiles::rename(const char* from, const char* to) { return std::rename(from, to); }
@@ -103,6 +106,7 @@ InputFile::~InputFile() {
 
 Result<std::string_view> InputFile::next() {
   for (;;) {
+    // One read(2) a piece, so a piece may be shorter than the buffer before the end, too.
     const ssize_t got = files_->read(fd_, buffer_.data(), buffer_.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {  // a disk may be unable to read a single page
@@ -120,6 +124,7 @@ Result<std::size_t> InputFile::read_at(std::uint64_t at, std::span<char> to) con
 }
 
 Result<void> make_new_folder(const std::string& path) {
+  // mkdir(2) checks and creates in one step, so of two programs only one succeeds.
   if (::mkdir(path.c_str(), 0777) == 0) return {};
   if (errno == EEXIST)
     return Failure(Error{path, 0, "no file or folder of that name", "an existing one"});
@@ -139,6 +144,7 @@ Result<std::string> read_whole(FileSystem& files, const std::string& path, std::
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
     if (piece.empty()) return text;
+    // The bytes that arrive are counted. size() may be wrong by now.
     if (text.size() + piece.size() > most) {
       return Failure(Error{path, 0, "at most " + std::to_string(most) + " bytes", "more"});
     }
@@ -164,9 +170,12 @@ Result<void> copy_file(FileSystem& files, const std::string& from, const std::st
 }
 
 Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overwrite overwrite) {
+  // A path such as "takes/" names a folder only.
   if (file_name(path).empty())
     return Failure(Error{path, 0, "the name of a file", "the name of a folder"});
   struct stat status {};
+  // lstat() does not follow links. A link is refused, because commit() would replace the link and
+  // not its target.
   if (::lstat(path.c_str(), &status) == 0) {
     if (!S_ISREG(status.st_mode)) {
       return Failure(Error{path, 0, "a regular file or no file", kind_of(status.st_mode)});
@@ -177,11 +186,13 @@ Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overw
     }
   }
   OutputFile file(files, std::move(path), overwrite);
+  // O_TMPFILE makes a file without a name. If the program is killed, the system removes the file.
   file.fd_ = files.open(place_of(file.path_).c_str(), O_TMPFILE | O_RDWR, 0644);
   if (file.fd_ >= 0) {
     file.unfinished_ = "/proc/self/fd/" + std::to_string(file.fd_);
     return file;
   }
+  // These three errors mean that O_TMPFILE is not supported. Other errors concern the folder.
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) {
     return failed(file.path_, "a folder that can be written", errno);
   }
@@ -199,6 +210,7 @@ Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overw
 OutputFile::OutputFile(FileSystem& files, std::string path, Overwrite overwrite)
     : files_(&files), path_(std::move(path)), overwrite_(overwrite) {}
 
+// The source keeps neither descriptor nor hidden name, so its destructor can't remove the file.
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : files_(other.files_),
       path_(std::move(other.path_)),
@@ -226,6 +238,7 @@ void OutputFile::discard() {
   hidden_path_.clear();
 }
 
+// After a failed write the file has an unknown part of the bytes.
 Result<void> OutputFile::spoiled(const std::string& expected, int code) {
   discard();  // an incomplete file is never committed
   return failed(path_, expected, code);
@@ -239,6 +252,7 @@ Result<void> OutputFile::write(std::string_view bytes) {
 }
 
 Result<void> OutputFile::write_at(std::uint64_t at, std::string_view bytes) {
+  // The rest always ends at `end`, so its length gives its position.
   const int code = put_all(bytes, [&, end = at + bytes.size()](std::string_view rest) {
     return files_->write_at(fd_, rest.data(), rest.size(), static_cast<off_t>(end - rest.size()));
   });
@@ -248,6 +262,7 @@ Result<void> OutputFile::write_at(std::uint64_t at, std::string_view bytes) {
 Result<void> OutputFile::reserve(std::uint64_t size) {
   while (size > 0 && files_->allocate(fd_, static_cast<off_t>(size)) != 0) {
     if (errno == EINTR) continue;
+    // The work continues without the reservation. write() then finds out that the disk is full.
     if (errno == EOPNOTSUPP || errno == ENOSYS) return {};
     return spoiled("room for " + std::to_string(size) + " bytes", errno);
   }
@@ -267,6 +282,7 @@ Result<void> OutputFile::place() {
     return Failure(
         Error{path_, 0, "no file of that name (--force overwrites)", "an existing file"});
   }
+  // The name is taken and may be overwritten.
   if (hidden_path_.empty()) {
     // A nameless file can only be linked to a free name. It is linked to a temporary name, which is
     // then renamed over the old file. If the program is killed between both steps, the complete new
@@ -286,6 +302,8 @@ Result<void> OutputFile::place() {
 }
 
 Result<void> OutputFile::commit() {
+  // The data are synced before the file gets its name, so a named file is complete even after a
+  // power cut.
   if (files_->sync(fd_) != 0) return failed(path_, "data that reach the disk", errno);
   KA_TRY(place());
   sync_folder(*files_, path_);  // some file systems can't; the data are safe anyway

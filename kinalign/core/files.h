@@ -85,6 +85,8 @@ class InputFile {
  private:
   InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size, std::size_t piece);
 
+  // fd_ is open, or -1 after the object was moved from. next() returns views of buffer_, whose size
+  // is that of a piece.
   FileSystem* files_;
   std::string path_;
   int fd_;
@@ -135,10 +137,13 @@ class OutputFile {
   void discard();
   Result<void> spoiled(const std::string& expected, int code);
 
+  // fd_ is open until a successful commit() or a failed write, and -1 afterwards. An object that is
+  // destroyed without commit() leaves neither a file nor a hidden name.
   FileSystem* files_;
   std::string path_;
   Overwrite overwrite_;
   int fd_ = -1;
+  // Path of the file before commit(): /proc/self/fd/N of a file without a name, else hidden_path_.
   std::string unfinished_;
   std::string hidden_path_;  // the name with a dot; empty if the file has no name
 };

@@ -43,6 +43,8 @@ GrowingFile& GrowingFile::operator=(GrowingFile&& other) noexcept {
 
 GrowingFile::~GrowingFile() { close(); }
 
+// The bytes are written at size_, not at the file's end, so bytes of a failed append can't shift
+// them.
 Result<void> GrowingFile::append(std::string_view bytes) {
   if (ragged_) KA_TRY(cut(size_));
   const int code = put_all(bytes, [&, end = size_ + bytes.size()](std::string_view rest) {
@@ -50,6 +52,7 @@ Result<void> GrowingFile::append(std::string_view bytes) {
   });
   if (code != 0) {
     ragged_ = true;
+    // If the cut fails, too, ragged_ stays true and the next append() tries it again.
     (void)cut(size_);
     return failed(path_, "room to write", code);
   }
@@ -78,6 +81,7 @@ Result<void> GrowingFile::sync() const {
   }
   // Some file systems can't sync a folder; the sync of the file itself matters.
   if (!std::exchange(named_, true)) sync_folder(*files_, path_);
+  // Writes to a removed file succeed, but its data are lost when it is closed.
   struct stat status {};
   const bool removed =
       ::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;
@@ -88,6 +92,7 @@ Result<void> GrowingFile::sync() const {
 
 void GrowingFile::close() {
   if (fd_ < 0) return;
+  // Bytes of a failed append must not remain in the finished file.
   if (ragged_) (void)cut(size_);
   files_->close(std::exchange(fd_, -1));
 }

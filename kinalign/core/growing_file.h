@@ -43,6 +43,8 @@ class GrowingFile {
   GrowingFile(FileSystem& files, std::string path, int fd)
       : files_(&files), path_(std::move(path)), fd_(fd) {}
 
+  // The first size_ bytes of the file are those appended so far. If ragged_, bytes of a failed
+  // append may follow them; the next append() or close() cuts them off.
   FileSystem* files_;
   std::string path_;
   int fd_;

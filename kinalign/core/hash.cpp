@@ -10,6 +10,7 @@
 
 namespace kinalign {
 
+/// Owns OpenSSL's context. A context can't be copied by assignment, so a State is never copied.
 struct Sha256::State {
   EVP_MD_CTX* context = EVP_MD_CTX_new();
 

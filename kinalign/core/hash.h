@@ -8,6 +8,7 @@
 
 namespace kinalign {
 
+/// The state is hidden in a pointer, so that only hash.cpp includes OpenSSL.
 class Sha256 {
  public:
   Sha256();

@@ -14,9 +14,9 @@ class LineSplitter {
  public:
   static constexpr std::size_t longest = std::size_t{1} << 20;
 
-  /// Calls `use(line)` -> Result<void> for each line completed by `piece`, without its "
-  /// " or "\r
-  /// ". number() is then the line's number, counted from 1. The character after the line is
+  /// Calls `use(line)` -> Result<void> for each line completed by `piece`, without its line end: a
+  /// line feed, or carriage return and line feed.
+  /// number() is then the line's number, counted from 1. The character after the line is
   /// readable and can't belong to a number. Fails if a call of `use` fails, and on a line longer
   /// than `longest`.
   template <class Use>
@@ -26,13 +26,16 @@ class LineSplitter {
       const bool whole = end != std::string_view::npos;
       const std::string_view part = piece.substr(0, end);
       piece.remove_prefix(whole ? end + 1 : piece.size());
+      // A binary file may have no line end at all, and must not fill the memory.
       if (carry_.size() + part.size() > longest) return too_long();
+      // A line that is complete within the piece is used in place, without a copy.
       if (whole && carry_.empty()) {
         KA_TRY(emit(part, use));
         continue;
       }
       carry_ += part;
       if (!whole) return {};
+      // A std::string ends with '\0', so the character after this line is readable, too.
       KA_TRY(emit(carry_, use));
       carry_.clear();
     }
@@ -65,7 +68,9 @@ class LineSplitter {
                          "a longer line"});
   }
 
+  // The beginning of a line whose end has not arrived; empty between lines.
   std::string carry_;
+  // number_ is the number of lines completed so far.
   std::int64_t number_ = 0;
 };
 

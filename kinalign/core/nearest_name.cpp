@@ -10,6 +10,8 @@ namespace {
 
 /// The distance by optimal string alignment. It keeps three rows of the table of distances between
 /// prefixes.
+/// A swap of two neighbouring letters counts as one change, as do an insertion, an omission and a
+/// replacement. Each part of the text is changed once only.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), two_before(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -18,6 +20,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
     before.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
+      // changed: the letters are paired, at no cost if they are equal.
       const std::size_t changed = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
       row[j] = std::min({before[j] + 1, row[j - 1] + 1, changed});
       const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
@@ -45,6 +48,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   constexpr std::size_t longest = 64;
   const std::string_view start = name.substr(0, longest);
   std::string best;
+  // One more than the letters that may differ: a third of the name, and one of a short name.
   std::size_t least = std::max<std::size_t>(1, start.size() / 3) + 1;
   for (const std::string& other : known) {
     const std::size_t letters = distance(start, other);
@@ -52,6 +56,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     least = letters;
     best = other;
   }
+  // A user may give only the beginning of a long name, which differs from it in many letters.
   if (!best.empty() || start.size() < 3) return best;
   const auto begun = std::find_if(known.begin(), known.end(), [start](const std::string& other) {
     return other.starts_with(start);

@@ -16,6 +16,7 @@ namespace {
 constexpr std::array<double, 16> ten{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                      1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
+// "00" to "99": put_decimals() writes two digits at a time.
 constexpr std::array<char, 200> digit_pairs = [] {
   std::array<char, 200> pairs{};
   for (std::size_t i = 0; i < 100; ++i) {
@@ -38,15 +39,19 @@ bool too_small(std::string_view number) {
   const bool negative = exponent.starts_with('-');
   if (negative || exponent.starts_with('+')) exponent.remove_prefix(1);
   std::int64_t power = 0;
+  // The limit keeps an exponent of many digits from overflowing.
   for (const char c : exponent) power = std::min(power * 10 + (c - '0'), std::int64_t{1} << 40);
   return point - first + (negative ? -power : power) < 0;
 }
 
+/// The general case: numbers of more than 15 digits, with an exponent, or no number at all.
 const char* parse_any(const char* at, const char* end, double& value) {
   const char* digits = at + (*at == '-' ? 1 : 0);
   if (digits == end || (!is_digit(*digits) && *digits != '.'))
     return nullptr;  // refuses "inf" and "nan"
   const auto [behind, fault] = std::from_chars(at, end, value);
+  // std::from_chars does not say whether a number is too large or too small. A number that is too
+  // small becomes 0 with its sign.
   if (fault == std::errc::result_out_of_range) {
     const std::string_view text(at, static_cast<std::size_t>(behind - at));
     if (!too_small(text)) return nullptr;
@@ -77,6 +82,7 @@ __attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_
   if (decimals == 0) return at;
   *at++ = '.';
   int left = decimals;
+  // An odd number of digits: the last digit is written alone, the others in pairs from the right.
   if (left % 2 != 0) {
     at[left - 1] = static_cast<char>('0' + fraction % 10);
     fraction /= 10;
@@ -94,11 +100,14 @@ __attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_
 const char* parse_number(const char* at, const char* end, double& value) {
   if (at != end && *at == '+') {
     ++at;
+    // "+-1" is no number, although std::from_chars would read "-1".
     if (at != end && *at == '-') return nullptr;
   }
   const char* p = at;
   const bool minus = *p == '-';
   p += minus ? 1 : 0;
+  // All digits are read as one integer: 12.34 is 1234 / 10^2. With at most 15 digits both numbers
+  // are exact doubles, so the single division rounds correctly.
   std::uint64_t whole = 0;
   const char* digits = p;
   while (is_digit(*p)) whole = whole * 10 + static_cast<unsigned>(*p++ - '0');
@@ -110,6 +119,7 @@ const char* parse_number(const char* at, const char* end, double& value) {
     after = p - fraction;
     count += after;
   }
+  // More digits may have overflowed `whole`; parse_any() reads the text again from its beginning.
   if (count == 0 || count > 15 || (*p | 32) == 'e') return parse_any(at, end, value);
   const double magnitude = static_cast<double>(whole) / ten[static_cast<std::size_t>(after)];
   value = minus ? -magnitude : magnitude;
@@ -117,6 +127,7 @@ const char* parse_number(const char* at, const char* end, double& value) {
 }
 
 bool parse_number(std::string_view text, double& value) {
+  // The copy has a fixed size, so longer texts are refused.
   if (text.empty() || text.size() > 400) return false;
   std::array<char, 401> copy{};  // ends with a character that can't belong to a number
   std::memcpy(copy.data(), text.data(), text.size());
@@ -140,6 +151,7 @@ char* put_number(char* at, double value, int decimals) {
   auto all = static_cast<std::int64_t>(scaled);
   // Without a branch to predict.
   all += static_cast<std::int64_t>(scaled - static_cast<double>(all) >= 0.5);
+  // The digits must read back as the same double. parse_number() divides in the same way.
   if (static_cast<double>(all) / scale != magnitude) {
     return std::to_chars(at, at + number_room, value).ptr;
   }

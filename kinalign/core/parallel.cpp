@@ -12,6 +12,8 @@ namespace kinalign {
 
 namespace {
 
+/// `next_` gives each index to one thread, in rising order. A thread whose call threw takes no
+/// further index; the others continue.
 /// The state shared by the threads of one call.
 class Shared {
  public:
@@ -36,6 +38,7 @@ class Shared {
   const std::function<void(std::size_t)>& body_;
   std::atomic<std::size_t> next_{0};
   std::atomic_flag thrown_;
+  // Written by the one thread that set thrown_, and read after all threads have ended.
   std::exception_ptr fault_;
 };
 
@@ -44,6 +47,8 @@ class Shared {
 void parallel_for(std::size_t count, std::size_t jobs,
                   const std::function<void(std::size_t)>& body) {
   const std::size_t threads = std::min(count, std::max<std::size_t>(jobs, 1));
+  // The caller's thread works, too, so one thread less is started. The inner block ends when all
+  // threads have ended, because std::jthread joins in its destructor.
   Shared shared(count, body);
   {
     std::vector<std::jthread> others;

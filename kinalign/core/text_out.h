@@ -17,6 +17,8 @@ namespace kinalign {
 class TextOut {
  public:
   static Result<TextOut> create(FileSystem& files, std::string path, Overwrite overwrite) {
+    // Room for two blocks: the buffer is flushed at the end of a line, after it has passed one
+    // block.
     return TextOut(KA_TRY(OutputFile::create(files, std::move(path), overwrite)));
   }
   explicit TextOut(OutputFile file) : file_(std::move(file)) { held_.reserve(2 * most_held); }
@@ -29,6 +31,7 @@ class TextOut {
     const double scale = scales[static_cast<std::size_t>(decimals)];
     std::array<char, number_room> room{};
     // "+ 0.0" turns -0.0 into 0.0, so that "-0.0000" is never written.
+    // The value is rounded here, because put_number() keeps every digit that a double has.
     const double rounded = std::nearbyint(value * scale) / scale + 0.0;
     const char* end = put_number(room.data(), rounded, decimals);
     if (before != '\0') held_ += before;
@@ -61,6 +64,7 @@ class TextOut {
     return {};
   }
 
+  // Text in held_ is not in the file yet. The file gets its name in commit() only.
   OutputFile file_;
   std::string held_;
 };

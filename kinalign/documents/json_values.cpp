@@ -10,9 +10,11 @@ namespace kinalign {
 
 using Json = nlohmann::ordered_json;
 
+// nlohmann's operator[] may be used only if the object has the key, so each function asks first.
 std::string text_at(const Json& json, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
   std::string text = json[key].get<std::string>();
+  // These texts are printed on terminals, which obey control characters.
   std::replace_if(
       text.begin(), text.end(),
       [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
@@ -21,11 +23,13 @@ std::string text_at(const Json& json, const char* key) {
 
 double number_at(const Json& json, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return 0.0;
+  // JSON has no infinity, but 1e999 is read as one.
   const auto number = json[key].get<double>();
   return std::isfinite(number) ? number : 0.0;
 }
 
 std::uint64_t count_at(const Json& json, const char* key) {
+  // A negative number is an integer, but not an unsigned one.
   if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned()) return 0;
   return json[key].get<std::uint64_t>();
 }
@@ -37,6 +41,7 @@ std::int64_t whole_at(const Json& json, const char* key, std::int64_t furthest) 
 }
 
 const Json& list_at(const Json& json, const char* key) {
+  // The result is a reference, so the empty list must outlive the call.
   static const Json none = Json::array();
   if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
   return json[key];

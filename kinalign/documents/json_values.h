@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Members of JSON that may come from another program: a member that is missing or of another type
 // reads as a default.
+// A reader that must refuse such members does not use these functions.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -10,10 +10,12 @@ namespace kinalign {
 
 namespace {
 
+// A limit on the work for a file from elsewhere; the checks compare every pair of devices.
 constexpr std::size_t most_devices = 64;
 
 /// Paths become relative to `in`, the folder of the file.
 Result<DeviceOptions> read_device(const Value& device, const std::string& in) {
+  // A frequent mistake: [device] with the keys of a device, but without a name.
   if (!device.is_table()) {
     return at(device, Error{"", 0, "[device.NAME], a table of its own for each",
                             device.key + ", " + shown(device)});
@@ -21,6 +23,7 @@ Result<DeviceOptions> read_device(const Value& device, const std::string& in) {
   DeviceOptions out;
   out.name = device.key;
   KA_TRY(read_options(device, describe(out)));
+  // The program may be started in any folder, so paths in a file count from the file.
   for (std::string* path : {&out.skeleton, &out.lab_key}) {
     if (!path->empty() && !path->starts_with('/')) path->insert(0, in);
   }

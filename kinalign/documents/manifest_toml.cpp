@@ -11,6 +11,7 @@ namespace kinalign {
 namespace {
 
 /// Refuses a lab.toml, which is easily confused with a manifest: both name streams.
+/// No manifest has a table [device].
 Result<void> check_purpose(const Value& top) {
   const Value* devices = top.find({"device"});
   if (devices == nullptr) return {};
@@ -23,12 +24,16 @@ Result<void> read_files(const Value& value, std::vector<StreamFile>& out) {
   if (value.kind != Value::Kind::list && !value.is_table()) {
     return wrong(value, "a list of files or a table of nodes' files");
   }
+  // In a table each file belongs to the node that its key names. A file of a list names its nodes
+  // itself.
   for (const Value& one : value.items) {
     out.push_back({KA_TRY(text_of(one)), value.is_table() ? one.key : ""});
   }
   return {};
 }
 
+/// A stated key must have an effect, even if its value is the default. The lines also serve
+/// messages.
 void keep_lines(const Value& table, KeyLines& lines) {
   for (const Value& entry : table.items) lines[entry.key] = entry.line;
 }
@@ -36,6 +41,7 @@ void keep_lines(const Value& table, KeyLines& lines) {
 Result<void> read_stream(const Value& stream, Manifest& manifest) {
   StreamOptions& out = manifest.streams.emplace_back();
   out.name = stream.key;
+  // `file` is the short form of `files` with one entry.
   const auto read_file = [&](const Value& value) -> Result<void> {
     out.files.push_back({KA_TRY(text_of(value)), ""});
     return {};
@@ -44,6 +50,7 @@ Result<void> read_stream(const Value& stream, Manifest& manifest) {
       stream, describe(out),
       {{"file", read_file}, {"files", [&](const Value& v) { return read_files(v, out.files); }}}));
   keep_lines(stream, out.lines);
+  // A stream without a file is refused here, at the line of its table.
   if (!out.files.empty()) return {};
   return at(stream, Error{"", 0, "file or files in [" + stream.path + "]", "none"});
 }
@@ -55,6 +62,7 @@ Result<void> read_streams(const Value& streams, Manifest& out) {
 
 Result<void> read_spaces(const Value& spaces, Manifest& out) {
   for (const Value& space : KA_TRY(entries_of(spaces))) {
+    // A space has the name of the stream that it moves.
     SpaceOptions& options = out.spaces[space.key];
     KA_TRY(read_options(space, describe(options)));
     keep_lines(space, options.lines);
@@ -66,6 +74,7 @@ Result<void> read_spaces(const Value& spaces, Manifest& out) {
 Result<void> check_names(const Value& top, const Manifest& manifest) {
   std::vector<std::string> known;
   for (const StreamOptions& stream : manifest.streams) known.push_back(stream.name);
+  // `where` is the value in the text, whose line an error needs.
   const auto check = [&](const std::string& stream, const Value* where) -> Result<void> {
     if (stream.empty() || where == nullptr) return {};  // not stated in this file
     if (std::find(known.begin(), known.end(), stream) != known.end()) return {};
@@ -81,6 +90,7 @@ Result<void> check_names(const Value& top, const Manifest& manifest) {
 
 /// The tables of one stream.
 std::string stream_text(const StreamOptions& stream) {
+  // Stream names may need quotes: toml_key() decides.
   std::string text = "\n[stream." + toml_key(stream.name) + "]\n";
   if (!stream.files.empty()) text += files_toml(stream.files) + "\n";
   return text + toml_options(stream);
@@ -91,8 +101,11 @@ std::string stream_text(const StreamOptions& stream) {
 Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
                                const AlignOptions& unsaid) {
   Manifest out;
+  // Options that [align] does not state keep these values.
   out.align = unsaid;
   KA_TRY(read_toml(toml, name, [&](const Value& top) -> Result<void> {
+    // Checked first. Otherwise the unknown keys of a lab.toml would be reported instead of the
+    // mistake.
     KA_TRY(check_purpose(top));
     KA_TRY(read_options(
         top, describe(out),
@@ -105,7 +118,9 @@ Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
 }
 
 std::string files_toml(const std::vector<StreamFile>& files) {
+  // Either all files of a stream have a node, or none has.
   if (!files.empty() && !files.front().node.empty()) {
+    // A toml_table() is sorted by key, so it can't be used here.
     std::string table;  // in the order of the files
     for (const StreamFile& file : files) {
       table += (table.empty() ? "" : ", ") + toml_key(file.node) + " = " + toml_string(file.path);
@@ -125,6 +140,7 @@ std::string select_toml(const std::map<std::string, std::string>& select) {
 
 std::string manifest_toml(const Manifest& manifest) {
   std::string text = toml_options(manifest);
+  // A table without stated options is left out.
   if (const std::string align = toml_options(manifest.align); !align.empty()) {
     text += "\n[align]\n" + align;
   }

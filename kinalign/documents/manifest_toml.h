@@ -19,6 +19,7 @@ Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
                                const AlignOptions& unsaid = {});
 
 /// The text that reads back as `manifest`, with all values that differ from the defaults.
+/// Comments and blank lines of a file are not part of a Manifest, so they are lost.
 std::string manifest_toml(const Manifest& manifest);
 
 /// Lines of one [stream.NAME], without line ends: `file = ...` or `files = ...`, and `select =

@@ -19,6 +19,8 @@ constexpr const char* schema = "kinalign.parameters/1";
 
 // ---- to JSON
 
+/// Called with the address of each option's value. An absent optional value becomes null, so its
+/// key is written, too.
 struct ToJson {
   template <class Value>
   Json operator()(const Value* value) const {
@@ -31,12 +33,14 @@ struct ToJson {
 };
 
 Json fields_to_json(const Fields& fields) {
+  // describe() gives the options in a fixed order, which is the order in the text.
   Json out = Json::object();
   for (const Field& field : fields) out[field.name] = std::visit(ToJson{}, field.value);
   return out;
 }
 
 /// A stream's name and files, then its options.
+/// The copy is needed because describe() takes the addresses of values that may be changed.
 Json stream_to_json(StreamOptions stream) {
   Json out = {{"name", stream.name}, {"files", Json::array()}};
   for (const StreamFile& file : stream.files) {
@@ -49,12 +53,14 @@ Json stream_to_json(StreamOptions stream) {
 // ---- from JSON
 
 Value value_of(const Json& json, std::string key, std::string path) {
+  // line stays 0: JSON values are named by their path, such as streams[0].gap_ms.
   using Kind = Value::Kind;
   Value out{Kind::null, {}, {}, std::move(key), std::move(path)};
   const auto scalar = [&](Kind kind, auto value) {
     out.kind = kind;
     out.scalar = std::move(value);
   };
+  // An integer above INT64_MAX is read as a double, so it is no whole number for an option.
   const bool whole = json.is_number_integer() &&
                      (!json.is_number_unsigned() || json.get<std::uint64_t>() <= INT64_MAX);
   if (json.is_boolean()) scalar(Kind::truth, json.get<bool>());
@@ -64,6 +70,7 @@ Value value_of(const Json& json, std::string key, std::string path) {
   if (json.is_array()) {
     out.kind = Kind::list;
     for (const Json& one : json) {
+      // The entries of a list have no key.
       out.items.push_back(value_of(one, "", fmt::format("{}[{}]", out.path, out.items.size())));
     }
   }
@@ -84,11 +91,13 @@ Result<void> streams_from_json(const Value& streams, Manifest& out) {
       if (files.kind != Value::Kind::list) return wrong(files, "a list");
       for (const Value& each : files.items) {
         StreamFile& file = stream.files.emplace_back();
+        // The path is checked at the end, when all of the text is known to be right.
         KA_TRY(read_options(each, {{"path", "", &file.path}, {"node", "", &file.node}}));
       }
       return {};
     };
     Fields fields = describe(stream);
+    // In TOML the name is that of the table; JSON has a list of streams, so it is a key.
     fields.push_back({"name", "", &stream.name});
     KA_TRY(read_options(one, fields, {{"files", read_files}}));
   }
@@ -109,6 +118,7 @@ Result<Manifest> manifest_from(const Value& top) {
     return wrong(value, std::string("\"") + schema + "\"");
   };
   if (!top.is_table()) return Failure(Error{"", 0, "parameters as a table", shown(top)});
+  // A text without a schema could be of any version, and its keys could mean something else.
   if (top.find({"schema"}) == nullptr) {
     return Failure(Error{"", 0, std::string("schema ") + schema, "none"});
   }
@@ -123,11 +133,13 @@ Result<Manifest> manifest_from(const Value& top) {
 
 /// True if brackets outside of strings are nested deeper than `most`. The parser recurses; this
 /// check does not.
+/// The bracket count may go below 0 in a text that is no JSON. The parser refuses that text later.
 bool deeper_than(std::string_view json, int most) {
   int depth = 0;
   bool in_text = false;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const char c = json[i];
+    // The character after a backslash never ends a text.
     if (in_text && c == '\\') ++i;
     if (c == '"') in_text = !in_text;
     if (in_text) continue;
@@ -140,6 +152,7 @@ bool deeper_than(std::string_view json, int most) {
 
 /// A take from another person must not make the program read files elsewhere.
 Result<void> check_path(const std::string& path) {
+  // A path that points nowhere else is remembered unchanged.
   if (remembered_path(path) == path) return {};
   return Failure(Error{"", 0, "a path below the folder of the inputs", "'" + shown(path) + "'"});
 }
@@ -155,10 +168,12 @@ std::string parameters_json(const Manifest& manifest) {
   for (const StreamOptions& stream : copy.streams) out["streams"].push_back(stream_to_json(stream));
   out["spaces"] = Json::object();
   for (auto& [name, space] : copy.spaces) out["spaces"][name] = fields_to_json(describe(space));
+  // Names from files may contain bytes that are not UTF-8; each becomes U+FFFD.
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Result<Manifest> parse_parameters_json(std::string_view json) {
+  // The parameters of this program are nested only a few levels deep.
   if (deeper_than(json, 32))
     return Failure(Error{"", 0, "parameters as JSON", "too many brackets"});
   const Json parsed = Json::parse(json, nullptr, false);
@@ -180,6 +195,7 @@ Manifest without_folders(Manifest manifest) {
     for (const StreamFile& file : stream.files) paths.push_back(file.path);
   }
   const auto names = remembered_paths(paths);
+  // Files are named together: two files with one name get as many folders as they need to differ.
   for (StreamOptions& stream : manifest.streams) {
     stream.layout = remembered_path(stream.layout);
     for (StreamFile& file : stream.files) file.path = names.at(file.path);

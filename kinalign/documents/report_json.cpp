@@ -50,6 +50,7 @@ Json stream_json(const StreamReport& stream) {
 
 /// The transform of a stream, with the residuals of its joints.
 Json space_json(const SpaceReport& space) {
+  // Eigen stores x,y,z,w. The text has w,x,y,z.
   const Quat& q = space.transform.rotation;
   const Vec3& t = space.transform.translation;
   Json out = {{"stream", space.stream},

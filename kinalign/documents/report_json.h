@@ -13,6 +13,7 @@ std::string report_json(const AlignmentReport& report);
 
 /// Parses a report. A member that is missing or of another type keeps its default. Fails if the
 /// text is no JSON. `path`: the take's.
+/// Strict reading would refuse takes of other versions and programs, whose samples are good.
 Result<AlignmentReport> parse_report_json(std::string_view text, const std::string& path);
 
 /// An array of findings, the same in reports and in `kinalign check --json`.

@@ -17,11 +17,13 @@ using Json = nlohmann::ordered_json;
 
 /// A stamp or duration, ns. 0 if there is none, or one that a take can't have.
 std::int64_t ns_at(const Json& json, const char* key) {
+  // About 126 years. The difference of two such numbers still fits into 64 bits.
   return whole_at(json, key, 4'000'000'000'000'000'000);
 }
 
 template <std::size_t count>
 std::array<double, count> numbers_at(const Json& json, const char* key) {
+  // Numbers that are missing stay 0.
   std::array<double, count> out{};
   const Json& list = list_at(json, key);
   for (std::size_t i = 0; i < std::min(count, list.size()); ++i) {
@@ -30,6 +32,8 @@ std::array<double, count> numbers_at(const Json& json, const char* key) {
   return out;
 }
 
+/// The counts are checked against each other, because shares and differences are computed from
+/// them.
 StampSurvey survey_from(const Json& json) {
   StampSurvey out;
   out.samples = count_at(json, "samples");
@@ -61,6 +65,7 @@ StreamReport stream_from(const Json& json) {
       json.is_object() && json.contains("stamps_counted") && json["stamps_counted"] == true;
   out.rate_hz = number_at(json, "rate_hz");
   out.gap_ns = ns_at(json, "gap_ns");
+  // A count that is missing reads as 0, which is also the count of a take that knew no such fault.
   out.held_back = count_at(json, "held_back");
   out.arrivals.near = count_at(json, "near");
   out.arrivals.late = count_at(json, "late");
@@ -87,12 +92,14 @@ SpaceReport space_from(const Json& json) {
   out.onto = text_at(json, "onto");
   out.method = text_at(json, "method");
   const auto q = numbers_at<4>(json, "rotation");
+  // Zeros, and thus a missing rotation, fail this test; the identity stays.
   const Quat rotation(q[0], q[1], q[2], q[3]);
   if (rotation.norm() > 0.5 && rotation.norm() < 2.0) {
     out.transform.rotation = rotation.normalized();
   }
   const auto t = numbers_at<3>(json, "translation_m");
   out.transform.translation = Vec3(t[0], t[1], t[2]);
+  // A magnification of 0 would make all points equal.
   const double magnification = number_at(json, "magnification");
   if (magnification > 0.0) out.magnification = magnification;
   out.before_m = number_at(json, "before_m");
@@ -112,6 +119,7 @@ TakeMark mark_from(const Json& json) {
   out.text = text_at(json, "text");
   out.source = text_at(json, "source");
   if (json.is_object() && json.contains("latency_ms")) {
+    // The limit keeps the product below from overflowing.
     const double ms = std::clamp(number_at(json, "latency_ms"), -1e9, 1e9);
     out.latency = Duration{std::llround(1e6 * ms)};
   }
@@ -135,6 +143,7 @@ Finding finding_from(const Json& json) {
 
 Result<AlignmentReport> parse_report_json(std::string_view text, const std::string& path) {
   const Json json = Json::parse(text, nullptr, false);
+  // Only this is a failure. All else that is wrong gives a report with fewer members.
   if (json.is_discarded()) {
     return Failure(Error{path, 0, "a report as JSON", "text that is not JSON"});
   }

@@ -63,6 +63,7 @@ Vec3 vec3_from(const Json& json) {
 }
 Quat quat_from(const Json& json) {
   const auto q = json.get<std::array<double, 4>>();
+  // The digits of the text round the quaternion a little.
   return Quat(q[0], q[1], q[2], q[3]).normalized();
 }
 
@@ -80,6 +81,7 @@ Integer integer_from(const Json& json) {
 }
 std::vector<std::int64_t> integers_from(const Json& json) {
   std::vector<std::int64_t> integers;
+  // get_ref() throws if the value is no list.
   for (const Json& one : json.get_ref<const Json::array_t&>()) {
     integers.push_back(integer_from<std::int64_t>(one));
   }
@@ -91,6 +93,7 @@ TrueClock clock_from(const Json& json) {
 
 TrueMocap mocap_from(const Json& json) {
   const auto ns = [&](const char* key) { return integer_from<std::int64_t>(json.at(key)); };
+  // Members convert to the type of their field, or throw.
   return {json.at("stream"),    json.at("rate_hz"),  integer_from<std::uint64_t>(json.at("frames")),
           ns("start_click_ns"), ns("stop_click_ns"), ns("first_frame_ns")};
 }
@@ -125,6 +128,7 @@ TrueRecording truth_from(const Json& json) {
   truth.length_s = json.at("length_s");
   truth.start_ns = integer_from<std::int64_t>(json.at("start_ns"));
   truth.link = json.at("link");
+  // Only live simulations have a host.
   if (json.contains("host")) {
     truth.host = TrueHost{integer_from<std::int64_t>(json.at("host").at("raw_ns")),
                           integer_from<std::int64_t>(json.at("host").at("utc_ns"))};
@@ -144,6 +148,7 @@ std::string reason(const Json::exception& fault) {
 
 // ---- checks beyond types
 
+// Equal neighbours count as a fault, too.
 bool rises(const std::vector<std::int64_t>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
@@ -158,6 +163,7 @@ Result<void> check(const std::string& name, const std::string& stream, const Tru
   if (!within_limits(clock.stamps_ns) || !within_limits(clock.times_ns)) {
     return Failure(Error{name, 0, "stamps and times of " + stream + " within 2e18 ns", "others"});
   }
+  // The times need not rise: with stamps by arrival they may step back (docs/formats/truth.md).
   if (clock.stamps_ns.size() == clock.times_ns.size() && rises(clock.stamps_ns)) return {};
   return Failure(
       Error{name, 0, "a clock of " + stream + " with a time for each of rising stamps", "another"});
@@ -166,6 +172,7 @@ Result<void> check(const std::string& name, const std::string& stream, const Tru
 }  // namespace
 
 std::string truth_json(const TrueRecording& truth) {
+  // One line without blanks: the clocks have many entries.
   Json json{{"schema", truth_schema},     {"seed", truth.seed},
             {"motion", truth.motion},     {"motion_file", truth.motion_file},
             {"length_s", truth.length_s}, {"start_ns", truth.start_ns},

@@ -15,6 +15,7 @@ std::string truth_json(const TrueRecording& truth);
 
 /// Reads a truth. `name` appears in messages only. Fails if a key is missing or wrong, or if a
 /// clock's stamps and times differ in number or do not rise.
+/// A number that is missing is an error here: a comparison with a wrong truth would mislead.
 Result<TrueRecording> read_truth(std::string_view json, const std::string& name);
 
 }  // namespace kinalign

@@ -14,6 +14,7 @@ namespace kinalign {
 
 /// Our axes in terms of the file's. Our coordinate k is the file's coordinate |axes[k]|,
 /// counted from 1, times the sign of axes[k].
+/// A file's axes and ours differ by a permutation with signs, so no digit is lost.
 using Axes = std::array<int, 3>;
 
 constexpr Axes y_up{1, 2, 3};
@@ -21,6 +22,7 @@ constexpr Axes z_up{1, 3, -2};  // x, z, -y: a quarter turn about x
 
 /// Point `file` [3], in the file's axes, in ours.
 inline Vec3 turned(const Axes& axes, const double* file) {
+  // No matrix product: a coordinate is copied or changes its sign.
   Vec3 ours;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(axes[k] < 0 ? -axes[k] : axes[k]) - 1;

@@ -17,6 +17,7 @@ std::string_view unquoted(std::string_view cell) {
   return trimmed(cell.substr(1, cell.size() - 2));
 }
 
+/// A view from one pointer to another.
 std::string_view between(const char* at, const char* end) {
   return {at, static_cast<std::size_t>(end - at)};
 }
@@ -31,6 +32,7 @@ std::string_view trimmed(std::string_view text) {
 
 bool says_missing(std::string_view cell) {
   if (cell.empty()) return true;
+  // Programs also write "-nan".
   if (cell.starts_with('-')) cell.remove_prefix(1);
   return cell.size() == 3 && (cell[0] | 32) == 'n' && (cell[1] | 32) == 'a' &&
          (cell[2] | 32) == 'n';
@@ -40,6 +42,7 @@ RowParser::RowParser(char delimiter, std::vector<ColumnUse> columns)
     : delimiter_(delimiter), columns_(std::move(columns)) {
   int slots = 0;
   int wanted_texts = 0;
+  // The highest slot and text decide on the sizes of the arrays.
   for (const ColumnUse use : columns_) {
     slots = std::max(slots, use.slot + 1);
     wanted_texts = std::max(wanted_texts, use.text + 1);
@@ -68,8 +71,10 @@ const char* RowParser::cell_end(const char* at, const char* end) const {
 /// end; nullptr if the cell is neither a number below `largest` nor missing.
 const char* RowParser::odd_number(const char* at, const char* end, int slot) {
   const auto i = static_cast<std::size_t>(slot);
+  // A quote at the cell's beginning hides the delimiters up to the closing quote.
   const char* behind = cell_end(at, end);
   const std::string_view cell = unquoted(trimmed(between(at, behind)));
+  // A missing value must not keep that of the row before.
   values[i] = 0.0;
   if (says_missing(cell)) {
     missing[i] = 1;
@@ -86,6 +91,7 @@ inline const char* RowParser::number(const char* at, const char* end, int slot) 
   double& value = values[static_cast<std::size_t>(slot)];
   const char* behind = parse_number(at, end, value);
   if (behind == nullptr || !(std::abs(value) < largest)) return odd_number(at, end, slot);
+  // The number ends at a delimiter; anything between them goes the slow way.
   if (behind == end || *behind == delimiter_) return behind;
   if (delimiter_ == runs_of_blanks && delimits(*behind)) return behind;
   return odd_number(at, end, slot);
@@ -106,6 +112,7 @@ Result<void> RowParser::read_cells(const char* at, const char* end) {
   const std::size_t last = columns_.size() - 1;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     while (at != end && pads(*at)) ++at;
+    // Too few cells. An empty cell at the end of runs of blanks does not exist.
     if (runs && at == end) return wrong_count(i);
     const char* behind = read_cell(columns_[i], at, end);
     if (behind == nullptr) return no_number(i, between(at, cell_end(at, end)));
@@ -115,12 +122,14 @@ Result<void> RowParser::read_cells(const char* at, const char* end) {
   return nothing_behind(at, end);
 }
 
+/// Delimiters at the end of a line are tolerated; another cell is not.
 Result<void> RowParser::nothing_behind(const char* at, const char* end) const {
   if (std::all_of(at, end, [this](char c) { return pads(c) || delimits(c); })) return {};
   return wrong_count(columns_.size() + split_cells(between(at, end), delimiter_).size());
 }
 
 Result<void> RowParser::read(std::string_view line) {
+  // Cleared only if needed, because most rows miss nothing.
   if (any_missing) {
     std::fill(missing.begin(), missing.end(), std::uint8_t{0});
     any_missing = false;
@@ -141,6 +150,7 @@ Failure RowParser::wrong_count(std::size_t cells) const {
 
 std::vector<std::string> split_cells(std::string_view line, char delimiter) {
   std::vector<std::string> cells;
+  // Runs of blanks have no empty cells.
   if (delimiter == runs_of_blanks) {
     for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
       const auto length = std::min(line.find_first_of(" \t"), line.size());

@@ -26,6 +26,7 @@ struct ColumnUse {
 /// Reads rows that all have the same columns. Blanks around a cell are dropped, unless the blank is
 /// the delimiter. A cell in double quotes is the text between the quotes. Delimiters behind the
 /// last column are tolerated.
+/// The columns are known before the first row, so a row needs no look-up and no allocation.
 class RowParser {
  public:
   RowParser() = default;

@@ -6,6 +6,7 @@
 
 namespace kinalign {
 
+/// `survey` is computed from the step, so the frames are not read.
 struct ClipSurvey {
   Skeleton skeleton;
   StampSurvey survey;

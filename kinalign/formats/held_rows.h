@@ -7,6 +7,8 @@
 
 namespace kinalign {
 
+/// The stamps of the first rows may depend on later rows. Rows are held until then, at most as long
+/// as the stamps are not settled.
 template <class Frames>
 class HeldRows {
  public:

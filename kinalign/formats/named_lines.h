@@ -46,6 +46,7 @@ class NamedLines {
   /// an incomplete last line is a failure.
   template <class Use>
   Result<void> finish_head(Use&& use, Findings& incomplete) {
+    // Asked before finish(), which uses the line up.
     const bool unended = lines_.within_line();
     KA_TRY(placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); })));
     if (unended) incomplete.push_back(unended_finding(file_, lines_.number()));

@@ -30,6 +30,7 @@ bool parse_decimal(std::string_view text, Decimal& out) {
   if (i < text.size() && (text[i] == '-' || text[i] == '+')) out.minus = text[i++] == '-';
   const std::size_t first = i;
   for (; i < text.size() && is_digit(text[i]); ++i) {
+    // More digits than an int64 holds: through_double() may read the number.
     if (i - first >= most_digits + 1 || out.whole > INT64_MAX / 10 - 1) return false;
     out.whole = out.whole * 10 + (text[i] - '0');
   }
@@ -37,6 +38,7 @@ bool parse_decimal(std::string_view text, Decimal& out) {
   if (i < text.size() && text[i] == '.') {
     const std::size_t point = i++;
     for (; i < text.size() && is_digit(text[i]); ++i, ++digits) {
+      // Digits beyond a tenth of a nanosecond are only counted.
       if (i - point > most_fraction_digits) continue;
       out.fraction = out.fraction * 10 + static_cast<unsigned>(text[i] - '0');
       out.scale *= 10;
@@ -64,6 +66,7 @@ std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) 
   Decimal decimal;
   if (!parse_decimal(text, decimal)) return through_double(text, scale);
   const std::int64_t whole = decimal.minus ? -decimal.whole : decimal.whole;
+  // The limit in the column's unit, so that the product below can't overflow.
   const std::int64_t largest = largest_stamp_ns / scale.unit_ns;
   std::int64_t epoch = 0, units = 0;
   const bool overflow = __builtin_mul_overflow(scale.epoch_s, second_ns / scale.unit_ns, &epoch) ||
@@ -103,6 +106,7 @@ Result<Time> RowStamps::next(std::int64_t ns) {
     first_ = column_ ? ns : 0;
     if (start_ns_) shift_ = *start_ns_ - first_;
   } else if (!settled_) {
+    // A first stamp that repeats leaves the question open, for at most `patience` rows.
     stuck_ = ns == first_ && rows_ + 1 >= patience;
     settled_ = ns != first_ || stuck_;
   }
@@ -117,12 +121,14 @@ Result<Time> RowStamps::next(std::int64_t ns) {
 }
 
 void RowStamps::settle() {
+  // Fewer rows than this may share a stamp by chance.
   constexpr std::uint64_t least = 3;
   if (!settled_) stuck_ = rows_ >= least;
   settled_ = true;
 }
 
 void RowStamps::restamp(std::vector<Time>& held) const {
+  // Without a rate the rows keep the stamp that never moved.
   if (!stuck_ || rate_hz_ <= 0.0) return;
   for (std::size_t i = 0; i < held.size(); ++i) {
     held[i] = utc_time(first_ + shift_ + stamp_at_rate(i, rate_hz_));

@@ -45,6 +45,7 @@ std::string beginning_of(std::string_view head) {
   }
   if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
   const std::string_view line = head.substr(0, head.find('\n'));
+  // Only the beginning is looked at; the rest may be long.
   return is_text(line.substr(0, 200)) ? "'" + shown(line) + "'" : "bytes that are no plain text";
 }
 

@@ -16,6 +16,7 @@ constexpr int zstd_level = 1;
 constexpr std::uint64_t most_reserved = 16 << 20;  // bytes reserved before decompression
 
 std::string compressed(std::string_view bytes) {
+  // The bound makes a second call with more room unnecessary.
   std::string out(ZSTD_compressBound(bytes.size()), '\0');
   const std::size_t size =
       ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), zstd_level);
@@ -24,6 +25,8 @@ std::string compressed(std::string_view bytes) {
 }
 
 /// Decompresses `stored` as far as it is complete. Stops soon after `most` bytes.
+/// The stream is decompressed block by block, so that a truncated one gives its beginning, and so
+/// that a small file can't demand much memory.
 std::string decompressed(std::string_view stored, std::uint64_t most) {
   std::string records;
   const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
@@ -33,12 +36,14 @@ std::string decompressed(std::string_view stored, std::uint64_t most) {
   std::string block(ZSTD_DStreamOutSize(), '\0');
   // the file claims `most`, so it may be wrong
   records.reserve(std::min<std::uint64_t>(most, most_reserved));
+  // ZSTD_decompressStream() returns 0 at the end of a frame.
   for (std::size_t more = 1; more != 0 && records.size() <= most;) {
     const std::size_t had = in.pos;
     ZSTD_outBuffer out{block.data(), block.size(), 0};
     more = ZSTD_decompressStream(stream.get(), &out, &in);
     if (ZSTD_isError(more) != 0) break;
     records.append(block, 0, out.pos);
+    // Neither input was used nor output made: the stream is truncated.
     if (out.pos == 0 && in.pos == had) break;
   }
   return records;
@@ -56,6 +61,7 @@ Failure misfit(const McapChunkHead& head, std::uint64_t size) {
 }  // namespace
 
 void McapChunkContent::add(const McapSchema& schema) {
+  // A definition that is added again overwrites the entry, but its record is written again.
   definitions_.schemas.insert_or_assign(schema.id, schema);
   append_mcap(records_, schema);
 }
@@ -68,6 +74,7 @@ void McapChunkContent::add(const McapChannel& channel) {
 void McapChunkContent::add(const McapMessage& message) {
   start_ = empty() ? message.log_time : std::min(start_, message.log_time);
   end_ = std::max(end_, message.log_time);
+  // The offset counts within the chunk, before compression.
   messages_[message.channel].push_back({message.log_time, records_.size()});
   append_mcap(records_, message);
 }
@@ -85,6 +92,8 @@ std::size_t room_for(std::string_view stored, const McapChunkContent& content) {
 }
 
 /// The checksum of a chunk and its indexes. That of the stored part is known already.
+/// CRC-32 of a whole follows from those of its parts and their lengths, so the stored part is not
+/// read again.
 std::uint32_t crc_of_chunk(std::string_view bytes, std::size_t chunk_bytes, std::string_view stored,
                            std::uint32_t of_stored) {
   const std::string_view front = bytes.substr(0, chunk_bytes - stored.size());
@@ -94,6 +103,7 @@ std::uint32_t crc_of_chunk(std::string_view bytes, std::size_t chunk_bytes, std:
 }  // namespace
 
 // Compressed records that cannot be made, for lack of memory, are stored uncompressed.
+// Offsets in the index count from the chunk's first byte. The writer adds the chunk's position.
 McapStoredChunk store(const McapChunkContent& content, McapCompression compression) {
   const std::string_view records = content.records();
   const std::string packed =
@@ -110,12 +120,14 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
   chunk.index = {
       head.start,    head.end,      0, chunk.bytes.size(), {}, 0, std::string(head.compression),
       stored.size(), records.size()};
+  // Readers find the messages of one channel by these indexes, without decompressing other chunks.
   for (const auto& [channel, entries] : content.messages()) {
     chunk.index.message_index_offsets[channel] = chunk.bytes.size();
     chunk.channel_messages[channel] = entries.size();
     append_mcap_message_index(chunk.bytes, channel, entries);
   }
   chunk.index.message_index_length = chunk.bytes.size() - chunk.index.chunk_length;
+  // Without compression the stored bytes are the records, so one checksum serves both.
   chunk.crc = crc_of_chunk(chunk.bytes, chunk.index.chunk_length, stored,
                            is_packed ? crc_of(stored) : head.uncompressed_crc);
   return chunk;
@@ -124,6 +136,7 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
 Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   const McapChunkHead& head = chunk.head;
   if (!chunk.whole()) return unfit("a whole chunk", "its beginning");
+  // The stated size decides on memory, so it is checked first.
   if (head.uncompressed_size > most) {
     return unfit("a chunk of at most " + std::to_string(most >> 20) + " MiB",
                  std::to_string(head.uncompressed_size >> 20) + " MiB");
@@ -135,6 +148,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
     return misfit(head, chunk.stored_size);  // checked before the records are copied
   }
   std::string records = unpack_torn(chunk, most);
+  // A zstd stream may end early or hold more than the head states.
   if (records.size() != head.uncompressed_size) return misfit(head, records.size());
   if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc_of(records)) {
     return unfit("a chunk whose checksum fits", "another one");
@@ -143,6 +157,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
 }
 
 std::string unpack_torn(const McapChunkView& chunk, std::uint64_t most) {
+  // A truncated chunk has no checksum that could be compared.
   most = std::min(most, chunk.head.uncompressed_size);
   if (chunk.head.compression == "zstd") return decompressed(chunk.stored, most);
   return std::string(chunk.head.compression.empty() ? chunk.stored : std::string_view());

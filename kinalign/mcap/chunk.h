@@ -23,6 +23,8 @@ struct McapDefinitions {
 };
 
 /// Messages with the definitions that they need, so that the chunk can be read alone.
+/// records() is the byte sequence of the future chunk. The other members describe what it contains,
+/// so nothing is parsed again.
 class McapChunkContent {
  public:
   /// A channel must be added before its first message, and its schema before the channel.
@@ -43,6 +45,8 @@ class McapChunkContent {
   std::uint64_t end() const { return end_; }
 
  private:
+  // The offset of each entry in messages_ is a position in records_. start_ and end_ are 0 until
+  // the first message.
   std::string records_;
   McapDefinitions definitions_;
   std::map<std::uint16_t, std::vector<McapMessageEntry>> messages_;
@@ -50,6 +54,8 @@ class McapChunkContent {
 };
 
 /// The chunk's record, followed by its message indexes.
+/// `bytes` can be written at any position of a file; the writer adds that position to the index.
+/// The checksum is made here, because this runs in a worker thread.
 struct McapStoredChunk {
   std::string bytes;
   std::uint32_t crc = 0;  // CRC-32 of `bytes`
@@ -63,6 +69,7 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
 
 /// Unpacks the records of a chunk. `most`: limit on their bytes. Fails if the chunk is incomplete,
 /// if a size or checksum is wrong, or if the compression is neither none nor zstd.
+/// `most` is the caller's limit on memory, whatever the chunk states.
 Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most);
 /// Unpacks the beginning of a truncated chunk, as far as it is present. Nothing is checked.
 std::string unpack_torn(const McapChunkView& chunk, std::uint64_t most);

@@ -12,11 +12,13 @@ namespace {
 
 constexpr std::size_t most_findings = 200;
 
+// The head of a chunk with the longest name of a compression that find_chunk() accepts, "zstd".
 constexpr std::size_t longest_chunk_head = mcap_record_head + McapChunkView::fields + 4;
 
 }  // namespace
 
 void McapReader::feed(std::string_view piece) {
+  // After the last state all further bytes are ignored.
   if (state_ > State::behind_footer) return;
   buffer_.erase(0, taken_);
   taken_ = 0;
@@ -35,6 +37,7 @@ void McapReader::skip(std::size_t size) {
 
 void McapReader::say(Severity severity, std::string expected, std::string found,
                      std::string meaning) {
+  // A badly damaged file would otherwise give one finding for every few bytes.
   if (findings_.size() >= most_findings) return;
   found += " at byte " + std::to_string(offset_);
   findings_.push_back(
@@ -46,20 +49,26 @@ void McapReader::lose(std::string expected, std::string found) {
   say(Severity::error, std::move(expected), std::move(found),
       "what stands there is left out, up to the next whole chunk");
   state_ = State::lost;
+  // The checksum of the section would be wrong because of the skipped bytes.
   crc_counts_ = false;
+  // One byte is enough: find_chunk() looks at every later position.
   skip(1);
 }
 
 std::optional<McapRecord> McapReader::next() {
+  // Records of an open chunk come before those that follow it in the file.
   if (auto record = next_in_chunk()) return record;
   return next_in_file();
 }
 
 std::optional<McapRecord> McapReader::next_in_chunk() {
+  // A record that is damaged inside of a chunk is left out alone, because its length leads to the
+  // next one.
   while (chunk_taken_ < chunk_.size()) {
     const std::string_view bytes = std::string_view(chunk_).substr(chunk_taken_);
     const auto head = decode_mcap_head(bytes);
     const bool whole = head && head->length <= bytes.size() - mcap_record_head;
+    // In a truncated chunk this is the expected end.
     if (!whole && in_torn_chunk_) break;
     std::optional<McapRecord> record;
     const bool fits = whole && take(head->op, bytes.substr(mcap_record_head, head->length), record);
@@ -70,6 +79,7 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
     }
     if (!fits && ends) break;
     chunk_taken_ += mcap_record_head + head->length;
+    // Records without use for readers are passed over.
     if (record) return record;
   }
   chunk_.clear();
@@ -80,6 +90,7 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
 /// Decodes a record. Returns whether the content is valid. `record` stays empty if readers do not
 /// need the record.
 bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRecord>& record) {
+  // Readers of this program do not use message indexes, but a wrong one shows damage.
   if (op == McapOp::message_index) {
     // bytes to skip after the known fields; files seen so far have 3 at most
     constexpr std::size_t padding = 64;
@@ -88,6 +99,7 @@ bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRec
     from.take_bytes(from.take<std::uint32_t>());
     return from.complete() && from.left() <= padding;
   }
+  // The specification lets readers skip opcodes that they don't know.
   if (op > McapOp::data_end) return true;  // unknown opcode
   record = decode_mcap_record(op, content);
   return record.has_value();
@@ -96,6 +108,7 @@ bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRec
 /// Checks the magic bytes at the beginning of the file.
 void McapReader::start() {
   const std::string_view bytes = rest();
+  // Fewer than eight bytes can be a beginning of the magic; then more bytes are needed.
   const std::size_t some = std::min(bytes.size(), mcap_magic.size());
   if (bytes.substr(0, some) != mcap_magic.substr(0, some) || (ended_ && some < mcap_magic.size())) {
     state_ = State::foreign;
@@ -103,6 +116,7 @@ void McapReader::start() {
     return;
   }
   if (some < mcap_magic.size()) return;
+  // The data section's checksum begins with the magic.
   crc_ = crc_of(mcap_magic, crc_);
   consume(mcap_magic.size());
   state_ = State::records;
@@ -131,6 +145,8 @@ std::optional<McapRecord> McapReader::next_in_file() {
 }
 
 /// Examines the bytes at this position. Damage is reported and skipped.
+/// The tests go from cheap to expensive. A length that is impossible is damage, and a length that
+/// reaches past the bytes may need more of them.
 McapReader::Stand McapReader::look() {
   const std::string_view bytes = rest();
   const auto head = decode_mcap_head(bytes);
@@ -144,6 +160,7 @@ McapReader::Stand McapReader::look() {
     return Stand::damaged;
   }
   if (head && head->length <= bytes.size() - mcap_record_head) return Stand::whole;
+  // More bytes may still arrive, or the file ends exactly here.
   if (!ended_ || bytes.empty()) return Stand::nothing;
   end_in_record();
   return state_ == State::records ? Stand::damaged : Stand::torn;
@@ -152,6 +169,7 @@ McapReader::Stand McapReader::look() {
 /// Reads the complete record at this position. Absent if readers do not need it, or if it is
 /// damaged.
 std::optional<McapRecord> McapReader::read_record() {
+  // look() has seen that the record is complete.
   record_at_ = offset_;
   const McapRecordHead head = *decode_mcap_head(rest());
   const std::string_view whole = rest().substr(0, mcap_record_head + head.length);
@@ -163,11 +181,14 @@ std::optional<McapRecord> McapReader::read_record() {
     lose("a record whose fields and checksum fit", "another one");
     return std::nullopt;
   }
+  // A record outside of chunks is covered by the section's checksum only.
   if (!is_chunk) uncovered_ = true;
   if (is_chunk) record = next_in_chunk();
+  // check_crc() needs the checksum before this record, so crc_ is updated after it.
   if (record) check_crc(*record, whole);
   crc_ = crc_of(whole, crc_);
   if (head.op == McapOp::data_end) {
+    // The summary has a checksum of its own, which begins after this record.
     crc_ = 0;
     crc_counts_ = true;  // valid for the summary, whatever was skipped before it
   }
@@ -179,6 +200,7 @@ std::optional<McapRecord> McapReader::read_record() {
 /// Checks the checksum in a data end or footer. `bytes`: the whole record, which follows the bytes
 /// covered by crc_.
 void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
+  // After skipped bytes the checksum can't fit. The summary's data are then not trusted either.
   if (!crc_counts_) {
     if (std::holds_alternative<McapFooter>(record)) summary_spoilt_ = true;
     return;
@@ -190,6 +212,7 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
   } else if (const auto* footer = std::get_if<McapFooter>(&record)) {
     constexpr std::size_t fields = mcap_record_head + 8 + 8;
     stated = footer->summary_crc;
+    // The checksum covers the footer up to the checksum itself.
     covered = crc_of(bytes.substr(0, fields), crc_);
     summary_spoilt_ = stated != 0 && stated != covered;
   }
@@ -204,11 +227,13 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
 bool McapReader::open_chunk(std::string_view content) {
   const auto chunk = decode_mcap_chunk(content);
   if (!chunk || content.size() != chunk->size()) return false;
+  // 0 means that the writer made no checksum.
   uncovered_ = chunk->head.uncompressed_crc == 0;
   auto records = unpack(*chunk, longest_);
   if (records) {
     chunk_ = *std::move(records);
   } else {
+    // Only this chunk is lost: its sizes fit, so the next record's place is known.
     say(Severity::error, records.error().expected, records.error().found,
         "the chunk's messages are left out");
     skipped_ += content.size();
@@ -219,10 +244,13 @@ bool McapReader::open_chunk(std::string_view content) {
 /// The file ends within a record. If a valid chunk follows later, the record's head is damaged.
 /// Otherwise the file is truncated.
 void McapReader::end_in_record() {
+  // The search moves the position. It is set back afterwards, because findings need the place of
+  // this record.
   const std::size_t taken = taken_;
   const std::uint64_t offset = offset_, skipped_before = skipped_;
   consume(1);
   state_ = State::lost;
+  // end() was called, so the search sees all bytes that the file has.
   find_chunk();
   const bool damaged = state_ == State::records;
   const std::size_t skipped = taken_ - taken;
@@ -237,6 +265,7 @@ void McapReader::end_in_record() {
     return;
   }
   const std::string_view bytes = rest();
+  // Messages can be saved from a chunk only. Other truncated records are left out.
   const auto chunk = decode_mcap_head(bytes) && decode_mcap_head(bytes)->op == McapOp::chunk
                          ? decode_mcap_chunk(bytes.substr(mcap_record_head))
                          : std::nullopt;
@@ -250,6 +279,8 @@ void McapReader::end_in_record() {
 }
 
 /// Returns whether the bytes are a chunk. Its sizes make it likely, and its checksum proves it.
+/// Unpacking is the proof. The work of failed attempts is summed in tried_, because a file may
+/// imitate many chunks.
 bool McapReader::is_chunk(const McapChunkView& chunk) {
   constexpr std::uint64_t beginning = std::uint64_t{128} << 10;  // memory for zstd, counted as work
   const bool is = unpack(chunk, longest_).has_value();
@@ -265,12 +296,15 @@ void McapReader::find_chunk() {
     const std::size_t candidate = rest().find(static_cast<char>(McapOp::chunk));
     skip(std::min(candidate, rest().size()));
     const std::string_view bytes = rest();
+    // A candidate's head may still arrive.
     if (bytes.size() < longest_chunk_head && !ended_) return;
     const auto head = decode_mcap_head(bytes);
     const auto chunk = head ? decode_mcap_chunk(bytes.substr(mcap_record_head)) : std::nullopt;
+    // Random bytes rarely pass all of these tests, which cost next to nothing.
     const bool likely = chunk && head->length <= longest_ && tried_ < most_tried &&
                         chunk->head.uncompressed_size <= longest_ &&
                         chunk->head.compression.size() <= 4 && head->length == chunk->size();
+    // The candidate looks right but is incomplete. More bytes decide.
     if (likely && !chunk->whole() && !ended_) return;
     if (likely && chunk->whole() && is_chunk(*chunk)) {
       state_ = State::records;
@@ -282,6 +316,7 @@ void McapReader::find_chunk() {
 
 void McapReader::find_magic() {
   const std::string_view bytes = rest();
+  // Exactly the magic must follow. One more byte shows whether something follows it.
   if (bytes.size() <= mcap_magic.size() && !ended_) return;
   if (bytes != mcap_magic) {
     say(Severity::error, "the file's last eight bytes behind its footer", "others",

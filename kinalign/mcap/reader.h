@@ -16,6 +16,7 @@
 
 namespace kinalign {
 
+/// The caller may cut the file into pieces at any place.
 class McapReader {
  public:
   static constexpr std::uint64_t most_record = std::uint64_t{256} << 20;
@@ -58,7 +59,11 @@ class McapReader {
   const Findings& findings() const { return findings_; }
 
  private:
+  // start: before the magic. records: at a record. lost: searching for the next chunk.
+  // behind_footer: before the last magic. closed, spoilt, foreign: final states.
   enum class State : std::uint8_t { start, records, lost, behind_footer, closed, spoilt, foreign };
+  // The result of look(): too few bytes, a complete record, the file's truncated end, or damage
+  // that was skipped.
   enum class Stand : std::uint8_t { nothing, whole, torn, damaged };
   Stand look();
   std::optional<McapRecord> read_record();
@@ -81,6 +86,8 @@ class McapReader {
   std::uint64_t longest_;
   State state_ = State::start;
   bool ended_ = false;
+  // buffer_ holds the bytes that were fed and are not yet dropped; the first taken_ of them are
+  // read. feed() drops them, so views into buffer_ are valid until then.
   std::string buffer_;
   std::size_t taken_ = 0;     // bytes of buffer_ that were read
   std::uint64_t offset_ = 0;  // position in the file of the next byte
@@ -90,6 +97,7 @@ class McapReader {
   std::string chunk_;       // records of the present chunk
   std::size_t chunk_taken_ = 0;
   bool in_torn_chunk_ = false, uncovered_ = false;
+  // all_checked_ and summary_spoilt_ stay false until the record with the checksum is read.
   bool all_checked_ = false, summary_spoilt_ = false;
   std::uint64_t skipped_ = 0;
   std::uint64_t tried_ = 0;  // bytes tried as a chunk without success
@@ -100,6 +108,7 @@ class McapReader {
 /// file. Absent after the last record, or if the file is not an MCAP file. Fails if `next_piece`
 /// fails.
 template <class NextPiece>
+/// The loop that callers of McapReader need: next(), and feed() or end() if it has no record.
 Result<std::optional<McapRecord>> pull(McapReader& reader, const NextPiece& next_piece) {
   for (;;) {
     if (auto record = reader.next()) return record;

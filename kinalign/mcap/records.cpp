@@ -12,6 +12,7 @@ namespace {
 
 // Reading.
 
+// A truncated field reads as zeros. Callers ask complete() after the last field.
 std::string text(LittleEndianReader& from) {
   return std::string(text_of(from.take_bytes(from.take<std::uint32_t>())));
 }
@@ -40,6 +41,7 @@ void take(LittleEndianReader& from, McapTexts& texts) {
   });
 }
 void take(LittleEndianReader& from, std::map<std::uint16_t, std::uint64_t>& numbers) {
+  // A repeated key keeps its last value.
   entries(from, [&](LittleEndianReader& one) {
     const auto key = one.take<std::uint16_t>();
     numbers.insert_or_assign(key, one.take<std::uint64_t>());
@@ -67,11 +69,14 @@ void put(std::string& out, const std::map<Key, Value>& entries) {
     put(out, key);
     put(out, value);
   }
+  // The length of the map in bytes is known only now. It does not count its own four bytes.
   put_little(static_cast<std::uint32_t>(out.size() - at - 4), out.data() + at);
 }
 void put(std::string& out, McapOp op) { out += static_cast<char>(op); }
 
 /// The fields of each record, in the order of their bytes. Reading and writing share this list.
+/// One list can't drift apart in reading and writing. The order of the fields is that of the
+/// specification.
 template <class Record, class Visit>
 void fields(Record& r, Visit visit) {
   using T = std::remove_const_t<Record>;
@@ -109,6 +114,7 @@ template <class Record>
 std::optional<McapRecord> decoded(std::string_view content) {
   LittleEndianReader from(octets(content));
   Record record;
+  // Bytes after the known fields are allowed, so only missing ones are an error.
   fields(record, [&](auto&... field) { (take(from, field), ...); });
   if (!from.complete()) return std::nullopt;
   return record;
@@ -135,6 +141,7 @@ std::optional<McapRecord> attachment(std::string_view content) {
   take(from, attachment.name);
   take(from, attachment.media_type);
   attachment.data = text_of(from.take_bytes(from.take<std::uint64_t>()));
+  // The checksum covers all fields before it.
   const std::string_view covered = content.substr(0, content.size() - from.left());
   const auto crc = from.take<std::uint32_t>();
   if (!from.complete() || (crc != 0 && crc != crc_of(covered))) return std::nullopt;
@@ -142,6 +149,7 @@ std::optional<McapRecord> attachment(std::string_view content) {
 }
 
 /// Writes opcode and length before the bytes that `content` appends.
+/// The length is filled in afterwards, so the content is written once and not measured first.
 template <class Content>
 void record(std::string& out, McapOp op, Content content) {
   const std::size_t at = out.size();
@@ -195,6 +203,7 @@ std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content
 }
 
 std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes) {
+  // An unknown opcode is a valid value of the enumeration, because its type is fixed.
   LittleEndianReader from(octets(bytes));
   const auto op = static_cast<McapOp>(from.take<std::uint8_t>());
   const auto length = from.take<std::uint64_t>();
@@ -206,6 +215,7 @@ std::optional<McapChunkView> decode_mcap_chunk(std::string_view content) {
   McapChunkView chunk;
   fields(chunk.head, [&](auto&... field) { (take(from, field), ...); });
   take(from, chunk.stored_size);
+  // substr() cuts at the end of the bytes; whole() shows whether it did.
   chunk.stored = text_of(from.rest()).substr(0, chunk.stored_size);
   if (!from.complete()) return std::nullopt;
   return chunk;
@@ -260,6 +270,7 @@ void append_mcap(std::string& out, const McapMessage& message) {
 }
 
 void append_mcap(std::string& out, const McapAttachment& attachment) {
+  // The checksum needs the position of the first field.
   record(out, McapOp::attachment, [&] {
     const std::size_t at = out.size();
     put(out, attachment.log_time);
@@ -284,6 +295,7 @@ void append_mcap_message_index(std::string& out, std::uint16_t channel,
                                const std::vector<McapMessageEntry>& entries) {
   record(out, McapOp::message_index, [&] {
     append_little(channel, out);
+    // 16 bytes an entry: the log time and the offset.
     append_little(static_cast<std::uint32_t>(16 * entries.size()), out);
     for (const McapMessageEntry& entry : entries) {
       append_little(entry.log_time, out);

@@ -3,6 +3,7 @@
 // docs/formats/recording.md repeats the part that recordings use. A record is an opcode, a length
 // of 64 bits, and its content. Unknown opcodes are skipped, and so are bytes after the known
 // fields.
+// A length counts the content only, without the nine bytes of opcode and length.
 #pragma once
 
 #include <cstdint>
@@ -52,6 +53,7 @@ struct McapSchema {
   bool operator==(const McapSchema&) const = default;
 };
 
+// Data of one sender share a channel. The channel names the topic and the encoding of its messages.
 struct McapChannel {
   std::uint16_t id = 0, schema_id = 0;
   std::string topic, message_encoding;
@@ -60,6 +62,8 @@ struct McapChannel {
   bool operator==(const McapChannel&) const = default;
 };
 
+/// log_time: when the message was recorded. publish_time: when it was sent, or log_time if that is
+/// not known (the specification).
 struct McapMessage {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
@@ -78,6 +82,8 @@ struct McapMetadata {
 };
 
 /// The fields of a chunk before its records.
+/// A chunk holds records as one block, compressed or not. Its checksum is that of the records
+/// before compression.
 struct McapChunkHead {
   std::uint64_t start = 0, end = 0;  // lowest and highest log time, ns
   std::uint64_t uncompressed_size = 0;
@@ -85,6 +91,8 @@ struct McapChunkHead {
   std::string_view compression;  // "", "zstd", "lz4"; for a chunk that was read, part of its bytes
 };
 
+/// Tells a reader where a chunk is and which channels and times it holds. Offsets count from the
+/// file's first byte.
 struct McapChunkIndex {
   std::uint64_t start = 0, end = 0, chunk_offset = 0, chunk_length = 0;
   std::map<std::uint16_t, std::uint64_t> message_index_offsets;
@@ -111,6 +119,7 @@ struct McapStatistics {
   std::map<std::uint16_t, std::uint64_t> channel_messages;
 };
 
+/// Tells where the summary holds the records of one opcode.
 struct McapSummaryOffset {
   McapOp group{};
   std::uint64_t start = 0, length = 0;
@@ -133,6 +142,7 @@ using McapRecord =
 
 /// Decodes the content of a record. Absent if the fields do not fit, or if the opcode is not in the
 /// variant (chunk, message index, index page, or unknown).
+/// Text and bytes in the result are copies, except the data of a message.
 std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content);
 
 /// The head of a chunk and its stored records. Of a truncated chunk, those that are present.

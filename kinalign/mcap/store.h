@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stores an MCAP file in an OutputFile, which gets its name only when it is complete.
+// For files that are made in one go; the recorder appends to a GrowingFile instead.
 #pragma once
 
 #include "kinalign/core/files.h"

@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+// A page is written when it has this many bytes.
 constexpr std::size_t page_size = std::size_t{64} << 10;
 
 }  // namespace
@@ -23,6 +24,7 @@ struct McapWriter::Summary {
 };
 
 Result<void> McapWriter::append(std::string_view bytes) {
+  // Nothing changes if the store fails.
   KA_TRY(store_.append(bytes));
   size_ += bytes.size();
   crc_ = crc_of(bytes, crc_);
@@ -36,14 +38,17 @@ Result<void> McapWriter::begin(const McapHeader& header) {
 }
 
 Result<void> McapWriter::write(const McapStoredChunk& chunk) {
+  // Positions become those in the file.
   McapChunkIndex index = chunk.index;
   index.chunk_offset += size_;
   for (auto& [channel, offset] : index.message_index_offsets) offset += size_;
   KA_TRY(store_.append(chunk.bytes));
   size_ += chunk.bytes.size();
+  // store() has made the chunk's checksum already, in another thread.
   crc_ = joined_crc(crc_, chunk.crc, chunk.bytes.size());
 
   append_mcap(chunk_indexes_, index);
+  // A chunk of definitions alone must not change the first and last time.
   std::uint64_t messages = 0;
   for (const auto& [channel, count] : chunk.channel_messages) {
     statistics_.channel_messages[channel] += count;
@@ -56,6 +61,7 @@ Result<void> McapWriter::write(const McapStoredChunk& chunk) {
     statistics_.messages += messages;
   }
   ++statistics_.chunks;
+  // The summary repeats the definitions of all chunks, each once.
   for (const auto& [id, schema] : chunk.definitions.schemas) {
     definitions_.schemas.insert_or_assign(id, schema);
   }
@@ -71,6 +77,7 @@ Result<void> McapWriter::write_index_page() {
   std::string bytes;
   append_mcap_record(bytes, McapOp::index_page, chunk_indexes_);
   KA_TRY(append(bytes));
+  // The page's content begins after the head of its record.
   pages_.push_back({size_ - chunk_indexes_.size(), chunk_indexes_.size()});
   chunk_indexes_.clear();
   return {};
@@ -98,6 +105,7 @@ Result<void> McapWriter::write(const McapMetadata& metadata) {
 }
 
 // Writes all groups of the summary except the chunk indexes, and remembers the position of each.
+// A group is the run of all records of one opcode. An empty group has no offset.
 Result<void> McapWriter::write_definitions(Summary& summary) {
   const auto group = [&](McapOp op, const auto& put) -> Result<void> {
     std::string bytes;
@@ -116,6 +124,7 @@ Result<void> McapWriter::write_definitions(Summary& summary) {
     for (const auto& [id, channel] : definitions_.channels) append_mcap(out, channel);
   }));
   KA_TRY(group(McapOp::statistics, [&](std::string& out) { append_mcap(out, statistics_); }));
+  // The specification wants each group's records together, in any order of groups.
   KA_TRY(group(McapOp::attachment_index, [&](std::string& out) {
     for (const McapAttachmentIndex& index : attachments_) append_mcap(out, index);
   }));
@@ -140,6 +149,7 @@ Result<void> McapWriter::write_chunk_indexes(Summary& summary) {
   return {};
 }
 
+// The order is fixed: data end, summary, summary offsets, footer, magic.
 Result<void> McapWriter::finish() {
   std::string bytes;
   append_mcap(bytes, McapDataEnd{crc_});
@@ -148,6 +158,7 @@ Result<void> McapWriter::finish() {
   Summary summary{size_};
   KA_TRY(write_definitions(summary));
   KA_TRY(write_chunk_indexes(summary));
+  // The summary offsets begin where the file ends now.
   McapFooter footer{summary.start, size_, 0};
   bytes.clear();
   for (const McapSummaryOffset& offset : summary.offsets) append_mcap(bytes, offset);
@@ -156,6 +167,7 @@ Result<void> McapWriter::finish() {
   const std::string_view covered = std::string_view(bytes).substr(0, bytes.size() - 4);
   footer.summary_crc = crc_of(covered, summary.crc);
   put_little(footer.summary_crc, bytes.data() + covered.size());
+  // The reader checks the magic to know that the file is complete.
   bytes += mcap_magic;
   return append(bytes);
 }

@@ -3,6 +3,7 @@
 // The memory grows with the number of channels, not with the length: the index of the chunks is
 // written into the file in pages (private records, which readers skip), and copied to the summary
 // at the end.
+// Each page costs 16 bytes of memory more.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -26,6 +27,8 @@ struct McapStore {
   std::function<Result<void>(std::uint64_t at, std::span<char> to)> read;
 };
 
+/// Order of calls: begin() once, write() any number of times, finish() once. A write() that fails
+/// leaves the writer as before, so it may be tried again.
 class McapWriter {
  public:
   explicit McapWriter(McapStore store) : store_(std::move(store)) {}
@@ -50,6 +53,8 @@ class McapWriter {
   Result<void> write_chunk_indexes(Summary& summary);
 
   McapStore store_;
+  // size_ is the file's size so far: where the next record begins. All bytes up to there are in
+  // crc_.
   std::uint64_t size_ = 0;
   std::uint32_t crc_ = 0;  // of all bytes so far
   McapDefinitions definitions_;
@@ -57,6 +62,7 @@ class McapWriter {
   struct Page {
     std::uint64_t at = 0, size = 0;  // of the page's content
   };
+  // The index of a chunk is in exactly one place: chunk_indexes_, or one of the pages_.
   std::vector<Page> pages_;
   std::string chunk_indexes_;  // records that are not in a page yet
   std::vector<McapAttachmentIndex> attachments_;

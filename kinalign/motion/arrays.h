@@ -16,6 +16,7 @@ using Vec3 = Eigen::Vector3d;
 using Quat = Eigen::Quaterniond;
 
 /// The i-th vector of an array of x,y,z triples, for reading and writing.
+/// The view writes into the array; a Vec3 copied from it does not.
 inline Eigen::Map<Vec3> vec3(std::span<double> array, std::size_t i) {
   return Eigen::Map<Vec3>(&array[3 * i]);
 }
@@ -30,6 +31,7 @@ inline Eigen::Map<const Vec3> vec3(const std::vector<double>& array, std::size_t
 }
 
 /// The i-th rotation of an array of w,x,y,z quadruples.
+/// A copy, because Eigen stores x,y,z,w and the array w,x,y,z.
 inline Quat quat(std::span<const double> array, std::size_t i) {
   return {array[4 * i], array[4 * i + 1], array[4 * i + 2], array[4 * i + 3]};
 }

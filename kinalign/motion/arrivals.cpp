@@ -24,6 +24,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   Last last = before;
   last.t = t;
   ++last.count;
+  // The first sample may have waited for as long as a delay can be proven.
   if (before.count == 0) {
     last.first = t;
     last.step = step_;
@@ -49,6 +50,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   last.pause =
       std::max(0.0, (before.flush ? 0.0 : before.pause) + over - (usual ? slack * step_ : 0.0));
   last.doubt = std::clamp(before.doubt + over, 0.0, least_late());
+  // After a step of at least half a usual one, the sample may have waited without a visible pause.
   if (2.0 * last.step >= step_) last.doubt = std::max(last.doubt, hidden * step_);
   return last;
 }
@@ -79,6 +81,7 @@ void ArrivalSurveyor::settle() {
     candidates_.clear();
   }
   const std::uint64_t index = now_.count - 1;
+  // A candidate this old can't be proven late any more.
   while (!candidates_.empty() && candidates_.front().index + reach < index) {
     candidates_.pop_front();
   }
@@ -113,6 +116,7 @@ void ArrivalSurveyor::take_back() {
 }
 
 Arrivals ArrivalSurveyor::result() const {
+  // The last sample may still be taken back, so a copy is settled.
   ArrivalSurveyor all = *this;
   all.settle();
   Arrivals found = all.late_;

@@ -68,6 +68,8 @@ class ArrivalSurveyor {
     bool late = false;
   };
   /// The state after a sample.
+  /// behind() makes the state after a sample from the state before it, so two states are enough for
+  /// taking one sample back.
   struct Last {
     std::uint64_t count = 0, near = 0;
     std::uint64_t run = 0;  // number of successive near steps up to this sample

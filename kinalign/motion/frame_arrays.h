@@ -30,6 +30,7 @@ inline constexpr auto frame_arrays<ImuSamples> = std::tuple(&ImuSamples::stamps,
 /// Calls use(member) for each array.
 template <class Frames, class Use>
 void for_each_frame_array(Use&& use) {
+  // A quantity that a stream does not have is an empty array; users skip it by its size.
   std::apply([&use](auto... array) { (use(array), ...); }, frame_arrays<Frames>);
 }
 

@@ -93,6 +93,7 @@ const EndSite* find_end(const Skeleton& skeleton, std::size_t joint) {
 std::string fill(const Skeleton& skeleton, const Way& way, KinectPlace& place) {
   const auto from = find_joint(skeleton, way.from);
   if (!from) return std::string(way.from);
+  // share 0 and no vector along: the place is the joint itself.
   place = {*from, *from, 0.0, Vec3::Zero()};
   if (!way.to.empty()) {
     const auto to = find_joint(skeleton, way.to);
@@ -128,6 +129,7 @@ Trial tried(const Skeleton& skeleton, const Table& table) {
 Result<KinectMap> kinect_map(const Skeleton& skeleton) {
   std::optional<Trial> best;
   std::string_view best_name;
+  // The table with the fewest missing joints also serves the message.
   for (const auto& [name, table] : known) {
     Trial trial = tried(skeleton, table);
     if (best && trial.missing.size() >= best->missing.size()) continue;

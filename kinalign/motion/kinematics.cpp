@@ -135,10 +135,13 @@ void rotations_from_euler(const EulerOrder& order, const EulerColumns& columns,
     if (lanes < few) {
       compose_few(degrees, sign, lanes, q);
     } else {
+      // Lanes beyond `lanes` hold values of the last block; they are computed, too, but never
+      // written.
       compose(degrees, sign, q);
     }
     double* to = columns.rotations + first * columns.rotation_stride;
     for (std::size_t i = 0; i < lanes; ++i, to += columns.rotation_stride) {
+      // The vector part is in the order of the rotations and is put into the order x, y, z here.
       to[0] = q.part[0][i];
       to[1 + order.first] = q.part[1][i];
       to[1 + order.second] = q.part[2][i];
@@ -160,6 +163,7 @@ void forward_kinematics(const Skeleton& skeleton, const ClipFrames& frames,
         load(frames, joints, first, j, poses[j]);
       } else {
         load(frames, joints, first, j, local);
+        // poses[parent] belongs to the same block, because parents come first.
         follow(poses[static_cast<std::size_t>(parent)], local, poses[j]);
       }
       double* to = &global[3 * (first * joints + j)];

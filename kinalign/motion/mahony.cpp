@@ -44,6 +44,7 @@ bool MahonyFilter::update(double dt_s, const InertialReading& reading) {
     waiting_s_ += dt_s;
     return false;
   }
+  // The time of ignored readings belongs to this step.
   const double step = dt_s + waiting_s_;
   waiting_s_ = 0.0;
   const std::optional<Vec3> up = up_in_sensor(reading.acceleration);
@@ -59,6 +60,7 @@ bool MahonyFilter::update(double dt_s, const InertialReading& reading) {
   // up.
   Vec3 correction = Vec3::Zero();
   if (up) correction = up->cross(orientation_.conjugate() * Vec3::UnitY());
+  // The bias and the correction act on the rate, in the sensor's space.
   const Vec3 rate = reading.angular_velocity - bias_ + options_.tilt_gain * correction;
   orientation_ = (orientation_ * rotation(Vec3(step * rate))).normalized();
   bias_ -= options_.bias_gain * step * correction;

@@ -43,6 +43,7 @@ Result<RigidTransform> fit_rigid(const PairMoments& m) {
     return Failure(Error{"", 0, "points that are not on one line", "a line"});
   }
   Vec3 signs(1.0, 1.0, 1.0);
+  // Without the sign the best orthogonal matrix could be a reflection.
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs[2] = -1.0;
   const Eigen::Matrix3d rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
   RigidTransform transform;

@@ -13,6 +13,8 @@ Quat rotation(const Vec3& vector) {
   int halvings = 0;
   // Above 1e9 rad a double can't represent the direction of a rotation; 40 halvings suffice up to
   // there.
+  // Half of the rotation vector is a rotation by half the angle; squaring it doubles the angle
+  // again.
   for (; !(r.squaredNorm() <= most_rotation_parts) && halvings < 40; ++halvings) r *= 0.5;
   const RotationParts parts = rotation_parts(r.squaredNorm());
   const Vec3 v = parts.vector * r;

@@ -21,6 +21,7 @@ constexpr std::uint64_t longest_first = 1'000'000'000;
 // A later step may be one if it is this many usual steps long.
 constexpr std::uint64_t longest_ratio = 4;
 
+// llround() of a larger number is undefined.
 std::int64_t rounded(double ns) { return ns < 9.2e18 ? std::llround(ns) : INT64_MAX; }
 
 std::int64_t held(std::uint64_t ns) {
@@ -50,6 +51,8 @@ StampFate StampRule::judge(Time stamp) {
     last_ = stamp;
     return first_was_right ? StampFate::replaces : StampFate::kept;
   }
+  // The second stamp is more than a second before the first one. The third one shows which of the
+  // two is wrong.
   const bool first_leads = !before_ && !withdrawn_ && step_between(stamp, *last_) > longest_first;
   if (first_leads) withdrawn_ = last_;
   if (!first_leads && !(before_ && stamp > *before_ && pending())) return StampFate::backward;
@@ -117,6 +120,7 @@ void StampSurveyor::add(std::span<const Time> stamps) {
 
 StampSurvey StampSurveyor::result() const {
   StampSurvey survey = survey_;
+  // The median is in the class that contains the middle step.
   std::uint64_t all = 0;
   for (const auto n : steps_) all += n;
   std::uint64_t below = 0;

@@ -53,6 +53,7 @@ class ArrivalLines {
     ArrivalSurveyor arrivals;
     std::optional<std::int64_t> t;  // stamp of its last row
     Columns seen;                   // columns of its last row
+    /// The stamp of the first row of a stretch of dropped rows; empty outside of one.
     std::optional<std::int64_t> late_since;
   };
   /// The state of a line before its last row.
@@ -64,11 +65,14 @@ class ArrivalLines {
 
   void restore();
 
+  // lines_ only grows, and a line keeps its place, so callers may hold its index.
   TakenStep step_;
+  /// near_ns_ is 0 for the reference and for an unknown step; then no row is ever shown to be late.
   std::int64_t near_ns_;
   std::vector<Line> lines_;
   /// The states before the last row and before the one before it. A row with a wrong stamp may be
   /// removed, and then the row before it may turn out to be late.
+  /// [0] is the newer state. take_back() or leave_out() uses it up, and [1] takes its place.
   std::array<Before, 2> before_;
 };
 

@@ -19,6 +19,7 @@ double root_mean(double sum, std::uint64_t samples) {
 }
 
 /// Lagrange's weights of four values at the times `at`, for time `t`.
+/// These weights give the value at `t` of the cubic through the four values.
 std::array<double, 4> cubic_weights(const double* at, double t) {
   std::array<double, 4> weights{1.0, 1.0, 1.0, 1.0};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -33,6 +34,7 @@ std::array<double, 4> cubic_weights(const double* at, double t) {
 
 double CarriedContent::variation() const {
   double about_mean = squares;
+  // The mean square about the mean is the mean square less the square of the mean.
   for (const double s : sum) about_mean -= s * s / static_cast<double>(samples);
   return root_mean(about_mean, samples);
 }
@@ -45,7 +47,10 @@ void add_content(const Knots& raw, const Knots& rows, std::size_t first, Carried
   std::size_t right = 2;  // index of the row after the sample
   for (std::size_t k = 0; k < raw.times.size(); ++k) {
     const double t = raw.times[k];
+    // The cubic needs a row before the interval and one after it, so the first and last interval
+    // are left out.
     if (t < at[1]) continue;
+    // Both lists rise, so the search goes on from the last place.
     while (right + 1 < at.size() && at[right] <= t) ++right;
     if (right + 1 >= at.size()) return;
     const auto weights = cubic_weights(&at[right - 2], t);
@@ -64,11 +69,14 @@ void add_content(const Knots& raw, const Knots& rows, std::size_t first, Carried
 }
 
 Findings judge_carried(const std::vector<CarriedContent>& contents, const ContentNames& names) {
+  // `worst` is raised to the share of the worst part so far.
   double worst = least_share;
   std::size_t part = contents.size();
   for (std::size_t k = 0; k < contents.size(); ++k) {
     const double lost = contents[k].missing(), all = contents[k].variation();
+    // A sensor at rest varies by its noise only, and noise is not content.
     if (lost <= names.noise || lost <= worst * all) continue;
+    // A difference as large as the variation, or larger, counts as all of it.
     worst = all > lost ? lost / all : 1.0;
     part = k;
   }

@@ -16,6 +16,7 @@ namespace kinalign {
 
 /// Sums over the vectors of one joint or node.
 struct CarriedContent {
+  /// The sums are enough for both root mean squares, so no sample is kept.
   std::uint64_t samples = 0;
   std::array<double, 3> sum{};  // sum of the raw samples
   double squares = 0.0;         // sum of squares of the raw samples

@@ -17,10 +17,13 @@
 namespace kinalign {
 
 /// Number of knots on either side that influence either spline.
+/// Samples further away do not change a row, so the window drops them.
 constexpr std::size_t knots_felt = std::max(spline_reach, rotation_spline_reach);
 
 enum class RotationCurve { spline, slerp };
 
+/// step_ns decides whether samples are missing between two samples; gap_ns, whether the stretch is
+/// interpolated.
 struct ResampleRule {
   std::int64_t gap_ns = 0;   // longer stretches without samples are gaps
   std::int64_t step_ns = 0;  // nominal step, else the stream's median step
@@ -42,6 +45,8 @@ struct ResampleCount {
 };
 
 /// For each row of a grid its neighbours in a stream with rising stamps.
+/// `left` tells which samples a value comes from; `known_by` also serves rows outside of the
+/// stream.
 struct Neighbours {
   std::vector<std::size_t> left;             // [n] index of the last sample at or before the row
   std::vector<std::size_t> known_by;         // [n] the same; outside the stream the nearest sample
@@ -52,6 +57,7 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
                            std::span<const std::int64_t> grid);
 
 /// The parts that the resamplers of all three kinds share.
+/// A stream is read once, from its front, so the stamps of the grid must rise from call to call.
 template <class Frames>
 class Resampler {
  public:
@@ -97,6 +103,7 @@ class ImuResampler : public Resampler<ImuSamples> {
 
 class ClipResampler : public Resampler<ClipFrames> {
  public:
+  // An empty TakenStep: late frames of a clip are not looked for.
   ClipResampler(Pass<ClipFrames> pass, const TimeModel& clock, const ResampleRule& rule)
       : Resampler(std::move(pass), clock, rule, {}) {}
 

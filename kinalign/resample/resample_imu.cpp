@@ -22,6 +22,7 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
                        const ImuContent& content, bool to_world) {
   const ImuSamples& rows = window.rows;
   const std::size_t nodes = rows.valid.size() / rows.size();
+  // Acceleration and angular velocity stand side by side, so one spline serves both.
   NodeSamples out;
   const auto add = [&out](const Vec3& v) {
     out.vectors.insert(out.vectors.end(), v.begin(), v.end());
@@ -29,6 +30,7 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
   out.channels = (content.acceleration ? 3U : 0U) + (content.angular_velocity ? 3U : 0U);
   for (std::size_t t = 0; t < rows.size(); ++t) {
     const std::size_t i = t * nodes + node;
+    // Nodes lose samples independently, so each node has stamps of its own.
     if (rows.valid[i] == 0) continue;
     out.stamps.push_back(window.time_ns[t]);
     Quat turn = Quat::Identity();
@@ -52,6 +54,7 @@ struct NodeColumn {
 
 void put_vectors(const std::vector<double>& values, const Segment& s, const NodeColumn& column,
                  ImuRows& out) {
+  // `values` [rows, channels]: the acceleration first, if the node has it.
   const std::size_t rows = s.row_end - s.row, channels = values.size() / rows;
   for (std::size_t r = 0; r < rows; ++r) {
     const std::size_t cell = (s.row + r) * column.nodes + column.node;
@@ -78,9 +81,11 @@ void measure(const Knots& raw, const Knots& rows, const NodeColumn& column) {
 /// Fills the rows of one node, segment by segment.
 void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
                  const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
+  // A node's gaps are found in its own valid samples, not in the stream's rows.
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
     const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
     const auto stamps = std::span(samples.stamps).subspan(s.first, knots);
+    // Times count from the segment's first knot, so a double keeps them exactly enough.
     const auto x = seconds_from(stamps.front(), stamps);
     const auto at = seconds_from(stamps.front(), grid.subspan(s.row, rows));
     if (samples.channels > 0) {
@@ -101,6 +106,7 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
                     &out.orientation[4 * ((s.row + r) * column.nodes + column.node)]);
       }
     }
+    // A row within a segment is valid for this node, whatever other nodes show.
     for (std::size_t r = s.row; r < s.row_end; ++r) out.valid[r * column.nodes + column.node] = 1;
   }
 }
@@ -114,7 +120,9 @@ void put_distances(const NodeSamples& samples, std::span<const std::int64_t> gri
     const std::size_t cell = r * column.nodes + column.node, left = near.left[r];
     out.distance.nearest_raw_ns[cell] = near.nearest_raw_ns[r];
     if (out.valid[cell] == 0) continue;
+    // A row at the stamp of a sample is that sample.
     const bool between = samples.stamps[left] != grid[r];
+    // A step of one and a half usual steps means that at least one sample is missing.
     const bool lost =
         between && samples.stamps[left + 1] - samples.stamps[left] > rule.step_ns * 3 / 2;
     out.distance.over_loss[cell] = lost ? 1 : 0;
@@ -149,6 +157,7 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
     interpolate(samples, grid, rule_, column, out);
     put_distances(samples, grid, rule_, column, out);
   }
+  // The clock belongs to the stream and not to a node, so all rows of samples count here.
   const Neighbours near = find_neighbours(stamps, grid);
   const bool known = any_known(*clock_);
   for (std::size_t r = 0; known && r < grid.size(); ++r) {

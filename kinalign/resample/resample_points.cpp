@@ -33,6 +33,7 @@ struct Gathered {
   std::vector<double> values;
 };
 
+/// The group's joints stand side by side, so that one factorisation serves all their channels.
 Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen,
                 const Joints& group, std::size_t joints) {
   Gathered out;
@@ -53,6 +54,7 @@ void interpolate(const Gathered& samples, std::span<const std::int64_t> grid,
                  const ResampleRule& rule, PointRows& out, ResampleCount& count) {
   const Joints& group = *samples.group;
   const std::size_t joints = out.valid.size() / grid.size(), channels = 3 * group.size();
+  // The arrays are reused from segment to segment.
   std::vector<double> bends, values;
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
     const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
@@ -95,11 +97,13 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
   Neighbours out;
   std::size_t k = 0;
   for (const std::int64_t row : grid) {
+    // Both lists rise, so k never goes back.
     while (k + 1 < stamps.size() && stamps[k + 1] <= row) ++k;
     const bool outside = stamps.empty() || row < stamps.front() || row > stamps.back();
     out.left.push_back(outside ? stamps.size() : k);
     out.known_by.push_back(k);
     std::int64_t nearest = farthest_nearest_ns;
+    // The nearest sample is the last one at or before the row, or the one after it.
     for (std::size_t i = k; i < std::min(k + 2, stamps.size()); ++i) {
       nearest = std::min(nearest, std::abs(row - stamps[i]));
     }
@@ -125,6 +129,7 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
     interpolate(gather(window_, seen, group, joints), grid, rule_, out, count_);
   }
   const Neighbours near = find_neighbours(stamps, grid);
+  // A frame without any joint is no sample for this distance, but its stamp is known all the same.
   out.distance.nearest_raw_ns = find_neighbours(stamps_seen(window_), grid).nearest_raw_ns;
   const bool known = any_known(*clock_);
   for (std::size_t r = 0; r < grid.size(); ++r) {
@@ -134,10 +139,12 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
       out.distance.time_interval_ns.push_back(interval_ns(*clock_, stamp));
     }
     if (left == stamps.size()) continue;
+    // A row at a sample's stamp has that sample's state alone.
     const std::size_t right = stamps[left] == grid[r] ? left : left + 1;
     const bool lost = stamps[right] - stamps[left] > rule_.step_ns * 3 / 2;
     for (std::size_t j = 0; j < joints; ++j) {
       const std::size_t cell = r * joints + j;
+      // Tracking's values rise from missing to tracked.
       const Tracking lesser =
           std::min(window_.rows.state[left * joints + j], window_.rows.state[right * joints + j]);
       if (out.valid[cell] == 0) continue;

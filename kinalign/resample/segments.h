@@ -16,6 +16,8 @@ struct Segment {
 };
 
 /// `stamps` and `grid` must rise strictly. Segments without rows are left out.
+/// A stretch longer than `gap_ns` separates two segments. A single knot can be a segment of one
+/// row.
 std::vector<Segment> find_segments(std::span<const std::int64_t> stamps,
                                    std::span<const std::int64_t> grid, std::int64_t gap_ns);
 

@@ -19,7 +19,9 @@ TakenStep taken_step(const RecordedStream& s, const StreamOptions& options, Role
   const auto near = [](double one, double other, double share) {
     return std::abs(one - other) < share * other;
   };
+  // The stream's own statement of its step is exact, for example the frame time of a BVH.
   if (s.step_ns || median <= 0.0) return {stated_ns, role, true};
+  // usual_step is the mean of the usual steps only, so stalls do not move it.
   const auto usual_step = static_cast<double>(s.survey.usual_step_ns);
   const bool another =
       stated_step >= quite_another * median || quite_another * stated_step <= median;

@@ -93,6 +93,9 @@ struct StreamCounts {
   Arrivals arrivals;
 };
 
+/// Keeps the samples of one pass around the rows being made. `rows` and `time_ns` always have the
+/// same number of rows. The newest rows may still be dropped, so move() reads on until the rows
+/// that matter are final.
 template <class Frames>
 class Window {
  public:
@@ -106,6 +109,7 @@ class Window {
   /// Afterwards `rows` contain all samples within [from, to] and, if the stream has them, `reach`
   /// on either side. `from` and `to` (ns on the take's axis) must rise from call to call.
   Result<void> move(std::int64_t from, std::int64_t to, const Reach& reach) {
+    // forget() bounds the memory while a long stretch without rows is read.
     while (!ended_ && !reaches(to, reach)) {
       KA_TRY(pull());
       forget(from, reach);
@@ -130,6 +134,7 @@ class Window {
   StreamCounts counts() const {
     StreamCounts out{gaps_, held_back_, at_end_ ? *at_end_ : lines_.result()};
     const bool has_end = gaps_.end_ns != INT64_MAX;
+    // Nothing was seen from the last seen row to the take's end.
     if (has_end && last_seen_) out.gaps.add(*last_seen_, gaps_.end_ns);
     if (!near_counts_) out.arrivals.near = held_back_;
     return out;
@@ -153,6 +158,7 @@ class Window {
     const std::size_t width = inside > 0 ? columns(rows) : 0;
     for (std::size_t c = 0; c < width; ++c) {
       std::size_t knots = 0;
+      // The stamp of the last knot that was found.
       std::int64_t last = from;
       for (std::size_t t = inside; t-- > 0 && knots < reach.knots;) {
         if (reach.ended(last - time_ns[t], knots)) break;
@@ -218,6 +224,7 @@ class Window {
       first = next;
     };
     for (; i < block_.size(); ++i) {
+      // Stamps are judged on the take's axis, because the device's clock may step.
       const Time at = take_time(*clock_, block_.stamps[i]);
       const StampFate fate = rule_.judge(at);
       if (fate != StampFate::kept && fate != StampFate::replaces) {
@@ -225,10 +232,12 @@ class Window {
         continue;
       }
       const std::int64_t t = to_ns(at);
+      // The row before it had a wrong stamp. It must be in `rows` before it can be removed.
       if (fate == StampFate::replaces) {
         flush(i);
         take_back();
       }
+      // A row in which nothing was seen keeps its place, but belongs to no line and ends no gap.
       if (!look(i)) {
         time_ns.push_back(t);
         continue;
@@ -265,7 +274,9 @@ class Window {
   void leave_out(std::int64_t late) {
     if (late <= gaps_.end_ns) ++held_back_;
     const std::size_t row = first_not_before(late), width = seen_.size();
+    // No later row needed it, so it has left the window.
     if (row == time_ns.size() || time_ns[row] != late) return;
+    // The whole row is dropped only if it shows no other column and no seen row came after it.
     bool whole = late == last_seen_;
     for (std::size_t c = 0; c < width && whole; ++c) {
       whole = seen_[c] != 0 || !seen(rows, row * width + c);
@@ -287,6 +298,7 @@ class Window {
     if (!was_seen) return;
     if (before_[0].in_line) lines_.take_back();
     restore();
+    // The removed row may have been the first one after the take's end.
     if (last_seen_ <= gaps_.end_ns) at_end_.reset();
   }
 

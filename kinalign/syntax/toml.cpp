@@ -15,35 +15,41 @@ using Kind = Value::Kind;
 
 /// Advice for a line in which toml++ found a fault, such as [device.my suit], whose name needs
 /// quotes; else empty.
+/// The name begins after the brackets and the first dot, and ends at the first closing bracket.
 std::string quotes_advice(std::string_view text, std::int64_t line) {
   for (std::int64_t at = 1; at < line; ++at) {
     const auto end = text.find('\n');
     if (end == std::string_view::npos) return "";
     text.remove_prefix(end + 1);
   }
+  // The lines before the fault are gone; the rest is cut after its first line.
   text = text.substr(0, text.find_first_of("\r\n"));
   const auto begin = text.find_first_not_of(" \t["), end = text.find(']');
   if (!text.starts_with('[') || end == std::string_view::npos || begin >= end) return "";
   const std::string_view key = text.substr(begin, end - begin);
   const auto dot = key.find('.');
   const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
+  // With a dot or a quote in it the name may be right in another way; advice would be a guess.
   const bool blank = name.find(' ') != std::string_view::npos;
   if (!blank || name.find_first_of(".\"'") != std::string_view::npos) return "";
   const std::string_view table = key.substr(0, key.size() - name.size());
   return " (a name with blanks stands in quotes: [" + shown(table) + "\"" + shown(name) + "\"])";
 }
 
+// Lists and tables contain nodes, so this function and entries_in_order() call each other.
 Value value_of(const toml::node& node, std::string key, std::string path);
 
 /// The entries in the order of the file; toml++ sorts them by key.
 std::vector<Value> entries_in_order(const toml::table& table, const std::string& path) {
   std::vector<std::pair<std::string, const toml::node*>> entries;
   for (const auto& [key, value] : table) entries.emplace_back(key.str(), &value);
+  // Errors and the order of streams follow the file, and not the alphabet.
   std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
     const auto& at = a.second->source().begin;
     const auto& bt = b.second->source().begin;
     return at.line != bt.line ? at.line < bt.line : at.column < bt.column;
   });
+  // The path of an entry, "stream.mocap.gap_ms", names its table in messages.
   const std::string before = path.empty() ? "" : path + ".";
   std::vector<Value> out;
   out.reserve(entries.size());
@@ -55,7 +61,9 @@ Value value_of(const toml::node& node, std::string key, std::string path) {
   Value out;
   out.key = std::move(key);
   out.path = std::move(path);
+  // A node without a place gets line 1, because line 0 means JSON.
   out.line = std::max<std::int64_t>(node.source().begin.line, 1);
+  // A date or time is the only kind of node that the tests below do not recognise.
   out.kind = Kind::date;
   const auto scalar = [&](Kind kind, auto value) {
     out.kind = kind;
@@ -80,6 +88,7 @@ std::string toml_text(bool value) { return value ? "true" : "false"; }
 std::string toml_text(std::int64_t value) { return std::to_string(value); }
 std::string toml_text(const std::string& value) { return toml_string(value); }
 std::string toml_text(double value) {  // the shortest text that reads back exactly
+  // A dot is added to whole numbers, because TOML would read "3" as an integer.
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
@@ -106,6 +115,7 @@ std::string toml_text(const std::map<std::string, One>& values) {
 
 Result<void> read_toml(std::string_view text, std::string_view name,
                        const std::function<Result<void>(const Value& top)>& read) {
+  // toml++ throws. From here on a fault in the text is an error with its line.
   try {
     return read(value_of(toml::parse(text, name), "", "")).map_error([&](Error error) {
       error.file = std::string(name);
@@ -139,6 +149,7 @@ std::string toml_list(const std::vector<std::string>& texts) { return toml_text(
 std::string toml_options(const Fields& fields, const Fields& defaults) {
   const auto write = [](const auto* value) { return toml_text(*value); };
   std::string text;
+  // Texts are compared and not values, so one function serves all types of options.
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string value = std::visit(write, fields[i].value);
     if (value == std::visit(write, defaults[i].value)) continue;

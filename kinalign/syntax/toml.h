@@ -13,6 +13,7 @@
 namespace kinalign {
 
 /// Parses the text and calls `read` with the whole table. All errors get the file's name.
+/// `read` runs while the parsed table exists, so it must copy whatever it keeps.
 Result<void> read_toml(std::string_view text, std::string_view name,
                        const std::function<Result<void>(const Value& top)>& read);
 
@@ -26,6 +27,7 @@ std::string toml_table(const std::map<std::string, std::string>& texts);
 std::string toml_list(const std::vector<std::string>& texts);
 
 /// The options that differ from their defaults, a line each.
+/// `fields` and `defaults` describe two structures of one type, in the same order.
 std::string toml_options(const Fields& fields, const Fields& defaults);
 template <class Options>
 std::string toml_options(Options options) {

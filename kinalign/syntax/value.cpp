@@ -17,6 +17,8 @@ namespace {
 using Kind = Value::Kind;
 
 /// Sets an option of each type.
+/// Each operator() checks kind and range and names the expected form in its error. std::visit
+/// chooses the operator by the option's type.
 class Setter {
  public:
   Setter(const Field& field, const Value& value) : field_(field), value_(value) {}
@@ -32,6 +34,7 @@ class Setter {
     *to = *number;
     return {};
   }
+  /// 3.0 is no whole number: its text makes it a number with a point.
   Result<void> operator()(std::int64_t* to) const {
     if (value_.kind != Kind::whole || !number_in(value_)) {
       return wrong(value_, ranged("a whole number"));
@@ -49,6 +52,7 @@ class Setter {
     *to = *text;
     return {};
   }
+  /// null is JSON's way to leave out an optional value. TOML has no null.
   template <class Number>
   Result<void> operator()(std::optional<Number>* to) const {
     if (value_.kind == Kind::null) return {};
@@ -95,6 +99,7 @@ class Setter {
  private:
   /// The number, if the value is one within the range.
   std::optional<double> number_in(const Value& value) const {
+    // Integers are accepted where numbers are expected, so "gap_ms = 200" needs no point.
     const auto* whole = std::get_if<std::int64_t>(&value.scalar);
     const auto* number = std::get_if<double>(&value.scalar);
     if (whole == nullptr && number == nullptr) return std::nullopt;
@@ -104,6 +109,7 @@ class Setter {
   }
 
   /// The numbers of a list, or a single number where any count is allowed.
+  /// A fault is reported at the line of the number, which may stand lines below the list's key.
   Result<std::vector<double>> numbers() const {
     const std::string wanted = field_.count == 0
                                    ? ranged("a number or a list of numbers")
@@ -121,6 +127,7 @@ class Setter {
       return at(value_,
                 {"", 0, value_.name() + " as " + wanted, fmt::format("{} numbers", out.size())});
     }
+    // Four numbers are a rotation. Zeros or degrees would have a length far from 1.
     if (field_.count == 4) KA_TRY(check_rotation(out));
     return out;
   }
@@ -132,6 +139,7 @@ class Setter {
                        fmt::format("a length of {:.6g}", length)});
   }
 
+  /// An option without a lower limit has no range in its message, even if it has an upper one.
   std::string ranged(const std::string& kind) const {
     if (!(field_.least > -unlimited)) return kind;
     return fmt::format("{} from {} to {}", kind, field_.least, field_.most);
@@ -151,6 +159,7 @@ class Setter {
 }  // namespace
 
 const Value* Value::find(std::initializer_list<std::string_view> keys) const {
+  // Lists and simple values have no keys, so the search ends there without a result.
   const Value* found = this;
   for (const std::string_view wanted : keys) {
     const auto one = std::find_if(found->items.begin(), found->items.end(),
@@ -182,12 +191,14 @@ std::string shown(const Value& value) {
       return "a table";
     case Kind::text:
       return "\"" + shown(std::get<std::string>(value.scalar)) + "\"";
+    // The three kinds that hold a number or a truth value.
     default:
       return std::visit([](const auto& scalar) { return fmt::format("{}", scalar); }, value.scalar);
   }
 }
 
 Result<std::string> text_of(const Value& value) {
+  // The option has neither choices nor a range, so only the kind is checked.
   std::string text;
   KA_TRY(set_option({"", "", &text}, value));
   return text;
@@ -203,6 +214,7 @@ Result<void> set_option(const Field& field, const Value& value) {
 }
 
 Result<void> read_options(const Value& table, const Fields& fields, const OtherKeys& others) {
+  // The entries are visited in the file's order, so the first fault of the file is reported.
   for (const Value& entry : KA_TRY(entries_of(table))) {
     if (const auto other = others.find(entry.key); other != others.end()) {
       KA_TRY(other->second(entry));
@@ -214,6 +226,7 @@ Result<void> read_options(const Value& table, const Fields& fields, const OtherK
       KA_TRY(set_option(*field, entry));
       continue;
     }
+    // The suggestion may be any key that would have been accepted here.
     std::vector<std::string> known;
     for (const auto& [key, read] : others) known.push_back(key);
     for (const Field& one : fields) known.push_back(one.name);

@@ -17,6 +17,7 @@
 
 namespace kinalign {
 
+/// `scalar` holds the value of the four simple kinds. A list or a table has `items` instead.
 struct Value {
   enum class Kind { null, truth, whole, number, text, date, list, table };
 
@@ -35,6 +36,7 @@ struct Value {
 };
 
 /// An error at the value's line. The file's name is added by the reader of the file.
+/// It has no file yet, because a Value does not know from which file it came.
 Failure at(const Value& value, Error error);
 /// "expected gap_ms as a number, found "3"".
 Failure wrong(const Value& value, const std::string& wanted);
@@ -53,6 +55,8 @@ using OtherKeys = std::map<std::string, std::function<Result<void>(const Value&)
 
 /// Sets options from the entries of a table. A key that is neither an option nor in `others` is
 /// refused with the nearest known key.
+/// A reader is called at its key's place in the file, so faults are found in the order of the
+/// lines.
 Result<void> read_options(const Value& table, const Fields& fields, const OtherKeys& others = {});
 
 }  // namespace kinalign

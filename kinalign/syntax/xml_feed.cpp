@@ -11,9 +11,11 @@ namespace kinalign {
 
 namespace {
 
+// The limits on the depth of elements, and on the bytes of a tag, a comment or a text.
 constexpr int deepest = 64;
 constexpr std::size_t longest = std::size_t{1} << 20;
 
+/// Names count without their prefix, so readers need not know which one a document chose.
 std::string_view without_prefix(std::string_view name) {
   const auto colon = name.find(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
@@ -22,6 +24,7 @@ std::string_view without_prefix(std::string_view name) {
 }  // namespace
 
 std::optional<std::string_view> XmlAttributes::find(std::string_view name) const {
+  // Elements have few attributes, so a search from the front is fast enough.
   for (const char* const* pair = pairs_; *pair != nullptr; pair += 2) {
     if (name == pair[0]) return pair[1];
   }
@@ -29,11 +32,14 @@ std::optional<std::string_view> XmlAttributes::find(std::string_view name) const
 }
 
 /// Expat's callbacks, and the error of the handler, which Expat can't pass on.
+/// `handler` belongs to the caller and is set by every call of parse(). `error` is the first error;
+/// after it the callbacks do nothing.
 struct XmlFeed::State {
   std::string file;
   XML_Parser parser = nullptr;
   XmlHandler* handler = nullptr;
   std::string text;
+  // `text` grows until the next tag. A call of end() hands it on and empties it.
   std::string start;  // first bytes of the document, until Expat has got them
   bool started = false;
   int depth = 0;
@@ -42,6 +48,8 @@ struct XmlFeed::State {
 
   std::int64_t line() const { return static_cast<std::int64_t>(XML_GetCurrentLineNumber(parser)); }
 
+  /// Keeps the first error only, because later ones follow from it. Expat then ends XML_Parse()
+  /// with an error, too.
   void stop(Error what) {
     if (error) return;
     if (what.file.empty()) {
@@ -56,6 +64,7 @@ struct XmlFeed::State {
   }
 
   static State& of(void* data) {
+    // Bytes fed since the last event are those of an open tag or comment, which Expat keeps.
     State& self = *static_cast<State*>(data);
     self.last_event =
         static_cast<std::uint64_t>(std::max<XML_Index>(XML_GetCurrentByteIndex(self.parser), 0));
@@ -65,6 +74,7 @@ struct XmlFeed::State {
   static void begin(void* data, const char* name, const char** attributes) {
     State& self = of(data);
     if (self.error) return;
+    // Characters before a child element belong to no end tag, so they are dropped.
     self.text.clear();
     if (++self.depth > deepest) {
       self.stop({"", 0, "elements nested at most 64 deep", "deeper elements"});
@@ -85,6 +95,7 @@ struct XmlFeed::State {
     self.text.append(text, static_cast<std::size_t>(size));
     if (self.text.size() > longest) self.stop({"", 0, "texts of at most 1 MiB", "a longer text"});
   }
+  // Entities that expand to others could make a small document fill the memory.
   // NOLINTNEXTLINE(readability-function-size): Expat's signature
   static void entity(void* data, const char* name, int, const char*, int, const char*, const char*,
                      const char*, const char*) {
@@ -108,6 +119,7 @@ std::int64_t XmlFeed::line() const { return state_->line(); }
 
 bool XmlFeed::ends_too_early() const {
   if (state_->error) return false;
+  // The errors that a document gives if it is cut at any place.
   switch (XML_GetErrorCode(state_->parser)) {
     case XML_ERROR_NO_ELEMENTS:
     case XML_ERROR_UNCLOSED_TOKEN:
@@ -122,9 +134,11 @@ bool XmlFeed::ends_too_early() const {
 Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handler) {
   State& s = *state_;
   s.handler = &handler;
+  // Pieces are at most 64 KiB, so the size fits into an int.
   const auto status =
       XML_Parse(s.parser, piece.data(), static_cast<int>(piece.size()), last ? 1 : 0);
   s.fed += piece.size();
+  // The handler's error comes first. Expat would only report that the parsing was stopped.
   if (s.error) return Failure(*s.error);
   if (status == XML_STATUS_ERROR) {
     return Failure(
@@ -150,6 +164,7 @@ Result<void> XmlFeed::feed(std::string_view piece, XmlHandler& handler) {
     if (s.start.size() < enough) return {};
     KA_TRY(begin(handler));
   }
+  // The length of a tag is checked after each piece, so a piece must be small beside the limit.
   constexpr std::size_t most = std::size_t{64} << 10;
   for (; !piece.empty(); piece.remove_prefix(std::min(piece.size(), most))) {
     KA_TRY(parse(piece.substr(0, most), false, handler));
@@ -163,6 +178,7 @@ Result<void> XmlFeed::begin(XmlHandler& handler) {
 }
 
 Result<void> XmlFeed::finish(XmlHandler& handler) {
+  // A document shorter than four bytes has not reached Expat yet.
   if (!state_->started) KA_TRY(begin(handler));
   return parse("", true, handler);
 }

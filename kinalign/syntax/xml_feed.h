@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// A view of Expat's array. It is valid during begin() only.
 class XmlAttributes {
  public:
   /// `pairs`: name, value, name, value, ..., nullptr
@@ -23,9 +24,11 @@ class XmlAttributes {
 
 /// Receives the elements. Names come without a prefix: `frame` for `<mvn:frame>`. An error without
 /// a place gets the line.
+/// After an error no further call is made.
 class XmlHandler {
  public:
   virtual ~XmlHandler() = default;
+  /// Name and attributes are Expat's memory: copy what is needed after the call.
   virtual Result<void> begin(std::string_view name, const XmlAttributes& attributes) = 0;
   /// `text`: the characters since the previous tag.
   virtual Result<void> end(std::string_view name, std::string_view text) = 0;
@@ -33,6 +36,8 @@ class XmlHandler {
 
 /// Hostile documents fail: those that define entities, nest elements deeper than 64, or have tags
 /// or texts above 1 MiB.
+/// Expat passes a text on in parts of its own choice. This class joins them, and keeps the first
+/// error with its line.
 class XmlFeed {
  public:
   explicit XmlFeed(std::string file);

@@ -20,7 +20,9 @@ class ByteReader {
 
   template <std::unsigned_integral T>
   T take() {
+    // Written so that the subtraction can't wrap: at_ never passes the end.
     if (sizeof(T) > bytes_.size() - at_) {
+      // The rest is dropped too, so that a shorter field after the missing one can't succeed.
       at_ = bytes_.size();
       complete_ = false;
       return 0;
@@ -62,6 +64,8 @@ class ByteWriter {
   std::size_t written() const { return at_; }
 
  private:
+  // at_ <= bytes_.size(), and the first `at_` bytes are written. A field is written whole or not at
+  // all.
   std::span<std::uint8_t> bytes_;
   std::size_t at_ = 0;
   bool complete_ = true;

@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-// a request has as many zero bytes, so that the answer is not longer
+// nonce, T2, T3. A request has as many zero bytes, so that the answer is not longer.
 constexpr std::size_t times_size = 4 + 8 + 8;
 
 /// Reads the fields of a request. The room for the answer's times must be zero.
@@ -17,6 +17,7 @@ NodeRefusal take_request(const NodeHead& head, ByteReader& reader, ClocklessRequ
   request.has_battery = (head.flags & battery_flag) != 0;
   request.battery_mv = head.battery_mv;
   request.has_sample = head.byte21 != 0;
+  // Version 1 keeps these bytes at 0, so a later version can give them a meaning.
   for (std::size_t i = 0; i < times_size; ++i) {
     if (reader.take<std::uint8_t>() != 0) return NodeRefusal::stray_bits;
   }
@@ -65,6 +66,7 @@ std::span<const std::uint8_t> encode(const ClocklessRequest& request, const MacK
                                      std::span<std::uint8_t> out) {
   const std::size_t size = encoded_size(request, key);
   if (size > out.size()) return {};
+  // Without a battery the field is zero on the wire, whatever the structure contains.
   const std::uint8_t flags = request.has_battery ? battery_flag : 0;
   const std::uint8_t count = request.has_sample ? 1 : 0;
   const std::uint16_t battery = request.has_battery ? request.battery_mv : std::uint16_t{0};

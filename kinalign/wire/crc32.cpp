@@ -23,6 +23,7 @@ constexpr std::array<std::uint32_t, 16> nibbles = [] {
 
 std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
   std::uint32_t rest = 0xffffffff;
+  // The lower four bits come first, because the bits of each byte are reflected.
   for (const std::uint8_t byte : bytes) {
     rest ^= byte;
     rest = rest >> 4 ^ nibbles[rest & 15];

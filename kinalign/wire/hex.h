@@ -20,6 +20,7 @@ constexpr void put_hex(std::span<const std::uint8_t> bytes, std::span<char> out)
 /// The value of a digit in either case, 0 to 15; -1: not a digit.
 constexpr int hex_value(char digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';
+  // Sets the bit that makes a letter lower case.
   const char lower = static_cast<char>(digit | 0x20);
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }

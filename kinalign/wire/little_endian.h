@@ -16,6 +16,7 @@ template <std::unsigned_integral T>
 T little_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   assert(at <= bytes.size() && sizeof(T) <= bytes.size() - at);
   std::uint64_t value = 0;
+  // Byte by byte: neither the alignment nor the byte order of the machine matters.
   for (std::size_t i = sizeof(T); i-- > 0;) value = value << 8 | bytes[at + i];
   return static_cast<T>(value);
 }

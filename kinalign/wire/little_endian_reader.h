@@ -16,6 +16,7 @@ inline std::span<const std::uint8_t> octets(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 inline std::string_view text_of(std::span<const std::uint8_t> bytes) {
+  // The bytes are not copied; the view is valid as long as they are.
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 

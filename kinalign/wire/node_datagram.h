@@ -16,11 +16,13 @@ namespace kinalign {
 inline constexpr std::uint8_t node_protocol_version = 1;
 inline constexpr std::uint32_t node_magic = 0x4b414e44;  // "KAND", the first bytes of a datagram
 // bytes; a buffer of this size holds any datagram
+// A frame of 30 full samples with a MAC has this size; node_frame.cpp checks it.
 inline constexpr std::size_t max_node_datagram = 1410;
 
 /// The key of one node. A nullptr in place of a key means that the node has none.
 using MacKey = SipHashKey;
 
+// These are the numbers in the datagram.
 enum class DatagramType : std::uint8_t { frame = 1, reply, request, answer, confirm };
 
 /// The node of a datagram. In a datagram of the host, the origin of the answered datagram.

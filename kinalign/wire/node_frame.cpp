@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t clock_size = 8 + 4 + 4 + 8;  // n_tx and the echo
 
+// The limit of the datagram's size follows from that of the samples.
 static_assert(node_datagram_size(clock_size + max_node_samples * max_sample_size, true) ==
               max_node_datagram);
 
@@ -30,6 +31,7 @@ NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& fram
   frame.has_echo = (head.flags & echo_flag) != 0;
   frame.echo = {reader.take<std::uint32_t>(), reader.take<std::uint32_t>(),
                 reader.take<std::uint64_t>()};
+  // A sender that forgets the flag must not lose its echo without notice.
   if (!frame.has_echo && frame.echo != ReplyEcho{}) return NodeRefusal::stray_bits;
   return take_samples(reader, frame);
 }
@@ -44,6 +46,7 @@ std::size_t encoded_size(const NodeFrame& frame, const MacKey* key) {
 
 std::span<const std::uint8_t> encode(const NodeFrame& frame, const MacKey* key,
                                      std::span<std::uint8_t> out) {
+  // The loop in encoded_size() must not run past the array.
   if (frame.sample_count > max_node_samples) return {};
   const std::size_t size = encoded_size(frame, key);
   if (size > out.size()) return {};

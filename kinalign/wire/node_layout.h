@@ -40,6 +40,7 @@ std::span<const std::uint8_t> seal(std::span<std::uint8_t> datagram, const MacKe
 NodeRefusal unseal(const Envelope& envelope, DatagramType type, const MacKey* key, NodeHead& head,
                    std::span<const std::uint8_t>& fields);
 
+/// Every decode() uses this function, so a type adds only the reading of its own fields.
 /// Decodes a datagram. Fills `out` with take(head, reader, out) if everything else is right. After
 /// a refusal `out` is default-constructed.
 template <class Out, class Take>
@@ -52,6 +53,7 @@ NodeRefusal decode_as(DatagramType type, const Envelope& envelope, const MacKey*
   if (refusal != NodeRefusal::none) return refusal;
   ByteReader reader(fields);
   refusal = take(head, reader, out);
+  // The fields end before the last one was read, or bytes follow that no field explains.
   if (refusal == NodeRefusal::none && (!reader.complete() || reader.left() != 0)) {
     refusal = NodeRefusal::wrong_fields;
   }

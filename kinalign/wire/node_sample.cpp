@@ -18,6 +18,7 @@ std::uint8_t flags_of(const NodeSample& sample) {
 
 /// Unknown flags, and gravity without an acceleration, are refused.
 bool known(std::uint8_t flags) {
+  // Without an acceleration, gravity in it has no meaning.
   const bool gravity_of_nothing = (flags & gravity_flag) != 0 && (flags & acceleration_flag) == 0;
   return flags < 2 * gravity_flag && !gravity_of_nothing;
 }
@@ -49,6 +50,7 @@ SampleFaults faults(const NodeSample& sample) {
 }
 
 std::size_t encoded_size(const NodeSample& sample) {
+  // Age and flags, then the vectors and the quaternion that are present.
   return 4U + 1U + (sample.has_acceleration ? 12U : 0U) + (sample.has_angular_velocity ? 12U : 0U) +
          (sample.has_orientation ? 16U : 0U);
 }
@@ -64,6 +66,7 @@ void put_sample(ByteWriter& writer, const NodeSample& sample) {
 bool take_sample(ByteReader& reader, NodeSample& sample) {
   sample.age_us = reader.take<std::uint32_t>();
   const auto flags = reader.take<std::uint8_t>();
+  // The flags decide which fields follow, so nothing can be read after an unknown one.
   if (!known(flags)) return false;
   sample.has_acceleration = (flags & acceleration_flag) != 0;
   sample.has_angular_velocity = (flags & angular_velocity_flag) != 0;

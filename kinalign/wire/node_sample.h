@@ -9,6 +9,7 @@
 namespace kinalign {
 
 struct NodeSample {
+  /// A receiver passes on the numbers of such a sample bit for bit.
   std::uint32_t age_us = 0;  // the frame's n_tx minus the counter at the sample
   bool has_acceleration = false;
   bool has_angular_velocity = false;

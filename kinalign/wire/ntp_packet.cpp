@@ -18,6 +18,7 @@ struct Seconds {
 };
 
 Seconds seconds_of(Time t) {
+  // The remainder of a time before 1970 is negative. One second is then borrowed.
   const std::int64_t rest = to_ns(t) % ns_per_s;
   return {to_ns(t) / ns_per_s - (rest < 0 ? 1 : 0), rest < 0 ? rest + ns_per_s : rest};
 }
@@ -42,6 +43,7 @@ bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
   while (version == 4 && rest.size() >= least_last_field) {
     ByteReader field(rest);
     field.take<std::uint16_t>();  // the type: all types are skipped, none is answered
+    // The length counts the field's own four bytes of type and length.
     const std::size_t length = field.take<std::uint16_t>();
     if (length < least_field || length % 4 != 0 || length > rest.size()) return false;
     if (length == rest.size()) return length >= least_last_field;
@@ -54,6 +56,7 @@ bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
 NtpPacket take_header(ByteReader& reader) {
   NtpPacket packet;
   const auto first = reader.take<std::uint8_t>();
+  // From the top: leap indicator (2 bits), version (3), mode (3).
   packet.leap = static_cast<NtpLeap>(first >> 6);
   packet.version = first >> 3 & 7;
   packet.mode = first & 7;
@@ -79,6 +82,7 @@ NtpAnswer kiss(std::uint32_t code) {
 
 NtpStamp ntp_from_time(Time t) {
   const auto [s, ns] = seconds_of(t);
+  // The shift below drops the bits of the era.
   const auto seconds_1900 = static_cast<std::uint64_t>(s + from_1900_to_1970_s);
   // Rounded to the nearest. 999,999,999 ns stay below 2^32.
   const std::uint64_t fraction = ((static_cast<std::uint64_t>(ns) << 32) + ns_per_s / 2) / ns_per_s;
@@ -90,15 +94,19 @@ std::optional<Time> time_from_ntp(NtpStamp stamp, Time pivot) {
   if (stamp.bits == 0) return std::nullopt;
   const std::int64_t pivot_s = seconds_of(pivot).s + from_1900_to_1970_s;
   const auto seconds_1900 = static_cast<std::uint32_t>(stamp.bits >> 32);
+  // The shorter way from the pivot to the stamp, modulo 2^32 s; it may be negative.
   const auto step = static_cast<std::int32_t>(seconds_1900 - static_cast<std::uint32_t>(pivot_s));
   const std::int64_t s = pivot_s + step - from_1900_to_1970_s;
   const auto ns = static_cast<std::int64_t>(ns_of_fraction(static_cast<std::uint32_t>(stamp.bits)));
+  // One second less than Time can hold, so that adding the fraction can't overflow.
   constexpr std::int64_t most_s = INT64_MAX / ns_per_s - 1;
   if (s < -most_s || s > most_s) return std::nullopt;
   return utc_time(s * ns_per_s + ns);
 }
 
 Duration ntp_difference(NtpStamp earlier, NtpStamp later) {
+  // Modulo 2^64, so the difference is right across the end of an era. Its upper half, read as a
+  // signed number of seconds, reaches 68 years either way.
   const std::uint64_t apart = later.bits - earlier.bits;
   const auto s = static_cast<std::int32_t>(apart >> 32);
   const auto ns = static_cast<std::int64_t>(ns_of_fraction(static_cast<std::uint32_t>(apart)));
@@ -123,6 +131,7 @@ NtpRefusal decode_request(std::span<const std::uint8_t> datagram, NtpPacket& pac
   if (read.mode != ntp_mode_client) return NtpRefusal::wrong_mode;
   if (!is_trailer(datagram.subspan(ntp_packet_size), read.version))
     return NtpRefusal::wrong_trailer;
+  // A refused datagram leaves `packet` unchanged.
   packet = read;
   return NtpRefusal::none;
 }
@@ -135,6 +144,7 @@ NtpAnswer decode_answer(std::span<const std::uint8_t> datagram, NtpStamp sent, N
   const bool ours = read.version >= 1 && read.version <= 4 && read.mode == ntp_mode_server;
   if (!ours) return NtpAnswer::malformed;
   packet = read;
+  // A stamp of 0 was never sent, and would match answers that leave originate empty.
   if (read.originate != sent || sent.bits == 0) return NtpAnswer::not_ours;
   if (read.stratum == 0) return kiss(read.reference_id);
   const bool lost = read.leap == NtpLeap::unsynchronised ||

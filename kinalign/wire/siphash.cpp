@@ -30,6 +30,7 @@ struct State {
       v2 = std::rotl(v2, 32);
     }
   }
+  // Two rounds per word: the 2 in SipHash-2-4.
   void absorb(std::uint64_t m) {
     v3 ^= m;
     rounds(2);
@@ -42,12 +43,15 @@ struct State {
 std::uint64_t siphash_2_4(const SipHashKey& key, std::span<const std::uint8_t> bytes) {
   const std::uint64_t k0 = word(std::span(key).first(8));
   const std::uint64_t k1 = word(std::span(key).last(8));
+  // The constants are the letters of "somepseudorandomlygeneratedbytes".
   State state{k0 ^ 0x736f6d6570736575, k1 ^ 0x646f72616e646f6d, k0 ^ 0x6c7967656e657261,
               k1 ^ 0x7465646279746573};
   const std::uint64_t length = bytes.size();
   for (; bytes.size() >= 8; bytes = bytes.subspan(8)) state.absorb(word(bytes.first(8)));
+  // The last word holds the bytes that are left, and the length modulo 256 in its top byte.
   state.absorb(length << 56 | word(bytes));
   state.v2 ^= 0xff;
+  // Four rounds at the end: the 4 in SipHash-2-4.
   state.rounds(4);
   return state.v0 ^ state.v1 ^ state.v2 ^ state.v3;
 }

@@ -25,6 +25,7 @@ constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
 constexpr Time utc_time(std::int64_t ns) { return Time{Duration{ns}}; }
 
 /// later - earlier, ns. The result may exceed the range of Duration.
+// An unsigned subtraction is exact even if the signed difference would overflow.
 constexpr std::uint64_t step_between(Time earlier, Time later) {
   return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
 }

@@ -20,11 +20,15 @@ namespace kinalign {
 
 namespace {
 
+// 255 bytes is the longest name of a file on Linux.
 constexpr std::size_t longest_name = 1000, longest_part = 255;
+// The first bytes of all files are exempt from the ratio: a short archive may hold a long table of
+// equal numbers.
 constexpr std::uint64_t not_judged = std::uint64_t{64} << 20;
 
 /// State of libarchive's read callbacks. It keeps the failure, because a callback can return only
 /// -1.
+/// `bytes` belongs to the caller of read_archive().
 struct Feed {
   const ArchiveBytes& bytes;
   std::uint64_t at = 0;
@@ -36,6 +40,7 @@ la_ssize_t read_more(archive*, void* data, const void** out) {
   Feed& feed = *static_cast<Feed*>(data);
   const auto got = feed.bytes.read_at(feed.at, feed.buffer);
   if (!got) {
+    // libarchive only learns that reading failed. damage() returns the real error.
     feed.failure = got.error();
     return -1;
   }
@@ -52,6 +57,7 @@ la_int64_t seek_to(archive*, void* data, la_int64_t offset, int whence) {
   const la_int64_t from = whence == SEEK_SET   ? 0
                           : whence == SEEK_CUR ? static_cast<la_int64_t>(feed.at)
                                                : size;
+  // Written so that no sum can overflow: both limits are compared with the offset alone.
   if (offset < -from || offset > size - from) return ARCHIVE_FATAL;
   feed.at = static_cast<std::uint64_t>(from + offset);
   return static_cast<la_int64_t>(feed.at);
@@ -61,6 +67,7 @@ la_int64_t seek_to(archive*, void* data, la_int64_t offset, int whence) {
 /// locale's characters can't spell.
 class NamesInUtf8 {
  public:
+  // A thread's own locale: setlocale() would change that of the whole program.
   NamesInUtf8() : own_(newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
     if (own_ != nullptr) before_ = uselocale(own_);
   }
@@ -82,6 +89,7 @@ struct Free {
 using Owned = std::unique_ptr<archive, Free>;
 
 /// Names that were passed to the user so far, and the folders in which they lie.
+/// A file and a folder of one name can't both exist on a disk, so one of them would be lost.
 class GivenNames {
  public:
   /// Adds a name. False if the name was there before, or if a file has the name of one of its
@@ -101,6 +109,8 @@ class GivenNames {
   std::set<std::string> files_, folders_;
 };
 
+/// Uses libarchive's reading interface only, never its extraction to disk. So nothing is written
+/// that this class has not checked.
 class ArchiveReader {
  public:
   ArchiveReader(const ArchiveBytes& bytes, const ArchiveLimits& limits)
@@ -114,17 +124,21 @@ class ArchiveReader {
       archive_entry* entry = nullptr;
       const int status = archive_read_next_header(archive_.get(), &entry);
       if (status == ARCHIVE_EOF) return {};
+      // ARCHIVE_WARN: the entry can be read, with a detail that libarchive did not understand.
       if (status != ARCHIVE_OK && status != ARCHIVE_WARN) return Failure(damage("an entry"));
       if (++entries > limits_.entries) {
         return refuse(fmt::format("at most {} entries", limits_.entries), "more");
       }
       const std::string stated_name = name_of(entry);
+      // The kind comes first: a link has a good name and leads anywhere.
       KA_TRY(check_kind(entry, stated_name));
       auto safe = safe_archive_name(stated_name);
+      // tar often begins with "./", which is no name but harmless.
       if (!safe && archive_entry_filetype(entry) == AE_IFDIR && is_top(stated_name)) continue;
       if (!safe) return refuse(safe.error().expected, shown(stated_name));
       if (archive_entry_filetype(entry) == AE_IFDIR) continue;
       if (!given_.add(*safe)) return refuse("each name once", shown(stated_name) + " again");
+      // The pieces are those of the present entry. The next header ends them.
       KA_TRY(use(*safe, [this, stated_name] { return next_piece(stated_name); }));
     }
   }
@@ -132,6 +146,7 @@ class ArchiveReader {
  private:
   Result<void> open() {
     archive* const a = archive_.get();
+    // Only these formats are switched on. libarchive knows many more, each with its own faults.
     archive_read_support_format_zip_seekable(a);
     archive_read_support_format_tar(a);
     archive_read_support_filter_gzip(a);
@@ -155,12 +170,14 @@ class ArchiveReader {
   }
 
   /// True for an entry that names the archive's top folder, such as "./".
+  /// "." and ".." must be told apart, since both consist of dots.
   static bool is_top(std::string_view name) {
     return name.find_first_not_of("./") == std::string_view::npos && name.find("..") == name.npos &&
            !name.starts_with('/');
   }
 
   static std::string name_of(archive_entry* entry) {
+    // Names in a ZIP may be Latin-1 without saying so.
     const char* name = archive_entry_pathname_utf8(entry);
     if (name == nullptr) name = archive_entry_pathname(entry);
     return name == nullptr ? "" : as_utf8(name);
@@ -169,6 +186,7 @@ class ArchiveReader {
   /// Refuses links, devices and encrypted files; their kinds could reach outside of the target.
   Result<void> check_kind(archive_entry* entry, const std::string& name) const {
     const auto type = archive_entry_filetype(entry);
+    // A hard link in a tar has the type of a regular file.
     const bool is_link = type == AE_IFLNK || archive_entry_hardlink(entry) != nullptr ||
                          archive_entry_symlink(entry) != nullptr;
     if (is_link) return refuse("only files and folders", "a link, " + shown(name));
@@ -194,6 +212,7 @@ class ArchiveReader {
       return refuse(fmt::format("at most {} bytes in all files", limits_.bytes),
                     "more files, up to " + shown(name));
     }
+    // A division, because the product of size and ratio could overflow.
     if (bytes_ > not_judged && (bytes_ - not_judged) / limits_.ratio > feed_.bytes.size) {
       return refuse(fmt::format("files at most {} times the archive's size", limits_.ratio),
                     "larger files, in " + shown(name));
@@ -201,6 +220,7 @@ class ArchiveReader {
     return std::string_view(piece_.data(), static_cast<std::size_t>(got));
   }
 
+  // feed_ must not move: libarchive holds its address.
   Feed feed_;
   const ArchiveLimits& limits_;
   Owned archive_;
@@ -209,6 +229,7 @@ class ArchiveReader {
   std::vector<char> piece_ = std::vector<char>(std::size_t{256} << 10);
 };
 
+// Such characters could change a terminal on which the name is printed.
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 }  // namespace
@@ -220,6 +241,7 @@ Result<std::string> safe_archive_name(std::string_view name) {
   if (name.empty()) return refuse("names");
   if (name.size() > longest_name)
     return refuse(fmt::format("names of at most {} bytes", longest_name));
+  // "C:name" is an absolute name on Windows.
   if (name.starts_with('/') || (name.size() > 1 && name[1] == ':')) return refuse("relative names");
   if (name.find('\\') != name.npos) return refuse("names without a backslash");
   if (std::any_of(name.begin(), name.end(), is_control)) {
@@ -227,6 +249,7 @@ Result<std::string> safe_archive_name(std::string_view name) {
   }
   std::string out;
   while (!name.empty()) {
+    // Each part is checked alone; empty ones and "." are dropped.
     const std::string_view part = name.substr(0, name.find('/'));
     name.remove_prefix(std::min(name.size(), part.size() + 1));
     if (part.empty() || part == ".") continue;
@@ -236,18 +259,22 @@ Result<std::string> safe_archive_name(std::string_view name) {
     }
     out += (out.empty() ? "" : "/") + std::string(part);
   }
+  // "./" and "." have no name left.
   if (out.empty()) return refuse("names");
   return out;
 }
 
 bool looks_like_archive(std::string_view head, std::string_view path) {
   if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) return true;
+  // A tar has the mark "ustar" at byte 257.
   if (head.size() > 262 && head.substr(257, 5) == "ustar") return true;
+  // A gzip alone may be any file, so its name decides.
   return head.starts_with("\x1f\x8b") && (path.ends_with(".tar.gz") || path.ends_with(".tgz"));
 }
 
 Result<void> read_archive(const ArchiveBytes& bytes, const ArchiveLimits& limits,
                           const UseArchiveFile& use) {
+  // Checked before libarchive sees the names, which it would cut at a NUL.
   KA_TRY(check_zip_names(bytes));
   const NamesInUtf8 locale;
   return ArchiveReader(bytes, limits).read(use);

@@ -15,6 +15,7 @@
 namespace kinalign {
 
 /// The bytes of an archive, which can be read from any position.
+/// ZIP is read from its end and tar from its front, so the bytes must be readable at any position.
 struct ArchiveBytes {
   std::string name;  // for messages
   std::uint64_t size = 0;
@@ -23,6 +24,7 @@ struct ArchiveBytes {
   std::function<Result<std::size_t>(std::uint64_t at, std::span<char> to)> read_at;
 };
 
+/// The defaults are limits against hostile archives; a caller with smaller data gives smaller ones.
 struct ArchiveLimits {
   /// Most entries, folders included.
   std::uint64_t entries = 1'000'000;
@@ -36,6 +38,7 @@ struct ArchiveLimits {
 using ArchivePieces = std::function<Result<std::string_view>()>;
 /// Called with the name of each file, such as "a/b.txt": relative, without "." and "..", each name
 /// once.
+/// `use` may read the pieces to their end or ignore them.
 using UseArchiveFile = std::function<Result<void>(const std::string& name, const ArchivePieces&)>;
 
 /// Calls `use` for each regular file, in the order of the archive. Folders are skipped. Fails, with

@@ -12,11 +12,13 @@ namespace kinalign {
 
 namespace {
 
+// 2^40 bytes; no file that is read here comes near it.
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40;
 constexpr std::size_t longest_header = 65536, most_dimensions = 32;
 
 /// Parser of the header's dict: {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }. numpy
 /// evaluates it as Python; this parser takes only the form that numpy writes.
+/// The keys may stand in any order, each once. Everything else is refused.
 class HeaderText {
  public:
   explicit HeaderText(std::string_view text) : text_(text) {}
@@ -29,9 +31,11 @@ class HeaderText {
       if (!key || !take(":")) return false;
       bool taken = false;
       if (*key == "descr") taken = !std::exchange(descr, true) && parse_descr(out);
+      // True would mean Fortran order, in which the first index varies fastest.
       if (*key == "fortran_order") taken = !std::exchange(order, true) && take("False");
       if (*key == "shape") taken = !std::exchange(shape, true) && parse_shape(out);
       if (!taken) return false;
+      // numpy writes a comma after the last entry, too.
       if (!take(",") && !next_is('}')) return false;
     }
     skip_blanks();
@@ -77,9 +81,11 @@ class HeaderText {
     const char order = (*descr)[0];
     std::uint64_t size = 0;
     const char* const end = descr->data() + descr->size();
+    // The number must fill the rest of the word.
     const auto [behind, fault] = std::from_chars(descr->data() + 2, end, size);
     if (fault != std::errc{} || behind != end) return false;
     out.kind = (*descr)[1];
+    // A text of n characters takes 4 n bytes: numpy stores UTF-32.
     if (out.kind == 'U') {
       if (order != '<' || size == 0 || size > longest_header) return false;
       out.value_bytes = 4 * size;
@@ -89,6 +95,7 @@ class HeaderText {
     const bool known = (whole && (size == 1 || size == 2 || size == 4 || size == 8)) ||
                        (out.kind == 'f' && (size == 4 || size == 8));
     out.value_bytes = size;
+    // Single bytes have no byte order, which numpy writes as '|'.
     return known && (order == '<' || (order == '|' && size == 1));
   }
 
@@ -96,6 +103,7 @@ class HeaderText {
     if (!take("(")) return false;
     while (!take(")")) {
       const auto length = number();
+      // The product of the lengths is checked in parse_npy_header().
       if (!length || *length > most_bytes || out.shape.size() == most_dimensions) return false;
       out.shape.push_back(*length);
       if (!take(",") && !next_is(')')) return false;
@@ -108,6 +116,7 @@ class HeaderText {
 
 template <class Value>
 Value value_at(const NpyArray& array, std::size_t index) {
+  // memcpy, because the values in the file need not be aligned.
   static_assert(std::endian::native == std::endian::little);
   Value value;
   std::memcpy(&value, array.bytes.data() + index * sizeof(Value), sizeof(Value));
@@ -118,6 +127,7 @@ Value value_at(const NpyArray& array, std::size_t index) {
 void put_utf8(std::string& out, std::uint32_t code) {
   const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
   if (code < 0x80) return put(code);
+  // Halves of UTF-16 pairs are no characters.
   if (code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) return put('?');
   if (code < 0x800) {
     put(0xC0 | code >> 6);
@@ -152,8 +162,10 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
   if (version < 1 || version > 3) {
     return refuse("an NPY of version 1 to 3", std::to_string(version));
   }
+  // Version 1 has two bytes for the header's length, later versions have four.
   const std::size_t length_bytes = version == 1 ? 2 : 4, at = 8 + length_bytes;
   std::size_t length = 0;
+  // The length is little-endian, so its last byte counts most.
   for (std::size_t i = length_bytes; i-- > 0 && bytes.size() >= at;) {
     length = length << 8 | static_cast<unsigned char>(bytes[8 + i]);
   }
@@ -168,6 +180,8 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
   out.data_at = at + length;
   std::uint64_t all = std::max<std::size_t>(out.value_bytes, 1);
   for (const std::uint64_t one : out.shape) {
+    // Checked before each product, so that none can overflow. A length of 0 counts as 1: the others
+    // must be sane, too.
     if (one > 0 && all > most_bytes / one)
       return refuse("an array below 2^40 bytes", "a larger array");
     all *= std::max<std::uint64_t>(one, 1);
@@ -183,11 +197,13 @@ Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
     return Failure(Error{std::string(name), 0, std::to_string(wanted) + " bytes of values",
                          std::to_string(file.size() - out.header.data_at)});
   }
+  // Erased in place: a copy would double the memory.
   file.erase(0, out.header.data_at);
   out.bytes = std::move(file);
   return out;
 }
 
+// The kind tells signed and unsigned numbers of one width apart.
 std::int64_t integer_at(const NpyArray& array, std::size_t index) {
   const auto as = [&]<class Small, class Whole>(Small, Whole) {
     return array.header.kind == 'i' ? static_cast<std::int64_t>(value_at<Small>(array, index))
@@ -213,6 +229,7 @@ double number_at(const NpyArray& array, std::size_t index) {
 
 std::string text_at(const NpyArray& array, std::size_t index) {
   std::string out;
+  // numpy fills short texts with zeros.
   const std::size_t letters = array.header.value_bytes / 4;
   for (std::size_t i = 0; i < letters; ++i) {
     const auto code = value_at<std::uint32_t>(array, index * letters + i);

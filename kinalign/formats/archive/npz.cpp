@@ -7,6 +7,7 @@ namespace kinalign {
 
 namespace {
 
+/// A wanted length of 0 accepts any length.
 bool fits(const Shape& found, const Shape& wanted) {
   if (found.size() != wanted.size()) return false;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -45,6 +46,7 @@ Result<Npz> Npz::read(const ArchiveBytes& bytes, const ArchiveLimits& limits) {
           if (piece.empty()) break;
           file += piece;
         }
+        // A member of another kind shows that the file is no NPZ of numbers.
         if (!name.ends_with(".npy")) {
           return Failure(Error{bytes.name, 0, "only arrays, NAME.npy", shown(name)});
         }
@@ -55,6 +57,7 @@ Result<Npz> Npz::read(const ArchiveBytes& bytes, const ArchiveLimits& limits) {
   return out;
 }
 
+/// `kinds` lists the letters of NpyHeader::kind that the caller can use.
 Result<const NpyArray*> Npz::find(const std::string& name, std::string_view kinds,
                                   const Shape& shape) const {
   const auto at = arrays_.find(name);

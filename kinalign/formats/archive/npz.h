@@ -12,8 +12,10 @@
 
 namespace kinalign {
 
+/// The lengths of an array's dimensions, the slowest-varying first. Empty: a single value.
 using Shape = std::vector<std::uint64_t>;
 
+/// Memory: all arrays at once, at most as many bytes as the limits allow.
 class Npz {
  public:
   /// Members other than .npy are refused. All members together may have at most `limits.bytes`.

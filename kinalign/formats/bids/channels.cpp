@@ -13,10 +13,12 @@ namespace kinalign {
 
 namespace {
 
+// The lists of BIDS 1.9.
 constexpr std::array<std::string_view, 10> bids_types{
     "ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC", "ORNT", "POS", "VEL"};
 constexpr std::array<std::string_view, 8> bids_components{"x",      "y",      "z",      "quat_x",
                                                           "quat_y", "quat_z", "quat_w", "n/a"};
+// Components in the order of our arrays: x,y,z and w,x,y,z.
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 constexpr std::array<const char*, 4> quaternion_names{"quat_w", "quat_x", "quat_y", "quat_z"};
 
@@ -25,6 +27,7 @@ struct Unit {
   double scale;
 };
 constexpr double degree = std::numbers::pi / 180.0;
+// The units that are accepted. A type may have several.
 constexpr std::array<Unit, 17> bids_units{{{"POS", "m", 1.0},
                                            {"POS", "cm", 0.01},
                                            {"POS", "mm", 0.001},
@@ -44,6 +47,7 @@ constexpr std::array<Unit, 17> bids_units{{{"POS", "m", 1.0},
                                            {"LATENCY", "seconds", 1.0}}};
 
 /// Adds the channels of one tracked point and one type.
+/// `like` has the fields that all channels of the type share.
 template <std::size_t n>
 void add(const std::string& point, const std::array<const char*, n>& parts, const BidsChannel& like,
          std::vector<BidsChannel>& out) {
@@ -80,6 +84,7 @@ void add_channels(const PointHeader& points, std::vector<BidsChannel>& out) {
 
 void add_channels(const ImuHeader& nodes, std::vector<BidsChannel>& out) {
   for (const std::string& node : nodes.node_names) {
+    // Vectors of a sensor stay in its own space: "sensor". Only orientations are global.
     if (nodes.content.orientation) add(node, quaternion_names, kind("ORNT", "n/a", "global"), out);
     if (nodes.content.acceleration) add(node, axis_names, kind("ACCEL", "m/s^2", "sensor"), out);
     if (nodes.content.angular_velocity) add(node, axis_names, kind("GYRO", "rad/s", "sensor"), out);
@@ -87,6 +92,7 @@ void add_channels(const ImuHeader& nodes, std::vector<BidsChannel>& out) {
 }
 
 /// The direction of a letter in a right-handed space: x to the right, y forwards, z up.
+/// BIDS names directions as a person sees them: right, anterior (forwards), superior (up).
 std::optional<Vec3> direction(char letter) {
   switch (letter) {
     case 'R':
@@ -109,6 +115,7 @@ std::optional<Vec3> direction(char letter) {
 }  // namespace
 
 std::vector<BidsChannel> bids_channels(const BidsSource& source) {
+  // The latency belongs to no tracked point.
   std::vector<BidsChannel> out{{"latency", "n/a", "LATENCY", "n/a", "s", "n/a", "n/a"}};
   std::visit([&out](const auto& one) { add_channels(one, out); }, source);
   return out;
@@ -124,6 +131,7 @@ TsvTable channels_table(std::span<const BidsChannel> channels) {
   return out;
 }
 
+// Members by name, so that the columns may stand in any order.
 Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_view file) {
   constexpr std::array<std::pair<const char*, std::string BidsChannel::*>, 7> fields{
       {{"name", &BidsChannel::name},
@@ -133,6 +141,7 @@ Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_
        {"units", &BidsChannel::units},
        {"placement", &BidsChannel::placement},
        {"reference_frame", &BidsChannel::reference_frame}}};
+  // The first five columns are required.
   constexpr std::size_t needed = 5;
   std::vector<BidsChannel> out(table.rows.size());
   for (std::size_t f = 0; f < fields.size(); ++f) {
@@ -142,6 +151,7 @@ Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_
           Error{std::string(file), 1, std::string("a column ") + fields[f].first, "none"});
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
+      // A row may be shorter than the header line.
       const bool there = column && *column < table.rows[i].size();
       out[i].*fields[f].second = there ? table.rows[i][*column] : "n/a";
     }
@@ -168,6 +178,7 @@ double unit_scale(std::string_view type, std::string_view unit) {
 std::optional<Axes> axes_of_letters(std::string_view letters) {
   if (letters.size() != 3) return std::nullopt;
   Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
+  // `all`: every letter names a direction, so the handedness is known.
   bool all = true;
   int up = 0;  // number of the axis that points up, from 1; negative: it points down
   for (int k = 0; k < 3; ++k) {
@@ -177,12 +188,16 @@ std::optional<Axes> axes_of_letters(std::string_view letters) {
     directions.col(k) = *points_to;
     if (points_to->z() != 0.0) up = points_to->z() > 0.0 ? k + 1 : -(k + 1);
   }
+  // 0: two letters name the same axis, or one names none.
   const double hand = directions.determinant();
+  // Without a letter for up, the upward axis would be a guess.
   if (up == 0 || (all && hand == 0.0)) return std::nullopt;
+  // For each upward axis a turn that brings it to our y and keeps the space right-handed.
   constexpr std::array<Axes, 3> upwards{{{-2, 1, 3}, {1, 2, 3}, {1, 3, -2}}},
       downwards{{{2, -1, 3}, {1, -2, -3}, {1, -3, 2}}};
   const auto index = static_cast<std::size_t>(std::abs(up) - 1);
   Axes out = up > 0 ? upwards[index] : downwards[index];
+  // Mirroring one axis makes the space right-handed.
   if (all && hand < 0.0) out[2] = -out[2];  // a left-handed space
   return out;
 }

@@ -17,6 +17,7 @@
 
 namespace kinalign {
 
+/// All are texts as in channels.tsv. "n/a" stands for a field without a meaning.
 struct BidsChannel {
   std::string name, component, type, tracked_point, units, placement, reference_frame;
 };
@@ -27,17 +28,20 @@ using BidsSource = std::variant<Skeleton, PointHeader, ImuHeader>;
 /// The channels of a stream. LATENCY comes first. Then follow POS and ORNT of a skeleton's joints,
 /// POS of points, or ORNT, ACCEL and GYRO of nodes as far as the stream has them. Positions and
 /// orientations use the reference frame "global", accelerations and angular velocities "sensor".
+/// The order is that of the columns of motion.tsv, so writer and table must use the same list.
 std::vector<BidsChannel> bids_channels(const BidsSource& source);
 
 TsvTable channels_table(std::span<const BidsChannel> channels);
 /// Reads the channels back. Fails if one of the first five columns is missing; `file` appears in
 /// messages.
+/// The last two columns are optional in BIDS; a channel without them has "n/a".
 Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_view file);
 
 /// True for a channel type of BIDS 1.9, in capitals.
 bool is_bids_type(std::string_view type);
 bool is_bids_component(std::string_view component);
 /// Our units (m, rad, m/s2, ...) per `unit`; 0 if the type has no such unit.
+/// A value in the file times this factor is in our unit.
 double unit_scale(std::string_view type, std::string_view unit);
 
 /// Our axes from a space whose x, y and z point towards the given letters, such as "ALS": A or P, L

@@ -19,6 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// A larger table or JSON file can't be meant, and would fill the memory.
 constexpr std::size_t largest_text = std::size_t{16} << 20;
 
 template <std::size_t n>
@@ -26,6 +27,8 @@ bool contains(const std::array<std::string_view, n>& all, std::string_view one) 
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
+// Files and folders that BIDS allows at the top. Data types other than motion are allowed but not
+// checked.
 constexpr std::array<std::string_view, 14> top_files{"dataset_description.json",
                                                      "README",
                                                      "README.md",
@@ -47,8 +50,10 @@ constexpr std::array<std::string_view, 12> other_types{
 constexpr std::array<std::string_view, 10> motion_endings{
     "motion.tsv",  "motion.json",   "channels.tsv", "channels.json", "events.tsv",
     "events.json", "physio.tsv.gz", "physio.json",  "stim.tsv.gz",   "stim.json"};
+// These may also lie above the motion folder, and then apply to all files below.
 constexpr std::array<std::string_view, 4> inherited_endings{"motion.json", "channels.json",
                                                             "channels.tsv", "events.json"};
+// BIDS fixes the order of entities in a name.
 constexpr std::array<std::string_view, 8> entity_order{"sub", "ses", "task",      "tracksys",
                                                        "acq", "run", "recording", "desc"};
 
@@ -63,6 +68,8 @@ std::vector<std::string_view> parts_of(std::string_view path) {
 }
 
 /// True if the whole text matches the pattern. '*' stands for any characters except '/'.
+/// Recursive. The number of '*' is limited by ignore_patterns(), because each one multiplies the
+/// work.
 bool matches_wildcard(std::string_view pattern, std::string_view text) {
   if (pattern.empty()) return text.empty();
   if (pattern.front() != '*') {
@@ -71,6 +78,7 @@ bool matches_wildcard(std::string_view pattern, std::string_view text) {
   }
   pattern.remove_prefix(1);
   for (std::size_t i = 0;; ++i) {
+    // '*' takes 0, 1, 2, ... characters, until the rest fits.
     if (matches_wildcard(pattern, text.substr(i))) return true;
     if (i == text.size() || text[i] == '/') return false;
   }
@@ -80,11 +88,13 @@ bool matches_wildcard(std::string_view pattern, std::string_view text) {
 /// the top, or a folder with everything below it.
 bool is_ignored(const std::vector<std::string>& patterns, std::string_view path) {
   for (std::string_view pattern : patterns) {
+    // A pattern without a slash inside may match a name at any depth.
     if (pattern.starts_with('/')) pattern.remove_prefix(1);
     if (pattern.ends_with('/')) pattern.remove_suffix(1);
     const bool anywhere = pattern.find('/') == std::string_view::npos;
     std::string_view before;
     for (const std::string_view part : parts_of(path)) {
+      // The path up to and including this part: a folder with everything below it matches, too.
       before = path.substr(0, static_cast<std::size_t>(part.data() + part.size() - path.data()));
       if (matches_wildcard(pattern, anywhere ? part : before)) return true;
     }
@@ -99,6 +109,7 @@ std::vector<std::string> ignore_patterns(BidsCheck& check) {
   if (!check.listing.has(".bidsignore")) return out;
   const auto text = check.text_of(".bidsignore");
   constexpr std::size_t longest_pattern = 200, most_patterns = 1000;
+  // A header line is put in front, because the file has none.
   for (const auto& row : read_tsv("pattern\n" + text.value_or("")).rows) {
     const std::string& pattern = row.front();
     const bool good = !pattern.empty() && pattern.front() != '#' &&
@@ -110,6 +121,7 @@ std::vector<std::string> ignore_patterns(BidsCheck& check) {
 }
 
 /// True for letters and digits, and '+', which BIDS 1.11 allows.
+/// BIDS 1.9 allows letters and digits only.
 bool is_label(std::string_view label) {
   std::string without(label);
   std::erase(without, '+');
@@ -120,11 +132,13 @@ bool is_label(std::string_view label) {
 void check_entities(const std::string& path, const BidsName& name, BidsCheck& check) {
   std::size_t next = 0;
   for (const auto& [key, label] : name.entities) {
+    // Searched from the last place on, so that a wrong order is found, too.
     const auto* const known = std::find(entity_order.begin() + next, entity_order.end(), key);
     if (known == entity_order.end()) {
       check.error(path, "entities sub, ses, task, tracksys, acq, run in this order", shown(key));
       return;
     }
+    // Each entity may occur once.
     next = static_cast<std::size_t>(known - entity_order.begin()) + 1;
     if (!is_label(label)) check.error(path, "letters and digits for " + key, shown(label));
     const bool digits =
@@ -138,6 +152,7 @@ struct Place {
 };
 
 /// Checks the name of a file below sub-.../ or sub-.../ses-.../ against these folders.
+/// The name repeats subject and session of the folders, so that a file is known without its place.
 void check_file_name(const std::string& path, const Place& place, std::string_view type,
                      BidsCheck& check) {
   const auto name = parse_bids_name(file_name(path));
@@ -158,11 +173,13 @@ void check_file_name(const std::string& path, const Place& place, std::string_vi
                 "ses-" + shown(name->label("ses")));
   }
   if (type != "motion") return;
+  // Other data types have endings of their own, which are not checked here.
   if (!contains(motion_endings, name->ending)) {
     check.error(path, "motion.tsv, motion.json, channels.tsv, channels.json or events.tsv",
                 shown(name->ending));
     return;
   }
+  // events.tsv and its sidecars belong to the task and to no tracking system.
   const bool of_system =
       name->ending.starts_with("motion.") || name->ending.starts_with("channels.");
   if (name->label("task").empty()) check.error(path, "a task", "none");
@@ -178,6 +195,7 @@ bool is_table_of_subject(std::string_view ending) {
 /// Checks the path of a file below a subject's folder; `parts` are its folders and its name.
 void check_subject_path(const std::string& path, std::vector<std::string_view> parts,
                         BidsCheck& check) {
+  // "sub-" has four letters, and so has "ses-".
   Place place{std::string(parts.front().substr(4)), ""};
   if (!is_label(place.subject))
     check.error(path, "letters and digits for sub", shown(place.subject));
@@ -188,6 +206,7 @@ void check_subject_path(const std::string& path, std::vector<std::string_view> p
       check.error(path, "letters and digits for ses", shown(place.session));
     parts.erase(parts.begin());
   }
+  // The file lies directly in the subject's or session's folder.
   if (parts.size() == 1) {
     const auto name = parse_bids_name(parts.front());
     if (name && (is_table_of_subject(name->ending) || contains(inherited_endings, name->ending))) {
@@ -200,6 +219,7 @@ void check_subject_path(const std::string& path, std::vector<std::string_view> p
   }
   if (parts.size() == 2 && parts.front() == "motion")
     return check_file_name(path, place, "motion", check);
+  // Files of other data types are left to other checkers.
   if (contains(other_types, parts.front())) return;
   check.error(path, "a folder of a data type of BIDS, such as motion", shown(parts.front()));
 }
@@ -209,8 +229,10 @@ void check_subject_path(const std::string& path, std::vector<std::string_view> p
 void check_path(const std::string& path, BidsCheck& check) {
   const auto parts = parts_of(path);
   const std::string_view first = parts.front();
+  // Hidden files, .bidsignore among them.
   if (first.starts_with('.')) return;
   if (parts.size() > 1 && first.starts_with("sub-")) return check_subject_path(path, parts, check);
+  // A folder at the top that is no subject's.
   if (parts.size() > 1) {
     if (!contains(top_folders, first)) {
       check.error(path, "a folder sub-..., sourcedata, derivatives, code, stimuli or phenotype",
@@ -219,6 +241,7 @@ void check_path(const std::string& path, BidsCheck& check) {
     return;
   }
   if (contains(top_files, first)) return;
+  // Inherited files at the top apply to all subjects.
   const auto name = parse_bids_name(first);
   if (name && contains(inherited_endings, name->ending)) return check_entities(path, *name, check);
   check.error(path, "a file that BIDS knows; others belong into sourcedata/ or .bidsignore",
@@ -238,6 +261,7 @@ void check_description(BidsCheck& check) {
   for (const char* key : {"Name", "BIDSVersion"}) {
     if (text(key).empty()) check.error(path, std::string("a text ") + key, "none");
   }
+  // A data set without a type is raw.
   const std::string type = json->contains("DatasetType") ? text("DatasetType") : "raw";
   if (type != "raw" && type != "derivative") {
     check.error(path, "DatasetType raw or derivative", shown(type));
@@ -260,6 +284,7 @@ void check_readme(BidsCheck& check) {
 
 std::set<std::string> subjects_of(const BidsListing& listing) {
   std::set<std::string> out;
+  // Each subject occurs in many paths; the set keeps one name.
   for (const std::string& path : listing.paths) {
     if (path.starts_with("sub-")) out.insert(path.substr(0, path.find('/')));
   }
@@ -272,6 +297,7 @@ void check_participant_rows(const std::string& path, const TsvTable& table, Bids
   std::set<std::string> listed;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
+    // Line 1 has the names of the columns.
     const auto line = static_cast<std::int64_t>(i) + 2;
     if (row.size() != table.columns.size()) {
       check.error(path, fmt::format("{} cells", table.columns.size()), std::to_string(row.size()),
@@ -280,11 +306,13 @@ void check_participant_rows(const std::string& path, const TsvTable& table, Bids
     if (!listed.insert(row.front()).second) {
       check.error(path, "each participant once", shown(row.front()) + " again", line);
     }
+    // A participant may have data of another type, or none yet.
     if (!subjects.contains(row.front())) {
       check.warning(path, "a folder of each participant", "no folder of " + shown(row.front()),
                     line);
     }
   }
+  // Data without a participant is an error of the table.
   for (const std::string& subject : subjects) {
     if (!listed.contains(subject)) check.error(path, "a row of " + shown(subject), "none");
   }
@@ -301,6 +329,7 @@ void check_participants(BidsCheck& check) {
                        table->columns.empty() ? "none" : shown(table->columns.front()), 1);
   }
   check_participant_rows(path, *table, check);
+  // Without participants.json no column is described.
   const auto json = check.listing.has(described) ? check.json_of(described) : std::nullopt;
   for (std::size_t c = 1; c < table->columns.size(); ++c) {
     if (json && json->contains(table->columns[c])) continue;
@@ -315,11 +344,13 @@ void check_scans(const std::string& path, BidsCheck& check) {
   if (!table) return;
   const auto file = table->column("filename"), time = table->column("acq_time");
   if (!file) return check.error(path, "a column filename", "none", 1);
+  // Paths in scans.tsv count from the table's own folder.
   const std::string above(folder(path));
   std::set<std::string> listed;
   for (std::size_t i = 0; i < table->rows.size(); ++i) {
     const auto& row = table->rows[i];
     const auto line = static_cast<std::int64_t>(i) + 2;
+    // A row of another length can't be read by column.
     if (row.size() != table->columns.size()) {
       check.error(path, fmt::format("{} cells", table->columns.size()), std::to_string(row.size()),
                   line);
@@ -332,6 +363,7 @@ void check_scans(const std::string& path, BidsCheck& check) {
       check.error(path, "acq_time YYYY-MM-DDThh:mm:ss[.000000][Z]", shown(row[*time]), line);
     }
   }
+  // Data of this folder that the table does not mention.
   for (const std::string& one : check.listing.paths) {
     if (one.starts_with(above + "motion/") && one.ends_with("_motion.tsv") &&
         !listed.contains(one)) {
@@ -343,6 +375,7 @@ void check_scans(const std::string& path, BidsCheck& check) {
 /// Checks that a sidecar file has its motion.tsv. A sidecar without one means that the data was
 /// lost or misnamed.
 void check_orphans(const std::string& path, BidsCheck& check) {
+  // The name of the data follows from that of its sidecar.
   for (const std::string_view ending : {"motion.json", "channels.tsv"}) {
     if (path.find("/motion/") == std::string::npos || !path.ends_with("_" + std::string(ending)))
       continue;
@@ -371,10 +404,12 @@ std::optional<std::string> BidsCheck::text_of(const std::string& path) {
   std::string text;
   const auto read = listing.read(path, [&](std::string_view piece) -> Result<void> {
     text += piece;
+    // The bytes are counted while they arrive.
     if (text.size() <= largest_text) return {};
     return Failure(Error{path, 0, "a file of at most 16 MiB", "a larger file"});
   });
   if (read) return text;
+  // The path in the listing replaces that of the disk.
   Error what = read.error();
   what.file = path;
   findings.push_back({Severity::error, std::move(what), "the file can't be checked", ""});
@@ -392,6 +427,7 @@ std::optional<Json> BidsCheck::json_of(const std::string& path) {
   if (!text) return std::nullopt;
   auto json = parse_bids_json(*text, path);
   if (json) return *std::move(json);
+  // A JSON that can't be read is an error of the data set, not of the checker.
   error(path, json.error().expected, json.error().found);
   return std::nullopt;
 }
@@ -402,14 +438,18 @@ std::vector<std::string> BidsCheck::inherited(const std::string& path,
   std::vector<std::string> out;
   if (!own) return out;
   for (const std::string& other : listing.paths) {
+    // Only files in a folder above can apply. The ending is compared again below, since one may end
+    // in another.
     if (!other.ends_with(ending) || !path.starts_with(folder(other))) continue;
     const auto name = parse_bids_name(file_name(other));
     if (!name || name->ending != ending) continue;
     const bool holds =
+        // A file without an entity applies to all values of that entity.
         std::all_of(name->entities.begin(), name->entities.end(),
                     [&](const auto& entity) { return own->label(entity.first) == entity.second; });
     if (holds) out.push_back(other);
   }
+  // The nearest file comes last, so that its keys win when they are merged.
   std::stable_sort(out.begin(), out.end(), [](const std::string& a, const std::string& b) {
     return folder(a).size() < folder(b).size();
   });
@@ -421,11 +461,13 @@ Findings check_bids(const BidsListing& listing) {
   check_description(check);
   check_readme(check);
   check_participants(check);
+  // .bidsignore is read first. Files that it names may break any rule.
   const auto ignored = ignore_patterns(check);
   bool motion = false;
   for (const std::string& path : listing.paths) {
     if (is_ignored(ignored, path)) continue;
     check_path(path, check);
+    // Only subjects have data and sidecars.
     if (!path.starts_with("sub-")) continue;
     check_orphans(path, check);
     if (path.ends_with("_scans.tsv")) check_scans(path, check);

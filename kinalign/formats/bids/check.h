@@ -14,6 +14,7 @@
 namespace kinalign {
 
 /// The checker's view of a data set: the paths of its files and their content.
+/// The checker sees a data set through these functions only, so tests need no disk.
 struct BidsListing {
   /// Paths of the files, relative to the data set's folder, with "/" as separator.
   std::set<std::string> paths;
@@ -26,6 +27,7 @@ struct BidsListing {
 /// Reads every motion file, and the tables and JSON files about them. Other data types are skipped.
 /// Findings name files by their paths in the listing. Errors break the BIDS standard; warnings and
 /// notes do not. Memory holds tables of at most 16 MiB each and one line of a motion.tsv.
+/// Every cell of a motion.tsv is looked at.
 Findings check_bids(const BidsListing& listing);
 
 }  // namespace kinalign

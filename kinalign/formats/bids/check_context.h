@@ -15,6 +15,7 @@
 
 namespace kinalign {
 
+/// Every function adds its faults to `findings` and goes on, so one run reports all of them.
 class BidsCheck {
  public:
   explicit BidsCheck(const BidsListing& given) : listing(given) {}
@@ -22,6 +23,7 @@ class BidsCheck {
   const BidsListing& listing;
   Findings findings;
 
+  /// Warnings are for what BIDS recommends, errors for what it requires.
   void error(const std::string& path, std::string expected, std::string found,
              std::int64_t line = 0);
   void warning(const std::string& path, std::string expected, std::string found,
@@ -41,6 +43,7 @@ class BidsCheck {
 /// Checks the files of the tracking system to which this motion.tsv belongs.
 void check_bids_system(const std::string& motion_tsv, BidsCheck& check);
 /// Results of check_bids_rows(); latencies are those of the first and the last row that has one.
+/// Compared with the rates and the duration that motion.json states.
 struct BidsRowsSummary {
   std::uint64_t rows = 0, latencies = 0;
   std::optional<double> first_latency_s, last_latency_s;

@@ -18,6 +18,7 @@ namespace kinalign {
 namespace {
 
 /// Count of a fault, with the place and text of its first occurrence.
+/// A fault may occur in every row of a file with a million rows.
 struct Repeated {
   std::uint64_t times = 0;
   std::int64_t line = 0;
@@ -35,12 +36,14 @@ struct Repeated {
 
 class RowsCheck {
  public:
+  // Columns of each quaternion. A point with fewer or more than four parts has no length to check.
   explicit RowsCheck(const std::vector<BidsChannel>& channels) : channels_(channels) {
     std::map<std::string, std::array<std::size_t, 4>> quaternions;
     std::map<std::string, std::size_t> parts;
     for (std::size_t c = 0; c < channels.size(); ++c) {
       if (channels[c].type == "LATENCY" && !latency_) latency_ = c;
       if (channels[c].type != "ORNT" || !channels[c].component.starts_with("quat_")) continue;
+      // parts counts beyond four, so that a repeated part is noticed.
       const std::size_t part = parts[channels[c].tracked_point]++;
       if (part < 4) quaternions[channels[c].tracked_point][part] = c;
     }
@@ -51,14 +54,17 @@ class RowsCheck {
 
   /// Checks one row. A first line that is mostly text is reported as a line of names and not
   /// checked further.
+  /// The numbers of the row are kept in values_, with NaN for what is missing.
   Result<void> use(std::string_view line, std::int64_t number) {
     if (line.empty()) {
       blank_.add(number, "an empty line");
       return {};
     }
     values_.clear();
+    // Only the first line may be one of names.
     const bool first = summary.rows == 0 && names_.times == 0;
     std::size_t texts = 0;
+    // The cells are read in place, without a list of texts.
     for (std::string_view rest = line;;) {
       const auto tab = rest.find('\t');
       texts += read_cell(rest.substr(0, tab), number) ? 0 : 1;
@@ -68,11 +74,13 @@ class RowsCheck {
     if (first &&
         2 * texts > values_.size()) {  // a line of names, which the other faults would repeat
       names_.add(number, line.substr(0, line.find('\t')));
+      // Its cells were counted as faults already.
       no_number_ = {};
       return {};
     }
     ++summary.rows;
     check_length(number);
+    // In a row of another length no cell belongs to a known channel.
     if (values_.size() == channels_.size()) check_values(number);
     return {};
   }
@@ -85,6 +93,7 @@ class RowsCheck {
     report_rows(names_, "only rows of numbers, without a line of column names");
     report_rows(blank_, "no empty lines");
     report_rows(lengths_, fmt::format("rows of {} cells, like the first row", width_));
+    // The rows agree with each other but not with channels.tsv.
     if (!channels_.empty() && width_ > 0 && width_ != channels_.size()) {
       check.error(path, fmt::format("{} columns, one per row of channels.tsv", channels_.size()),
                   std::to_string(width_));
@@ -104,9 +113,11 @@ class RowsCheck {
   /// Appends the cell to the row. False if the cell is neither a number nor a mark of a missing
   /// value.
   bool read_cell(std::string_view cell, std::int64_t line) {
+    // NaN stands for a missing value, which every later comparison fails.
     double value = NAN;
     bool good = true;
     if (cell != "n/a") {
+      // "nan" and empty cells are understood by many programs, but BIDS wants n/a.
       if (says_missing(cell)) {
         nan_.add(line, cell.empty() ? "an empty cell" : cell);
       } else if (!parse_number(cell, value) || !std::isfinite(value)) {
@@ -120,6 +131,7 @@ class RowsCheck {
   }
 
   void check_length(std::int64_t line) {
+    // The first row decides, since channels.tsv itself may be wrong.
     if (width_ == 0) width_ = values_.size();
     if (values_.size() != width_) lengths_.add(line, std::to_string(values_.size()));
   }
@@ -128,6 +140,7 @@ class RowsCheck {
   void check_values(std::int64_t line) {
     if (latency_) {
       const double latency = values_[*latency_];
+      // A missing latency is a fault, too: no sample is without its time.
       if (!std::isfinite(latency) ||
           (summary.last_latency_s && latency <= *summary.last_latency_s)) {
         latencies_.add(line, fmt::format("{}", latency));
@@ -139,6 +152,7 @@ class RowsCheck {
       }
     }
     for (const auto& columns : quaternions_) {
+      // NaN in any part makes the sum NaN, so an incomplete quaternion is not judged.
       double square = 0.0;
       for (const std::size_t c : columns) square += values_[c] * values_[c];
       if (std::isfinite(square) && std::abs(std::sqrt(square) - 1.0) > 0.02) {
@@ -161,10 +175,12 @@ BidsRowsSummary check_bids_rows(const std::string& path, const std::vector<BidsC
                                 BidsCheck& check) {
   RowsCheck rows(channels);
   LineSplitter lines;
+  // The number of the line is known to the splitter alone.
   const auto use = [&](std::string_view line) { return rows.use(line, lines.number()); };
   auto read =
       check.listing.read(path, [&](std::string_view piece) { return lines.feed(piece, use); });
   if (read) read = lines.finish(use);
+  // Faults that were counted before are not reported.
   if (!read) {
     Error what = read.error();
     what.file = path;

@@ -25,6 +25,7 @@ bool is_one_of(std::string_view text, std::initializer_list<std::string_view> al
 }
 
 /// True if the channel's type can have its component.
+/// A quaternion's parts occur in orientations only, and a latency has no component.
 bool fits(const BidsChannel& channel) {
   const bool axis = is_one_of(channel.component, {"x", "y", "z"});
   if (channel.type == "ORNT") return axis || channel.component.starts_with("quat_");
@@ -41,6 +42,7 @@ std::string in_capitals(std::string text) {
 }
 
 /// Checks the header line of channels.tsv: five required columns in their order, no name twice.
+/// BIDS fixes the order of these columns, unlike that of all others.
 void check_columns(const std::string& path, const TsvTable& table, BidsCheck& check) {
   constexpr std::array<const char*, 5> needed{"name", "component", "type", "tracked_point",
                                               "units"};
@@ -58,6 +60,7 @@ void check_columns(const std::string& path, const TsvTable& table, BidsCheck& ch
 void check_channel(const std::string& path, std::int64_t line, const BidsChannel& channel,
                    BidsCheck& check) {
   if (!is_bids_type(channel.type)) {
+    // A frequent fault, so it has its own message.
     const bool lower = is_bids_type(in_capitals(channel.type));
     check.error(path, lower ? "types in capitals" : "a type of BIDS, such as POS or GYRO",
                 shown(channel.type), line);
@@ -69,10 +72,12 @@ void check_channel(const std::string& path, std::int64_t line, const BidsChannel
   } else if (!fits(channel)) {
     check.error(path, "a component of " + channel.type, shown(channel.component), line);
   }
+  // Any unit is accepted for these types.
   const bool free_unit = is_one_of(channel.type, {"MAGN", "MISC", "VEL"});
   if (channel.units.empty() || (!free_unit && unit_scale(channel.type, channel.units) == 0.0)) {
     check.warning(path, "a unit of " + channel.type, shown(channel.units), line);
   }
+  // The parts of a quaternion have no unit; angles have one.
   const bool quaternion = channel.component.starts_with("quat_");
   if (channel.type == "ORNT" && quaternion != (channel.units == "n/a")) {
     check.warning(path, quaternion ? "the unit n/a of a quaternion" : "rad or deg of an angle",
@@ -84,6 +89,7 @@ void check_channel(const std::string& path, std::int64_t line, const BidsChannel
 /// type.
 void check_groups(const std::string& path, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
+  // Key: tracked point and type. A repeated component counts once.
   std::map<std::pair<std::string, std::string>, std::set<std::string>> groups;
   for (const BidsChannel& c : channels) {
     if (c.component != "n/a" && is_bids_type(c.type))
@@ -107,6 +113,7 @@ void check_groups(const std::string& path, const std::vector<BidsChannel>& chann
 
 void check_status(const std::string& path, const TsvTable& table, BidsCheck& check) {
   const auto status = table.column("status");
+  // The column is optional.
   if (!status) return;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (table.rows[i].size() <= *status) continue;
@@ -121,11 +128,13 @@ std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& chec
   const auto table = check.table_of(path);
   if (!table) return {};
   check_columns(path, *table, check);
+  // A column is missing, which check_columns() has reported.
   const auto channels = channels_of(*table, path);
   if (!channels) return {};
   std::set<std::string> names;
   for (std::size_t i = 0; i < channels->size(); ++i) {
     const auto line = static_cast<std::int64_t>(i) + 2;
+    // The cells of such a row can't be told apart.
     if (table->rows[i].size() != table->columns.size()) {
       check.error(path, fmt::format("{} cells", table->columns.size()),
                   std::to_string(table->rows[i].size()), line);
@@ -143,11 +152,13 @@ std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& chec
 }
 
 /// Names of the reference frames in a channels.json. Invalid SpatialAxes become a warning.
+/// BIDS puts them below reference_frame: Levels.
 std::set<std::string> described_frames(const std::string& path, BidsCheck& check) {
   std::set<std::string> out;
   const auto json = check.json_of(path);
   if (!json) return out;
   const FoundJson frame = json->value("reference_frame", FoundJson::object());
+  // Another value at this place has no levels and describes nothing.
   const FoundJson levels = frame.is_object() ? frame.value("Levels", FoundJson::object()) : frame;
   if (!levels.is_object()) return out;
   for (const auto& [name, level] : levels.items()) {
@@ -155,6 +166,7 @@ std::set<std::string> described_frames(const std::string& path, BidsCheck& check
     const auto letters = level.is_object() ? level.find("SpatialAxes") : level.end();
     if (letters == level.end() || !letters->is_string()) continue;
     const std::string text = letters->get<std::string>();
+    // "n/a" is allowed: the directions are not known.
     if (text == "n/a" || axes_of_letters(text)) continue;
     check.warning(path, "SpatialAxes of three letters A or P, L or R, S or I", shown(text));
   }
@@ -165,13 +177,16 @@ std::set<std::string> described_frames(const std::string& path, BidsCheck& check
 void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
   std::set<std::string> frames;
+  // "n/a" and an empty cell name no frame.
   for (const BidsChannel& c : channels) frames.insert(c.reference_frame);
   frames.erase("n/a");
   frames.erase("");
   if (frames.empty()) return;
   const auto paths = check.inherited(motion_tsv, "channels.json");
+  // Every inherited file may describe frames.
   std::set<std::string> described;
   for (const std::string& path : paths) described.merge(described_frames(path, check));
+  // 10 is the length of "motion.tsv".
   const std::string channels_json = motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.json";
   for (const std::string& one : frames) {
     if (described.contains(one)) continue;
@@ -182,6 +197,7 @@ void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>&
 
 /// Keys of all motion.json files that apply to the motion.tsv. A nearer file overrides the ones
 /// above.
+/// An incomplete result would give wrong findings, so one file that can't be read ends the check.
 std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& check) {
   const auto paths = check.inherited(motion_tsv, "motion.json");
   if (paths.empty()) {
@@ -198,6 +214,7 @@ std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& c
 }
 
 /// Compares the keys of motion.json with the channels and the rows.
+/// Numbers and texts are compared only if the file states them.
 class FactsCheck {
  public:
   FactsCheck(std::string path, const FoundJson& json, BidsCheck& check)
@@ -215,6 +232,7 @@ class FactsCheck {
     return found != json_.end() && found->is_string() ? found->get<std::string>() : "";
   }
 
+  /// A count that is absent is no fault.
   void count(const std::string& key, std::size_t is) const {
     const auto stated = number(key.c_str());
     if (stated && *stated != static_cast<double>(is)) {
@@ -224,6 +242,7 @@ class FactsCheck {
 
   /// Checks TaskName and TrackingSystemName. The letters and digits of TaskName must give the task
   /// label.
+  /// BIDS makes the label from the name by leaving out all other characters.
   void names(std::string_view task) const {
     const std::string name = text("TaskName");
     std::string label;
@@ -239,6 +258,7 @@ class FactsCheck {
   }
 
   /// Compares the stated counts of channels and tracked points with channels.tsv.
+  /// The table may list points in any order, so a set counts them.
   void counts(const std::vector<BidsChannel>& channels) const {
     std::map<std::string, std::size_t> of_type;
     std::set<std::string> points;
@@ -252,6 +272,7 @@ class FactsCheck {
          {"POS", "ORNT", "ACCEL", "GYRO", "MAGN", "LATENCY", "JNTANG", "VEL", "ANGACCEL"}) {
       count(std::string(type) + "ChannelCount", of_type[type]);
     }
+    // Both spellings are accepted.
     count("MISCChannelCount", of_type["MISC"]);
     count("MiscChannelCount", of_type["MISC"]);
   }
@@ -264,6 +285,7 @@ class FactsCheck {
       return;
     }
     const auto n = static_cast<double>(rows.rows);
+    // The tolerance is 2 % and two rows: rates are nominal.
     const auto duration = number("RecordingDuration");
     if (duration && rows.rows > 0 &&
         std::abs(*duration - n / *rate) > 0.02 * n / *rate + 2.0 / *rate) {
@@ -272,6 +294,7 @@ class FactsCheck {
                                  *rate, n / *rate),
                      fmt::format("{:g}", *duration));
     }
+    // With one latency, or none, there is no measured rate.
     const auto effective = number("SamplingFrequencyEffective");
     if (!effective || !rows.last_latency_s || *rows.last_latency_s <= *rows.first_latency_s) return;
     const double by_latency =
@@ -294,18 +317,22 @@ class FactsCheck {
 void check_bids_system(const std::string& motion_tsv, BidsCheck& check) {
   const auto tables = check.inherited(motion_tsv, "channels.tsv");
   std::vector<BidsChannel> channels;
+  // Without channels.tsv the rows are still checked against each other.
   if (tables.empty()) {
     check.error(motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.tsv", "this file", "none");
   } else {
+    // BIDS' nearest file wins; tables are not merged.
     channels = check_channels(tables.back(), check);
     check_frames(motion_tsv, channels, check);
   }
   const BidsRowsSummary rows = check_bids_rows(motion_tsv, channels, check);
   const auto json = merged_json(motion_tsv, check);
   if (!json) return;
+  // Faults are reported at the nearest file.
   const FactsCheck facts(check.inherited(motion_tsv, "motion.json").back(), *json, check);
   const auto name = parse_bids_name(file_name(motion_tsv));
   facts.names(name ? name->label("task") : "");
+  // Counts of a table that could not be read would be wrong.
   if (!channels.empty()) facts.counts(channels);
   facts.times(rows);
 }

@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// Optional texts that are empty are left out of the file.
 struct BidsDataset {
   std::string name, license;
   std::vector<std::string> authors;
@@ -31,6 +32,7 @@ struct BidsColumn {
   std::map<std::string, std::string> levels;  // value -> meaning
 };
 
+/// Each row has a cell for each column; missing cells become n/a.
 struct BidsParticipants {
   std::vector<BidsColumn> columns;
   std::vector<std::pair<std::string, std::vector<std::string>>> rows;  // subject's label, cells
@@ -40,6 +42,7 @@ std::string participants_json(const BidsParticipants& participants);
 
 /// A row of scans.tsv: the file's path below the subject's or session's folder, and its start. An
 /// unknown start is n/a.
+/// acq_time is the time zero of the latencies, so a reader gets stamps from both.
 using BidsScan = std::pair<std::string, std::optional<Time>>;
 std::string scans_tsv(const std::vector<BidsScan>& scans);
 

@@ -10,6 +10,7 @@ std::string bids_json_text(const nlohmann::ordered_json& json) {
 }
 
 Result<nlohmann::ordered_json> parse_bids_json(std::string_view text, std::string_view file) {
+  // A byte order mark.
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   auto parsed = nlohmann::ordered_json::parse(text, nullptr, false);
   if (parsed.is_object()) return parsed;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts the JSON files of a BIDS data set to and from text. No exception leaves these functions.
+// nlohmann throws on invalid UTF-8 and on faults in a text unless it is told not to.
 #pragma once
 
 #include "kinalign/core/error.h"

@@ -25,6 +25,7 @@ struct Global {
 };
 
 /// Forward kinematics of frame t. A root's local values are global already.
+/// A parent comes before its children, so one pass is enough.
 std::vector<Global> global_of(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t) {
   std::vector<Global> out(skeleton.joints());
   for (std::size_t j = 0; j < out.size(); ++j) {
@@ -44,6 +45,7 @@ std::vector<Global> global_of(const Skeleton& skeleton, const ClipFrames& frames
 /// Text of channels.json: the reference frames in use. `letters` are the SpatialAxes of the global
 /// one.
 std::string channels_json(const std::vector<BidsChannel>& channels, const std::string& letters) {
+  // Only frames that occur are described.
   std::set<std::string> used;
   for (const BidsChannel& channel : channels) used.insert(channel.reference_frame);
   Json levels;
@@ -73,6 +75,7 @@ void add_counts(const std::vector<BidsChannel>& channels, Json& out) {
   }
   out["MotionChannelCount"] = channels.size();
   out["TrackedPointsCount"] = points.size();
+  // Every count is written, also 0.
   for (const char* type :
        {"POS", "ORNT", "ACCEL", "GYRO", "MAGN", "VEL", "ANGACCEL", "JNTANG", "LATENCY"}) {
     std::size_t count = 0;
@@ -88,11 +91,13 @@ BidsMotionWriter::BidsMotionWriter(BidsSource source, TextOut& out)
 
 void BidsMotionWriter::begin_row(Time stamp) {
   if (rows_++ == 0) {
+    // The remainder of a negative number is negative, so it is brought into range.
     const std::int64_t ns = to_ns(stamp), below = ((ns % 1000) + 1000) % 1000;
     // acq_time is written to the microsecond, so the latencies count from a whole one.
     onset_ = utc_time(ns - below);
   }
   last_ = stamp;
+  // The latency is the first column.
   out_->text(seconds_text((stamp - onset_).count()));
 }
 
@@ -107,10 +112,12 @@ void BidsMotionWriter::put(std::span<const double> values, int decimals, bool pr
 }
 
 Result<void> BidsMotionWriter::append(const ClipFrames& frames) {
+  // The source's kind is fixed by the constructor; another kind of block throws.
   const Skeleton& skeleton = std::get<Skeleton>(source_);
   for (std::size_t t = 0; t < frames.size(); ++t) {
     begin_row(frames.stamps[t]);
     for (const Global& joint : global_of(skeleton, frames, t)) {
+      // A clip has no missing joints.
       put({joint.place.data(), 3}, six, true);
       put(std::array{joint.turn.w(), joint.turn.x(), joint.turn.y(), joint.turn.z()}, nine, true);
     }
@@ -161,9 +168,11 @@ BidsSidecars BidsMotionWriter::sidecars(const BidsSystemFacts& facts) const {
   add("SoftwareVersions", facts.software_versions);
   motion["SamplingFrequency"] = facts.rate_hz;
   const double seconds = 1e-9 * static_cast<double>((last_ - onset_).count());
+  // One row has no rate.
   if (rows_ > 1 && seconds > 0.0) {
     motion["SamplingFrequencyEffective"] = static_cast<double>(rows_ - 1) / seconds;
   }
+  // Each row lasts one step, and so does the last one.
   if (facts.rate_hz > 0.0) motion["RecordingDuration"] = seconds + 1.0 / facts.rate_hz;
   motion["MissingValues"] = "n/a";
   add_counts(channels_, motion);

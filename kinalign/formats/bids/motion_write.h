@@ -15,6 +15,7 @@
 namespace kinalign {
 
 /// Facts for motion.json that can't be computed from the samples. Empty texts are left out.
+/// Names for people; the labels of BidsEntities are for file names.
 struct BidsSystemFacts {
   std::string task_name, system_name;  // "Walking and turning", "Kinect v2"
   double rate_hz = 0.0;                // nominal
@@ -24,6 +25,7 @@ struct BidsSystemFacts {
 };
 
 /// The texts of the sidecar files of a motion.tsv.
+/// The texts are made after the rows, because they state counts and the measured rate.
 struct BidsSidecars {
   std::string channels_tsv, channels_json, motion_json;
   Time onset{};  // for scans.tsv: time zero of the latencies
@@ -32,6 +34,7 @@ struct BidsSidecars {
 /// Writes a motion.tsv. Positions have six decimals, quaternions nine, accelerations and angular
 /// velocities six, latencies nine. Positions and orientations of a skeleton are global. Missing and
 /// invalid values are n/a. The caller commits `out`, which must outlive the writer.
+/// BIDS has no local rotations, so a skeleton is written in the room's space.
 class BidsMotionWriter {
  public:
   BidsMotionWriter(BidsSource source, TextOut& out);
@@ -52,6 +55,7 @@ class BidsMotionWriter {
   std::vector<BidsChannel> channels_;
   TextOut* out_;
   std::uint64_t rows_ = 0;
+  // onset_ is set by the first row; last_ is the stamp of the newest one.
   Time onset_{}, last_{};
 };
 

@@ -14,6 +14,7 @@ namespace {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
+/// Kept apart because a year far away would not fit into a Time.
 struct TimeParts {
   std::chrono::sys_days day;
   std::chrono::seconds of_day{};
@@ -21,6 +22,7 @@ struct TimeParts {
 };
 
 /// The number made of `count` digits from `at` on; -1 if other characters stand there.
+/// No sign and no blank is accepted, as std::from_chars would accept a sign.
 int digits_at(std::string_view text, std::size_t at, std::size_t count) {
   if (text.size() < at + count) return -1;
   int value = 0;
@@ -38,6 +40,7 @@ std::optional<std::chrono::nanoseconds> fraction_of(std::string_view text) {
   text.remove_prefix(1);
   if (!std::all_of(text.begin(), text.end(), is_digit)) return std::nullopt;
   std::int64_t ns = 0;
+  // A missing digit counts as 0: ".5" is 500,000,000 ns.
   for (std::size_t i = 0; i < 9; ++i) ns = 10 * ns + (i < text.size() ? text[i] - '0' : 0);
   return std::chrono::nanoseconds{ns};
 }
@@ -45,6 +48,7 @@ std::optional<std::chrono::nanoseconds> fraction_of(std::string_view text) {
 /// Parses a time and checks the range of each part; a leap second, 60, is allowed.
 std::optional<TimeParts> time_parts_of(std::string_view text) {
   constexpr std::size_t whole = 19;  // YYYY-MM-DDThh:mm:ss
+  // A time without Z is taken as UTC.
   if (text.ends_with('Z')) text.remove_suffix(1);
   if (text.size() < whole) return std::nullopt;
   const bool separated =
@@ -57,6 +61,7 @@ std::optional<TimeParts> time_parts_of(std::string_view text) {
       second < 0 || second > 60 || month < 0 || day < 0) {
     return std::nullopt;
   }
+  // The calendar knows the length of each month.
   const std::chrono::year_month_day date{std::chrono::year{year},
                                          std::chrono::month{static_cast<unsigned>(month)},
                                          std::chrono::day{static_cast<unsigned>(day)}};
@@ -73,6 +78,7 @@ bool is_bids_label(std::string_view text) {
 }
 
 Result<void> check_labels(const BidsEntities& e) {
+  // An empty label is an absent entity.
   const auto check = [](const char* what, const std::string& label, bool needed) -> Result<void> {
     if (is_bids_label(label) || (label.empty() && !needed)) return {};
     return Failure(Error{"", 0, fmt::format("letters and digits for BIDS' {}", what),
@@ -125,12 +131,14 @@ std::optional<BidsName> parse_bids_name(std::string_view file_name) {
   BidsName out;
   for (;;) {
     const auto end = file_name.find('_');
+    // The last part has no key: it is suffix and extension.
     if (end == std::string_view::npos) {
       out.ending = file_name;
       if (file_name.empty() || file_name.find('-') != std::string_view::npos) return std::nullopt;
       return out;
     }
     const std::string_view part = file_name.substr(0, end);
+    // "key-" and "-label" are no entities.
     const auto dash = part.find('-');
     if (dash == std::string_view::npos || dash == 0 || dash + 1 == part.size()) return std::nullopt;
     out.entities.emplace_back(part.substr(0, dash), part.substr(dash + 1));
@@ -142,6 +150,7 @@ std::string acq_time_text(Time time) {
   const std::int64_t ns = to_ns(time);
   constexpr std::int64_t second = 1'000'000'000, day_seconds = 86'400;
   std::int64_t seconds = ns / second, below = ns % second;
+  // Times before 1970: the rest of a division is negative.
   if (below < 0) {
     below += second;
     --seconds;
@@ -161,6 +170,7 @@ std::optional<Time> parse_acq_time(std::string_view text) {
   const auto parts = time_parts_of(text);
   if (!parts) return std::nullopt;
   const int year = static_cast<int>(std::chrono::year_month_day{parts->day}.year());
+  // Readers accept +-4e18 ns, which are the years 1843 to 2096.
   if (year < 1850 || year > 2090) return std::nullopt;
   const std::chrono::nanoseconds whole = parts->day.time_since_epoch() + parts->of_day;
   return Time{whole + parts->fraction};

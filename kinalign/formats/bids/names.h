@@ -18,14 +18,17 @@ namespace kinalign {
 bool is_bids_label(std::string_view text);
 
 /// Labels in the file names of a tracking system. Session, acquisition and run may be empty.
+/// Empty labels are left out of names.
 struct BidsEntities {
   std::string subject, session, task, system, acquisition, run;
 };
 
 /// Fails if a label has other characters than letters and digits, or a run other than digits.
+/// A label with another character could leave its folder or split the name.
 Result<void> check_labels(const BidsEntities& entities);
 
 /// "sub-01_ses-a_task-walk_tracksys-kinect_run-2"
+/// Entities in the order that BIDS fixes.
 std::string bids_stem(const BidsEntities& entities);
 /// "sub-01/ses-a/"
 std::string bids_subject_folder(const BidsEntities& entities);

@@ -24,6 +24,7 @@ namespace {
 
 /// Larger numbers can't be meant and are refused.
 constexpr double largest_number = 1e15;
+// No offset: latencies are seconds from the onset.
 constexpr TimeScale latency_seconds{1'000'000'000, 0};
 
 Failure refuse(std::string expected, std::string found) {
@@ -40,6 +41,7 @@ struct Quantity {
 };
 
 /// The quantity's columns in channels.tsv; empty if one of the components is missing.
+/// A point may lack a quantity; the caller decides whether it needs it.
 template <std::size_t n>
 std::optional<Quantity<n>> find_quantity(const BidsSystem& system, std::string_view point,
                                          std::string_view type,
@@ -65,6 +67,7 @@ constexpr std::array<const char*, 4> wxyz{"quat_w", "quat_x", "quat_y", "quat_z"
 std::vector<std::string> tracked_points(const BidsSystem& system) {
   std::vector<std::string> out;
   std::set<std::string> known;
+  // Channels of one point may stand anywhere in the table.
   for (const BidsChannel& channel : system.channels) {
     if (known.insert(channel.tracked_point).second) out.push_back(channel.tracked_point);
   }
@@ -75,6 +78,7 @@ std::vector<std::string> tracked_points(const BidsSystem& system) {
 /// letters are no valid axes.
 std::optional<Axes> axes_of_frame(const BidsSystem& system, const std::string& frame) {
   const auto letters = system.letters.find(frame);
+  // A frame without letters counts as y up.
   if (letters == system.letters.end() || letters->second == "n/a") return y_up;
   return axes_of_letters(letters->second);
 }
@@ -90,6 +94,7 @@ Result<Axes> space_of(const BidsSystem& system, const std::string& frame,
 }
 
 /// Splits the lines into numbers: for each wanted column its value, or that the value is missing.
+/// Only wanted columns are parsed; a motion.tsv may have hundreds of others.
 class BidsRows {
  public:
   BidsRows(const BidsSystem& system, const StreamOptions& options, std::string_view file)
@@ -106,7 +111,9 @@ class BidsRows {
     onset_ns_ = system.onset ? to_ns(*system.onset) : 0;
     const double rate = options.rate_hz > 0.0 ? options.rate_hz : system.rate_hz;
     auto start = options.start_ns;
+    // Without latencies the onset is the stamp of the first row.
     if (!start && !latency_ && system.onset) start = onset_ns_;
+    // Without latencies the rows are counted by the rate.
     stamps = RowStamps(latency_.has_value(), rate, start);
   }
 
@@ -126,6 +133,7 @@ class BidsRows {
       if (tab == std::string_view::npos) break;
       line.remove_prefix(tab + 1);
     }
+    // Another number of cells would shift the columns.
     if (c + 1 == values.size()) return true;
     return refuse(fmt::format("{} cells, one per row of channels.tsv", values.size()),
                   std::to_string(c + 1));
@@ -133,6 +141,7 @@ class BidsRows {
 
   Result<Time> next_stamp() {
     std::int64_t ns = 0;
+    // The sum of a file's onset and latency may overflow.
     if (latency_ && __builtin_add_overflow(onset_ns_, latency_ns_, &ns)) {
       return refuse("a stamp inside +-4e18 ns", "a stamp outside");
     }
@@ -155,9 +164,11 @@ class BidsRows {
       return {};
     }
     if (!wanted_[c]) return {};
+    // BIDS writes n/a; other marks are counted and reported once.
     missing[c] = cell == "n/a" || says_missing(cell) ? 1 : 0;
     if (missing[c] != 0) {
       nan_cells += cell == "n/a" ? 0 : 1;
+      // A missing value must not keep that of the row before.
       values[c] = 0.0;
       return {};
     }
@@ -172,6 +183,7 @@ class BidsRows {
 
 /// The part that both readers share: stamps, kept rows and findings. Base is PointReader or
 /// ImuReader.
+/// The derived class converts one row; it is called for rows in the order of the file.
 template <class Base>
 class BidsReader : public Base {
  public:
@@ -189,6 +201,7 @@ class BidsReader : public Base {
         rows_.lines.finish([&](std::string_view line) { return use(line, out); }, this->findings));
     rows_.stamps.settle();
     this->counted = rows_.stamps.counted();
+    // Rows that were held for their stamps are released now.
     held_.release(rows_.stamps, out);
     const std::string& file = rows_.lines.file();
     if (rows_.stamps.stuck()) this->findings.push_back(stuck_finding(file, rows_.stamps));
@@ -204,6 +217,7 @@ class BidsReader : public Base {
   }
 
  protected:
+  // Called after rows().read() has filled the row.
   virtual void append_row(Frames& out) = 0;
   virtual void report(const std::string&) {}
   BidsRows& rows() { return rows_; }
@@ -211,6 +225,7 @@ class BidsReader : public Base {
  private:
   Result<void> use(std::string_view line, Frames& out) {
     if (!KA_TRY(rows_.read(line))) return {};
+    // The stamp comes before the values, which the derived class appends.
     Frames& target = held_.target(rows_.stamps, out);
     target.stamps.push_back(KA_TRY(rows_.next_stamp()));
     append_row(target);
@@ -240,6 +255,7 @@ class BidsPointReader final : public BidsReader<PointReader> {
       header_.joint_names.push_back(point.name);
       rows().want(point.places);
     }
+    // The user's unit replaces that of the file, so the file's factors must not apply as well.
     if (options.metres_per_unit > 0.0) {
       for (TrackedPoint& point : points_) point.places.scales = {1.0, 1.0, 1.0};
     }
@@ -254,6 +270,7 @@ class BidsPointReader final : public BidsReader<PointReader> {
       bool there = true;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t column = points_[j].places.columns[k];
+        // A point needs all of its coordinates.
         there = there && rows().missing[column] == 0;
         raw_[3 * j + k] = points_[j].places.scales[k] * rows().values[column];
       }
@@ -275,6 +292,7 @@ struct TrackedNode {
   std::optional<Quantity<3>> acceleration, angular_velocity;
 };
 
+/// A quantity is read only if every node has it, because ImuContent holds for all of them.
 class BidsNodeReader final : public BidsReader<ImuReader> {
  public:
   BidsNodeReader(const BidsSystem& system, const StreamOptions& options, std::string_view file,
@@ -310,6 +328,7 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
       if (header_.content.orientation) take(*node.orientation, turn, valid);
       if (header_.content.acceleration) take(*node.acceleration, force, valid);
       if (header_.content.angular_velocity) take(*node.angular_velocity, rate, valid);
+      // nullptr: the stream does not have this quantity.
       samples_.append({header_.content.orientation ? turn.data() : nullptr,
                        header_.content.acceleration ? force.data() : nullptr,
                        header_.content.angular_velocity ? rate.data() : nullptr, valid},
@@ -319,6 +338,7 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
 
   template <std::size_t n>
   void take(const Quantity<n>& quantity, std::array<double, n>& out, bool& valid) {
+    // A missing part makes the sample of this node invalid, not that of others.
     for (std::size_t k = 0; k < n; ++k) {
       valid = valid && rows().missing[quantity.columns[k]] == 0;
       out[k] = quantity.scales[k] * rows().values[quantity.columns[k]];
@@ -350,6 +370,7 @@ Failure in_channels(Error error, std::string_view file) {
 }
 
 /// Reader of all tracked points that have x, y and z; all must use one reference frame.
+/// Points without all three axes are skipped.
 Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
                                                const StreamOptions& options,
                                                std::string_view file) {
@@ -357,7 +378,9 @@ Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
   for (const std::string& name : tracked_points(system)) {
     const auto places = find_quantity(system, name, "POS", xyz);
     if (!places) continue;
+    // With metres_per_unit the unit of the file does not matter.
     if (options.metres_per_unit <= 0.0) KA_TRY(check_unit(system, *places));
+    // Positions in two frames would need a transform that BIDS does not state.
     if (!points.empty() && points.front().places.frame != places->frame) {
       return refuse("one reference_frame for all POS channels", shown(places->frame));
     }
@@ -379,17 +402,21 @@ Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const Stre
                      find_quantity(system, name, "GYRO", xyz)};
     if (node.acceleration) KA_TRY(check_unit(system, *node.acceleration));
     if (node.angular_velocity) KA_TRY(check_unit(system, *node.angular_velocity));
+    // The frame of the orientations is the world; vectors are in the sensor's own space.
     if (node.orientation) axes = KA_TRY(space_of(system, node.orientation->frame, options));
+    // A quaternion has no unit; a wrong one in the table does no harm.
     if (node.orientation) node.orientation->scales = {1.0, 1.0, 1.0, 1.0};
     if (node.orientation || node.acceleration || node.angular_velocity)
       nodes.push_back(std::move(node));
   }
   if (nodes.empty()) return refuse("ORNT channels of a quaternion, ACCEL or GYRO channels", "none");
+  // A mirrored orientation is no rotation.
   if (determinant(axes) != 1) {
     return refuse("orientations in a right-handed space", "left-handed SpatialAxes");
   }
   auto reader = std::make_unique<BidsNodeReader>(system, options, file, std::move(nodes), axes);
   const ImuContent& content = reader->content();
+  // At least one quantity must be common to all nodes.
   if (content.orientation || content.acceleration || content.angular_velocity) return reader;
   return refuse("ORNT, ACCEL or GYRO of every node", "nodes without a common quantity");
 }

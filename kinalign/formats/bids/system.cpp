@@ -14,6 +14,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view motion_ending = "motion.tsv";
+// The limits on what is read into memory.
 constexpr std::size_t largest_table = std::size_t{16} << 20, largest_json = std::size_t{1} << 20;
 
 struct SidecarPaths {
@@ -32,11 +33,13 @@ std::string scans_path_of(const std::string& path) {
   return out + "_scans.tsv";
 }
 
+// Sidecars have the name of the data with another ending.
 SidecarPaths paths_of(const std::string& path) {
   const std::string stem = path.substr(0, path.size() - motion_ending.size());
   return {stem + "channels.tsv", stem + "motion.json", stem + "channels.json", scans_path_of(path)};
 }
 
+// Opening for one byte is enough to know.
 bool is_there(FileSystem& files, const std::string& path) {
   return !path.empty() && InputFile::open(files, path, 1).has_value();
 }
@@ -52,6 +55,7 @@ Result<std::map<std::string, std::string>> read_letters(FileSystem& files,
   const auto levels = frame->find("Levels");
   if (levels == frame->end() || !levels->is_object()) return out;
   for (const auto& [name, level] : levels->items()) {
+    // Levels may also be texts, which have no axes.
     if (!level.is_object()) continue;
     const auto axes = level.find("SpatialAxes");
     if (axes != level.end() && axes->is_string()) out[name] = axes->get<std::string>();
@@ -63,6 +67,7 @@ Result<double> read_rate(FileSystem& files, const std::string& path) {
   const auto json = KA_TRY(parse_bids_json(KA_TRY(read_whole(files, path, largest_json)), path));
   const auto rate = json.find("SamplingFrequency");
   const bool number = rate != json.end() && rate->is_number();
+  // A number written as a text is not accepted.
   const double hz = number ? rate->get<double>() : 0.0;
   if (hz >= 1e-3 && hz <= 1e6) return hz;
   return Failure(Error{path, 0, "a SamplingFrequency of 0.001 to 1,000,000",
@@ -78,6 +83,7 @@ Result<std::optional<Time>> read_onset(FileSystem& files, const std::string& sca
   const auto file = table.column("filename"), time = table.column("acq_time");
   if (!file || !time) return out;
   const std::string wanted = "motion/" + std::string(file_name(path));
+  // Rows of other files are skipped. The last match counts.
   for (const auto& row : table.rows) {
     if (row.size() <= std::max(*file, *time) || row[*file] != wanted) continue;
     out = parse_acq_time(row[*time]);
@@ -89,6 +95,7 @@ Result<std::optional<Time>> read_onset(FileSystem& files, const std::string& sca
 
 bool named_as_bids_motion(std::string_view path) {
   const auto name = parse_bids_name(file_name(path));
+  // The name must tell the system, because several lie in one folder.
   return name && name->ending == motion_ending && !name->label("tracksys").empty();
 }
 
@@ -118,6 +125,7 @@ Result<BidsSystem> read_bids_system(FileSystem& files, const std::string& path) 
   out.channels = KA_TRY(channels_of(read_tsv(channels), paths.channels_tsv));
   out.rate_hz = KA_TRY(read_rate(files, paths.motion_json));
   out.letters = KA_TRY(read_letters(files, paths.channels_json));
+  // A file without an onset has stamps from 0 on.
   out.onset = KA_TRY(read_onset(files, paths.scans_tsv, path));
   return out;
 }

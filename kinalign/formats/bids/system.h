@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the sidecar files of a motion.tsv and makes the reader that they describe.
+// A motion.tsv alone means nothing: its columns have no names.
 #pragma once
 
 #include "kinalign/core/files.h"

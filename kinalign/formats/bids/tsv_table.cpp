@@ -7,6 +7,7 @@ namespace kinalign {
 
 namespace {
 
+// "a\t\tb" has three cells, of which one is empty.
 std::vector<std::string> cells_of(std::string_view line) {
   std::vector<std::string> out;
   for (;;) {
@@ -32,12 +33,14 @@ std::optional<std::size_t> TsvTable::column(std::string_view name) const {
 
 TsvTable read_tsv(std::string_view text) {
   TsvTable out;
+  // A byte order mark.
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   bool first = true;
   while (!text.empty()) {
     const auto end = text.find('\n');
     std::string_view line = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    // Lines may end in CR LF.
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (first) {
       out.columns = cells_of(line);
@@ -50,6 +53,7 @@ TsvTable read_tsv(std::string_view text) {
 }
 
 std::string tsv_cell(std::string_view text) {
+  // BIDS allows no empty cells.
   if (text.empty()) return "n/a";
   std::string out(text);
   std::replace_if(

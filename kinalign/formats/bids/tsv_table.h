@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// A cell is found by the name of its column, since columns may stand in any order.
 struct TsvTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;

@@ -18,6 +18,7 @@
 
 namespace kinalign {
 
+/// A BVH states none of these, so they come from the manifest or are defaults.
 struct BvhOptions {
   double metres_per_unit = 0.01;  // most writers, Axis Neuron among them, use centimetres
   bool z_up = false;              // the file's up axis is z; y otherwise
@@ -31,6 +32,7 @@ BvhOptions bvh_options(const StreamOptions& options);
 using Channel = std::uint8_t;
 
 /// The hierarchy above the rows, in the file's own units and names.
+/// Values are kept as written, so that writing gives the same text again.
 struct BvhHierarchy {
   std::vector<std::string> names;              // [J] as written; may repeat
   std::vector<int> parents;                    // [J] -1: a root
@@ -46,7 +48,8 @@ struct BvhHierarchy {
   std::size_t row_size() const;  // values in a frame, C
 };
 
-/// A whole BVH in memory.
+/// A whole BVH in memory. The clip and the values hold the same motion: the clip for computing, the
+/// values for writing.
 struct BvhFile {
   BvhHierarchy hierarchy;
   Clip clip;                   // T frames, J joints; repeated names are name#2, name#3, ...
@@ -57,6 +60,7 @@ struct BvhFile {
 
 /// Parses everything above the rows. `text` must reach to the end of the "Frame Time:" number. Sets
 /// `rows` to the position of the first row. Fails if the hierarchy can't be understood.
+/// Survey, reader and copy share this parser, so they agree on every file.
 Result<BvhHierarchy> parse_bvh_hierarchy(std::string_view text, std::string_view name,
                                          std::size_t& rows, Findings& findings);
 
@@ -77,6 +81,8 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
 /// Converts rows of channel values [n,C] into local positions and rotations, which it appends to
 /// `out`. Position channels replace the components of OFFSET. Angles apply in the order of the
 /// channels.
+/// Knows the column of each channel and appends block after block. Only the number of frames is
+/// kept between calls, for the stamps.
 class BvhPoser {
  public:
   BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options);
@@ -88,6 +94,7 @@ class BvhPoser {
   void place(const Joint& joint, std::span<const double> values, std::span<double> positions) const;
   void turn(const Joint& joint, std::span<const double> values, std::span<double> rotations) const;
 
+  // joints_ is [J], in the order of the hierarchy.
   std::vector<Joint> joints_;
   std::size_t row_size_ = 0;
   BvhOptions options_;
@@ -128,6 +135,7 @@ Result<void> write_bvh(const BvhFile& file, const TextSink& sink);
 BvhFile bvh_from_clip(Clip clip, double frame_seconds);
 
 /// Writes a BVH block by block. The number of frames must be known before the first block.
+/// "Frames:" stands above the rows, and a stream can't be written twice.
 class BvhWriter {
  public:
   BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int decimals, TextSink sink);
@@ -164,6 +172,7 @@ class BvhChannels {
               std::vector<double>& values) const;
 
  private:
+  // A root without position channels would stay at the origin.
   bool has_position(std::size_t j) const { return moves_[j] || skeleton_.parents[j] < 0; }
 
   Skeleton skeleton_;

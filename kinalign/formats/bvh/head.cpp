@@ -32,6 +32,7 @@ std::string_view stripped(std::string_view text) {
   return text;
 }
 
+/// Counts lines as it skips blanks, so a message has the line of the word that it names.
 class BvhWords {
  public:
   BvhWords(std::string_view text, std::string_view name) : text_(text), name_(name) {}
@@ -46,6 +47,7 @@ class BvhWords {
   }
 
   std::string_view peek() {
+    // A BvhWords is two views and two numbers, so a copy is cheap.
     const BvhWords before = *this;
     const std::string_view word = next();
     *this = before;
@@ -78,11 +80,14 @@ class BvhWords {
   std::int64_t line_ = 1;
 };
 
+// In the order of Channel.
 constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
                                                         "xrotation", "yrotation", "zrotation"};
 
 constexpr double largest_offset = 1e15;  // the limit of the rows' values
 
+/// Parses without recursion: open_ is the stack of joints, so a deep hierarchy can't overflow the
+/// program's stack.
 class HierarchyParser {
  public:
   HierarchyParser(std::string_view text, std::string_view name, Findings& findings)
@@ -91,8 +96,10 @@ class HierarchyParser {
   /// Parses the hierarchy and the two lines below MOTION.
   Result<BvhHierarchy> parse(std::size_t& rows) {
     std::string_view word = words_.next();
+    // A byte order mark.
     if (word.starts_with("\xEF\xBB\xBF")) word.remove_prefix(3);
     if (lower(word) != "hierarchy") return Failure(words_.wrong("HIERARCHY", word));
+    // All roots are parsed into one hierarchy; each has the parent -1.
     while (lower(words_.peek()) == "root") KA_TRY(root());
     word = words_.next();
     if (lower(word) != "motion") return Failure(words_.wrong("ROOT or MOTION", word));
@@ -123,6 +130,7 @@ class HierarchyParser {
     out_.parents.push_back(parent);
     out_.offsets.emplace_back(Vec3::Zero());
     out_.channels.emplace_back();
+    // The joint stays open until its closing brace; statements in between belong to it.
     open_.push_back(static_cast<int>(out_.names.size()) - 1);
     return brace("{");
   }
@@ -156,6 +164,7 @@ class HierarchyParser {
 
   /// Parses an End Site; it has an offset and no channels.
   Result<void> end_site() {
+    // "Site", or anything else that a writer put there.
     words_.rest_of_line();
     EndSite site;
     site.parent = open_.back();
@@ -190,6 +199,7 @@ class HierarchyParser {
   Result<void> channels(std::vector<Channel>& out) {
     std::string_view word = words_.next();
     double count = 0;
+    // "3" and "3.0" are both accepted; each of the six channels may occur once.
     if (!parse_number(word, count) || count < 0 || count > 6 || count != std::floor(count)) {
       return Failure(words_.wrong("0 to 6 channels", word));
     }
@@ -214,6 +224,7 @@ class HierarchyParser {
     out_.frames_line = words_.line();
     const auto [end, fault] =
         std::from_chars(frames.data(), frames.data() + frames.size(), out_.frames);
+    // A sign or a fraction is no number of frames.
     if (fault != std::errc{} || end != frames.data() + frames.size()) {
       return Failure(words_.wrong("the number of frames", frames));
     }
@@ -228,6 +239,7 @@ class HierarchyParser {
         out_.frame_seconds > longest) {
       return Failure(words_.wrong("a frame time above 0 s", out_.frame_time));
     }
+    // Some writers put the rate there instead of the step.
     if (out_.frame_seconds >= 1.0) {
       findings_->push_back(
           {Severity::warning,
@@ -243,6 +255,7 @@ class HierarchyParser {
     std::string_view word = words_.next();
     if (!lower(word).starts_with(key)) return Failure(words_.wrong(std::string(wanted), word));
     word.remove_prefix(key.size());
+    // "Frames:12", "Frames: 12" and "Frames : 12" are all in use.
     if (word.empty()) word = words_.next();
     if (word.starts_with(':')) word.remove_prefix(1);
     return word.empty() ? words_.next() : word;
@@ -260,6 +273,7 @@ class HierarchyParser {
 /// joint's name.
 std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
   std::set<std::string> taken(names.begin(), names.end());
+  // All written names are taken from the start, so that a made name never equals one of them.
   std::map<std::string_view, int> times;
   std::vector<std::string> out;
   for (const std::string& name : names) {
@@ -273,10 +287,13 @@ std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
 }
 
 /// True if `text` reaches beyond the number in the line "Frame Time: ...".
+/// The head is parsed only when it is complete, so that a fault is reported once and with its line.
+/// This check looks at words alone and reads the text again for each piece, which is rare.
 bool is_whole(std::string_view text) {
   BvhWords words(text, "");
   std::string word;
   const auto next = [&] {  // false if the word may go on in the next piece
+    // A long word needs no comparison, only its beginning.
     word = lower(words.next().substr(0, 64));
     return words.at() < text.size();
   };
@@ -314,6 +331,7 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
   Skeleton out;
   out.parents = hierarchy.parents;
   std::vector<std::string> names;
+  // A take stores names as UTF-8.
   for (const std::string& written : hierarchy.names) names.push_back(as_utf8(written));
   out.joint_names = distinct_names(names);
   for (std::size_t j = 0; j < out.joint_names.size(); ++j) {
@@ -326,6 +344,8 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
   }
   for (std::size_t j = 0; j < hierarchy.offsets.size(); ++j) {
     const Vec3 offset = hierarchy.offsets[j] * options.metres_per_unit;
+    // Only roots stand in the world. Every other offset is in its joint's own space, which does not
+    // turn.
     const bool in_world = options.z_up && hierarchy.parents[j] < 0;
     out.rest_offsets.push_back(in_world ? Vec3(offset.x(), offset.z(), -offset.y()) : offset);
   }
@@ -358,6 +378,7 @@ Result<void> BvhHead::parse(Findings& findings) {
   return {};
 }
 
+// The line of a row is counted from here.
 std::int64_t BvhHead::first_row_line() const {
   return 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(rows_), '\n');
 }

@@ -14,6 +14,8 @@ namespace kinalign {
 /// Words are separated by blanks, tabs, returns and all other control characters.
 inline bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
+/// text_ grows until the head is complete, at most 8 MiB. Afterwards it holds the head and the
+/// first rows.
 class BvhHead {
  public:
   explicit BvhHead(std::string name) : name_(std::move(name)) {}
@@ -26,7 +28,9 @@ class BvhHead {
 
   BvhHierarchy hierarchy;
   std::string_view rows() const { return std::string_view(text_).substr(rows_); }
+  /// Line on which the rows begin, for messages. Call it before forget_text().
   std::int64_t first_row_line() const;
+  /// Frees the memory of the text; rows() is then empty.
   void forget_text();
   /// The head as a BVH file without rows.
   std::string alone() const;

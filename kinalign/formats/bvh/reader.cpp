@@ -17,6 +17,8 @@ namespace {
 // Square root of 1/2: z up to y up is -90 degrees about x.
 constexpr double half_root = 0.70710678118654752440;
 
+/// values_ parses the text, poser_ makes poses from its frames. The skeleton exists once the head
+/// is complete.
 class BvhReader final : public ClipReader {
  public:
   BvhReader(const BvhOptions& options, const std::string& name)
@@ -36,12 +38,14 @@ class BvhReader final : public ClipReader {
   Result<void> finish(ClipFrames& out) override {
     KA_TRY(values_.finish(findings));
     release(out);
+    // A file without a frame is judged by its rest pose.
     if (!judged_) judge({});
     return {};
   }
 
   const Skeleton* header() const override { return values_.has_rows() ? &skeleton_ : nullptr; }
 
+  // The caller of read_bvh() takes the hierarchy out of the reader.
   BvhHierarchy& hierarchy() { return values_.hierarchy(); }
   int decimals() const { return values_.decimals(); }
   /// Appends all channel values to `values` too, for read_bvh(); counts their decimals.
@@ -60,6 +64,7 @@ class BvhReader final : public ClipReader {
   /// Poses the complete frames into `out`.
   void release(ClipFrames& out) {
     if (!values_.has_rows()) return;
+    // An incomplete frame stays in values_ until its rest arrives.
     const auto values = values_.frames();
     poser_->append(values, out);
     if (!judged_ && !values.empty()) judge(values);
@@ -88,6 +93,7 @@ BvhOptions bvh_options(const StreamOptions& options) {
   BvhOptions out;
   if (options.metres_per_unit > 0.0) out.metres_per_unit = options.metres_per_unit;
   out.z_up = options.up == "z";
+  // The first frame comes later than the click, by the latency.
   out.start = utc_time(options.start_ns.value_or(0)) +
               Duration{std::llround(options.click_latency_ms * 1e6)};
   return out;
@@ -111,6 +117,7 @@ BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
     joint.root = hierarchy.parents[j] < 0;
     std::array<int, 3> axes{-1, -1, -1};
     std::size_t rotations = 0;
+    // The order of the rotations is that of the channels in the row.
     for (const Channel channel : hierarchy.channels[j]) {
       if (channel < 3) {
         joint.position[channel] = column;
@@ -120,6 +127,7 @@ BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
       }
       ++column;
     }
+    // Missing rotations are zero, but EulerOrder needs three different axes.
     for (int axis = 0; axis < 3 && rotations < 3; ++axis) {  // axes without a channel come last
       if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes[rotations++] = axis;
     }
@@ -136,9 +144,11 @@ BvhPoser& BvhPoser::operator=(BvhPoser&&) noexcept = default;
 /// first frame.
 void BvhPoser::place(const Joint& joint, std::span<const double> values,
                      std::span<double> positions) const {
+  // Rows of the file are `row_size_` numbers apart, frames of the output `stride`.
   const std::size_t stride = 3 * joints_.size(), frames = values.size() / row_size_;
   for (std::size_t k = 0; k < 3; ++k) {
     double* to = &positions[k];
+    // An OFFSET stands in the place of each channel that is missing.
     if (joint.position[k] < 0) {
       const double offset = joint.offset[static_cast<int>(k)];
       for (std::size_t i = 0; i < frames; ++i) to[i * stride] = offset;
@@ -148,6 +158,7 @@ void BvhPoser::place(const Joint& joint, std::span<const double> values,
       for (std::size_t i = 0; i < frames; ++i) to[i * stride] = from[i * row_size_] * scale;
     }
   }
+  // z up to y up: x = x, y = z, z = -y.
   if (!options_.z_up || !joint.root) return;
   for (std::size_t i = 0; i < frames; ++i) {
     double* p = &positions[i * stride];
@@ -162,12 +173,14 @@ void BvhPoser::turn(const Joint& joint, std::span<const double> values,
   const std::size_t stride = 4 * joints_.size(), frames = values.size() / row_size_;
   EulerColumns columns;
   for (std::size_t k = 0; k < 3; ++k) {
+    // An axis without a channel stays nullptr: its angle is zero.
     if (joint.angle[k] >= 0) columns.angles[k] = &values[static_cast<std::size_t>(joint.angle[k])];
   }
   columns.stride = row_size_;
   columns.rotations = rotations.data();
   columns.rotation_stride = stride;
   rotations_from_euler(joint.order, columns, frames);
+  // A root's rotation is in the world, so the turn from z up to y up multiplies it from the left.
   if (!options_.z_up || !joint.root) return;
   for (std::size_t i = 0; i < frames; ++i) {
     const auto q = rotations.subspan(i * stride, 4);
@@ -177,6 +190,7 @@ void BvhPoser::turn(const Joint& joint, std::span<const double> values,
 
 void BvhPoser::append(std::span<const double> values, ClipFrames& out) {
   const std::size_t joints = joints_.size(), frames = values.size() / row_size_;
+  // `out` may hold frames of earlier blocks.
   const std::size_t before = out.size();
   out.local_positions.resize((before + frames) * joints * 3);
   out.local_rotations.resize((before + frames) * joints * 4);
@@ -206,6 +220,7 @@ Result<BvhFile> read_bvh(std::string_view text, std::string_view name, const Bvh
   reader.keep_values(file.values);
   KA_TRY(reader.feed(text, file.clip.frames));
   KA_TRY(reader.finish(file.clip.frames));
+  // The header exists: finish() fails without a complete head.
   file.clip.skeleton = *reader.header();
   file.hierarchy = std::move(reader.hierarchy());
   file.decimals = reader.decimals();

@@ -17,6 +17,9 @@
 namespace kinalign {
 
 /// Compares the ends of lines with the ends of frames, both counted in values.
+/// In many files each frame is one line. Then a line with a number too many or too few is a fault,
+/// since all frames after it would be shifted. In other files rows are wrapped or joined, and lines
+/// mean nothing.
 class BvhRowRule {
  public:
   explicit BvhRowRule(std::size_t row_size) : row_size_(row_size) {}
@@ -46,6 +49,8 @@ struct BvhRowsHead {
   std::int64_t line = 1;     // line on which the rows begin
 };
 
+/// values_ keeps its size when frames are dropped, so its memory is allocated once. Numbers are
+/// parsed straight into it.
 class BvhRows {
  public:
   explicit BvhRows(BvhRowsHead head) : head_(std::move(head)), rule_(head_.row_size) {}
@@ -83,6 +88,7 @@ class BvhRows {
   int decimals_ = 0;
 };
 
+/// Joins head and rows: pieces go to head_ until it is complete, then to rows_.
 class BvhValues {
  public:
   /// `on_head` is called once, with the hierarchy, before the first row is parsed.

@@ -21,6 +21,7 @@ Eigen::AlignedBox3d rest_box(const Skeleton& skeleton) {
   Eigen::AlignedBox3d box(Vec3::Zero());
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
     const int parent = skeleton.parents[j];
+    // The root stays at the origin, since its place in the world does not matter.
     if (parent >= 0) at[j] = at[static_cast<std::size_t>(parent)] + skeleton.rest_offsets[j];
     box.extend(at[j]);
   }
@@ -46,6 +47,7 @@ constexpr std::array<Unit, 5> units{{{0.01, "centimetres"},
 /// of 1.7 m (Drillis and Contini, 1964).
 const Unit& best_unit(double hip_in_units) {
   const Unit* best = units.data();
+  // The unit nearest to 0.9 m wins; of two equal ones the first.
   for (const Unit& unit : units) {
     const auto off = [hip_in_units](const Unit& u) {
       return std::abs(hip_in_units * u.metres - 0.9);
@@ -55,6 +57,7 @@ const Unit& best_unit(double hip_in_units) {
   return *best;
 }
 
+// The components of a vector that can be up.
 constexpr int y = 1, z = 2;
 
 /// True if the person stands upright in the first row, false if the person lies. y is up. A
@@ -70,6 +73,7 @@ std::optional<bool> stands(const BvhHierarchy& hierarchy, const Skeleton& skelet
   Eigen::AlignedBox3d box;
   for (std::size_t j = 0; j < skeleton.joints(); ++j) box.extend(Vec3(vec3(positions, j)));
   const Vec3 size = box.sizes();
+  // Half leaves a margin: a pose that is neither clearly high nor clearly low decides nothing.
   if (size.y() < 0.5 * size.z()) return false;
   if (size.z() < 0.5 * size.y()) return true;
   return std::nullopt;
@@ -96,6 +100,7 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
   const bool rest_lies = rest.sizes()[up] < 0.5 * rest.sizes()[other];
   const auto standing = stands(hierarchy, skeleton, rows, options);
   const std::string_view axes = "xyz";
+  // The rest pose lies, and no frame shows a person who stands.
   if (rest_lies && !standing.value_or(false)) {
     findings.push_back(lying(name, fmt::format("a rest pose that is upright along {}", axes[up]),
                              fmt::format("a pose that is upright along {}", axes[other]),
@@ -105,7 +110,9 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
         name, fmt::format("a first frame that is upright along {}, like the rest pose", axes[up]),
         fmt::format("a pose that is upright along {}", axes[other]), axes[other]));
   }
+  // If the rest pose lies along the other axis, its height is measured there.
   if (rest_lies) up = other;
+  // The box begins at the root, so its lower end is the height of the hips above the lowest joint.
   const double hip = -rest.min()[up];
   if (hip < 0.6 || hip > 1.3) {
     const Unit& unit = best_unit(hip / options.metres_per_unit);

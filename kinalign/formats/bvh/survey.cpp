@@ -16,6 +16,7 @@ namespace kinalign {
 namespace {
 
 /// Number of words that begin in [at, end); at[-1] must be readable.
+/// A word begins after a blank. The text before `at` decides about its first character.
 KA_EVERY_PROCESSOR
 std::uint64_t words_begun(const char* at, const char* end) {
   std::uint64_t words = 0;
@@ -35,6 +36,7 @@ std::uint64_t words_begun(const char* at, const char* end) {
 }
 
 /// Counts the words of a text that comes in pieces.
+/// last_ joins the pieces: a word that is cut between two pieces counts once.
 class WordCount {
  public:
   void add(std::string_view piece) {
@@ -60,11 +62,13 @@ struct Counted {
   /// Empty if the row is not complete within the rows' first piece or 64 KiB.
   std::vector<double> first_row;
   /// The words are those of the promised number of frames, and the last word has ended.
+  /// If so, the number of frames is known without parsing the numbers.
   bool kept = false;
 };
 
 /// The first row of a text that begins with that row; empty if it is incomplete.
 std::vector<double> first_row(std::string_view text, const std::string& path, std::size_t size) {
+  // The row alone is wanted, so one frame is promised and later faults do not matter.
   BvhRows rows({path, size, 1, 1});
   Findings ignored;  // faults after the row
   if (!rows.feed(text, ignored) || !rows.finish(ignored) || rows.frames_read() == 0) return {};
@@ -84,6 +88,7 @@ struct RowsText {
 
   /// True if the number of words is that of the frames that the head promises.
   bool keeps(const BvhHierarchy& head) const {
+    // A row with a wrong word passes this test; the reader finds it in the next pass.
     const std::uint64_t row_size = head.row_size();
     return row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
            words.words() / row_size == head.frames;
@@ -91,6 +96,7 @@ struct RowsText {
 };
 
 /// Reads the whole file once: hash, head, number of words, first row.
+/// The numbers are not parsed here; later passes do that.
 Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   Counted out;
@@ -107,6 +113,7 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
     if (in_rows) {
       rows.add(piece);
     } else if (KA_TRY(head.add(piece, out.findings))) {
+      // The piece in which the head ends also holds the first rows.
       rows.add(head.rows());
       in_rows = true;
     }
@@ -121,6 +128,7 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
 }
 
 /// Stamps of `frames` frames at an even step, computed without reading them.
+/// The file has a fixed step, so nothing else is needed for them.
 StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t frames) {
   StampSurvey survey;
   survey.samples = frames;
@@ -161,6 +169,7 @@ Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const 
                               const Progress& progress) {
   Counted counted = KA_TRY(count(files, path, progress));
   ClipSurvey out;
+  // If the words and the head disagree, only parsing tells what the file holds.
   if (!counted.kept) {
     out = KA_TRY(read_all(files, path, options, progress));
   } else {

@@ -20,6 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 6> channel_words{"Xposition", "Yposition", "Zposition",
                                                         "Xrotation", "Yrotation", "Zrotation"};
 
+/// The writer of numbers gives the shortest text if the decimals do not suffice.
 void put(std::string& text, double value, int decimals) {
   std::array<char, number_room> room{};
   const char* end = put_number(room.data(), value, std::min(decimals, 15));
@@ -43,6 +44,7 @@ class HierarchyText {
   std::string text() {
     text_ = "HIERARCHY\n";
     for (std::size_t j = 0; j < h_.names.size(); ++j) {
+      // Joints come nested, so closing down to the parent closes all joints between.
       close_down_to(h_.parents[j]);
       open(j);
     }
@@ -90,10 +92,12 @@ constexpr double centimetres = 100.0;
 std::array<double, 3> zxy_angles(const Quat& rotation) {
   const Eigen::Matrix3d r = rotation.normalized().toRotationMatrix();
   constexpr double degrees = 180.0 / std::numbers::pi;
+  // Rounding may put a sine slightly outside of its range.
   const double sin_x = std::clamp(r(2, 1), -1.0, 1.0);
   if (std::abs(sin_x) > 1.0 - 1e-12) {  // z and y then turn about one axis: z gets the whole turn
     return {std::atan2(r(1, 0), r(0, 0)) * degrees, std::asin(sin_x) * degrees, 0.0};
   }
+  // Elements of R = Rz(a) Rx(b) Ry(c), solved for the three angles.
   return {std::atan2(-r(0, 1), r(1, 1)) * degrees, std::asin(sin_x) * degrees,
           std::atan2(-r(2, 0), r(2, 2)) * degrees};
 }
@@ -102,6 +106,7 @@ std::array<double, 3> zxy_angles(const Quat& rotation) {
 /// their order.
 std::vector<std::size_t> nested_order(const std::vector<int>& parents) {
   std::vector<std::vector<std::size_t>> children(parents.size() + 1);  // the last element: roots
+  // From the last to the first, so that the stack below gives the first child first.
   for (std::size_t j = parents.size(); j-- > 0;) {
     children[parents[j] < 0 ? parents.size() : static_cast<std::size_t>(parents[j])].push_back(j);
   }
@@ -125,6 +130,7 @@ struct CopyPass {
 };
 
 /// Feeds a whole file to `values` and calls `use()` after each piece.
+/// Both passes of copy_bvh() use it: the first counts, the second writes.
 template <class Use>
 Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
   const std::string& path = pass.path;
@@ -134,6 +140,7 @@ Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
   std::uint64_t bytes = 0;
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
+    // The first piece tells whether the file is a BVH at all.
     if (std::exchange(first, false) && !looks_like_bvh(piece)) {
       return Failure(
           Error{path, 1, "a BVH or a take (other files can't become a BVH)", beginning_of(piece)});
@@ -145,6 +152,7 @@ Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
     if (!go_on(pass.progress, pass.what, bytes, file.size())) return Failure(interruption(path));
   }
   KA_TRY(values.finish(findings));
+  // The last frames may become complete at the end only.
   KA_TRY(use());
   return findings;
 }
@@ -162,6 +170,7 @@ BvhWriter::BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int de
 
 Result<void> BvhWriter::append(std::span<const double> values) {
   constexpr std::size_t piece = std::size_t{256} << 10;
+  // A row is written whole. The sink gets large pieces, because each call may be a system call.
   for (std::size_t i = 0; i + row_size_ <= values.size() && row_size_ > 0; i += row_size_) {
     for (std::size_t c = 0; c < row_size_; ++c) {
       if (c > 0) text_ += ' ';
@@ -177,6 +186,7 @@ Result<void> BvhWriter::append(std::span<const double> values) {
 }
 
 Result<void> BvhWriter::finish() {
+  // The promised number stands in the file already, so another number would make it wrong.
   if (written_ == frames_) return sink_(text_);
   return Failure(
       Error{"", 0, fmt::format("{} frames to write", frames_), std::to_string(written_)});
@@ -200,6 +210,7 @@ void BvhChannels::see(std::span<const double> local_positions) {
   for (std::size_t i = 0; 3 * i < local_positions.size(); ++i) {
     const std::size_t j = i % joints;
     if (moves_[j]) continue;
+    // Less than a micrometre is rounding.
     moves_[j] = (Vec3(vec3(local_positions, i)) - skeleton_.rest_offsets[j]).norm() > 1e-6;
   }
 }
@@ -213,6 +224,7 @@ BvhHierarchy BvhChannels::hierarchy(std::uint64_t frames, double frame_seconds) 
     h.names.push_back(skeleton_.joint_names[j]);
     h.parents.push_back(parent < 0 ? -1 : place[static_cast<std::size_t>(parent)]);
     h.offsets.emplace_back(skeleton_.rest_offsets[j] * centimetres);
+    // X, Y, Z position, then rotations Z, X, Y, as motion suits write them.
     h.channels.push_back(has_position(j) ? std::vector<Channel>{0, 1, 2, 5, 3, 4}
                                          : std::vector<Channel>{5, 3, 4});
   }
@@ -258,6 +270,7 @@ BvhFile bvh_from_clip(Clip clip, double frame_seconds) {
 
 Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const TextSink& sink,
                           const Progress& progress) {
+  // A file that changes between the passes would give a wrong number of frames.
   const auto version = version_of(from);
   BvhValues counted(from);
   counted.count_decimals = true;

@@ -18,10 +18,12 @@ namespace kinalign {
 /// marks invalid is missing. Stamps come from the file's rate. Analog channels are named in a note
 /// and not read. Memory holds the header, the parameters and one frame, each only as far as it was
 /// fed: at most 34 MB.
+/// The options up, metres_per_unit, rate_hz and start_ns of a manifest override the file.
 std::unique_ptr<PointReader> make_c3d_reader(const StreamOptions& options, std::string_view file);
 
 /// True if `head` begins as a C3D does. `head` must reach to the first bytes of the parameters,
 /// which most files have at byte 512.
+/// Bytes 1 (0x50) and the processor's number are the only marks that a C3D has.
 bool looks_like_c3d(std::string_view head);
 
 /// Facts about the points that the file's head states, before the first frame.
@@ -32,6 +34,8 @@ struct C3dPoints {
 };
 
 /// Writes frame after frame, in Intel byte order, as floats, in millimetres, z up.
+/// The file's head states the number of frames, and a sink can't go back, so the number must be
+/// known before the first frame.
 class C3dWriter {
  public:
   /// Fails if a C3D can't hold the points; see C3dPoints for the limits.
@@ -46,6 +50,7 @@ class C3dWriter {
  private:
   C3dWriter(const C3dPoints& points, FileSink sink);
 
+  // After begin() bytes_ holds the head. The sink gets it with the first frames.
   FileSink sink_;
   std::size_t points_;
   double rate_hz_;

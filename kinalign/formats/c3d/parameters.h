@@ -18,6 +18,7 @@ namespace kinalign {
 constexpr std::size_t c3d_block = 512;
 
 /// The kind of machine in whose number format the file is written.
+/// The machine decides on the order of bytes, and for DEC also on the format of numbers.
 enum class C3dProcessor : std::uint8_t { intel = 84, dec = 85, mips = 86 };
 
 /// Reads a number in that machine's format; the caller makes sure that its bytes are present.
@@ -41,6 +42,7 @@ struct C3dParameter {
   std::vector<std::uint8_t> bytes;
 };
 
+/// The processor is stated in the section itself; it decides how numbers are read.
 class C3dParameters {
  public:
   /// Parses a section, which begins with its own four header bytes. `section_at` is the section's
@@ -50,6 +52,7 @@ class C3dParameters {
                                      std::uint64_t section_at);
 
   C3dProcessor processor() const { return processor_; }
+  /// The order of entries in a file is free, so groups and parameters are looked up by name.
   const C3dParameter* find(std::string_view group, std::string_view name) const;
 
   /// The value at `index`. Integers are read as unsigned, because counts are stored so. Empty if

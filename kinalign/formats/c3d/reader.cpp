@@ -23,6 +23,7 @@ constexpr std::size_t most_zeros = 4096;  // zero bytes before the header
 constexpr double largest_number = 1e15;   // the limit of tables (formats/cells.h)
 constexpr std::uint16_t saturated = 65'535;
 
+// The first block has number 1.
 std::size_t begin_of_block(std::size_t number) { return (number - 1) * c3d_block; }
 
 /// The numbers of the header block, in the number format of the parameters' processor.
@@ -33,6 +34,7 @@ struct HeaderBlock {
   double scale = 0.0, rate_hz = 0.0;
 
   HeaderBlock() = default;
+  // The places of the fields are those of the table in docs/formats/c3d.md.
   HeaderBlock(C3dProcessor p, const std::uint8_t* at)
       : points(c3d_u16(p, at + 2)),
         analog_values(c3d_u16(p, at + 4)),
@@ -51,12 +53,14 @@ struct HeaderBlock {
 /// Number of frames that the file states. Empty if it states only that there are 65,535 or more.
 std::optional<std::uint64_t> stated_frames(const HeaderBlock& header,
                                            const C3dParameters& parameters) {
+  // Files with more than 65,535 frames state two 16-bit numbers, the lower one first.
   const auto field = [&](const char* name) -> std::optional<double> {
     const auto low = parameters.number("TRIAL", name, 0);
     const auto high = parameters.number("TRIAL", name, 1);
     if (!low || !high || !(*low < 65'536.0) || !(*high < 65'536.0)) return std::nullopt;
     return *low + 65'536.0 * *high;
   };
+  // TRIAL holds 32 bits, so it comes before the fields of 16 bits.
   const auto start = field("ACTUAL_START_FIELD"), end = field("ACTUAL_END_FIELD");
   if (start && end && *end >= *start) return static_cast<std::uint64_t>(*end - *start) + 1;
   for (const char* name : {"LONG_FRAMES", "FRAMES"}) {
@@ -65,11 +69,13 @@ std::optional<std::uint64_t> stated_frames(const HeaderBlock& header,
       return static_cast<std::uint64_t>(*frames);
     }
   }
+  // The header's field is full and no parameter tells more.
   if (header.last_frame == saturated) return std::nullopt;
   return header.frames();
 }
 
 /// The shortest decimal that rounds to this f32, as a person typed it: 59.94, not 59.93999863.
+/// A rate is stored as f32. The double next to it is not the number that was meant.
 double as_typed(double f32) {
   std::array<char, 32> room{};
   const char* end =
@@ -81,6 +87,7 @@ double as_typed(double f32) {
 
 /// Metres per unit of POINT:UNITS; 0 if the unit is unknown.
 double metres_of(std::string_view unit) {
+  // Files without UNITS are taken as millimetres, the usual unit.
   if (unit == "mm" || unit.empty()) return 0.001;
   if (unit == "cm") return 0.01;
   if (unit == "in") return 0.0254;
@@ -91,10 +98,13 @@ double metres_of(std::string_view unit) {
 std::optional<Axes> axes_with_up(std::string_view axis) {
   if (axis.empty() || axis == "+Z" || axis == "Z") return z_up;
   if (axis == "+Y" || axis == "Y") return y_up;
+  // x up: our y is the file's x, and our x is the file's -y.
   if (axis == "+X" || axis == "X") return Axes{-2, 1, 3};
   return std::nullopt;
 }
 
+/// The head is parsed in one piece, as soon as all its bytes are present. Then held_ contains the
+/// incomplete frame only.
 class C3dReader final : public PointReader {
  public:
   C3dReader(const StreamOptions& options, std::string_view file)
@@ -102,6 +112,7 @@ class C3dReader final : public PointReader {
 
   Result<void> feed(std::string_view piece, PointFrames& out) override {
     piece = skip_zeros(piece);
+    // A file of zeros alone is no C3D.
     if (zeros_ > most_zeros) return refuse("a C3D header", fmt::format("{} zero bytes", zeros_));
     held_.append(piece);
     if (!header_) KA_TRY(read_head());
@@ -110,6 +121,7 @@ class C3dReader final : public PointReader {
 
   Result<void> finish(PointFrames&) override {
     if (!header_) {
+      // Zero bytes count in positions, so that a message has the place in the file.
       return refuse("a C3D header and its parameters",
                     fmt::format("the end of the file at byte {}", zeros_ + held_.size()));
     }
@@ -140,6 +152,7 @@ class C3dReader final : public PointReader {
     const std::size_t parameter_block = bytes()[0];
     if (held_[1] != 0x50 || parameter_block < 2) return refuse("a C3D header", "another beginning");
     const std::size_t parameters_at = begin_of_block(parameter_block);
+    // The parameters' first four bytes state their length and the processor.
     if (held_.size() < parameters_at + 4) return {};
     const std::uint8_t processor = bytes()[parameters_at + 3];
     if (processor < 84 || processor > 86) {
@@ -148,6 +161,8 @@ class C3dReader final : public PointReader {
     }
     const HeaderBlock read(static_cast<C3dProcessor>(processor), bytes());
     const std::size_t stated_end = begin_of_block(parameter_block + bytes()[parameters_at + 2]);
+    // The parameters end where the data begin. Only a file without a usable data block falls back
+    // on the stated number of blocks.
     const std::size_t end =
         read.data_block > parameter_block ? begin_of_block(read.data_block) : stated_end;
     if (held_.size() < end) return {};
@@ -159,6 +174,7 @@ class C3dReader final : public PointReader {
   }
 
   /// Takes the parts of the head one after the other.
+  /// The sizes come first: all later parts depend on them.
   Result<void> take_head(const HeaderBlock& read, const C3dParameters& parameters) {
     processor_ = parameters.processor();
     KA_TRY(take_sizes(read, parameters));
@@ -176,6 +192,7 @@ class C3dReader final : public PointReader {
   /// all following numbers, so it fails.
   Result<void> take_sizes(const HeaderBlock& read, const C3dParameters& parameters) {
     points_ = read.points;
+    // USED and the header must agree on the number of points.
     const double used = parameters.number("POINT", "USED").value_or(static_cast<double>(points_));
     if (used != static_cast<double>(points_)) {
       return refuse(fmt::format("POINT:USED {} as in the header", points_),
@@ -183,6 +200,7 @@ class C3dReader final : public PointReader {
     }
     if (points_ == 0) return refuse("points", "a C3D file without any");
     const auto channels = parameters.number("ANALOG", "USED");
+    // A file without analog data may state 0 samples.
     const std::size_t samples = std::max<std::size_t>(read.analog_samples, 1);
     if (channels &&
         *channels * static_cast<double>(samples) != static_cast<double>(read.analog_values)) {
@@ -193,10 +211,12 @@ class C3dReader final : public PointReader {
     if (!(std::abs(scale_) > 0.0) || !(std::abs(scale_) < largest_number)) {
       return refuse("a scale of points other than 0", fmt::format("{}", scale_));
     }
+    // The sign tells floats from integers, so the two must agree on it.
     if ((scale_ < 0.0) != (read.scale < 0.0)) {
       return refuse(fmt::format("POINT:SCALE of the sign of the header's {}", read.scale),
                     fmt::format("{}", scale_));
     }
+    // Four numbers a point, then the analog values, all of one size.
     const std::size_t value = scale_ < 0.0 ? 4 : 2;
     frame_bytes_ = value * (4 * points_ + read.analog_values);
     const auto data_block = parameters.number("POINT", "DATA_START");
@@ -217,6 +237,7 @@ class C3dReader final : public PointReader {
     };
     const std::string unit = one("UNITS");
     const double metres = metres_of(unit);
+    // A unit set by the user makes the file's own unit unimportant.
     if (metres == 0.0 && options_.metres_per_unit <= 0.0) {
       return refuse("POINT:UNITS mm, cm, m or in; otherwise set metres_per_unit", shown(unit));
     }
@@ -227,6 +248,7 @@ class C3dReader final : public PointReader {
                           Error{file_, 0, "POINT:Y_SCREEN +X, +Y or +Z", shown(up)},
                           "z is used as the upward axis", "set up = \"y\" or \"z\""});
     }
+    // The user's `up` and metres_per_unit override both, in point_units().
     units_ = point_units({axes.value_or(z_up), metres}, options_);
     return {};
   }
@@ -247,6 +269,7 @@ class C3dReader final : public PointReader {
            "POINT:RATE is used", "find out which rate is correct"});
     }
     stamps_ = RowStamps(false, used, options_.start_ns);
+    // The stamps are counted, not measured.
     counted = true;
     return {};
   }
@@ -254,6 +277,7 @@ class C3dReader final : public PointReader {
   /// Finds the number of frames. The parameters win over the header; a difference is a finding.
   void take_frames(const HeaderBlock& read, const C3dParameters& parameters) {
     stated_ = stated_frames(read, parameters);
+    // A full header field is no disagreement.
     if (!stated_ || *stated_ == read.frames() || read.last_frame == saturated) return;
     findings.push_back({Severity::warning,
                         Error{file_, 0, fmt::format("{} frames as in the header", read.frames()),
@@ -292,11 +316,13 @@ class C3dReader final : public PointReader {
   /// Adds a note that names the analog channels, which are not read.
   void note_analog(const HeaderBlock& read, const C3dParameters& parameters) {
     if (read.analog_values == 0) return;
+    // Analog values of a frame: channels times samples.
     const std::size_t channels = read.analog_values / std::max<std::size_t>(read.analog_samples, 1);
     std::vector<std::string> names = parameters.all_texts("ANALOG", "LABELS");
     names.resize(std::min(names.size(), channels));
     std::string listed;
     for (const std::string& name : names) {
+      // A note that lists hundreds of channels would fill the screen.
       if (listed.size() > 100) {
         listed += ", ...";
         break;
@@ -312,11 +338,13 @@ class C3dReader final : public PointReader {
   /// Parses all complete frames of the bytes kept. Bytes after the last stated frame are only
   /// counted.
   Result<void> read_frames(PointFrames& out) {
+    // Complete frames are taken from the front. The rest waits for the next piece.
     std::size_t at = 0;
     while (held_.size() - at >= frame_bytes_ && (!stated_ || stamps_.rows() < *stated_)) {
       KA_TRY(read_frame(bytes() + at, out));
       at += frame_bytes_;
     }
+    // After the last stated frame only zeros are expected, up to the end of the block.
     if (stated_ && stamps_.rows() == *stated_) {
       behind_ += held_.size() - at;
       at = held_.size();
@@ -334,6 +362,7 @@ class C3dReader final : public PointReader {
       ++zero_frames_;
       return {};
     }
+    // The frames of zeros were not padding, since another frame follows.
     const std::vector<std::uint8_t> zeros(zero_frames_ > 0 ? frame_bytes_ : 0);
     for (; zero_frames_ > 0; --zero_frames_) KA_TRY(append_frame(zeros.data(), out));
     return append_frame(at, out);
@@ -345,6 +374,7 @@ class C3dReader final : public PointReader {
     for (std::size_t j = 0; j < points_; ++j) {
       double* to = &numbers_[3 * j];
       double fourth = 0.0;
+      // Floats are coordinates already; integers are multiplied by the scale.
       if (scale_ < 0.0) {
         for (std::size_t k = 0; k < 3; ++k) to[k] = c3d_f32(processor_, at + 16 * j + 4 * k);
         fourth = c3d_f32(processor_, at + 16 * j + 12);
@@ -354,6 +384,7 @@ class C3dReader final : public PointReader {
         }
         fourth = c3d_i16(processor_, at + 8 * j + 6);
       }
+      // NaN compares as false, so it is no number either.
       const bool number = std::abs(to[0]) < largest_number && std::abs(to[1]) < largest_number &&
                           std::abs(to[2]) < largest_number;
       const bool valid = fourth >= 0.0;
@@ -378,6 +409,7 @@ class C3dReader final : public PointReader {
            Error{file_, 0, fmt::format("{} frames", *stated_), std::to_string(stamps_.rows())},
            "the existing frames were read", ""});
     }
+    // Less than a block is the padding of the last one.
     if (behind_ > c3d_block) {
       findings.push_back(
           {Severity::warning,
@@ -416,6 +448,7 @@ std::unique_ptr<PointReader> make_c3d_reader(const StreamOptions& options, std::
 }
 
 bool looks_like_c3d(std::string_view head) {
+  // Skipped as the reader does it.
   head.remove_prefix(std::min(head.find_first_not_of('\0'), head.size()));
   if (head.size() < c3d_block || head[1] != 0x50) return false;
   const auto parameter_block = static_cast<std::uint8_t>(head[0]);

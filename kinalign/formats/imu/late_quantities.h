@@ -14,6 +14,8 @@ inline bool is_any(const ImuContent& content) {
   return content.orientation || content.acceleration || content.angular_velocity;
 }
 
+/// Content is decided early, because the header must be known before the first row is passed on. A
+/// quantity that begins later can't be added then.
 class LateQuantities {
  public:
   /// Call for each row. `here`: the quantities with values in this row; `read`: those that are
@@ -29,6 +31,7 @@ class LateQuantities {
   }
 
   /// Number of rows with at least one such quantity.
+  /// For the finding at the end of the file.
   std::uint64_t rows() const { return rows_; }
 
   /// "orientation, angular velocity"

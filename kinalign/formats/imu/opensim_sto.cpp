@@ -12,15 +12,18 @@ namespace kinalign {
 
 namespace {
 
+// Times are seconds without an offset.
 constexpr TimeScale sto_seconds{1'000'000'000, 0};
 
 /// Reads a .sto line by line: head up to endheader, names, then rows.
+/// in_head_ is true up to endheader. Then one line of names follows, and header_ is set with it.
 class StoReader final : public ImuReader {
  public:
   StoReader(const StreamOptions& options, std::string_view file)
       : lines_(file),
         stamps_(true, options.rate_hz, options.start_ns),
         samples_(ImuUnits{axes_of(z_up, options), 1.0, 1.0}),
+        // A quaternion's cell is split by a parser of its own, at commas.
         parts_(',', {{0, -1}, {1, -1}, {2, -1}, {3, -1}}) {}
 
   Result<void> feed(std::string_view piece, ImuSamples& out) override {
@@ -29,6 +32,7 @@ class StoReader final : public ImuReader {
 
   Result<void> finish(ImuSamples& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
+    // A file that ends in its head is incomplete, whatever the head holds.
     KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the head of a .sto file", "the end of the file"));
     stamps_.settle();
@@ -43,6 +47,7 @@ class StoReader final : public ImuReader {
 
  private:
   Result<void> read(std::string_view line, ImuSamples& out) {
+    // Blank lines may stand anywhere.
     if (trimmed(line).empty()) return {};
     if (header_) return read_row(line, out);
     return in_head_ ? read_head(trimmed(line)) : read_names(split_cells(line, '\t'));
@@ -56,6 +61,7 @@ class StoReader final : public ImuReader {
       if (!quaternions_) return Failure(Error{"", 0, "DataType=Quaternion", shown(type)});
     }
     if (line != "endheader") return {};
+    // Without this key the rows could be anything.
     if (!quaternions_) return Failure(Error{"", 0, "DataType=Quaternion in the head", "none"});
     in_head_ = false;
     return {};
@@ -63,11 +69,13 @@ class StoReader final : public ImuReader {
 
   /// Reads the line of column names, which makes the header complete.
   Result<void> read_names(const std::vector<std::string>& names) {
+    // The first column is the time; each further one is a node.
     if (names.size() < 2 || names[0] != "time") {
       return Failure(
           Error{"", 0, "time and names of nodes", names.empty() ? "none" : shown(names[0])});
     }
     std::vector<ColumnUse> uses(names.size());
+    // Every cell is kept as text: a cell holds four numbers, which RowParser can't read.
     for (std::size_t i = 0; i < uses.size(); ++i) uses[i].text = static_cast<int>(i);
     row_ = RowParser('\t', std::move(uses));
     raw_.resize(4 * (names.size() - 1));
@@ -81,7 +89,9 @@ class StoReader final : public ImuReader {
     KA_TRY(row_.read(line));
     const auto ns = parse_stamp(row_.texts[0], sto_seconds);
     if (!ns) return Failure(Error{"", 0, "a time in seconds", shown(row_.texts[0])});
+    // All cells are parsed before the row is passed on, so a fault leaves no half row.
     for (std::size_t s = 0; s < valid_.size(); ++s) KA_TRY(read_quaternion(row_.texts[s + 1], s));
+    // Rows are held until their stamps are certain.
     ImuSamples& target = held_.target(stamps_, out);
     target.stamps.push_back(KA_TRY(stamps_.next(*ns)));
     for (std::size_t s = 0; s < valid_.size(); ++s) {
@@ -93,6 +103,7 @@ class StoReader final : public ImuReader {
 
   /// Reads one cell "w,x,y,z". A missing cell or part makes the node's sample invalid.
   Result<void> read_quaternion(std::string_view cell, std::size_t node) {
+    // A node that lost its sample has an empty cell or "nan".
     valid_[node] = says_missing(cell) ? 0 : 1;
     if (valid_[node] == 0) return {};
     if (auto read = parts_.read(cell); !read) {
@@ -122,6 +133,7 @@ std::unique_ptr<ImuReader> make_opensim_sto_reader(const StreamOptions& options,
 }
 
 bool looks_like_opensim_sto(std::string_view head) {
+  // The head of a .sto of another type lacks the first text.
   return head.find("DataType=Quaternion") != std::string_view::npos &&
          head.find("endheader") != std::string_view::npos;
 }

@@ -20,6 +20,7 @@ namespace kinalign {
 /// OpenSense's readers of sensor exports write it, unless `up` says y. Stamps are the seconds of
 /// the time column; if start_ns is given, they are shifted so that the first row gets it. A
 /// DataType other than Quaternion fails.
+/// A .sto holds orientations only, so the stream has no accelerations and no angular velocities.
 std::unique_ptr<ImuReader> make_opensim_sto_reader(const StreamOptions& options,
                                                    std::string_view file);
 
@@ -48,6 +49,7 @@ class OpensimStoWriter {
   TextOut* out_;
   std::size_t nodes_;
   Time zero_;
+  // Our orientations have y up; the file has z up.
   Quat z_up_from_ours_;
 };
 

@@ -26,6 +26,7 @@ Result<OpensimStoWriter> OpensimStoWriter::begin(const OpensimStoHead& head, Tex
     return refuse("orientations for a .sto", "nodes without orientations");
   if (head.names.empty()) return refuse("at least one node for a .sto", "none");
   for (const std::string& name : head.names) {
+    // A tab in a name would shift the columns.
     if (!fits_a_cell(name)) return refuse("names of nodes for a .sto without tabs", shown(name));
   }
   if (!(head.rate_hz > 0.0)) return refuse("a rate for a .sto", fmt::format("{}", head.rate_hz));
@@ -40,8 +41,10 @@ Result<OpensimStoWriter> OpensimStoWriter::begin(const OpensimStoHead& head, Tex
 
 Result<void> OpensimStoWriter::append(const ImuSamples& samples) {
   for (std::size_t t = 0; t < samples.size(); ++t) {
+    // Times count from `zero`, since OpenSim's numbers have no date.
     out_->text(seconds_text((samples.stamps[t] - zero_).count()));
     for (std::size_t i = t * nodes_; i < (t + 1) * nodes_; ++i) {
+      // Four nan keep the number of cells, so that other nodes stay in place.
       if (samples.valid[i] == 0) {
         out_->text("\tnan,nan,nan,nan");
         continue;

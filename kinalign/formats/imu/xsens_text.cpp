@@ -23,6 +23,7 @@ namespace {
 
 /// The columns of one quantity in RowParser::values. Empty: at least one of them is not in the
 /// file.
+/// slots are places in RowParser::values, in the order of the wanted names.
 struct XsensGroup {
   std::vector<std::size_t> slots;
 
@@ -39,6 +40,7 @@ struct XsensColumns {
 };
 
 /// Finds groups of columns by name and gives each column found a slot in RowParser::values.
+/// A group is found only if all of its columns exist. A column may be in several groups.
 class ColumnFinder {
  public:
   explicit ColumnFinder(const std::vector<std::string>& names)
@@ -53,6 +55,7 @@ class ColumnFinder {
     }
     XsensGroup group;
     for (const std::size_t column : columns) {
+      // A column gets one slot, even if two groups use it.
       if (uses_[column].slot < 0) uses_[column].slot = slots_++;
       group.slots.push_back(static_cast<std::size_t>(uses_[column].slot));
     }
@@ -90,6 +93,7 @@ XsensColumns find_xsens_columns(const std::vector<std::string>& names) {
   columns.euler = finder.find({"Roll", "Pitch", "Yaw"});
   columns.acceleration = finder.find({"Acc_X", "Acc_Y", "Acc_Z"});
   columns.free_acceleration = finder.find({"FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z"});
+  // Some exports name the axes of the world: east, north, up.
   if (!columns.free_acceleration.there()) {
     columns.free_acceleration = finder.find({"FreeAcc_E", "FreeAcc_N", "FreeAcc_U"});
   }
@@ -110,6 +114,7 @@ Quat xsens_from_matrix(const XsensGroup& group, const RowParser& row) {
   for (Eigen::Index i = 0; i < 9; ++i) {
     matrix(i / 3, i % 3) = value(group, row, static_cast<std::size_t>(i));
   }
+  // A matrix from text is a rotation up to rounding; the result is normalised later.
   return Quat(matrix);
 }
 
@@ -127,11 +132,14 @@ Quat xsens_from_euler(const XsensGroup& group, const RowParser& row) {
 std::string device_of(std::string_view file) {
   std::string_view name = file_name(file);
   name = name.substr(0, name.rfind('.'));
+  // The device's id has eight digits.
   const std::string_view id = name.size() > 8 ? name.substr(name.size() - 8) : name;
   const bool hexadecimal = id.find_first_not_of("0123456789ABCDEFabcdef") == std::string_view::npos;
   return std::string(hexadecimal ? id : name);
 }
 
+/// Rows wait until the first `patience` of them have shown which quantities the file holds. They
+/// are then passed on in their order.
 class XsensReader final : public ImuReader {
  public:
   XsensReader(const StreamOptions& options, std::string_view file, std::string_view node)
@@ -148,7 +156,9 @@ class XsensReader final : public ImuReader {
   Result<void> finish(ImuSamples& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
     const bool rows = header_ || !waiting_.empty();
+    // Without a row the file ends within its head.
     KA_TRY(rows ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
+    // A short file is decided at its end.
     if (!header_) settle(out);
     if (!header_) return Failure(lines_.error("rows of an Xsens export", "the end of the file"));
     if (packets_.lost() > 0) {
@@ -182,6 +192,7 @@ class XsensReader final : public ImuReader {
 
  private:
   Result<void> read(std::string_view line, ImuSamples& out) {
+    // Comments stand above the names, but are accepted anywhere.
     if (line.starts_with("//")) return read_comment(line);
     if (trimmed(line).empty()) return {};
     return named_ ? read_row(line, out) : read_names(line);
@@ -191,6 +202,7 @@ class XsensReader final : public ImuReader {
   Result<void> read_comment(std::string_view line) {
     constexpr std::string_view key = "Update Rate:";
     const auto at = line.find(key);
+    // The user's rate has priority over the file's.
     if (at == std::string_view::npos || options_.rate_hz > 0.0) return {};
     std::string_view text = trimmed(line.substr(at + key.size()));
     if (text.ends_with("Hz")) text.remove_suffix(2);
@@ -202,10 +214,12 @@ class XsensReader final : public ImuReader {
   Result<void> read_names(std::string_view line) {
     const auto delimiter = xsens_delimiter(trimmed(line));
     if (!delimiter) return Failure(Error{"", 0, "names of columns", shown(line)});
+    // The names decide about all columns; their order is free.
     columns_ = find_xsens_columns(split_cells(line, *delimiter));
     if (!columns_.counter.there()) {
       return Failure(Error{"", 0, "a column PacketCounter", "no such column"});
     }
+    // Stamps are counts divided by the rate.
     if (rate_hz_ <= 0.0) {
       return Failure(Error{"", 0, "a line // Update Rate: ... above, or rate_hz", "none"});
     }
@@ -217,6 +231,7 @@ class XsensReader final : public ImuReader {
   /// Reads a row. The first rows are kept until the file's quantities are decided.
   Result<void> read_row(std::string_view line, ImuSamples& out) {
     KA_TRY(row_.read(line));
+    // Without a counter a row has no stamp.
     const bool packet = columns_.counter.whole(row_);
     if (!packet) return Failure(Error{"", 0, "a whole number as PacketCounter", "an empty cell"});
     const ImuContent here = content_of_row();
@@ -230,6 +245,7 @@ class XsensReader final : public ImuReader {
       if (waiting_.size() == patience) settle(out);
       return {};
     }
+    // A quantity that the decision left out is counted for a finding.
     late_.add(here, header_->content);
     append_sample(stamp, out);
     return {};
@@ -238,9 +254,11 @@ class XsensReader final : public ImuReader {
   /// The quantities with complete values in this row; a column of the file may be empty here.
   ImuContent content_of_row() const {
     ImuContent here;
+    // Any of the three forms is enough.
     here.orientation = columns_.quaternion.whole(row_) || columns_.matrix.whole(row_) ||
                        columns_.euler.whole(row_);
     here.gravity = columns_.acceleration.whole(row_);
+    // An acceleration without gravity needs the orientation, because it is in world space.
     here.acceleration =
         here.gravity || (here.orientation && columns_.free_acceleration.whole(row_));
     here.angular_velocity = columns_.angular_velocity.whole(row_);
@@ -249,6 +267,8 @@ class XsensReader final : public ImuReader {
 
   /// Counts, over the rows kept, how many rows have each quantity.
   void see(const ImuContent& here) {
+    // The three forms are counted apart, because a file may have several columns of which some are
+    // empty.
     for (std::size_t k = 0; k < turns_.size(); ++k) {
       turns_[k].rows += turns_[k].group->whole(row_) ? 1 : 0;
     }
@@ -261,14 +281,18 @@ class XsensReader final : public ImuReader {
   /// acceleration in several forms, the form that most rows have is read.
   void settle(ImuSamples& out) {
     if (waiting_.empty()) return;
+    // Equal counts: the first form wins, which is the quaternion.
     const auto best = std::max_element(
         turns_.begin(), turns_.end(),
         [](const Orientation& a, const Orientation& b) { return a.rows < b.rows; });
     orientation_ = best->group;
     seen_.orientation = best->rows > 0;
     seen_.acceleration = with_gravity_ + free_ > 0;
+    // With as many rows of both, the acceleration with gravity is read: nothing was computed from
+    // it.
     seen_.gravity = with_gravity_ >= free_;
     header_ = ImuHeader{{node_}, seen_};
+    // The kept rows are parsed numbers; each becomes the current row again.
     for (Waiting& row : waiting_) {
       row_.values = std::move(row.values);
       row_.missing = std::move(row.missing);
@@ -279,7 +303,9 @@ class XsensReader final : public ImuReader {
 
   /// The stamp of packet `count`: by the rate, from packet 0 or, with start_ns, from the first row.
   Result<Time> stamp_of(std::int64_t count) {
+    // Without start_ns the counter itself is the time axis, which all sensors of a recording share.
     if (!first_count_) first_count_ = count;
+    // A packet before the first one gives a negative number.
     const std::int64_t packets = options_.start_ns ? count - *first_count_ : count;
     const std::int64_t since =
         stamp_at_rate(static_cast<std::uint64_t>(std::abs(packets)), rate_hz_);
@@ -298,12 +324,14 @@ class XsensReader final : public ImuReader {
     if (content.orientation) {
       sample.orientation = orientation.data();
       sample.valid = orientation_->whole(row_);
+      // An absent orientation leaves the identity, which into_sensor() may use.
       if (sample.valid) put_quat(orientation, 0, quaternion());
     }
     if (content.acceleration) {
       sample.acceleration = acceleration.data();
       sample.valid = sample.valid && force.whole(row_);
       copy(force, acceleration);
+      // The converter wants every vector in the sensor's own space.
       if (!content.gravity) into_sensor(orientation, acceleration);
     }
     if (content.angular_velocity) {
@@ -348,6 +376,7 @@ class XsensReader final : public ImuReader {
   std::optional<ImuHeader> header_;
 
   /// A row that was read before the file's quantities were decided.
+  /// The stamp is kept too, because the counter has moved on.
   struct Waiting {
     Time stamp;
     std::vector<double> values;
@@ -375,6 +404,7 @@ std::unique_ptr<ImuReader> make_xsens_text_reader(const StreamOptions& options,
 }
 
 bool looks_like_xsens_text(std::string_view head) {
+  // 40 lines are more than the comments of an export.
   for (std::size_t line = 0; line < 40 && !head.empty(); ++line) {
     const auto end = head.find('\n');
     const std::string_view text = head.substr(0, end);

@@ -29,6 +29,7 @@ std::vector<double> numbers_of(std::string_view text) {
     while (at < end && is_blank(*at)) ++at;
     if (at == end) return out;
     double value = 0.0;
+    // One wrong word makes the whole array useless: no number has its place any more.
     at = parse_number(at, end, value);
     if (at == nullptr || !(std::abs(value) < largest_number)) return {};
     out.push_back(value);
@@ -42,6 +43,7 @@ std::optional<double> number_of(std::optional<std::string_view> text) {
 }
 
 /// Splits "Pelvis/jL5S1" into a segment and a point.
+/// Text without a slash names a segment alone.
 std::pair<std::string, std::string> place_of(std::string_view text) {
   text = trimmed(text);
   const auto slash = text.find('/');
@@ -49,6 +51,7 @@ std::pair<std::string, std::string> place_of(std::string_view text) {
   return {std::string(text.substr(0, slash)), std::string(text.substr(slash + 1))};
 }
 
+/// The elements of a frame that are read, and their arrays. All others are skipped.
 struct Quantity {
   std::string_view name;
   std::vector<double> MvnxFrame::*array;
@@ -69,18 +72,21 @@ MvnxDocument::MvnxDocument(std::string_view file, UseFrame use)
 
 Result<void> MvnxDocument::feed(std::string_view piece) {
   if (piece.empty()) return {};
+  // A gzip begins with 0x1f, which no XML does.
   if (!begun_) {
     begun_ = true;
     // The first byte decides; the second one may come in the next piece.
     if (piece.front() == '\x1f') gunzip_.emplace();
   }
   if (!gunzip_) return xml_.feed(piece, *this);
+  // XML faults have a file already, faults of the gzip don't.
   auto fed = gunzip_->feed(piece, [this](std::string_view text) { return xml_.feed(text, *this); });
   if (!fed && fed.error().file.empty()) fed.error().file = file_;
   return fed;
 }
 
 Result<void> MvnxDocument::finish(Findings& findings) {
+  // Counted to the end, since later subjects are found only there.
   if (subjects_ > 1) {
     findings.push_back({Severity::warning,
                         Error{file_, 0, "one subject", std::to_string(subjects_)},
@@ -89,10 +95,12 @@ Result<void> MvnxDocument::finish(Findings& findings) {
   Result<void> ended = xml_.finish(*this);
   // Expat delays an incomplete token, so other faults may show only now.
   if (!ended && !xml_.ends_too_early()) return ended;
+  // The XML may be complete although the archive's checksum is missing.
   if (ended && gunzip_ && !gunzip_->complete()) {
     ended = Failure(Error{file_, 0, "a whole gzip archive", "the end of the file"});
   }
   if (ended) return {};
+  // Without a frame nothing was read, so a cut file is an error.
   if (frames_ == 0) return ended;
   findings.push_back({Severity::warning, std::move(ended).error(),
                       "the file was cut: the frames before were read", ""});
@@ -100,15 +108,18 @@ Result<void> MvnxDocument::finish(Findings& findings) {
 }
 
 Result<void> MvnxDocument::begin(std::string_view name, const XmlAttributes& attributes) {
+  // Any other XML document begins with another element.
   if (!std::exchange(root_, true) && name != "mvnx") {
     return Failure(Error{"", 0, "the element mvnx", shown(name)});
   }
   subjects_ += name == "subject" ? 1 : 0;
+  // Only the first subject is read.
   if (subjects_ != 1) return {};
   if (name == "frame") {
     begin_frame(attributes);
     return {};
   }
+  // Elements within a frame are taken at their end, with their text.
   return in_frame_ ? Result<void>{} : begin_in_head(name, attributes);
 }
 
@@ -119,20 +130,24 @@ Result<void> MvnxDocument::begin_in_head(std::string_view name, const XmlAttribu
   if (name == "segment") head_.segments.push_back({label, {}});
   if (name == "sensor") head_.sensors.push_back(label);
   if (name == "joint") head_.joints.emplace_back();
+  // A point belongs to the segment that was opened last.
   if (name == "point" && !head_.segments.empty()) {
     head_.segments.back().points.push_back({label, Vec3::Zero()});
   }
+  // The head is kept in memory, so the number of its elements is limited.
   if (++things_ <= most_things) return {};
   return Failure(Error{"", 0, "at most 20,000 elements before the first frame", "more"});
 }
 
 void MvnxDocument::begin_frame(const XmlAttributes& attributes) {
   in_frame_ = true;
+  // Arrays that this frame lacks must not keep those of the frame before.
   frame_ = {};
   frame_.type = attributes.find("type").value_or("normal");
   frame_.index = number_of(attributes.find("index"));
   frame_.ms = number_of(attributes.find("time"));
   frame_.unix_ms = number_of(attributes.find("ms"));
+  // For faults that the user of the frame finds.
   line_ = xml_.line();
 }
 
@@ -144,8 +159,10 @@ Result<void> MvnxDocument::end(std::string_view name, std::string_view text) {
     return {};
   }
   in_frame_ = false;
+  // A frame counts when it is complete.
   ++frames_;
   auto used = use_(head_, frame_);
+  // The user of the frame knows no line.
   if (!used && used.error().file.empty()) {
     used.error().file = file_;
     used.error().line = line_;
@@ -154,6 +171,7 @@ Result<void> MvnxDocument::end(std::string_view name, std::string_view text) {
 }
 
 /// Takes the text of an element of the head: a point's position or an end of a joint.
+/// pos_b is the position of the point that was begun last.
 Result<void> MvnxDocument::end_in_head(std::string_view name, std::string_view text) {
   if (name == "pos_b" && !head_.segments.empty() && !head_.segments.back().points.empty()) {
     const auto numbers = numbers_of(text);
@@ -162,6 +180,7 @@ Result<void> MvnxDocument::end_in_head(std::string_view name, std::string_view t
     }
     head_.segments.back().points.back().place = Vec3(numbers[0], numbers[1], numbers[2]);
   }
+  // A joint's two connectors follow its begin.
   if (head_.joints.empty()) return {};
   MvnxJoint& joint = head_.joints.back();
   if (name == "connector1") std::tie(joint.parent, joint.parent_point) = place_of(text);

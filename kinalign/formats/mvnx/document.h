@@ -17,6 +17,7 @@
 
 namespace kinalign {
 
+/// A landmark of a segment: a joint's place, or the tip of a limb.
 struct MvnxPoint {
   std::string label;
   Vec3 place = Vec3::Zero();  // m, in the segment's space
@@ -32,6 +33,7 @@ struct MvnxJoint {
   std::string parent, parent_point, child, child_point;
 };
 
+/// Everything before the first frame. Frames refer to segments and sensors by their order here.
 struct MvnxHead {
   double rate_hz = 0.0;  // 0: the file does not state it
   std::vector<MvnxSegment> segments;
@@ -54,6 +56,7 @@ struct MvnxFrame {
 };
 
 /// Takes a file in pieces, plain or packed by gzip. Only the first subject is read.
+/// Frames are handed on one at a time, because a file has many more of them than fit into memory.
 class MvnxDocument final : private XmlHandler {
  public:
   using UseFrame = std::function<Result<void>(const MvnxHead&, const MvnxFrame&)>;
@@ -79,7 +82,10 @@ class MvnxDocument final : private XmlHandler {
   UseFrame use_;
   std::optional<Gunzip> gunzip_;
   XmlFeed xml_;
+  // begun_: the first byte was seen. root_: the element mvnx has begun. in_frame_: between <frame>
+  // and </frame>.
   bool begun_ = false, root_ = false, in_frame_ = false;
+  // Subjects seen so far: everything after the first one is skipped.
   std::size_t subjects_ = 0, things_ = 0;
   std::uint64_t frames_ = 0;
   std::int64_t line_ = 0;  // line on which the frame begins

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stamps for the frames of an MVNX file: from the frame's index and rate, starting at the first
 // frame's time of day. The file's own milliseconds are rounded, so they are only compared.
+// The index counts frames from the start of the recording, so a lost frame leaves a gap of the
+// right length.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -33,6 +35,7 @@ class MvnxStamps {
   std::optional<double> first_index_;
   double first_ms_ = 0.0, last_index_ = -1.0;
   std::int64_t start_ns_ = 0;
+  // Counts for the findings at the end.
   std::uint64_t not_rising_ = 0, missing_ = 0;
   /// largest difference between the file's milliseconds and the stamps
   double largest_off_s_ = 0.0;

@@ -12,6 +12,7 @@ namespace kinalign {
 
 bool looks_like_gzip(std::string_view head);
 
+/// Several archives may follow each other; their texts belong together.
 class Gunzip {
  public:
   Gunzip();

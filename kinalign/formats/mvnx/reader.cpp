@@ -29,6 +29,7 @@ struct MvnxUnits {
   PointUnits units;
   Quat turn;
 
+  /// Lengths are in metres unless the user states another unit.
   explicit MvnxUnits(const StreamOptions& options)
       : units(point_units({z_up, 1.0}, options)), turn(rotation_of(units.axes)) {}
 
@@ -39,11 +40,14 @@ struct MvnxUnits {
 /// within 0.99 to 1.01.
 std::optional<GlobalPose> pose_of(const MvnxFrame& frame, std::size_t segments,
                                   const MvnxUnits& units) {
+  // A frame with fewer numbers lacks a segment.
   if (frame.orientation.size() != 4 * segments || frame.position.size() != 3 * segments) return {};
   GlobalPose out;
   for (std::size_t k = 0; k < segments; ++k) {
     const Quat q = quat(frame.orientation, k);
+    // Rounded text is within 1 %; anything else is no rotation.
     if (!(std::abs(q.norm() - 1.0) <= 0.01)) return std::nullopt;
+    // T q T^-1 with T the turn of the axes: the same rotation, described in our axes.
     out.turns.push_back((units.turn * q * units.turn.conjugate()).normalized());
     out.places.push_back(units.ours(vec3(frame.position, k)));
   }
@@ -51,6 +55,7 @@ std::optional<GlobalPose> pose_of(const MvnxFrame& frame, std::size_t segments,
 }
 
 /// The parent of each segment according to the joints; -1: a root.
+/// A segment that no joint names as child is a root.
 std::vector<int> parents_of(const MvnxHead& head) {
   const auto index = [&](const std::string& label) {
     const auto found = std::find_if(head.segments.begin(), head.segments.end(),
@@ -73,6 +78,8 @@ const MvnxPoint* point_named(const MvnxSegment& segment, const std::string& labe
 
 /// Offset from the parent's origin to the child's, in the file's axes, by the points that their
 /// joint connects. Empty if the file lacks the joint or one of the points.
+/// Both points are the same place in the world, seen from two segments. Their difference is
+/// constant.
 std::optional<Vec3> offset_by_points(const MvnxHead& head, std::size_t child, std::size_t parent) {
   for (const MvnxJoint& joint : head.joints) {
     if (joint.child != head.segments[child].label || joint.parent != head.segments[parent].label) {
@@ -85,6 +92,8 @@ std::optional<Vec3> offset_by_points(const MvnxHead& head, std::size_t child, st
   return std::nullopt;
 }
 
+/// Global poses become local ones frame by frame. The skeleton is made at the first normal frame,
+/// when calibration poses have been seen.
 class MvnxReader final : public ClipReader {
  public:
   MvnxReader(const StreamOptions& options, std::string_view file)
@@ -99,6 +108,7 @@ class MvnxReader final : public ClipReader {
   ~MvnxReader() override = default;
 
   Result<void> feed(std::string_view piece, ClipFrames& out) override {
+    // The document calls use() during feed(), which appends to out_.
     out_ = &out;
     return document_.feed(piece);
   }
@@ -128,6 +138,7 @@ class MvnxReader final : public ClipReader {
   /// Called for each frame: keeps calibration poses, appends normal frames.
   Result<void> use(const MvnxHead& head, const MvnxFrame& frame) {
     const auto pose = pose_of(frame, head.segments.size(), units_);
+    // A calibration pose is kept and not appended.
     if (frame.type != "normal") {
       keep_rest(frame.type, pose);
       return {};
@@ -136,6 +147,7 @@ class MvnxReader final : public ClipReader {
       ++incomplete_;
       return {};
     }
+    // A frame whose index does not rise is left out.
     const auto stamp = KA_TRY(stamps_.next(head, frame));
     if (!stamp) return {};
     if (!header_) KA_TRY(begin(head, *pose));
@@ -145,6 +157,7 @@ class MvnxReader final : public ClipReader {
 
   /// Keeps a calibration pose as rest pose. The identity pose wins over a T-pose.
   void keep_rest(const std::string& type, const std::optional<GlobalPose>& pose) {
+    // A T-pose is kept only while there is no other pose.
     if (!pose || (rest_ && type != "identity")) return;
     rest_ = pose;
   }
@@ -154,20 +167,24 @@ class MvnxReader final : public ClipReader {
     if (head.segments.empty()) return Failure(Error{"", 0, "segments before the frames", "none"});
     Skeleton skeleton;
     skeleton.parents = parents_of(head);
+    // Without a calibration pose the first frame must serve.
     const GlobalPose& rest = rest_ ? *rest_ : first;
     for (std::size_t k = 0; k < head.segments.size(); ++k) {
       skeleton.joint_names.push_back(head.segments[k].label);
       skeleton.rest_offsets.push_back(rest_offset(head, skeleton.parents[k], k, rest));
     }
     add_end_sites(head, skeleton);
+    // A joint may name a parent that comes later; such a skeleton is refused.
     KA_TRY(validate(skeleton));
     header_ = std::move(skeleton);
     return {};
   }
 
   Vec3 rest_offset(const MvnxHead& head, int parent, std::size_t k, const GlobalPose& rest) const {
+    // A root's offset is its place in the rest pose.
     if (parent < 0) return rest.places[k];
     const auto p = static_cast<std::size_t>(parent);
+    // Points state the offset itself; a pose only shows it.
     if (const auto offset = offset_by_points(head, k, p)) return units_.ours(*offset);
     return rest.turns[p].conjugate() * (rest.places[k] - rest.places[p]);
   }
@@ -177,6 +194,7 @@ class MvnxReader final : public ClipReader {
   void add_end_sites(const MvnxHead& head, Skeleton& skeleton) const {
     for (std::size_t k = 0; k < head.segments.size(); ++k) {
       const auto& parents = skeleton.parents;
+      // A segment with children ends where they begin.
       if (std::find(parents.begin(), parents.end(), static_cast<int>(k)) != parents.end()) continue;
       for (const MvnxPoint& point : head.segments[k].points) {
         if (!point.label.starts_with('p')) continue;
@@ -193,6 +211,7 @@ class MvnxReader final : public ClipReader {
     out_->stamps.push_back(stamp);
     out_->local_positions.resize(3 * (first + segments));
     out_->local_rotations.resize(4 * (first + segments));
+    // parent^-1 * child gives place and rotation in the parent's space.
     for (std::size_t k = 0; k < segments; ++k) {
       Vec3 place = pose.places[k];
       Quat turn = pose.turns[k];
@@ -223,6 +242,7 @@ std::unique_ptr<ClipReader> make_mvnx_reader(const StreamOptions& options, std::
 }
 
 bool looks_like_mvnx(std::string_view head) {
+  // The root element stands within the first kilobytes.
   constexpr std::size_t searched = 4096;
   constexpr std::string_view element = "<mvnx";
   if (!looks_like_gzip(head)) {
@@ -231,6 +251,7 @@ bool looks_like_mvnx(std::string_view head) {
                : false;
   }
   std::string text;
+  // A failure stops gunzip early; the text so far is all that is needed.
   Gunzip gunzip;
   // The unpacking stops at an error or once the text is long enough.
   const auto unpacked =

@@ -13,6 +13,7 @@ namespace kinalign {
 
 namespace {
 
+/// The first normal frame decides on the quantities; later frames must have the same arrays.
 class MvnxSensorReader final : public ImuReader {
  public:
   MvnxSensorReader(const StreamOptions& options, std::string_view file)
@@ -55,6 +56,7 @@ class MvnxSensorReader final : public ImuReader {
  private:
   Result<void> use(const MvnxHead& head, const MvnxFrame& frame) {
     if (frame.type != "normal") return {};
+    // Before the stamp: a file without sensors must fail even if its first index is wrong.
     if (!header_) KA_TRY(begin(head, frame));
     const auto stamp = KA_TRY(stamps_.next(head, frame));
     if (!stamp) return {};
@@ -66,14 +68,17 @@ class MvnxSensorReader final : public ImuReader {
   /// Decides, at the first normal frame, which quantities are read.
   Result<void> begin(const MvnxHead& head, const MvnxFrame& frame) {
     const std::size_t sensors = head.sensors.size();
+    // An array of another size can't be split among the sensors.
     const bool turn = sensors > 0 && frame.sensor_orientation.size() == 4 * sensors;
     const bool force = frame.sensor_acceleration.size() == 3 * sensors;
+    // Free acceleration needs the orientation, to bring it into the sensor's space.
     free_ = !force && turn && frame.sensor_free_acceleration.size() == 3 * sensors;
     const bool rate = frame.sensor_angular_velocity.size() == 3 * sensors;
     if (sensors == 0 || !(turn || force || rate)) {
       return Failure(Error{"", 0, "sensors with orientation, acceleration or angular velocity",
                            "no such sensors in the first frame"});
     }
+    // The last value: the acceleration contains gravity.
     header_ = ImuHeader{head.sensors, {turn, force || free_, rate, !free_}};
     return {};
   }
@@ -84,11 +89,13 @@ class MvnxSensorReader final : public ImuReader {
     const ImuContent& content = header_->content;
     const std::vector<double>& acceleration =
         free_ ? frame.sensor_free_acceleration : frame.sensor_acceleration;
+    // One incomplete array makes all samples of the frame invalid.
     const bool whole =
         (!content.orientation || frame.sensor_orientation.size() == 4 * sensors) &&
         (!content.acceleration || acceleration.size() == 3 * sensors) &&
         (!content.angular_velocity || frame.sensor_angular_velocity.size() == 3 * sensors);
     incomplete_ += whole ? 0 : 1;
+    // An invalid sample needs pointers to something.
     constexpr double zeros[4] = {};
     for (std::size_t s = 0; s < sensors; ++s) {
       const auto of = [&](const std::vector<double>& array, std::size_t parts) {
@@ -99,6 +106,7 @@ class MvnxSensorReader final : public ImuReader {
       if (content.orientation) raw.orientation = of(frame.sensor_orientation, 4);
       if (content.angular_velocity) raw.angular_velocity = of(frame.sensor_angular_velocity, 3);
       if (content.acceleration) raw.acceleration = of(acceleration, 3);
+      // From global to the sensor's own space.
       if (free_ && whole) {
         local = quat(frame.sensor_orientation, s).normalized().conjugate() *
                 Vec3(vec3(acceleration, s));

@@ -15,6 +15,7 @@ enum class MotColumns {
   global_positions  // each joint: Hips_X, Hips_Y, Hips_Z in m
 };
 
+/// The number of frames stands in the head, so it must be known before the first frame.
 struct MotHead {
   Skeleton skeleton;
   MotColumns columns = MotColumns::joint_angles;
@@ -24,12 +25,14 @@ struct MotHead {
 
 /// Writes frame after frame: y up, times to the nanosecond, metres and degrees to six decimals. The
 /// caller commits `out`, which must outlive the writer.
+/// Joint angles are the channels of a BVH of the skeleton, so both files agree.
 class MotWriter {
  public:
   /// Fails if a joint's name has a blank or can't stand in a tab-separated cell.
   static Result<MotWriter> begin(const MotHead& head, TextOut& out);
   Result<void> append(const ClipFrames& frames);
   /// Fails if the number of frames differs from the promised one.
+  /// Call before the file is committed.
   Result<void> finish() const;
 
   ~MotWriter();
@@ -39,6 +42,7 @@ class MotWriter {
   MotWriter& operator=(const MotWriter&) = delete;
 
  private:
+  // Columns is hidden so that this header does not include the BVH room.
   class Columns;
   MotWriter(const MotHead& head, TextOut& out, std::unique_ptr<Columns> columns);
 

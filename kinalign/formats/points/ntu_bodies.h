@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// The id is a text: NTU writes numbers of 17 digits.
 struct NtuBody {
   std::string id;
   std::uint64_t frames = 0;  // number of frames with this body

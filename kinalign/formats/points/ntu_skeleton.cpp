@@ -16,11 +16,13 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t joint_count = kinect_joints.size();
+// Numbers of cells in a body's line and in a joint's line.
 constexpr std::size_t body_cells = 10, joint_cells = 12;
 constexpr std::uint64_t most_bodies = 1000;  // in a frame; the sensor tracks at most six
 
 std::vector<ColumnUse> joint_columns() {
   std::vector<ColumnUse> uses(joint_cells);  // x y z depthX depthY colorX colorY qw qx qy qz state
+  // Only x, y, z and the state are read.
   for (int i = 0; i < 3; ++i) uses[static_cast<std::size_t>(i)].slot = i;
   uses.back().slot = 3;
   return uses;
@@ -42,16 +44,19 @@ std::string_view first_word(std::string_view line) {
 }
 
 /// Reads the file line by line; next_ is the kind of the next line.
+/// Every line is read, also those of other bodies, because the counts must be followed.
 class NtuReader final : public PointReader {
  public:
   NtuReader(const StreamOptions& options, std::string_view file)
       : lines_(file),
+        // The file has no stamps. 30 Hz is the Kinect's rate.
         stamps_(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns),
         units_(point_units({}, options)),
         row_(runs_of_blanks, joint_columns()),
         mirror_(joint_names()) {
     const auto body = options.select.find("body");
     if (body != options.select.end()) wanted_ = body->second;
+    // Without the option the first body of the file is read.
     asked_ = !wanted_.empty();
   }
 
@@ -62,7 +67,9 @@ class NtuReader final : public PointReader {
   Result<void> finish(PointFrames& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
     KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
+    // Not even the first line was complete.
     if (!header_) return Failure(lines_.error("the number of frames", "the end of the file"));
+    // The file has no time column, so its stamps are always counted.
     counted = true;
     report();
     return {};
@@ -74,10 +81,12 @@ class NtuReader final : public PointReader {
   enum class Next { frames, bodies, body, joints, joint };
 
   Result<void> read(std::string_view line, PointFrames& out) {
+    // Blank lines may stand anywhere.
     if (trimmed(line).empty()) return {};
     switch (next_) {
       case Next::frames:
         declared_ = KA_TRY(count(line, "the number of frames", UINT64_MAX));
+        // The joints of a Kinect are known, so the header is complete here.
         header_ = PointHeader{joint_names()};
         next_ = Next::bodies;
         return {};
@@ -96,6 +105,7 @@ class NtuReader final : public PointReader {
   /// A frame begins: `bodies` bodies follow.
   Result<void> begin_frame(std::uint64_t bodies, PointFrames& out) {
     bodies_left_ = bodies;
+    // Joints that the frame does not have stay missing.
     frame_ = {};
     seen_ = false;
     if (bodies == 0) return end_frame(out);
@@ -111,6 +121,7 @@ class NtuReader final : public PointReader {
     }
     const std::string_view id = first_word(line);
     if (wanted_.empty()) wanted_ = id;
+    // If an id occurs twice in a frame, the first one is taken.
     taken_ = id == wanted_ && !seen_;
     seen_ = seen_ || taken_;
     if (id != wanted_) note_other(id);
@@ -119,6 +130,7 @@ class NtuReader final : public PointReader {
   }
 
   void note_other(std::string_view id) {
+    // The limit keeps a damaged file from filling the message.
     constexpr std::size_t most = 20;
     if (others_.size() >= most) return;
     if (std::find(others_.begin(), others_.end(), id) == others_.end())
@@ -139,11 +151,13 @@ class NtuReader final : public PointReader {
     if (state != 0.0 && state != 1.0 && state != 2.0) {
       return Failure(Error{"", 0, "a tracking state 0, 1 or 2", shown(trimmed(line))});
     }
+    // The rows of other bodies are parsed too, so a fault in them is found.
     if (taken_) {
       std::copy_n(row_.values.begin(), 3, &frame_.positions[3 * joint_]);
       frame_.states[joint_] = row_.any_missing ? Tracking::missing : static_cast<Tracking>(state);
     }
     if (++joint_ < joint_count) return {};
+    // Another body may follow in this frame.
     next_ = Next::body;
     return --bodies_left_ == 0 ? end_frame(out) : Result<void>{};
   }
@@ -151,6 +165,7 @@ class NtuReader final : public PointReader {
   Result<void> end_frame(PointFrames& out) {
     next_ = Next::bodies;
     const Time stamp = KA_TRY(stamps_.next(0));
+    // A frame without the body is a row of missing joints.
     append_points(units_, frame_.positions.data(), frame_.states, out);
     out.stamps.push_back(stamp);
     mirror_.watch(frame_.positions.data(), frame_.states.data());
@@ -158,8 +173,10 @@ class NtuReader final : public PointReader {
     return {};
   }
 
+  /// The counts are complete now, so faults can be judged.
   void report() {
     const std::string& file = lines_.file();
+    // The file ended within a frame.
     if (next_ != Next::bodies) {
       findings.push_back({Severity::warning,
                           Error{file, lines_.number(), "a complete frame", "the end of the file"},
@@ -171,6 +188,7 @@ class NtuReader final : public PointReader {
            Error{file, 1, std::to_string(declared_) + " frames", std::to_string(stamps_.rows())},
            "the existing frames were read", ""});
     }
+    // An id that the user gave must exist.
     if (asked_ && frames_with_body_ == 0) {
       findings.push_back({Severity::warning, Error{file, 0, "body " + shown(wanted_), others()},
                           "all joints are missing", "select an existing body"});
@@ -203,6 +221,7 @@ class NtuReader final : public PointReader {
   bool asked_ = false;
   std::vector<std::string> others_;
 
+  // next_ and the counters below it are the state of the parser.
   Next next_ = Next::frames;
   std::uint64_t declared_ = 0, bodies_left_ = 0, frames_with_body_ = 0;
   std::size_t joint_ = 0;
@@ -227,9 +246,11 @@ bool looks_like_ntu_skeleton(std::string_view head) {
     first.push_back(trimmed(head.substr(0, end)));
     head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
   }
+  // The first line must be a number.
   if (first.size() < 2 || !count(first[0], "", UINT64_MAX)) return false;
   const auto bodies = count(first[1], "", most_bodies);
   if (!bodies) return false;
+  // A first frame without a body has no further lines.
   if (*bodies == 0) return first.size() == 2 || count(first[2], "", most_bodies).has_value();
   return first.size() == 4 && split_cells(first[2], runs_of_blanks).size() == body_cells &&
          first[3] == "25";

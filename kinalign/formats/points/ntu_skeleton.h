@@ -15,6 +15,8 @@ namespace kinalign {
 /// joints. The body is select["body"] (its id), by default the first one in the file; a finding
 /// names the others. Uses the options rate_hz (default 30), start_ns, metres_per_unit and up. A
 /// wrong count of frames is a finding.
+/// The file is a list of counts and lines without marks, so one wrong count makes the rest
+/// unreadable.
 std::unique_ptr<PointReader> make_ntu_skeleton_reader(const StreamOptions& options,
                                                       std::string_view file);
 

@@ -16,9 +16,11 @@ namespace kinalign {
 
 namespace {
 
+// Times are seconds without an offset.
 constexpr TimeScale trc_seconds{1'000'000'000, 0};
 
 /// Reads a TRC: five lines of head, then rows.
+/// keys_ and names_ are read from the head; header_ is set with its last line.
 class TrcReader final : public PointReader {
  public:
   TrcReader(const StreamOptions& options, std::string_view file)
@@ -32,6 +34,7 @@ class TrcReader final : public PointReader {
     const auto use = [&](std::string_view line) { return read(line, out); };
     KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the head of a TRC file", "the end of the file"));
+    // Few rows may wait until it is known whether the times move.
     stamps_.settle();
     counted = stamps_.counted();
     held_.release(stamps_, out);
@@ -44,10 +47,12 @@ class TrcReader final : public PointReader {
  private:
   Result<void> read(std::string_view line, PointFrames& out) {
     if (header_) return read_row(line, out);
+    // The head has a fixed number of lines.
     switch (lines_.number()) {
       case 1:
         return expect(line.starts_with("PathFileType"), "PathFileType", line);
       case 2:
+        // Kept until line 3, which holds their values.
         keys_ = split_cells(line, '\t');
         return {};
       case 3:
@@ -66,6 +71,7 @@ class TrcReader final : public PointReader {
 
   /// Reads line 3, the values of the keys in line 2.
   Result<void> read_facts(const std::vector<std::string>& facts) {
+    // Programs write different keys in different orders.
     for (std::size_t i = 0; i < std::min(keys_.size(), facts.size()); ++i) {
       if (keys_[i] == "NumFrames") {
         KA_TRY(expect(parse_number(facts[i], declared_), "a number of frames", facts[i]));
@@ -74,6 +80,7 @@ class TrcReader final : public PointReader {
       if (keys_[i] == "DataRate") parse_number(facts[i], data_rate_);
       if (keys_[i] == "Units") KA_TRY(read_unit(facts[i]));
     }
+    // Without a unit the numbers have no meaning.
     return expect(units_.metres > 0.0, "Units among the keys of line 2", "none");
   }
 
@@ -86,11 +93,13 @@ class TrcReader final : public PointReader {
 
   /// Reads line 4: names of columns and markers.
   Result<void> read_names(std::vector<std::string> cells) {
+    // Each name stands above the first of its three columns.
     std::erase(cells, "");
     KA_TRY(expect(cells.size() > 2 && cells[0] == "Frame#" && cells[1] == "Time",
                   "Frame#, Time and names of markers", cells.empty() ? "" : cells[0]));
     names_.assign(cells.begin() + 2, cells.end());
     double declared = 0.0;
+    // A wrong number of markers does no harm: the names decide.
     if (parse_number(markers_fact_, declared) && declared == static_cast<double>(names_.size())) {
       return {};
     }
@@ -103,9 +112,11 @@ class TrcReader final : public PointReader {
 
   /// Reads line 5, the labels X1 Y1 Z1 X2 ... Their number gives the width of a row.
   Result<void> read_labels(std::vector<std::string> cells, std::string_view line) {
+    // Two empty cells stand above Frame# and Time.
     std::erase(cells, "");
     KA_TRY(expect(cells.size() == 3 * names_.size() && cells[0] == "X1",
                   std::to_string(3 * names_.size()) + " labels X1, Y1, Z1, ...", line));
+    // Frame# is not read; Time is kept as text, to be exact to the nanosecond.
     std::vector<ColumnUse> uses(2 + cells.size());
     uses[1].text = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) uses[2 + i].slot = static_cast<int>(i);
@@ -118,6 +129,7 @@ class TrcReader final : public PointReader {
   /// Reads a row. Lines after a blank line are counted but not read.
   Result<void> read_row(std::string_view line, PointFrames& out) {
     if (trimmed(line).empty()) {
+      // Some programs write an empty line between labels and rows.
       ended_ = stamps_.rows() > 0;  // a blank line before the rows is allowed
       return {};
     }
@@ -128,11 +140,13 @@ class TrcReader final : public PointReader {
     KA_TRY(row_.read(line));
     const auto ns = parse_stamp(row_.texts[0], trc_seconds);
     KA_TRY(expect(ns.has_value(), "a time in seconds", row_.texts[0]));
+    // For the comparison with DataRate.
     if (stamps_.rows() == 0) first_ns_ = *ns;
     last_ns_ = *ns;
     PointFrames& target = held_.target(stamps_, out);
     target.stamps.push_back(KA_TRY(stamps_.next(*ns)));
     for (std::size_t j = 0; j < states_.size(); ++j) {
+      // A marker without one of its coordinates is missing.
       const bool missing =
           (row_.missing[3 * j] | row_.missing[3 * j + 1] | row_.missing[3 * j + 2]) != 0;
       states_[j] = missing ? Tracking::missing : Tracking::tracked;
@@ -145,6 +159,7 @@ class TrcReader final : public PointReader {
   void report() {
     const std::string& file = lines_.file();
     if (stamps_.stuck()) findings.push_back(stuck_finding(file, stamps_));
+    // NumFrames is not trusted, only compared.
     if (static_cast<double>(stamps_.rows()) != declared_) {
       std::string declared(number_room, ' ');
       declared.resize(
@@ -155,6 +170,7 @@ class TrcReader final : public PointReader {
     }
     const double seconds = 1e-9 * (static_cast<double>(last_ns_) - static_cast<double>(first_ns_));
     const double rate = static_cast<double>(stamps_.rows() - 1) / seconds;
+    // More than 10 % apart: one of the two is wrong.
     if (seconds > 0.0 && data_rate_ > 0.0 && std::abs(rate - data_rate_) > 0.1 * data_rate_) {
       findings.push_back({Severity::warning,
                           Error{file, 3, fmt::format("times of DataRate {:g}", data_rate_),
@@ -193,6 +209,7 @@ std::unique_ptr<PointReader> make_trc_reader(const StreamOptions& options, std::
 }
 
 bool looks_like_trc(std::string_view head) {
+  // A byte order mark.
   if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
   return head.starts_with("PathFileType");
 }

@@ -18,11 +18,13 @@ namespace kinalign {
 /// seconds of the Time column; if start_ns is given, they are shifted so that the first frame gets
 /// it. A marker with empty cells or "nan" is missing. A wrong NumFrames is a finding. A blank line
 /// after the rows ends them.
+/// rate_hz is used if the times never move.
 std::unique_ptr<PointReader> make_trc_reader(const StreamOptions& options, std::string_view file);
 
 bool looks_like_trc(std::string_view head);
 
 /// The head of the file, above the rows.
+/// The number of frames stands above the rows, so it must be known before.
 struct TrcHead {
   std::vector<std::string> names;  // [J] without tabs and line ends
   double rate_hz = 0.0;
@@ -33,6 +35,7 @@ struct TrcHead {
 
 /// Writes frame after frame: millimetres to five decimals, y up, times to the nanosecond, empty
 /// cells for a missing marker. The caller commits `out`, which must outlive the writer.
+/// Order of calls: begin(), append() until all frames are written, finish(), then commit `out`.
 class TrcWriter {
  public:
   static Result<TrcWriter> begin(const TrcHead& head, TextOut& out);

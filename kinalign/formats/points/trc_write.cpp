@@ -19,6 +19,7 @@ Failure refuse(std::string expected, std::string found) {
 /// Writes the six lines above the rows: three of keys and their values, names, labels, an empty
 /// line.
 Result<void> put_head(const TrcHead& head, TextOut& out) {
+  // A name with a tab would shift the cells of its line.
   const std::string file = fits_a_cell(head.file) ? head.file : "points.trc";
   const std::string rate = fmt::format("{}", head.rate_hz);
   const std::size_t markers = head.names.size();
@@ -28,9 +29,11 @@ Result<void> put_head(const TrcHead& head, TextOut& out) {
       "OrigNumFrames\n");
   out.text(
       fmt::format("{0}\t{0}\t{1}\t{2}\tmm\t{0}\t1\t{1}\nFrame#\tTime", rate, head.frames, markers));
+  // Each name stands above three columns.
   for (const std::string& name : head.names) out.text("\t" + name + "\t\t");
   out.text("\n\t");
   for (std::size_t j = 1; j <= markers; ++j) out.text(fmt::format("\tX{0}\tY{0}\tZ{0}", j));
+  // The empty line that OpenSim's files have.
   out.text("\n");
   return out.end_line();
 }
@@ -45,6 +48,7 @@ Result<TrcWriter> TrcWriter::begin(const TrcHead& head, TextOut& out) {
   for (const std::string& name : head.names) {
     if (!fits_a_cell(name)) return refuse("names of markers for a TRC without tabs", shown(name));
   }
+  // The head states the rate, and a rate of 0 would be wrong.
   if (!(head.rate_hz > 0.0)) return refuse("a rate for a TRC", fmt::format("{}", head.rate_hz));
   KA_TRY(put_head(head, out));
   return TrcWriter(head, out);
@@ -54,8 +58,10 @@ Result<void> TrcWriter::append(const PointFrames& frames) {
   for (std::size_t t = 0; t < frames.size(); ++t) {
     ++written_;
     out_->integer(static_cast<std::int64_t>(written_));
+    // Times count from `zero`, because TRC has no date.
     out_->text("\t" + seconds_text((frames.stamps[t] - zero_).count()));
     for (std::size_t i = t * markers_; i < (t + 1) * markers_; ++i) {
+      // Three empty cells keep the other markers in their columns.
       if (frames.state[i] == Tracking::missing) {
         out_->text("\t\t\t");
         continue;
@@ -70,6 +76,7 @@ Result<void> TrcWriter::append(const PointFrames& frames) {
 }
 
 Result<void> TrcWriter::finish() const {
+  // NumFrames stands in the head already.
   if (written_ == frames_) return {};
   return refuse(fmt::format("{} frames for a TRC", frames_), std::to_string(written_));
 }

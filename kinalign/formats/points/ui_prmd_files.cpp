@@ -9,6 +9,7 @@ namespace kinalign {
 
 namespace {
 
+// Both spellings are accepted, in names and in folders.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> words{
     {{"positions", "angles"}, {"Positions", "Angles"}}};
 
@@ -16,6 +17,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 2> words{
 std::string angles_for(std::string_view name) {
   std::string out(name);
   for (const auto& [positions, angles] : words) {
+    // The last one: the name may contain the word twice.
     const auto at = out.rfind(positions);
     if (at != std::string::npos) return out.replace(at, positions.size(), angles);
   }
@@ -25,6 +27,7 @@ std::string angles_for(std::string_view name) {
 /// Replaces "a/Positions/" by "a/Angles/"; other folders stay unchanged.
 std::string angles_folder(std::string_view path) {
   const std::string_view whole = folder(path);
+  // The folder's name without its slash.
   const std::string_view name = file_name(whole.substr(0, whole.empty() ? 0 : whole.size() - 1));
   for (const auto& [positions, angles] : words) {
     if (name != positions) continue;
@@ -43,6 +46,7 @@ std::string angles_path(std::string_view path) {
 bool named_as_ui_prmd_positions(std::string_view path) { return angles_path(path) != path; }
 
 bool named_as_ui_prmd_angles(std::string_view path) {
+  // "..._positions_angles.txt" counts as positions.
   if (named_as_ui_prmd_positions(path)) return false;
   const std::string_view name = file_name(path);
   return std::any_of(words.begin(), words.end(), [name](const auto& word) {
@@ -59,6 +63,7 @@ Result<std::string> ui_prmd_angles_of(FileSystem& files, const std::string& path
   }
   std::string found_path = angles_path(path);
   const std::string here = std::string(folder(path)) + angles_for(file_name(path));
+  // The folder Angles first; then the same folder.
   auto opened = InputFile::open(files, found_path);
   if (opened) return found_path;
   if (here != path && InputFile::open(files, here)) return here;

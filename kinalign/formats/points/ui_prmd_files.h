@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the files of UI-PRMD that belong together. Layout: docs/formats/kinect.md.
+// The corpus has a file of positions and a file of angles for each recording, in two folders or in
+// one.
 #pragma once
 
 #include "kinalign/core/files.h"

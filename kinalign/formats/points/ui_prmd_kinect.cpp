@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+// Three numbers for each joint.
 constexpr std::size_t cells = 3 * ui_prmd_joints;
 
 constexpr std::array<std::string_view, ui_prmd_joints> names{
@@ -25,6 +26,7 @@ constexpr std::array<std::string_view, ui_prmd_joints> names{
     "LowerLegLeft", "FootLeft",      "ToesLeft",     "UpperLegRight", "LowerLegRight",
     "FootRight",    "ToesRight"};
 
+// Indices into `names`; each parent comes before its children.
 constexpr std::array<int, ui_prmd_joints> parents{-1, 0,  1,  2, 3,  4,  2,  6, 7,  8,  2,
                                                   10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
 
@@ -42,6 +44,8 @@ Quat rotation(const double* degrees) {
 }
 
 /// Yields the rows of the file of angles, one at a time.
+/// Pieces of this file are read only when rows of the other one need them, so both advance
+/// together.
 class AngleRows {
  public:
   AngleRows(std::string_view file, TextPieces pieces)
@@ -49,6 +53,7 @@ class AngleRows {
 
   /// Reads the next row; false at the end.
   Result<bool> next(std::vector<double>& angles) {
+    // A piece may hold no complete row.
     while (rows_.empty() && !ended_) {
       const std::string_view piece = KA_TRY(pieces_());
       const auto use = [this](std::string_view line) { return read(line); };
@@ -67,6 +72,7 @@ class AngleRows {
   Result<void> read(std::string_view line) {
     if (trimmed(line).empty()) return {};
     KA_TRY(row_.read(line));
+    // An angle can't be guessed.
     if (row_.any_missing) return Failure(Error{"", 0, "66 angles", "an empty cell"});
     rows_.push_back(row_.values);
     return {};
@@ -89,6 +95,7 @@ void turn_forward(std::vector<double>& places) {
 }
 
 /// Combines row i of the offsets with row i of the angles.
+/// Both files have the same rows; if one is longer, its other rows are dropped.
 class UiPrmdReader final : public PointReader {
  public:
   UiPrmdReader(const StreamOptions& options, std::string_view offsets_file,
@@ -96,6 +103,7 @@ class UiPrmdReader final : public PointReader {
       : lines_(offsets_file),
         angles_file_(angles_file),
         angle_rows_(angles_file, std::move(angles)),
+        // The files have no stamps. 30 Hz is the Kinect's rate.
         stamps_(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns),
         units_(point_units({y_up, 0.01}, options)),
         row_(numbers_parser()),
@@ -110,6 +118,7 @@ class UiPrmdReader final : public PointReader {
     KA_TRY(read_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!read_) return Failure(lines_.error("rows of 66 numbers", "the end of the file"));
     counted = true;
+    // Rows of angles without offsets are only counted.
     auto more = KA_TRY(count_angles_left());
     append(findings, angle_rows_.findings);
     report(without_angles_, lines_.file(), angles_file_);
@@ -125,11 +134,13 @@ class UiPrmdReader final : public PointReader {
     KA_TRY(row_.read(line));
     if (row_.any_missing) return Failure(Error{"", 0, "66 offsets", "an empty cell"});
     read_ = true;
+    // The file of angles has ended.
     if (!KA_TRY(angle_rows_.next(angles_))) {
       ++without_angles_;
       return {};
     }
     const Time stamp = KA_TRY(stamps_.next(0));
+    // Places first, in the files' axes and unit; then turned and converted.
     ui_prmd_places(row_.values, angles_, places_);
     turn_forward(places_);
     append_points(units_, places_.data(), states_, out);
@@ -162,6 +173,7 @@ class UiPrmdReader final : public PointReader {
   std::uint64_t without_angles_ = 0;
   std::vector<double> angles_;
   std::vector<double> places_ = std::vector<double>(cells);
+  // The corpus does not state whether a joint was seen.
   std::vector<Tracking> states_ = std::vector<Tracking>(ui_prmd_joints, Tracking::tracked);
 };
 
@@ -171,11 +183,13 @@ void ui_prmd_places(std::span<const double> offsets, std::span<const double> ang
                     std::span<double> places) {
   assert(offsets.size() == cells && angles.size() == cells && places.size() == cells);
   std::array<Quat, ui_prmd_joints> global;
+  // A parent comes before its children, so one pass is enough.
   for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
     const Quat local = rotation(&angles[3 * j]);
     const Vec3 offset = vec3(offsets, j);
     if (parents[j] < 0) {
       global[j] = local;
+      // The first offset is the place in camera space.
       vec3(places, j) = offset;
       continue;
     }

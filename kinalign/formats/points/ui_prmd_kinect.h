@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads UI-PRMD's Kinect v2 data: one text of joint offsets, one of angles. Layout:
 // docs/formats/kinect.md.
+// An offset is in its parent's space, so a place needs both files.
 #pragma once
 
 #include "kinalign/formats/reader.h"

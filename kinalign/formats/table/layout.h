@@ -17,6 +17,7 @@
 
 namespace kinalign {
 
+/// The kind decides which fields a layout may have and which reader is made.
 enum class TableKind { points, imu };
 
 /// The meaning of a column of a joint or node.
@@ -28,6 +29,7 @@ struct ColumnChoice {
   std::size_t number = 0;
 };
 
+/// The column holds a number; the scale tells what it counts and from when.
 struct TableTime {
   ColumnChoice column;
   TimeScale scale;
@@ -35,16 +37,20 @@ struct TableTime {
 
 /// A field and its column's name with the placeholder {joint} or {node}. The pattern is empty if
 /// the columns have no names.
+/// "{joint}_x" is the column Head_x of the joint Head.
 struct FieldColumn {
   TableField field = TableField::skip;
   std::string pattern;
 };
 
 /// The numbers that stand for each tracking state.
+/// A number that is in none of the lists is an error, because it could mean anything.
 struct StateValues {
   std::vector<double> missing{0}, inferred{1}, tracked{2};
 };
 
+/// The defaults are those of docs/formats/layouts.md. A layout from parse_layout() is consistent,
+/// so readers need not check it.
 struct TableLayout {
   std::string name;
   TableKind kind = TableKind::points;
@@ -79,6 +85,7 @@ struct TableLayout {
 };
 
 /// Reads a layout file. `name` appears in messages. Fails at the first unknown key or value.
+/// Called for the layouts of the program and for files of users alike.
 Result<TableLayout> parse_layout(std::string_view toml, std::string_view name);
 
 /// The layouts that are part of the program (layouts/*.toml).

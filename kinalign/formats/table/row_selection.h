@@ -13,6 +13,7 @@
 namespace kinalign {
 
 /// A condition: the cell of `column` must equal `value`. Numbers are compared as numbers.
+/// Cells are compared as texts first, which is exact for names.
 struct RowChoice {
   std::string column;    // name or number of the column in the file
   std::size_t text = 0;  // index in RowParser::texts
@@ -20,6 +21,7 @@ struct RowChoice {
 };
 
 /// The first few different texts of one column, for messages.
+/// They show a user what a selection could have named.
 class SeenValues {
  public:
   void see(std::string_view value);
@@ -33,6 +35,7 @@ class SeenValues {
   bool more_ = false;
 };
 
+/// The selection is made before a row is converted, so rows of other bodies may hold anything.
 class RowSelection {
  public:
   RowSelection() = default;
@@ -50,6 +53,7 @@ class RowSelection {
  private:
   std::vector<RowChoice> choices_;
   RowChoice body_;
+  // seen_ is filled only until a row is taken: afterwards no message needs it.
   std::vector<SeenValues> seen_;  // values of the choices' columns, until a row is taken
   SeenValues bodies_;             // bodies in the rows taken
   std::uint64_t rows_ = 0, taken_ = 0;

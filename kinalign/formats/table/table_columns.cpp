@@ -14,6 +14,7 @@ namespace {
 using enum TableField;
 
 /// A quantity: its fields in the order of its slots, and the member that gets its first slot.
+/// needed: a table of points without positions makes no sense, but it may lack states.
 struct Quantity {
   std::vector<TableField> fields;
   int TableColumns::*first;
@@ -28,6 +29,7 @@ std::vector<Quantity> quantities() {
           {{gx, gy, gz}, &TableColumns::angular_velocity, false}};
 }
 
+// The pattern may name the joint more than once.
 std::string with_member(std::string pattern, const std::string& member) {
   for (const std::string_view place : {"{joint}", "{node}"}) {
     for (auto at = pattern.find(place); at != std::string::npos;
@@ -44,11 +46,13 @@ class Finder {
   Finder(const TableLayout& layout, const std::vector<std::string>& members,
          const std::vector<std::string>& names)
       : layout_(layout), members_(members), named_(!names.empty()) {
+    // `times` counts how often a name occurs; the first column of that name is kept.
     for (std::size_t i = 0; i < names.size(); ++i)
       ++places_.try_emplace(as_utf8(names[i]), i).first->second.times;
     found_.uses.resize(named_ ? names.size() : layout.columns);
   }
 
+  /// Quantities come first, so that their slots are consecutive from 0.
   Result<TableColumns> find(const std::map<std::string, std::string>& select) {
     for (const Quantity& quantity : quantities()) KA_TRY(place(quantity));
     if (layout_.time) {
@@ -57,10 +61,12 @@ class Finder {
     for (const auto& [column, value] : select) {
       found_.choices.push_back({column, text_of(KA_TRY(selected(column))), value});
     }
+    // A file without that column has one body.
     if (places_.contains(layout_.body)) {
       found_.body = {layout_.body, text_of(KA_TRY(column_of({layout_.body, 0}))), ""};
     }
     if (slots_ == 0) return Failure(Error{"", 0, "columns of layout " + layout_.name, "none"});
+    // Columns that could hold a misspelt name.
     found_.unread = static_cast<std::size_t>(
         std::count_if(found_.uses.begin(), found_.uses.end(),
                       [](const ColumnUse& use) { return use.slot < 0 && use.text < 0; }));
@@ -69,6 +75,7 @@ class Finder {
 
  private:
   /// First column of a name, and how many columns have that name.
+  /// A name that occurs twice is an error only if it is used.
   struct Place {
     explicit Place(std::size_t i) : column(i) {}
     std::size_t column;
@@ -90,6 +97,7 @@ class Finder {
 
   /// A column that the user selects by: its name or, if the file has no such name, its number.
   ColumnChoice choice_of(const std::string& column) const {
+    // A column may be called "3". Then the name has priority.
     std::size_t number = 0;
     const char* end = column.data() + column.size();
     const auto [behind, fault] = std::from_chars(column.data(), end, number);
@@ -119,7 +127,8 @@ class Finder {
   }
 
   /// The columns of a quantity: outer loop over members, inner loop over fields. `missing` gets the
-  /// first name that the file lacks.
+  /// first name that the file lacks. Members in the outer loop give [M,3] in the order of our
+  /// arrays.
   Result<std::vector<std::size_t>> columns_of(const Quantity& quantity,
                                               std::string& missing) const {
     std::vector<std::size_t> columns;
@@ -127,13 +136,16 @@ class Finder {
       for (const TableField field : quantity.fields) {
         const auto at = std::find_if(layout_.fields.begin(), layout_.fields.end(),
                                      [&](const FieldColumn& each) { return each.field == field; });
+        // The layout does not have this quantity.
         if (at == layout_.fields.end()) return columns;
         const auto i = static_cast<std::size_t>(at - layout_.fields.begin());
         const std::string name = with_member(at->pattern, members_[m]);
         ColumnChoice choice{name, 0};
         if (!layout_.by_name) {
+          // By order: the columns of a joint follow each other.
           choice.number = layout_.first_column + m * layout_.fields.size() + i;
         } else if (!places_.contains(name)) {
+          // The name is kept for the message; other columns may still exist.
           if (missing.empty()) missing = name;
           continue;
         }
@@ -147,11 +159,13 @@ class Finder {
   Result<void> place(const Quantity& quantity) {
     std::string missing;
     const auto columns = KA_TRY(columns_of(quantity, missing));
+    // A needed quantity, or one of which only a part exists.
     if (!missing.empty() && (quantity.needed || !columns.empty())) return no_column(missing);
     if (!missing.empty()) found_.absent.push_back(missing);
     if (columns.empty()) return {};
     found_.*quantity.first = slots_;
     for (const std::size_t column : columns) {
+      // Two quantities can't share a column.
       if (found_.uses[column].slot >= 0) {
         return Failure(Error{"", 0, "one use of column " + std::to_string(column + 1), "two"});
       }
@@ -162,6 +176,7 @@ class Finder {
 
   std::size_t text_of(std::size_t column) {
     int& text = found_.uses[column].text;
+    // A column may be text and number at once: the time, or a selection by a number.
     if (text < 0) text = texts_++;
     return static_cast<std::size_t>(text);
   }

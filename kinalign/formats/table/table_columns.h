@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// RowParser puts numbers into slots and texts into places. Here each quantity gets consecutive
+/// slots.
 struct TableColumns {
   std::vector<ColumnUse> uses;  // [columns]
   std::vector<RowChoice> choices;

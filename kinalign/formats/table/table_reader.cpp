@@ -19,6 +19,8 @@ namespace kinalign {
 namespace {
 
 /// Makes points from parsed rows.
+/// One of the two builders of TableReader. A builder knows the kind of the stream and not how rows
+/// are read.
 class PointBuilder {
  public:
   using ReaderType = PointReader;
@@ -40,6 +42,7 @@ class PointBuilder {
       states_[j] = KA_TRY(state_of(row, columns, j));
     }
     append_points(units_, row.values.data(), states_, out);
+    // The positions that were just appended, in our axes.
     const std::size_t first = out.positions.size() - 3 * states_.size();
     mirror_.watch(&out.positions[first], states_.data());
     return {};
@@ -51,16 +54,20 @@ class PointBuilder {
   Result<Tracking> state_of(const RowParser& row, const TableColumns& columns,
                             std::size_t j) const {
     const double* p = &row.values[3 * j];
+    // any_missing is almost always false, and saves three look-ups a joint.
     if (row.any_missing && (row.missing[3 * j] | row.missing[3 * j + 1] | row.missing[3 * j + 2])) {
       return Tracking::missing;
     }
+    // Some programs write a fixed point for a joint that was not seen.
     const std::vector<double>& unseen = layout_.missing_point;
     if (!unseen.empty() && std::equal(p, p + 3, unseen.begin())) return Tracking::missing;
+    // Without a column of states every position counts.
     if (columns.states < 0) return Tracking::tracked;
     const std::size_t slot = static_cast<std::size_t>(columns.states) + j;
     return row.missing[slot] != 0 ? Tracking::missing : named_state(row.values[slot]);
   }
 
+  /// The lists are short, so they are searched in this order.
   Result<Tracking> named_state(double value) const {
     const auto among = [value](const std::vector<double>& values) {
       return std::find(values.begin(), values.end(), value) != values.end();
@@ -80,6 +87,7 @@ class PointBuilder {
 };
 
 /// Makes samples from parsed rows.
+/// One sample per node and row.
 class ImuBuilder {
  public:
   using ReaderType = ImuReader;
@@ -99,6 +107,7 @@ class ImuBuilder {
   }
 
   Result<void> append(const RowParser& row, const TableColumns& columns, ImuSamples& out) {
+    // A quantity that the file lacks stays nullptr.
     for (std::size_t s = 0; s < nodes_; ++s) {
       RawImuSample sample;
       sample.orientation = quantity(row, columns.orientation, 4, s, sample.valid);
@@ -127,6 +136,8 @@ class ImuBuilder {
 };
 
 /// The reader of both kinds of tables; the builder turns rows into points or samples.
+/// Lines are skipped, or name the columns, or are rows. Everything before the first row is decided
+/// by the layout.
 template <class Builder>
 class TableReader final : public Builder::ReaderType {
  public:
@@ -143,6 +154,7 @@ class TableReader final : public Builder::ReaderType {
         stamps_(layout.time.has_value(), options.rate_hz > 0.0 ? options.rate_hz : layout.rate_hz,
                 options.start_ns),
         builder_(layout_, options, members_) {
+    // insert() keeps the user's choice where both have one.
     for (const auto& choice : layout.select) select_.insert(choice);
   }
 
@@ -153,9 +165,11 @@ class TableReader final : public Builder::ReaderType {
   Result<void> finish(Frames& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
     KA_TRY(header_ ? lines_.finish(use, this->findings) : lines_.finish_head(use, this->findings));
+    // No header: the file ended before its first row, or before its line of names.
     if (!header_) {
       return Failure(lines_.error("a table of layout " + layout_.name, "the end of the file"));
     }
+    // Rows may be held until it is known whether the stamps move.
     stamps_.settle();
     this->counted = stamps_.counted();
     held_.release(stamps_, out);
@@ -172,6 +186,7 @@ class TableReader final : public Builder::ReaderType {
   /// Reports quantities that the file lacks. A misspelt name, in a user's layout or in the file,
   /// looks the same.
   void report_absent() {
+    // A layout of the program fits many files; unused columns show that one may be misspelt.
     if (!own_layout_ && columns_.unread == 0) return;
     for (const std::string& column : columns_.absent) {
       this->findings.push_back(
@@ -188,11 +203,13 @@ class TableReader final : public Builder::ReaderType {
   }
 
   Result<void> read(std::string_view line, Frames& out) {
+    // Counted in lines of the file, comments included.
     if (static_cast<std::size_t>(lines_.number()) <= layout_.skip_lines) return {};
     if (!layout_.comment.empty() && line.starts_with(layout_.comment)) return {};
     if (trimmed(line).empty()) return {};
     if (header_) return read_row(line, out);
     if (layout_.header) return read_head(split_cells(line, layout_.delimiter));
+    // Without a line of names the first line is a row already.
     KA_TRY(read_head({}));
     return read_row(line, out);
   }
@@ -202,6 +219,7 @@ class TableReader final : public Builder::ReaderType {
     if (!layout_.time && stamps_.rate_hz() <= 0.0) {
       return Failure(lines_.error("rate_hz for rows without stamps", "none"));
     }
+    // The columns are found once; from here on rows are read without looking at names.
     columns_ = KA_TRY(find_columns(layout_, members_, select_, names));
     selection_ = RowSelection(columns_.choices, columns_.body);
     row_ = RowParser(layout_.delimiter, columns_.uses);
@@ -211,8 +229,10 @@ class TableReader final : public Builder::ReaderType {
 
   Result<void> read_row(std::string_view line, Frames& out) {
     KA_TRY(row_.read(line));
+    // Rows that are not selected have no stamp either.
     if (!selection_.takes(row_.texts)) return {};
     const std::int64_t ns = KA_TRY(column_stamp());
+    // The row goes to `out` or is held until the stamps are final.
     Frames& target = held_.target(stamps_, out);
     const Time stamp = KA_TRY(stamps_.next(ns));
     KA_TRY(builder_.append(row_, columns_, target));
@@ -222,6 +242,7 @@ class TableReader final : public Builder::ReaderType {
   }
 
   Result<std::int64_t> column_stamp() const {
+    // Without a time column RowStamps counts the rows.
     if (columns_.time_text < 0) return 0;
     const std::string_view cell = row_.texts[static_cast<std::size_t>(columns_.time_text)];
     if (const auto ns = parse_stamp(cell, layout_.time->scale)) return *ns;
@@ -256,6 +277,7 @@ std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
                                                  std::string_view file, std::string_view node) {
   assert(layout.kind == TableKind::imu);
   std::vector<std::string> nodes = layout.names;
+  // The file is one node's.
   if (nodes.empty()) {
     const std::string_view name = file_name(file);
     nodes.emplace_back(node.empty() ? name.substr(0, name.rfind('.')) : node);
@@ -268,10 +290,12 @@ namespace {
 /// Calls `use(reader, good)` with a reader that was fed the beginning of a file.
 template <class Use>
 bool read_head_of_file(const TableLayout& layout, std::string_view head, Use&& use) {
+  // Any rate will do: only the form of the rows matters here.
   StreamOptions options;
   options.rate_hz = layout.rate_hz > 0.0 ? layout.rate_hz : 1.0;
   const std::size_t whole = head.rfind('\n');
   if (whole != std::string_view::npos) head = head.substr(0, whole + 1);  // the last line is cut
+  // Reading is the test: whatever can be read fits.
   const auto reads = [&](auto reader) {
     typename std::decay_t<decltype(*reader)>::Frames frames;
     const bool good = reader->feed(head, frames) && reader->finish(frames);

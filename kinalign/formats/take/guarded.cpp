@@ -24,12 +24,15 @@ namespace kinalign {
 
 namespace {
 
+// 1 MiB. A damaged child can't make the parent allocate more.
 constexpr std::size_t message_most = std::size_t{1} << 20;
 constexpr std::size_t head_size = 5;
+// Exit code of a child that ran out of memory.
 constexpr int no_memory_code = 77;
 
 // ---- the child
 
+/// A write to a pipe may take a part of the bytes only.
 bool write_all(int pipe, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t put = ::write(pipe, bytes.data(), bytes.size());
@@ -40,6 +43,7 @@ bool write_all(int pipe, std::string_view bytes) {
   return true;
 }
 
+/// Head and body are two writes; the reader joins whatever pieces arrive.
 bool send(int pipe, char kind, std::string_view bytes) {
   char head[head_size] = {kind};
   const auto size = static_cast<std::uint32_t>(bytes.size());
@@ -52,12 +56,15 @@ std::string packed(const Error& error) {
   std::string out =
       std::to_string(error.line) + '\0' + std::to_string(static_cast<int>(error.kind));
   for (const std::string* text : {&error.file, &error.expected, &error.found}) {
+    // Long texts are cut, so that all five parts together stay below message_most.
     out += '\0' + text->substr(0, message_most / 8);
   }
   return out;
 }
 
 /// Bytes of address space that the process uses.
+/// RLIMIT_AS limits all of the address space, so the limit must include what the parent had mapped
+/// before.
 [[maybe_unused]] rlim_t mapped_bytes() {
   unsigned long pages = 0;
   std::FILE* file = std::fopen("/proc/self/statm", "re");
@@ -67,6 +74,7 @@ std::string packed(const Error& error) {
   return static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
+/// A limit can't be raised above the hard limit that the process has.
 void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
   rlimit now{};
   ::getrlimit(what, &now);
@@ -75,12 +83,15 @@ void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
 }
 
 void set_limits(const GuardLimits& limits) {
+  // No core file: a crash here is expected, and the file may be private.
   limit(RLIMIT_CORE, 0, 0);
+  // SIGXCPU comes at the soft limit and names the cause; SIGKILL a second later.
   limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1);
 #ifndef KINALIGN_SANITIZED  // sanitizers reserve terabytes of address space
   const rlim_t memory = mapped_bytes() + limits.memory_bytes;
   limit(RLIMIT_AS, memory, memory);
 #endif
+  // A lack of memory ends the child at once, with a code of its own.
   std::set_new_handler([] { ::_exit(no_memory_code); });
 }
 
@@ -90,9 +101,11 @@ void reset_signals() {
   for (const int number : {SIGINT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
     ::signal(number, SIG_DFL);
   }
+  // write() then fails with EPIPE if the parent has ended.
   ::signal(SIGPIPE, SIG_IGN);
 }
 
+// The general form of the work. The three overloads of run_guarded() adapt to it.
 using Work = std::function<Result<void>(const GuardSend&, const Progress&)>;
 using Receive = std::function<Result<void>(std::string_view)>;
 
@@ -109,9 +122,12 @@ std::string packed(const Step& step, std::string_view what) {
 
 /// Runs the work in the child, sends its result, and ends the process.
 [[noreturn]] void run_child(int pipe, const GuardLimits& limits, const Work& work) {
+  // If the parent dies, the child must not go on alone.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // The limits come before the first byte of the file is read.
   reset_signals();
   set_limits(limits);
+  // Longer data are sent in several messages.
   const GuardSend send_data = [pipe](std::string_view bytes) -> Result<void> {
     for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), message_most))) {
       if (!send(pipe, 'd', bytes.substr(0, message_most))) {
@@ -124,6 +140,7 @@ std::string packed(const Step& step, std::string_view what) {
                                          std::uint64_t total) {
     return send(pipe, 'p', packed(Step{done, total}, what));
   };
+  // An exception would leave here uncaught and abort the child; the parent reports that as a crash.
   const Result<void> done = work(send_data, child_progress);
   const bool is_sent = done ? send(pipe, '.', "") : send(pipe, 'e', packed(done.error()));
   ::_exit(is_sent ? 0 : 1);  // skips destructors and buffers that belong to the parent
@@ -132,6 +149,7 @@ std::string packed(const Step& step, std::string_view what) {
 // ---- the parent
 
 /// Owns the child: kills it if it still runs, and keeps its exit status.
+/// Every way out of run() destroys the Child, so no process and no descriptor is left behind.
 class Child {
  public:
   Child(pid_t id, int pipe) : id_(id), pipe_(pipe) {}
@@ -147,6 +165,7 @@ class Child {
   /// its messages are no longer wanted. A child that ended by itself did so before its pipe closed,
   /// and can't be killed any more.
   int end() {
+    // kill() of a child that has ended does no harm: its id is taken until waitpid() returns.
     ::kill(id_, SIGKILL);
     return wait();
   }
@@ -176,6 +195,7 @@ Error unpacked(std::string_view bytes) {
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
   }
   error.line = std::strtoll(line.c_str(), nullptr, 10);
+  // An unknown kind stays ErrorKind::other.
   const unsigned long number = std::strtoul(kind.c_str(), nullptr, 10);
   if (number <= static_cast<unsigned long>(last_error_kind)) {
     error.kind = static_cast<ErrorKind>(number);
@@ -183,11 +203,13 @@ Error unpacked(std::string_view bytes) {
   return error;
 }
 
+// The kind of `blame` is not taken over: it belongs to another error.
 Error blamed(const Error& blame, const std::string& found) {
   return {blame.file, blame.line, blame.expected, found};
 }
 
 /// Text for the end of a child that sent no error.
+/// The exit status is all that is known of such a child.
 std::string cause(int status, const GuardLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
@@ -205,6 +227,8 @@ std::string cause(int status, const GuardLimits& limits) {
 }
 
 /// Splits the received bytes into messages.
+/// The child may be taken over by a hostile file, so nothing in a message is trusted: lengths are
+/// limited, and only known letters have a meaning.
 class Inbox {
  public:
   Inbox(const Receive& receive, const Progress& progress)
@@ -217,6 +241,7 @@ class Inbox {
     while (pending_.size() - at >= head_size) {
       std::uint32_t size = 0;
       std::memcpy(&size, pending_.data() + at + 1, sizeof size);
+      // Nothing after a wrong length can be understood.
       if (size > message_most) {
         strange_ = true;
         return false;
@@ -224,6 +249,7 @@ class Inbox {
       if (pending_.size() - at < head_size + size) break;
       const auto body = std::string_view(pending_).substr(at + head_size, size);
       const char kind = pending_[at];
+      // `receive` runs in this process, so its error is an ordinary one.
       if (kind == 'd') KA_TRY(receive_(body));
       if (kind == 'p' && !pass_on(body)) return Failure(interruption());
       if (kind == 'e') error_ = unpacked(body);
@@ -236,6 +262,7 @@ class Inbox {
 
   bool done() const { return done_; }
   bool strange() const { return strange_; }
+  /// The last error that the child sent.
   const std::optional<Error>& error() const { return error_; }
 
  private:
@@ -261,13 +288,16 @@ Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbo
   const auto start = Clock::now();
   std::string buffer(std::size_t{64} << 10, '\0');
   for (;;) {
+    // poll() waits a limited time, so that the wall clock is looked at.
     const double left = wall_seconds - std::chrono::duration<double>(Clock::now() - start).count();
     if (left <= 0) return false;
     pollfd waiting{child.pipe(), POLLIN, 0};
     const int ready = ::poll(&waiting, 1, static_cast<int>(std::min(left, 1000.0) * 1000.0) + 1);
+    // A signal without SA_RESTART: the user wants to stop.
     if (ready < 0 && errno == EINTR) return Failure(interruption());
     if (ready <= 0) continue;
     const ssize_t got = ::read(child.pipe(), buffer.data(), buffer.size());
+    // The child has closed its end: it has ended or is about to.
     if (got == 0) return true;
     if (got < 0) continue;
     const std::string_view bytes(buffer.data(), static_cast<std::size_t>(got));
@@ -283,11 +313,13 @@ Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work
     return Failure(Error{"", 0, "a pipe to a child process", std::strerror(errno)});
   }
   const pid_t id = ::fork();
+  // In the child. run_child() does not return.
   if (id == 0) {
     ::close(ends[0]);
     run_child(ends[1], limits, work);
   }
   const int code = errno;
+  // Only the child may hold the writing end. Otherwise the parent would never see its end.
   ::close(ends[1]);
   if (id < 0) {
     ::close(ends[0]);
@@ -299,7 +331,9 @@ Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work
     const auto seconds = static_cast<std::int64_t>(limits.wall_seconds);
     return Failure(blamed(blame, "a file that took more than " + std::to_string(seconds) + " s"));
   }
+  // An error that the child sent is more exact than its exit status.
   if (inbox.error()) return Failure(*inbox.error());
+  // A result that was sent completely counts, however the child ends.
   if (inbox.done()) return {};
   const int status = child.end();
   return Failure(
@@ -324,6 +358,7 @@ Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
     const std::string result = KA_TRY(work(child_progress));
     return send_data(result);
   };
+  // The limit protects the parent, which keeps the text.
   const auto keep = [&](std::string_view bytes) -> Result<void> {
     if (text.size() + bytes.size() > limits.output_bytes) {
       return Failure(blamed(

@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// The kernel enforces the limits of memory and processor time (setrlimit), the parent the others.
 struct GuardLimits {
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;  // more than the process uses at the start
   std::uint64_t cpu_seconds = 600;
@@ -22,6 +23,7 @@ struct GuardLimits {
 };
 
 /// Sends bytes from the child to the parent. Fails if the parent has ended.
+/// Used in the child only.
 using GuardSend = std::function<Result<void>(std::string_view bytes)>;
 
 /// Runs `work` in a child. The bytes that it sends reach `receive` in order, in pieces cut

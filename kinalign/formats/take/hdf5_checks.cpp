@@ -9,6 +9,7 @@ namespace kinalign::hdf5 {
 
 namespace {
 
+/// "[100,59,3]"
 std::string written(const std::vector<std::uint64_t>& sizes) {
   std::string out = "[";
   for (const std::uint64_t size : sizes) out += (out.size() > 1 ? "," : "") + std::to_string(size);
@@ -31,11 +32,13 @@ std::optional<std::uint64_t> product(std::uint64_t value_bytes,
                                      const std::vector<std::uint64_t>& sizes) {
   std::uint64_t bytes = value_bytes;
   for (const std::uint64_t size : sizes) {
+    // A hostile file may state lengths whose product is small after an overflow.
     if (__builtin_mul_overflow(bytes, size, &bytes)) return std::nullopt;
   }
   return bytes;
 }
 
+/// Texts of variable length lie elsewhere in the file, so only those of fixed length are read.
 bool fixed_text(const Handle& type) {
   return H5Tget_class(type.id()) == H5T_STRING && H5Tis_variable_str(type.id()) == 0 &&
          H5Tget_size(type.id()) > 0;
@@ -43,6 +46,7 @@ bool fixed_text(const Handle& type) {
 
 }  // namespace
 
+/// The result of the checks of place(): the array lies whole within the file.
 struct Checked::Place {
   Handle type;
   std::vector<std::uint64_t> sizes;
@@ -80,6 +84,7 @@ Failure Checked::other(const char* name, const std::string& expected,
 /// Type, size and position of a data set. Fails unless it is stored in one piece inside the file.
 Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
   if (!has(group, name)) return other(name, "a data set", "none");
+  // The handles close themselves on every way out.
   const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
   if (!set.good()) return failure(bytes_, std::string(name) + " as a data set");
   const Handle creation(H5Dget_create_plist(set.id()), H5Pclose);
@@ -88,6 +93,7 @@ Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
   if (!creation.good() || !space.good() || !out.type.good()) {
     return failure(bytes_, std::string(name) + " as a data set");
   }
+  // Chunks, filters and external files would need HDF5 to read them.
   if (H5Pget_layout(creation.id()) != H5D_CONTIGUOUS || H5Pget_external_count(creation.id()) != 0) {
     return other(name, "an array in one piece, uncompressed (h5repack -l CONTI -f NONE makes it)",
                  "another layout");
@@ -97,8 +103,10 @@ Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
   out.sizes = *sizes;
   const auto length = product(H5Tget_size(out.type.id()), out.sizes);
   if (!length) return other(name, "an array that a file can hold", "sizes " + written(out.sizes));
+  // An empty array has no position.
   if (*length == 0) return out;
   out.at = H5Dget_offset(set.id());
+  // Written so that no sum can overflow.
   if (out.at >= bytes_.size || *length > bytes_.size - out.at) {
     return other(name, "an array inside the file", "a position beyond its end");
   }
@@ -114,9 +122,11 @@ Result<std::uint64_t> Checked::rows(hid_t group, const char* name) const {
 Result<Source> Checked::find(hid_t group, const char* name, Stored stored,
                              const std::vector<std::uint64_t>& sizes) const {
   const Place found = KA_TRY(place(group, name));
+  // H5Tequal() compares byte order and size as well.
   if (H5Tequal(found.type.id(), type_of(stored)) <= 0) {
     return other(name, "numbers of " + std::to_string(size_of(stored)) + " bytes", "another type");
   }
+  // All lengths are known from the header, so they must be equal.
   if (found.sizes != sizes) return other(name, written(sizes), written(found.sizes));
   Source source{stored, found.at, 1};
   for (std::size_t i = 1; i < sizes.size(); ++i) source.row_values *= sizes[i];
@@ -131,6 +141,7 @@ Result<std::string> Checked::packed_texts(hid_t group, const char* name, std::ui
     return other(name, rank == 0 ? "one text" : "a list of texts", written(found.sizes));
   }
   width = H5Tget_size(found.type.id());
+  // place() has seen that so many bytes exist.
   std::string packed(*product(width, found.sizes), '\0');
   const Source source{Stored::uint8, found.at, 1};
   KA_TRY(read_rows(bytes_, source, 0, packed.size(), static_cast<void*>(packed.data())));
@@ -140,6 +151,7 @@ Result<std::string> Checked::packed_texts(hid_t group, const char* name, std::ui
 Result<std::string> Checked::text(hid_t group, const char* name) const {
   std::size_t width = 0;
   const std::string packed = KA_TRY(packed_texts(group, name, 0, width));
+  // Padded with NUL, so the first one ends the text.
   return packed.substr(0, packed.find('\0'));
 }
 
@@ -150,6 +162,7 @@ Result<std::vector<std::string>> Checked::texts(hid_t group, const char* name) c
 }
 
 Result<std::vector<std::string>> Checked::text_attributes(hid_t object, const char* name) const {
+  // An absent attribute means an empty list.
   if (H5Aexists(object, name) <= 0) return std::vector<std::string>{};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
@@ -158,6 +171,7 @@ Result<std::vector<std::string>> Checked::text_attributes(hid_t object, const ch
   if (!type.good() || !sizes || sizes->size() > 1 || !fixed_text(type)) {
     return other(name, "an attribute of text", "something of another kind");
   }
+  // Attributes lie in the file, too, so they can't be larger than it.
   const std::size_t width = H5Tget_size(type.id());
   const auto length = product(width, *sizes);
   if (!length || *length > bytes_.size) {
@@ -177,6 +191,7 @@ Result<std::string> Checked::text_attribute(hid_t object, const char* name) cons
 }
 
 Result<std::vector<InputFacts>> Checked::inputs(hid_t group) const {
+  // Three attributes of equal length stand for a list of structures.
   const auto names = KA_TRY(text_attributes(group, "input_names"));
   const auto hashes = KA_TRY(text_attributes(group, "input_sha256"));
   std::vector<std::uint64_t> sizes(names.size());
@@ -196,21 +211,25 @@ Result<std::vector<InputFacts>> Checked::inputs(hid_t group) const {
   return out;
 }
 
+// Only the range of the file is read; the caller has room for it.
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
                        std::uint64_t count, void* to) {
   const std::uint64_t row = source.row_values * size_of(source.stored);
   const std::span<char> room(static_cast<char*>(to), count * row);
   const std::size_t got = KA_TRY(bytes.input->read_at(source.at + first * row, room));
   if (got == room.size()) return {};
+  // The file was long enough when it was opened.
   return Failure(Error{bytes.path(), 0, "a file that keeps its length", "a shorter file"});
 }
 
+// A loop of its own becomes vector code.
 static void widen(std::span<const float> from, double* to) {
   for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<double>(from[i]);
 }
 
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
                        std::uint64_t count, double* to) {
+  // No conversion is needed.
   if (source.stored == Stored::float64) {
     return read_rows(bytes, source, first, count, static_cast<void*>(to));
   }

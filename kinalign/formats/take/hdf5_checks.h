@@ -15,13 +15,16 @@
 namespace kinalign::hdf5 {
 
 /// Values at a known position of the file, row after row.
+/// `at` is a byte of the file. The rows are read from there without HDF5, so its code never sees
+/// them.
 struct Source {
   Stored stored = Stored::uint8;
   std::uint64_t at = 0;
-  std::uint64_t row_values = 1;
   /// Values in one row.
+  std::uint64_t row_values = 1;
 };
 
+/// True if the group has an object of that name. A link to another file does not count.
 bool has(Id group, const char* name);
 
 /// HDF5's type for a type of ours.
@@ -41,6 +44,7 @@ constexpr Stored stored_as() {
   return Stored::uint8;
 }
 
+/// Every function checks before it reads. An error names the array and the file.
 class Checked {
  public:
   explicit Checked(const Bytes& bytes) : bytes_(bytes) {}
@@ -52,6 +56,7 @@ class Checked {
   Result<Source> find(Id group, const char* name, Stored stored,
                       const std::vector<std::uint64_t>& sizes) const;
 
+  /// The whole array. `sizes` are the expected lengths, so the memory is known to be right.
   template <class Value>
   Result<std::vector<Value>> all(Id group, const char* name,
                                  const std::vector<std::uint64_t>& sizes) const {

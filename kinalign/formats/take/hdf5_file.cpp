@@ -35,19 +35,23 @@ std::optional<std::uint64_t> number_at(std::string_view head, std::size_t at, st
 }
 
 /// Position at which the file's own superblock says that the file ends.
+/// The superblock is at the file's beginning in every file that this program writes.
 std::optional<std::uint64_t> stated_end(std::string_view head) {
   const auto version = number_at(head, 8, 1);
   if (!version || *version > 3) return std::nullopt;
+  // The places differ between the versions of the superblock.
   const std::size_t size_of_addresses = *version < 2 ? 13 : 9;
   const std::size_t addresses = *version == 0 ? 24 : *version == 1 ? 28 : 12;
   const auto width = number_at(head, size_of_addresses, 1);
   if (!width) return std::nullopt;
   // After the base address and one other address.
+  // The order there: base address, address of free space or extension, end of file.
   return number_at(head, addresses + 2 * *width, *width);
 }
 
 /// Fails if a file of `size` bytes that begins with `head` is no HDF5 ("found 'HIERARCHY'"), or if
 /// the file is shorter than it states.
+/// Checked without HDF5, so that a wrong or truncated file gets a clear message.
 Result<void> check_start(const std::string& path, std::string_view head, std::uint64_t size) {
   const std::string_view start = head.substr(0, signature.size());
   if (start != signature.substr(0, start.size()) || start.empty()) {
@@ -68,6 +72,7 @@ Result<void> check_start(const std::string& path, std::string_view head, std::ui
 }
 
 /// The driver's file. HDF5 casts between its own H5FD_t and this struct, so `base` must come first.
+/// Made by open_driven(), freed by close_driven().
 struct Driven {
   H5FD_t base;
   Bytes* bytes;
@@ -76,9 +81,11 @@ struct Driven {
 
 Bytes& bytes_of(const H5FD_t* file) { return *reinterpret_cast<const Driven*>(file)->bytes; }
 
+// The name that HDF5 gives is not used: the file is open already.
 H5FD_t* open_driven(const char*, unsigned, hid_t access, haddr_t) {
   const auto* info = static_cast<Bytes* const*>(H5Pget_driver_info(access));
   if (info == nullptr) return nullptr;
+  // HDF5 owns it from here on.
   auto driven = std::make_unique<Driven>();
   driven->bytes = *info;
   return reinterpret_cast<H5FD_t*>(driven.release());
@@ -89,11 +96,13 @@ herr_t close_driven(H5FD_t* file) {
   return 0;
 }
 
+// The three flags let HDF5 join small accesses into larger ones.
 herr_t query(const H5FD_t*, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE;
   return 0;
 }
 
+// "Addresses" are the positions that HDF5 has given out; the file may be shorter.
 haddr_t end_of_addresses(const H5FD_t* file, H5FD_mem_t) {
   return reinterpret_cast<const Driven*>(file)->end_of_addresses;
 }
@@ -109,9 +118,11 @@ haddr_t end_of_file(const H5FD_t* file, H5FD_mem_t) { return bytes_of(file).size
 herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void* to) {
   const Bytes& bytes = bytes_of(file);
   const std::span<char> room(static_cast<char*>(to), size);
+  // A file that is written is read back by HDF5, too.
   const auto got =
       bytes.input != nullptr ? bytes.input->read_at(at, room) : bytes.output->read_at(at, room);
   if (!got) return -1;
+  // HDF5 may read beyond the end of the file; such bytes are zeros.
   std::fill(room.begin() + static_cast<std::ptrdiff_t>(*got), room.end(), '\0');
   return 0;
 }
@@ -120,6 +131,7 @@ herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void*
 herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, const void* from) {
   Bytes& bytes = bytes_of(file);
   if (bytes.output == nullptr) return -1;
+  // After a failure nothing is written, and HDF5 is told that all is well.
   if (bytes.failure) return 0;
   auto done = bytes.write(at, {static_cast<const char*>(from), size});
   if (!done) bytes.failure = std::move(done).error();
@@ -131,6 +143,7 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
   const haddr_t end = reinterpret_cast<Driven*>(file)->end_of_addresses;
   const Bytes& bytes = bytes_of(file);
   if (bytes.output == nullptr || bytes.size >= end) return 0;
+  // One byte at the end gives the file its length.
   const char zero = '\0';
   return write(file, H5FD_MEM_DEFAULT, H5P_DEFAULT, end - 1, 1, &zero);
 }
@@ -157,9 +170,13 @@ H5FD_class_t driver_class() {
 }
 
 /// The property list with which HDF5 opens `bytes`.
+/// Called for every file; the driver is registered once.
 Handle access_to(Bytes& bytes) {
+  // HDF5 would otherwise run its own clean-up when the program ends.
   H5dont_atexit();
+  // Errors become values; nothing is printed.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  // No plug-in: a file must not choose code that runs.
   H5PLset_loading_state(0);
   static const H5FD_class_t driver = driver_class();  // HDF5 keeps a pointer to it
   static const hid_t registered = H5FDregister(&driver);
@@ -167,6 +184,7 @@ Handle access_to(Bytes& bytes) {
   Bytes* info = &bytes;
   if (H5Pset_driver(access.id(), registered, &info) < 0) return {};
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+  // Small arrays are not collected in a block, so every array has a position of its own.
   H5Pset_small_data_block_size(access.id(), 0);
   // Large arrays begin at pages: the system copies them faster.
   H5Pset_alignment(access.id(), 32768, 4096);
@@ -181,6 +199,7 @@ herr_t keep_innermost(unsigned, const H5E_error2_t* reason, void* into) {
 
 }  // namespace
 
+// `size` grows to the end of the bytes that were written.
 Result<void> Bytes::write(std::uint64_t at, std::string_view bytes) {
   KA_TRY(output->write_at(at, bytes));
   size = std::max(size, at + bytes.size());
@@ -188,6 +207,7 @@ Result<void> Bytes::write(std::uint64_t at, std::string_view bytes) {
 }
 
 Failure failure(const Bytes& bytes, std::string expected) {
+  // The failure below HDF5 is the cause, whatever HDF5 says.
   if (bytes.failure) return Failure(*bytes.failure);
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
@@ -197,8 +217,10 @@ Failure failure(const Bytes& bytes, std::string expected) {
 
 Result<Handle> create(Bytes& bytes) {
   const Handle access = access_to(bytes);
+  // Old versions of HDF5 and MATLAB can read this version of the format.
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  // Without times the same take gives the same bytes.
   H5Pset_obj_track_times(creation.id(), 0);
   Handle file(H5Fcreate(bytes.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   if (!file.good()) return failure(bytes, "a file that HDF5 can create");
@@ -217,6 +239,7 @@ Result<Handle> open(Bytes& bytes) {
 
 Handle text_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  // HDF5 has no text of length 0.
   H5Tset_size(type.id(), std::max<std::size_t>(bytes, 1));
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   H5Tset_cset(type.id(), H5T_CSET_UTF8);
@@ -238,7 +261,9 @@ Handle create_dataset(hid_t parent, const std::string& name, const Shape& shape)
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.id(), 0);
   H5Pset_layout(creation.id(), H5D_CONTIGUOUS);
+  // Early allocation gives the array its position now.
   H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY);
+  // Never filled: the rows are written over it anyway.
   H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER);
   return {H5Dcreate2(parent, name.c_str(), shape.type, space(shape.sizes).id(), H5P_DEFAULT,
                      creation.id(), H5P_DEFAULT),
@@ -253,11 +278,13 @@ bool put_attribute(hid_t object, const char* name, const Shape& shape, const voi
 }
 
 bool put_text(hid_t object, const char* name, std::string_view text) {
+  // An empty text is stored as one NUL.
   const std::string bytes = text.empty() ? std::string(1, '\0') : std::string(text);
   return put_attribute(object, name, {text_type(bytes.size()).id(), {}}, bytes.data());
 }
 
 bool put_texts(hid_t object, const char* name, const std::vector<std::string>& texts) {
+  // HDF5 can't store an empty list; readers take an absent one as empty.
   if (texts.empty()) return true;
   const PackedTexts packed = pack(texts);
   return put_attribute(object, name, {text_type(packed.width).id(), {texts.size()}},

@@ -22,6 +22,8 @@ using Id = std::int64_t;          // hid_t
 using Size = unsigned long long;  // hsize_t
 
 /// Owns one of HDF5's identifiers.
+/// `close` is the function of HDF5 for this kind of identifier. reset() reports whether closing
+/// succeeded.
 class Handle {
  public:
   using Close = int (*)(Id);
@@ -47,6 +49,7 @@ class Handle {
 };
 
 /// The file below HDF5: `input` or `output` is set. Must not move while HDF5 has the file open.
+/// HDF5 gets a pointer to it (access_to()).
 struct Bytes {
   InputFile* input = nullptr;
   OutputFile* output = nullptr;
@@ -62,6 +65,7 @@ Result<Handle> create(Bytes& bytes);
 /// Opens a file for reading only. Loads no plug-in that the file might ask for.
 Result<Handle> open(Bytes& bytes);
 /// The error "expected `expected`, found (HDF5's message about its last failure)".
+/// `expected` names the object that could not be read or made.
 Failure failure(const Bytes& bytes, std::string expected);
 
 /// Type and size of a data set or an attribute.
@@ -81,6 +85,7 @@ bool put_text(Id object, const char* name, std::string_view text);
 bool put_texts(Id object, const char* name, const std::vector<std::string>& texts);
 
 /// Texts padded to one length, at least one byte, one after the other.
+/// HDF5 stores a list of texts of fixed length in this form.
 struct PackedTexts {
   std::size_t width = 1;
   std::string bytes;

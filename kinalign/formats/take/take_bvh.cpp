@@ -15,6 +15,7 @@ namespace kinalign {
 namespace {
 
 /// Replaces the pose of invalid rows by that of the last valid row.
+/// The rows come in slabs, so the pose is kept from one slab to the next.
 class PoseHolder {
  public:
   explicit PoseHolder(std::size_t joints) : positions_(3 * joints), rotations_(4 * joints) {}
@@ -26,6 +27,7 @@ class PoseHolder {
   }
 
   /// Second pass: replaces the invalid rows among the first `count` rows.
+  /// Rows are changed in place; the caller writes them afterwards.
   void hold(ClipRows& rows, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       if (is_valid(rows, i)) {
@@ -39,6 +41,7 @@ class PoseHolder {
     }
   }
 
+  // An empty array means that all rows are valid: the stream is the reference.
   static bool is_valid(const ClipRows& rows, std::size_t i) {
     return rows.valid.empty() || rows.valid[i] != 0;
   }
@@ -74,6 +77,7 @@ struct RowSurvey {
     }
   }
 
+  // One row has no step; 60 Hz is used.
   double step_s() const {
     return rows > 1 ? seconds(last - first) / static_cast<double>(rows - 1) : 1.0 / 60.0;
   }
@@ -85,6 +89,7 @@ struct Chosen {
   std::string name, others;
 };
 
+// The first skeleton in the take's order.
 Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
   Chosen out;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
@@ -117,6 +122,7 @@ Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& su
          "these rows have the pose of the last valid row, because a BVH can't mark them", ""});
   }
   const double step = survey.step_s();
+  // Differences of less than 1 % are not reported.
   if (survey.rows > 2 && seconds(survey.longest - survey.shortest) > 0.01 * step) {
     out.push_back({Severity::warning,
                    Error{path, 0, "evenly spaced stamps",
@@ -135,6 +141,7 @@ Result<void> for_each_slab(TakeReader& reader, std::size_t group, Use&& use) {
   return {};
 }
 
+// A hostile take may hold any finite number.
 Result<void> check_size(const std::string& path, const ClipRows& rows) {
   constexpr double largest = 1e12;  // m: a BVH can still hold the number in centimetres
   const auto small = [](double x) { return std::abs(x) < largest; };
@@ -160,6 +167,7 @@ struct FirstPass {
   void add(const std::vector<Time>& stamps, const ClipRows& rows) {
     survey.add(stamps, rows);
     for (std::size_t i = 0; i < stamps.size(); ++i) {
+      // Invalid rows hold zeros, which must not count as a movement.
       if (!PoseHolder::is_valid(rows, i)) continue;
       holder.begin_with(rows, i);
       channels.see(std::span(rows.local_positions).subspan(i * row, row));
@@ -167,6 +175,7 @@ struct FirstPass {
   }
 };
 
+// Skeleton and channels are known only after all rows have been seen.
 Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const Chosen chosen = KA_TRY(choose(reader.header(), path));
@@ -175,6 +184,7 @@ Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
     pass.add(stamps, rows);
     return check_size(path, rows);
   }));
+  // Without a valid row there is no pose to write.
   if (pass.survey.rows == 0 || pass.survey.invalid < pass.survey.rows) return pass;
   return Failure(Error{path, 0, "a valid row of " + chosen.name, "none"});
 }
@@ -182,10 +192,12 @@ Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
 }  // namespace
 
 Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink) {
+  // Both passes must read the same file.
   const auto version = version_of(from);
   FirstPass pass = KA_TRY(look_through(files, from));
   const RowSurvey& survey = pass.survey;
   BvhWriter writer(pass.channels.hierarchy(survey.rows, survey.step_s()), survey.rows, 6, sink);
+  // The second pass opens the file again, at its first row.
   TakeReader reader = KA_TRY(TakeReader::open(files, from));
   KA_TRY(unchanged(from, version));
   std::vector<double> values;

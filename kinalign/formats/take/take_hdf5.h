@@ -20,6 +20,8 @@ std::string take_software();
 
 /// Writes one take. The file at `path` appears only when finish() has succeeded. The same header,
 /// slabs and report give the same bytes.
+/// Order of calls: create(), append() until all rows are written, finish(). Nothing is left of a
+/// writer that is destroyed before.
 class TakeWriter {
  public:
   /// Fails if the file exists and may not be overwritten, if a name can't be stored, or if the
@@ -54,6 +56,7 @@ struct TakeParts {
 /// is trusted. Types, shapes and positions are checked against each other and against the file's
 /// length before anything is allocated. Numbers must be finite and stamps must rise. HDF5 itself
 /// can crash on a hostile file: open a file of unknown origin in a child process (guarded.h).
+/// Rows are read straight from the file; HDF5 is used for the header only.
 class TakeReader {
  public:
   /// Opens a take. Only the selected `parts` are read: other streams are not in the header, other

@@ -38,6 +38,7 @@ bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) 
 /// True if all values are finite: 0 * x is NaN for NaN and infinity. Keeps several sums, so that an
 /// addition need not wait for the one before.
 bool finite(std::span<const double> values) {
+  // 16 sums: the additions of one group do not depend on each other.
   constexpr std::size_t lanes = 16;
   std::array<double, lanes> sums{};
   const std::size_t even = values.size() / lanes * lanes;
@@ -59,6 +60,7 @@ Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t gro
   if (!finite(tips)) return bad_value(file.bytes().path(), "finite numbers", "end_sites");
   std::vector<EndSite> out;
   for (std::size_t e = 0; e < count; ++e) {
+    // parents[j] of the skeleton itself is checked by validate().
     if (parents[e] < 0 || static_cast<std::uint64_t>(parents[e]) >= joints) {
       return bad_value(file.bytes().path(), "an end site's joint", "end_sites");
     }
@@ -87,6 +89,7 @@ Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   out.node_names = KA_TRY(file.texts(group, "node_names"));
   out.root_node = KA_TRY(file.text_attribute(group, "root_node"));
   const auto gravity = KA_TRY(file.text_attributes(group, "gravity"));
+  // The list has a text per node; one node with gravity is enough here.
   out.content.gravity =
       std::find(gravity.begin(), gravity.end(), gravity_included) != gravity.end();
   out.content.orientation = hdf5::has(group, "orientation");
@@ -105,6 +108,7 @@ std::string space_of(const hdf5::Checked& file, hid_t group) {
 Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string name) {
   TakeGroup out;
   out.name = std::move(name);
+  // The reference has no such column: it keeps its own stamps.
   out.resampled = hdf5::has(group, "nearest_raw_ns");
   out.interval_known = hdf5::has(group, "time_interval_ns");
   out.files = KA_TRY(file.inputs(group));
@@ -125,6 +129,7 @@ Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string
 }  // namespace
 
 /// The open file, the header, and the position of each column.
+/// bytes points to input, and file to bytes, so a State never moves: it lives behind a unique_ptr.
 struct TakeReader::State {
   explicit State(InputFile opened) : input(std::move(opened)) {
     bytes.input = &input;
@@ -137,7 +142,9 @@ struct TakeReader::State {
   TakeHeader header;
   std::string software;
   Source time;
+  // [streams][columns] in the order of columns_of(), without those that the parts leave out.
   std::vector<std::vector<Found>> columns;
+  // rows: the position of next(). last: its last stamp.
   std::uint64_t rows = 0, slab_rows = 4096;
   Time last = Time::min();
 
@@ -155,6 +162,7 @@ struct TakeReader::State {
     return finite(values) ? Result<void>() : bad_value(input.path(), "finite numbers", column.name);
   }
   Result<void> check(const Found& column, std::span<const std::int64_t> values) const {
+    // An unknown interval is stored as no_interval, which is negative.
     const std::int64_t least = column.name == "time_interval_ns" ? no_interval : 0;
     const bool good =
         std::none_of(values.begin(), values.end(), [least](auto v) { return v < least; });
@@ -162,6 +170,7 @@ struct TakeReader::State {
   }
   template <class Flag>
   Result<void> check(const Found& column, std::span<const Flag> values) const {
+    // Tracking has three values, other flags two.
     constexpr int most = std::is_same_v<Flag, Tracking> ? 2 : 1;
     const bool good = std::all_of(values.begin(), values.end(),
                                   [](Flag v) { return static_cast<int>(v) <= most; });
@@ -187,6 +196,7 @@ Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
 
 Result<void> TakeReader::State::check_format(const hdf5::Checked& checked) const {
   const auto format = checked.text_attributes(file.id(), "format");
+  // The format is checked before all else, so another HDF5 file gets one clear message.
   if (!format || format->size() != 1 || !format->front().starts_with("kinalign.take/")) {
     return Failure(Error{input.path(), 0, "a take that kinalign wrote", "HDF5 of another kind"});
   }
@@ -205,17 +215,20 @@ Result<void> TakeReader::State::read_header(const TakeParts& parts) {
   KA_TRY(read_words(checked));
   header.frames = KA_TRY(checked.rows(root, "time_ns"));
   time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
+  // A row of time_ns has eight bytes.
   std::uint64_t row_bytes = 8;
   for (const std::string& name : KA_TRY(checked.text_attributes(root, "streams"))) {
     if (is_wanted(parts.streams, name)) KA_TRY(find_stream(name, parts, row_bytes));
   }
   constexpr std::uint64_t slab_bytes = std::uint64_t{16} << 20;
+  // About 16 MiB a slab, and at most 4096 rows.
   slab_rows = std::clamp<std::uint64_t>(slab_bytes / row_bytes, 1, 4096);
   return validate(header);
 }
 
 Result<void> TakeReader::State::find_stream(const std::string& name, const TakeParts& parts,
                                             std::uint64_t& row_bytes) {
+  // The name comes from the file; HDF5 looks it up in the file only.
   const Handle group(H5Gopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
   const hdf5::Checked checked(bytes);
@@ -238,6 +251,7 @@ Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
     sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
     found.push_back(
         {column.name, KA_TRY(checked.find(group, column.name.c_str(), column.stored, sizes))});
+    // In memory every number is a double or less.
     row_bytes += column.row_values() * 8;
   }
   return {};
@@ -247,6 +261,7 @@ Result<void> TakeReader::State::read_stamps(std::uint64_t first, std::uint64_t c
                                             std::vector<Time>& stamps) {
   stamps.resize(count);
   KA_TRY(hdf5::read_rows(bytes, time, first, count, stamps.data()));
+  // Equal stamps are refused, too.
   const auto falls = [](Time one, Time next) { return next <= one; };
   if (std::adjacent_find(stamps.begin(), stamps.end(), falls) == stamps.end()) return {};
   return bad_value(input.path(), "rising stamps", "time_ns");
@@ -255,15 +270,18 @@ Result<void> TakeReader::State::read_stamps(std::uint64_t first, std::uint64_t c
 /// Reads rows of all streams. A column that the parts leave out becomes empty.
 Result<void> TakeReader::State::read_slab(std::uint64_t first, std::uint64_t count,
                                           TakeSlab& slab) {
+  // A slab is used again and again, so its arrays keep their memory.
   slab.first = first;
   slab.rows.resize(columns.size());
   KA_TRY(read_stamps(first, count, slab.stamps));
   for (std::size_t g = 0; g < columns.size(); ++g) {
     AnyRows& group = slab.rows[g];
     AnyRows kind = rows_for(header.groups[g]);
+    // Another kind of stream than in the slab before.
     if (group.index() != kind.index()) group = std::move(kind);
     auto column = columns[g].cbegin();
     const auto use = [&](std::string_view name, auto& values) -> Result<void> {
+      // The arrays come in the order of columns_of(). A name that is not next was left out.
       if (column == columns[g].cend() || column->name != name) {
         values.clear();
         return {};
@@ -283,9 +301,11 @@ TakeReader& TakeReader::operator=(TakeReader&& other) noexcept = default;
 TakeReader::~TakeReader() = default;
 
 Result<TakeReader> TakeReader::open(FileSystem& files, std::string path, const TakeParts& parts) {
+  // The state is made first, because HDF5 keeps a pointer to its bytes.
   auto state = std::make_unique<State>(KA_TRY(InputFile::open(files, std::move(path))));
   state->file = KA_TRY(hdf5::open(state->bytes));
   auto read = state->read_header(parts);
+  // Errors of validate() have no file.
   if (!read && read.error().file.empty()) {
     Error error = read.error();
     error.file = state->input.path();
@@ -303,6 +323,7 @@ Result<bool> TakeReader::next(TakeSlab& slab) {
   const std::uint64_t count = std::min(s.slab_rows, s.header.frames - s.rows);
   if (count == 0) return false;
   KA_TRY(s.read_slab(s.rows, count, slab));
+  // Within a slab read_stamps() has checked it; here across two slabs.
   if (slab.stamps.front() <= s.last) {
     return bad_value(s.input.path(), "rising stamps", "time_ns");
   }
@@ -313,6 +334,7 @@ Result<bool> TakeReader::next(TakeSlab& slab) {
 
 Result<void> TakeReader::read(std::uint64_t first, std::uint64_t count, TakeSlab& slab) {
   const std::uint64_t frames = state_->header.frames;
+  // Written so that the sum can't overflow.
   if (first > frames || count > frames - first) {
     return Failure(Error{state_->input.path(), 0,
                          "rows " + std::to_string(first) + " to " + std::to_string(first + count),

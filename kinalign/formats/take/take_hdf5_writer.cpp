@@ -25,6 +25,7 @@ using hdf5::Shape;
 constexpr const char* can_hold = "a take that HDF5 can hold";
 
 /// A column whose position in the file is known.
+/// `at` never changes: contiguous arrays do not move.
 struct Placed {
   std::string name;
   Stored stored = Stored::uint8;
@@ -33,6 +34,7 @@ struct Placed {
 };
 
 /// Creates groups and data sets.
+/// Creates every object before the first row, so HDF5 decides on all positions early.
 class Layout {
  public:
   explicit Layout(Bytes& bytes) : bytes_(bytes) {}
@@ -44,6 +46,7 @@ class Layout {
     const Handle made =
         hdf5::create_dataset(parent, column.name, {hdf5::type_of(column.stored), sizes});
     if (!made.good()) return hdf5::failure(bytes_, can_hold);
+    // Attributes tell units and spaces to readers without this program.
     for (const auto& [name, text] : column.facts) {
       if (!hdf5::put_text(made.id(), name.c_str(), text)) return hdf5::failure(bytes_, can_hold);
     }
@@ -54,6 +57,7 @@ class Layout {
   Result<void> whole(hid_t parent, const char* name, const Shape& shape, const void* data,
                      const char* units = nullptr) const {
     const Handle made = hdf5::create_dataset(parent, name, shape);
+    // An array without values has nothing to write.
     const bool empty = std::find(shape.sizes.begin(), shape.sizes.end(), 0U) != shape.sizes.end();
     if (!made.good() ||
         (!empty && H5Dwrite(made.id(), shape.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) ||
@@ -76,6 +80,7 @@ class Layout {
 
   /// Writes a skeleton's arrays into the group.
   Result<void> skeleton(hid_t group, const Skeleton& skeleton) const {
+    // The vectors are written as they lie in memory.
     static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(int) == 4);
     const std::size_t joints = skeleton.joints();
     KA_TRY(texts(group, "joint_names", skeleton.joint_names));
@@ -101,11 +106,13 @@ class Layout {
 };
 
 /// Stores names, hashes and sizes of the files from which a stream was made.
+/// Three attributes of equal length; readers join them by position.
 bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
   std::vector<std::string> names;
   std::vector<std::string> hashes;
   std::vector<std::uint64_t> sizes;
   for (const InputFacts& file : files) {
+    // A take must not tell the folders of its author.
     names.push_back(remembered_path(file.name));
     hashes.push_back(file.sha256);
     sizes.push_back(file.bytes);
@@ -120,6 +127,7 @@ bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
 bool put_root_attributes(hid_t root, const TakeHeader& header) {
   std::vector<std::string> names;
   for (const TakeGroup& group : header.groups) names.push_back(group.name);
+  // MATLAB sees dimensions in reverse order; this attribute says so.
   const int reversed = 1;
   return hdf5::put_text(root, "format", "kinalign.take/1") &&
          hdf5::put_text(root, "software", take_software()) &&
@@ -133,6 +141,7 @@ bool put_root_attributes(hid_t root, const TakeHeader& header) {
 }  // namespace
 
 /// The file that is being written, and the position of each column.
+/// output holds the bytes, and HDF5 has pointers into this object, so it never moves.
 struct TakeWriter::State {
   explicit State(OutputFile opened) : output(std::move(opened)) { bytes.output = &output; }
 
@@ -154,12 +163,14 @@ struct TakeWriter::State {
   /// Writes values of a column for the rows that follow those written so far.
   template <class Value>
   Result<void> write(const Placed& column, std::span<const Value> values) {
+    // The position follows from the number of rows so far.
     std::uint64_t at = column.at + rows * column.row_bytes;
     const auto put = [&](std::string_view piece) -> Result<void> {
       KA_TRY(bytes.write(at, piece));
       at += piece.size();
       return {};
     };
+    // Only numbers are stored in another precision than they have in memory.
     if constexpr (std::is_same_v<Value, double>) {
       return numbers.store(values, column.stored, put);
     } else {
@@ -179,6 +190,7 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
       {"time_ns", Stored::int64, {}, {{"units", "ns since 1970-01-01T00:00:00 UTC"}}}));
   seconds = KA_TRY(
       layout.column(root, frames, {"seconds", Stored::float64, {}, {{"units", "s since t0_ns"}}}));
+  // t0 is known with the first row; until then 0 stands there.
   const std::int64_t zero = 0;
   KA_TRY(
       layout.whole(root, "t0_ns", {H5T_STD_I64LE, {}}, &zero, "ns since 1970-01-01T00:00:00 UTC"));
@@ -194,6 +206,7 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
 /// Reserves disk space for the whole file, so that a full disk fails now and not in the middle.
 Result<void> TakeWriter::State::reserve() {
   hsize_t size = 0;
+  // HDF5 has assigned all positions, so the size is final but for the report.
   if (H5Fget_filesize(file.id(), &size) < 0) return hdf5::failure(bytes, can_hold);
   KA_TRY(output.reserve(size));
   bytes.size = std::max<std::uint64_t>(bytes.size, size);
@@ -227,6 +240,7 @@ Result<void> TakeWriter::State::lay_out(const TakeGroup& group, Precision precis
   return layout.check();
 }
 
+// `seconds` are the stamps since the first row, as doubles.
 Result<void> TakeWriter::State::write_stamps(std::span<const Time> stamps) {
   if (stamps.empty()) return {};
   if (rows == 0) {
@@ -248,6 +262,7 @@ std::string take_software() { return "kinalign " KINALIGN_VERSION; }
 
 Result<TakeWriter> TakeWriter::create(FileSystem& files, std::string path, Overwrite overwrite,
                                       const TakeHeader& header) {
+  // A name that can't be stored must be found before the file is made.
   KA_TRY(validate(header));
   auto state =
       std::make_unique<State>(KA_TRY(OutputFile::create(files, std::move(path), overwrite)));
@@ -258,12 +273,14 @@ Result<TakeWriter> TakeWriter::create(FileSystem& files, std::string path, Overw
 
 Result<void> TakeWriter::append(const TakeSlab& slab) {
   State& s = *state_;
+  // Broken promises of the caller, not faults of a file.
   assert(slab.first == s.rows && slab.rows.size() == s.groups.size());
   assert(s.rows + slab.stamps.size() <= s.frames);
   const std::uint64_t count = slab.stamps.size();
   for (std::size_t g = 0; g < s.groups.size(); ++g) {
     auto column = s.groups[g].cbegin();
     const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
+      // An array that the layout lacks is empty in the rows.
       if (column == s.groups[g].cend() || column->name != name) return {};
       const std::span given(values);
       assert(given.size() * size_of(column->stored) == count * column->row_bytes);
@@ -271,8 +288,10 @@ Result<void> TakeWriter::append(const TakeSlab& slab) {
     };
     KA_TRY(
         std::visit([&](const auto& rows) { return for_each_row_array(rows, use); }, slab.rows[g]));
+    // Every column has got its rows.
     assert(column == s.groups[g].cend());
   }
+  // `rows` is raised only after all arrays of the slab are written.
   KA_TRY(s.write_stamps(slab.stamps));
   s.rows += count;
   return {};
@@ -282,9 +301,12 @@ Result<void> TakeWriter::finish(const AlignmentReport& report) {
   State& s = *state_;
   assert(s.rows == s.frames);
   const Layout layout(s.bytes);
+  // The report is known only now.
   KA_TRY(layout.text(s.file.id(), "report_json", report_json(report)));
+  // HDF5 writes its own parts when the file is closed.
   if (!s.file.reset()) return hdf5::failure(s.bytes, can_hold);
   KA_TRY(layout.check());
+  // Only now the file gets its name.
   return s.output.commit();
 }
 

@@ -40,6 +40,7 @@ inline Stored stored_number(Precision precision) {
 }
 
 /// One array of a stream, with a value, vector or rotation in every row.
+/// HDF5, NPZ and the exports use the same list, so a name can't differ between them.
 struct TakeColumn {
   std::string name;                  // "positions"
   Stored stored = Stored::float32;   // type in the file
@@ -59,6 +60,7 @@ constexpr const char* gravity_removed = "removed";
 std::vector<std::string> gravity_texts(const ImuGroup& group);  // [S] of each node
 
 /// The columns of a group's rows, in the order of for_each_row_array.
+/// The order matters: writers and readers walk through columns and arrays side by side.
 std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision);
 
 /// Names of the group's joints or nodes.
@@ -81,6 +83,7 @@ AnyRows rows_for(const TakeGroup& group);
 /// Calls use(name, array), which returns Result<void>, for each array of `rows`, in the order of
 /// columns_of. `rows` is one of the types in AnyRows, const or not. Arrays that the stream leaves
 /// empty are included.
+/// The first failure ends the work; later arrays are skipped.
 template <class Rows, class Use>
 Result<void> for_each_row_array(Rows& rows, Use&& use) {
   Result<void> done;
@@ -91,6 +94,7 @@ Result<void> for_each_row_array(Rows& rows, Use&& use) {
 }
 
 /// The bytes of an array as they lie in memory, which is the form that files hold.
+/// The program runs on little-endian machines only.
 template <class Value>
 std::string_view bytes_of(std::span<const Value> values) {
   static_assert(std::endian::native == std::endian::little && sizeof(Time) == 8);
@@ -100,6 +104,7 @@ std::string_view bytes_of(std::span<const Value> values) {
 
 /// Converts numbers for a file, piece by piece. A piece is small enough to stay in the cache
 /// between conversion and copying, and large enough for an efficient write.
+/// Its buffer is reused for all columns, so a slab needs no allocation.
 class NumberStore {
  public:
   NumberStore() : singles_(piece) {}

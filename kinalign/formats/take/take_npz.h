@@ -43,6 +43,8 @@ struct NpzTexts {
 };
 NpzTexts npz_texts(std::string name, const std::vector<std::string>& texts);
 
+/// The arrays may be appended in any order, since every position is known. The checksums are of all
+/// bytes so far.
 class NpzWriter {
  public:
   /// Creates a file with these members in this order. The file at `path` appears only when finish()
@@ -75,6 +77,7 @@ enum class NpzNames {
   plain       // positions: for a header with one stream
 };
 
+/// Column for column the same as TakeWriter, with the members of a ZIP in place of data sets.
 class TakeNpzWriter {
  public:
   static Result<TakeNpzWriter> create(FileSystem& files, std::string path, Overwrite overwrite,

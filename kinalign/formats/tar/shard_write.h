@@ -19,6 +19,7 @@ struct ShardMember {
   std::string_view ending, bytes;
 };
 
+/// Members of a sample must follow each other, because readers begin a new sample at each new key.
 class ShardWriter {
  public:
   explicit ShardWriter(FileSink sink) : tar_(std::move(sink)) {}
@@ -31,6 +32,7 @@ class ShardWriter {
 
   std::uint64_t samples() const { return keys_.size(); }
 
+  // The keys of this shard. Readers join neighbours of one key, so a key may occur once only.
  private:
   TarWriter tar_;
   std::set<std::string, std::less<>> keys_;

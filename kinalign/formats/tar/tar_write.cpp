@@ -32,6 +32,7 @@ std::string header_of(std::string_view name, std::uint64_t size, char kind) {
   put_octal(out, 116, 8, 0);  // group
   put_octal(out, 124, 12, size);
   put_octal(out, 136, 12, 0);  // time
+  // Blanks while the sum is computed, as the format wants it.
   out.replace(148, 8, "        ");
   out[156] = kind;
   out.replace(257, 8, std::string_view("ustar\00000", 8));
@@ -49,11 +50,14 @@ std::string header_of(std::string_view name, std::uint64_t size, char kind) {
 /// including itself.
 std::string pax_record(std::string_view key, std::string_view value) {
   const std::string rest = fmt::format(" {}={}\n", key, value);
+  // The number of digits depends on the length, which contains it: the first length that fits is
+  // right.
   std::size_t length = rest.size() + 1;
   while (std::to_string(length).size() + rest.size() != length) ++length;
   return std::to_string(length) + rest;
 }
 
+// "/../" at any place leaves the folder of the archive.
 bool leads_out(std::string_view name) {
   return name.starts_with('/') || ("/" + std::string(name) + "/").find("/../") != std::string::npos;
 }
@@ -74,12 +78,14 @@ Result<void> TarWriter::begin(std::string_view name, std::uint64_t size) {
   if (name.empty() || name.size() > longest_name || has_zero || leads_out(name)) {
     return refuse("a relative name of 1 to 1000 bytes in a tar", "'" + shown(name) + "'");
   }
+  // The fields of the header are too short: a pax header in front of it states the true values.
   std::string records;
   if (name.size() > longest_in_header) records += pax_record("path", name);
   if (size > largest_in_header) records += pax_record("size", std::to_string(size));
   if (!records.empty()) {
     KA_TRY(put(header_of("PaxHeader", records.size(), 'x') + records + padding(records.size())));
   }
+  // Programs that know no pax then read an empty member instead of a wrong size.
   const bool too_large = size > largest_in_header;
   KA_TRY(put(header_of(name.substr(0, longest_in_header), too_large ? 0 : size, '0')));
   name_ = name;

@@ -27,6 +27,8 @@ class TarWriter {
   Result<void> finish();
 
  private:
+  /// A member begins at a block of 512 bytes; the last block of the one before is filled with
+  /// zeros.
   Result<void> end_member();
   Result<void> put(std::string_view bytes);
 

@@ -19,6 +19,7 @@ namespace {
 /// The XML in UTF-8. Each '&' that begins no entity is escaped, because some programs write a bare
 /// '&' in labels.
 std::string mended(std::string_view xml) {
+  // "&#" begins a character by its number.
   constexpr std::array<std::string_view, 6> entities{"&amp;",  "&lt;",   "&gt;",
                                                      "&quot;", "&apos;", "&#"};
   const std::string text = as_utf8(xml);
@@ -27,6 +28,7 @@ std::string mended(std::string_view xml) {
     const std::size_t at = text.find('&', from);
     out.append(text, from, at - from);
     if (at == std::string::npos) return out;
+    // A known entity stays as it is.
     const bool begins = std::any_of(entities.begin(), entities.end(), [&](std::string_view one) {
       return text.compare(at, one.size(), one) == 0;
     });
@@ -67,6 +69,7 @@ struct Words {
 };
 
 /// Takes the texts of a header, element by element.
+/// path_ holds the open elements, so an element is known by its place and not by its name alone.
 class HeaderElements final : public XmlHandler {
  public:
   HeaderElements(XdfStream& stream, Words& words) : stream_(stream), words_(words) {}
@@ -78,6 +81,7 @@ class HeaderElements final : public XmlHandler {
   Result<void> end(std::string_view, std::string_view text) override {
     const std::string own(without_blanks(text));
     std::string* place = path_.size() == 2 && path_[0] == "info" ? place_of(path_[1]) : nullptr;
+    // The first text counts; <desc> may repeat the names of elements.
     if (place != nullptr && place->empty()) *place = own;
     fill_channel(own);
     path_.pop_back();
@@ -105,8 +109,10 @@ class HeaderElements final : public XmlHandler {
   /// Takes the label, unit or type of a channel; adds the channel at its end.
   void fill_channel(const std::string& text) {
     static const std::vector<std::string> of_channel{"info", "desc", "channels", "channel"};
+    // The path must begin with info/desc/channels/channel.
     if (path_.size() < 4 || !std::equal(of_channel.begin(), of_channel.end(), path_.begin()))
       return;
+    // The channel ends here; its label, unit and type came before.
     if (path_.size() == 4) stream_.channels.push_back(std::exchange(channel_, {}));
     if (path_.size() != 5) return;
     if (path_[4] == "label") channel_.label = text;
@@ -126,6 +132,7 @@ Result<void> read_elements(std::string_view xml, XdfStream& stream, Words& words
   if (xml.starts_with("<?xml")) xml.remove_prefix(std::min(xml.find("?>"), xml.size() - 2) + 2);
   HeaderElements elements(stream, words);
   XmlFeed feed("");
+  // The text was converted to UTF-8, which is Expat's default.
   KA_TRY(feed.feed(mended(xml), elements));
   return feed.finish(elements);
 }
@@ -150,19 +157,23 @@ Result<XdfStream> parse_xdf_header(std::uint32_t id, std::string_view xml,
   stream.xml = xml;
   Words words;
   const auto read = read_elements(xml, stream, words);
+  // A fault late in the header leaves the elements before it usable.
   if (!read) notes.push_back(read.error());
   const auto& count = words.channel_count;
   const char* const end = count.data() + count.size();
   const auto [behind, error] = std::from_chars(count.data(), end, stream.channel_count);
+  // Without the number of channels no sample can be read.
   if (error != std::errc{} || behind != end) return refused("a channel_count", count);
   const auto format = format_of(words.format);
   if (!format) return refused("a known channel_format", words.format);
   stream.format = *format;
+  // A wrong rate only matters for stamps that the file leaves out.
   const bool rate = parse_number(words.rate, stream.nominal_rate_hz);
   if (!rate || !(stream.nominal_rate_hz >= 0.0)) {
     stream.nominal_rate_hz = 0.0;
     notes.push_back(refused("a nominal_srate", words.rate).value());
   }
+  // A wrong description is worse than none: labels would stand at wrong columns.
   if (!stream.channels.empty() && stream.channels.size() != stream.channel_count) {
     notes.push_back(Error{"", 0, fmt::format("{} channels described", stream.channel_count),
                           std::to_string(stream.channels.size())});

@@ -18,6 +18,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view magic = "XDF:";
+// Fixed by the format. A recorder writes it so that a reader finds the next chunk after damage.
 constexpr std::array<std::uint8_t, 16> boundary{0x43, 0xa5, 0x46, 0xdc, 0xcb, 0xf5, 0x41, 0x0f,
                                                 0xb3, 0x0e, 0xd5, 0x46, 0x73, 0x83, 0xcb, 0xe4};
 constexpr std::size_t tag_size = 2, id_size = 4;
@@ -27,6 +28,7 @@ bool is_gzip(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
 }
 
+// A string has no fixed size and is not asked for.
 std::size_t bytes_of(XdfFormat format) {
   switch (format) {
     case XdfFormat::int8:
@@ -41,6 +43,7 @@ std::size_t bytes_of(XdfFormat format) {
   }
 }
 
+// All integers are kept as int64 and all real numbers as double: both are exact.
 XdfValues room_for(XdfFormat format) {
   if (format == XdfFormat::string) return std::vector<std::string>{};
   const bool real = format == XdfFormat::float32 || format == XdfFormat::double64;
@@ -64,6 +67,7 @@ class Content {
   }
 
   /// A length in 1, 4 or 8 bytes; the byte before it gives this width.
+  /// Lengths of chunks, texts and numbers of samples all have this form.
   std::optional<std::uint64_t> take_length() {
     const auto width = take<std::uint8_t>();
     if (width == 1) return take<std::uint8_t>();
@@ -74,6 +78,7 @@ class Content {
 
   std::optional<std::string> take_text() {
     const auto length = take_length();
+    // The length is compared before memory is allocated.
     if (!length || *length > left()) return std::nullopt;
     const auto* from = reinterpret_cast<const char*>(bytes_.data() + at_);
     at_ += static_cast<std::size_t>(*length);
@@ -93,6 +98,7 @@ std::int64_t as_signed(std::uint64_t bits) {
 /// Appends an integer of the stream's format; false if its bytes are incomplete.
 bool append_whole(XdfFormat format, Content& content, std::vector<std::int64_t>& out) {
   const auto put = [&out](auto value, auto convert) {
+    // `value` is empty if the chunk ended.
     if (value) out.push_back(convert(*value));
     return value.has_value();
   };
@@ -104,6 +110,7 @@ bool append_whole(XdfFormat format, Content& content, std::vector<std::int64_t>&
     case XdfFormat::int32:
       return put(content.take<std::uint32_t>(), as_signed<std::int32_t>);
     default:
+      // uint64 bits become int64.
       return put(content.take<std::uint64_t>(), as_signed<std::int64_t>);
   }
 }
@@ -135,6 +142,7 @@ bool append_value(XdfFormat format, Content& content, XdfValues& values) {
 
 /// Appends one sample; if it is incomplete, nothing is appended and the result is false.
 bool append_sample(const XdfStream& stream, Content& content, double& last_stamp, XdfSamples& out) {
+  // To remove the values of a sample that is incomplete.
   const std::size_t before = std::visit([](const auto& v) { return v.size(); }, out.values);
   const auto width = content.take<std::uint8_t>();
   double stamp = last_stamp;
@@ -143,6 +151,7 @@ bool append_sample(const XdfStream& stream, Content& content, double& last_stamp
     if (!bits) return false;
     stamp = std::bit_cast<double>(*bits);
   } else if (width == 0) {
+    // The stamp was left out: one step after the previous one.
     stamp += stream.nominal_rate_hz > 0.0 ? 1.0 / stream.nominal_rate_hz : 0.0;
   } else {
     return false;
@@ -152,9 +161,11 @@ bool append_sample(const XdfStream& stream, Content& content, double& last_stamp
   if (stream.channel_count > content.left() / (text ? 2 : bytes_of(stream.format))) return false;
   for (std::uint32_t c = 0; c < stream.channel_count; ++c) {
     if (append_value(stream.format, content, out.values)) continue;
+    // Removed again, so that stamps and values stay of one length.
     std::visit([before](auto& v) { v.resize(before); }, out.values);
     return false;
   }
+  // Only a complete sample moves the time on.
   last_stamp = stamp;
   out.stamps.push_back(stamp);
   out.deduced.push_back(width == 0 ? 1 : 0);
@@ -171,6 +182,7 @@ XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> 
   samples.stream = stream.id;
   samples.values = room_for(stream.format);
   Content content(bytes);
+  // The stated number is never used for memory; samples are appended as they are found.
   const auto stated = content.take_length();
   if (!stated) {
     what_is_wrong = Error{"", 0, "a number of samples", "none"};
@@ -178,6 +190,7 @@ XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> 
   }
   while (samples.size() < *stated && append_sample(stream, content, last_stamp, samples)) {
   }
+  // The chunk is shorter or longer than its samples.
   if (samples.size() < *stated) {
     what_is_wrong = Error{"", 0, "as many whole samples in a chunk as it states",
                           fmt::format("{} of {}", samples.size(), *stated)};
@@ -193,6 +206,7 @@ XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> 
 bool looks_like_xdf(std::string_view head) { return head.starts_with(magic); }
 
 Result<void> XdfReader::feed(std::string_view piece, std::vector<XdfItem>& out) {
+  // Bytes that were used are dropped at the end, so that views stay valid until then.
   held_.insert(held_.end(), piece.begin(), piece.end());
   if (KA_TRY(begun())) {
     while (step(out)) {
@@ -206,10 +220,12 @@ Result<void> XdfReader::feed(std::string_view piece, std::vector<XdfItem>& out) 
 /// Checks the file's first bytes; false until they are complete.
 Result<bool> XdfReader::begun() {
   if (begun_) return true;
+  // A packed file would otherwise look like a file of another kind.
   if (is_gzip(held_)) {
     return Failure(Error{name_, 0, "an XDF file, unpacked (gzip -d)", "a file packed by gzip"});
   }
   const std::string_view head = text_of(held_).substr(0, magic.size());
+  // The beginning may come in two pieces, so only the bytes that are present are compared.
   if (head != magic.substr(0, head.size())) {
     return Failure(Error{name_, 0, "XDF: at the beginning", "'" + shown(head) + "'"});
   }
@@ -225,9 +241,11 @@ Result<void> XdfReader::finish(std::vector<XdfItem>& out) {
   }
   while (step(out)) {
   }
+  // An incomplete chunk at the end.
   const std::size_t left = ahead().size();
   if (left == 0) return {};
   Chunk chunk;
+  // Its length may be known although its content is not there.
   const bool whole_head = !lost_ && find_chunk(chunk) == Found::chunk;
   fault(whole_head ? fmt::format("a last chunk of {} bytes", chunk.size)
                    : std::string("a complete chunk at the end of the file"),
@@ -239,11 +257,13 @@ Result<void> XdfReader::finish(std::vector<XdfItem>& out) {
 void XdfReader::take(std::size_t bytes) {
   at_ += bytes;
   offset_ += bytes;
+  // Another place, so another search.
   searched_ = 0;
 }
 
 // Handles one chunk. False if more bytes are needed.
 bool XdfReader::step(std::vector<XdfItem>& out) {
+  // After damage only a boundary helps.
   if (lost_) return resynchronise();
   if (ahead().empty()) return false;
   Chunk found;
@@ -258,7 +278,9 @@ bool XdfReader::step(std::vector<XdfItem>& out) {
   const std::size_t there = ahead().size() - head;
   const bool whole = found.size <= there;
   const std::size_t end = head + (whole ? static_cast<std::size_t>(found.size) : there);
+  // A boundary inside of a chunk shows that the length is wrong.
   const auto inside = boundary_before(end);
+  // Boundary chunks contain the boundary themselves.
   const bool is_boundary = inside == head + tag_size && found.size == tag_size + boundary.size() &&
                            little_at<std::uint16_t>(held_, found.content) == 5;
   if (inside && !is_boundary) {
@@ -267,6 +289,7 @@ bool XdfReader::step(std::vector<XdfItem>& out) {
     lost_ = true;
     return true;
   }
+  // More bytes are needed. Their number is known, but the file may end before.
   if (!whole) return false;
   chunk(ahead().subspan(head, static_cast<std::size_t>(found.size)), out);
   take(end);
@@ -275,6 +298,7 @@ bool XdfReader::step(std::vector<XdfItem>& out) {
 
 XdfReader::Found XdfReader::find_chunk(Chunk& chunk) const {
   const auto bytes = ahead();
+  // The first byte is the width of the length.
   const std::size_t width = bytes[0];
   if (width != 1 && width != 4 && width != 8) return Found::damage;
   if (bytes.size() < 1 + width) return Found::more;
@@ -282,6 +306,7 @@ XdfReader::Found XdfReader::find_chunk(Chunk& chunk) const {
   if (width == 1) chunk.size = bytes[1];
   if (width == 4) chunk.size = little_at<std::uint32_t>(bytes, 1);
   if (width == 8) chunk.size = little_at<std::uint64_t>(bytes, 1);
+  // A chunk has at least its tag.
   return chunk.size < tag_size ? Found::damage : Found::chunk;
 }
 
@@ -291,6 +316,7 @@ std::optional<std::size_t> XdfReader::boundary_before(std::size_t end) {
   const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(searched_, end));
   const auto found = std::search(from, bytes.end(), boundary.begin(), boundary.end());
   if (found != bytes.end()) return static_cast<std::size_t>(found - bytes.begin());
+  // Its last 15 bytes may begin a boundary, so they are searched again.
   if (end >= boundary.size()) searched_ = std::max(searched_, end - boundary.size() + 1);
   return std::nullopt;
 }
@@ -312,9 +338,11 @@ bool XdfReader::resynchronise() {
 void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>& out) {
   const auto tag = little_at<std::uint16_t>(bytes, 0);
   const auto content = bytes.subspan(tag_size);
+  // The file's header is only checked.
   if (tag == 1 && text_of(content).find("<version>1.0</version>") == std::string_view::npos) {
     fault("a file header that says version 1.0", "another version");
   }
+  // Kinds 2, 3 and 4 begin with a stream's id.
   if (tag >= 2 && tag <= 4 && content.size() < id_size) {
     fault("the id of a stream", "a chunk without an id");
     return;
@@ -328,6 +356,7 @@ void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>&
 /// Parses a stream's header. The samples of a stream with a bad header are skipped.
 void XdfReader::stream_header(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
   const auto id = little_at<std::uint32_t>(content, 0);
+  // A second header could change the meaning of samples that were read before.
   if (streams_.contains(id)) {
     fault("one header for each stream", fmt::format("a second header for stream {}", id));
     return;
@@ -340,6 +369,7 @@ void XdfReader::stream_header(std::span<const std::uint8_t> content, std::vector
   if (!header) {
     fault(fmt::format("{} in the header of stream {}", header.error().expected, id),
           header.error().found + ": its samples can't be read");
+    // Remembered, so that samples of this stream are no further fault.
     streams_[id] = std::nullopt;
     return;
   }
@@ -359,6 +389,7 @@ void XdfReader::samples(std::span<const std::uint8_t> content, std::vector<XdfIt
   std::optional<Error> wrong;
   XdfSamples read = parse_samples(known->second->header, content.subspan(id_size),
                                   known->second->last_stamp, wrong);
+  // The samples before the fault are complete and are passed on.
   if (wrong) fault(wrong->expected, fmt::format("{} (stream {})", wrong->found, id));
   if (read.size() > 0) out.emplace_back(std::move(read));
 }
@@ -369,6 +400,7 @@ void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<
     fault("a clock offset of 20 bytes", std::to_string(content.size()));
     return;
   }
+  // Two doubles follow the id.
   const auto number = [&](std::size_t at) {
     return std::bit_cast<double>(little_at<std::uint64_t>(content, at));
   };
@@ -383,6 +415,7 @@ void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<
 /// Counts a fault. After 100 kinds, all further ones count as the last kind.
 void XdfReader::fault(const std::string& expected, const std::string& found) {
   constexpr std::size_t most_kinds = 100;
+  // Faults of one kind differ in `found` only.
   for (Fault& known : faults_) {
     const bool same = known.expected == expected;
     if (same || (&known == &faults_.back() && faults_.size() == most_kinds)) {

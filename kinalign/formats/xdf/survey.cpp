@@ -11,12 +11,14 @@ namespace kinalign {
 namespace {
 
 /// Collects the results of a pass over the items.
+/// Samples are counted and dropped, so memory does not grow with the file.
 class Surveyor {
  public:
   void take(const XdfItem& item) {
     if (const auto* stream = std::get_if<XdfStream>(&item)) {
       places_[stream->id] = survey_.streams.size();
       survey_.streams.emplace_back().stream = *stream;
+      // One place for each stream, in the order of the headers.
       last_.emplace_back();
     } else if (const auto* samples = std::get_if<XdfSamples>(&item)) {
       add(*samples);
@@ -30,6 +32,7 @@ class Surveyor {
     for (XdfStreamSurvey& one : survey_.streams) {
       const std::vector<XdfClockOffset>& offsets = offsets_[one.stream.id];
       one.clock_offsets = offsets.size();
+      // All offsets are needed before a line can be fitted.
       one.clock = fit_xdf_clock(offsets);
     }
     return std::move(survey_);
@@ -37,6 +40,7 @@ class Surveyor {
 
  private:
   void add(const XdfSamples& samples) {
+    // The reader passes on samples only after their stream's header.
     const std::size_t place = places_.at(samples.stream);
     XdfStreamSurvey& one = survey_.streams[place];
     one.samples += samples.size();
@@ -57,11 +61,13 @@ class Surveyor {
       ++one.timeless;
       return;
     }
+    // Compared with the last stamp that was a number.
     if (last && stamp < *last) {
       ++one.backward;
       one.largest_step_back_s = std::max(one.largest_step_back_s, *last - stamp);
     }
     last = stamp;
+    // Stamps may fall, so first and last are the smallest and the largest.
     one.first = std::min(one.first.value_or(stamp), stamp);
     one.last = std::max(one.last.value_or(stamp), stamp);
   }
@@ -80,6 +86,7 @@ Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Prog
   XdfReader reader(path);
   std::vector<XdfItem> items;
   std::uint64_t done = 0;
+  // The empty piece at the end calls finish().
   for (bool ended = false; !ended;) {
     const std::string_view piece = KA_TRY(input.next());
     ended = piece.empty();
@@ -107,6 +114,7 @@ Result<XdfSurvey> survey_xdf(FileSystem& files, const std::string& path, const P
         return {};
       }));
   XdfSurvey survey = surveyor.finish();
+  // The size of the file as it is now, for the listing.
   survey.bytes = KA_TRY(InputFile::open(files, path)).size();
   survey.findings = findings;
   return survey;

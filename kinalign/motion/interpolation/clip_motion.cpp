@@ -31,6 +31,7 @@ std::vector<double> smoothed(const std::vector<double>& times, const std::vector
   std::vector<double> out(rows.size(), 0.0);
   std::size_t begin = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
+    // Beyond four deviations the weight is below 0.0004 of the middle one.
     while (times[i] - times[begin] > 4.0 * deviation_s) ++begin;
     double* to = &out[i * size];
     double sum = 0.0;
@@ -45,6 +46,7 @@ std::vector<double> smoothed(const std::vector<double>& times, const std::vector
 }
 
 /// Chooses the sign of each rotation so that it is near the one before it.
+/// Means of q and -q would cancel out although both are the same rotation.
 void align_signs(std::vector<double>& rotations, std::size_t joints) {
   for (std::size_t i = joints; i < rotations.size() / 4; ++i) {
     const Quat q = quat(rotations, i);
@@ -105,6 +107,7 @@ void pose_at(const Curves& curves, double time, Pose& pose) {
     }
     return;
   }
+  // The ends are left out of the search, so that k is a valid interval for t at both ends, too.
   const auto behind = std::upper_bound(times.begin() + 1, times.end() - 1, t);
   const auto k = static_cast<std::size_t>(behind - times.begin()) - 1;
   const std::span all_positions(curves.positions), all_bends(curves.bends);
@@ -153,6 +156,7 @@ Result<Motion> motion_of(const Clip& clip, const ClipMotionOptions& options) {
   }
   curves.positions = clip.frames.local_positions;
   curves.rotations = clip.frames.local_rotations;
+  // Before the means are taken.
   align_signs(curves.rotations, curves.joints);
   if (options.smooth_s > 0.0) {
     curves.positions =
@@ -160,6 +164,7 @@ Result<Motion> motion_of(const Clip& clip, const ClipMotionOptions& options) {
     curves.rotations =
         smoothed(curves.times, curves.rotations, 4 * curves.joints, options.smooth_s);
   }
+  // A mean of unit quaternions is shorter than 1.
   for (std::size_t i = 0; i < curves.rotations.size() / 4; ++i) {
     put_quat(curves.rotations, i, quat(curves.rotations, i).normalized());
   }

@@ -14,6 +14,7 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
+/// W, its inverse and b of rotation_intervals.h, for one interval.
 struct Interval {
   double length = 0.0;
   Vec3 r;
@@ -71,6 +72,7 @@ constexpr double most_turn = 1000.0;
 /// One sweep: solves for all rates with b from the previous ones. Returns the largest change, rad.
 double sweep(Blocks& s) {
   const std::size_t n = s.intervals.size();
+  // The rates at both ends are given; only those between are unknown.
   s.rows.front().solution = s.rates.front();
   for (std::size_t k = 1; k < n; ++k) {
     Row& row = s.rows[k];
@@ -82,6 +84,7 @@ double sweep(Blocks& s) {
   for (std::size_t k = n - 1; k > 0; --k) {
     const Row& row = s.rows[k];
     w = (row.solution - row.after * w).eval();
+    // The limit keeps rates finite where the sweeps do not converge.
     const double most = most_turn / row.longer;
     const Vec3 kept = w.cwiseMax(-most).cwiseMin(most);
     change = std::max(change, (kept - s.rates[k]).cwiseAbs().maxCoeff() * row.longer);
@@ -112,6 +115,7 @@ void slopes_by_blocks(const RotationIntervals& in, RotationSlopes& to) {
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3 r(in.vector[0][k], in.vector[1][k], in.vector[2][k]);
     s.intervals[k] = {in.length[k], r, turn_parts(r.squaredNorm())};
+    // The iteration starts from the mean rate of each interval.
     s.rates[k + 1] = r / in.length[k];
   }
   s.rates.front() = s.rates[1];

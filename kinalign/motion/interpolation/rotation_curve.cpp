@@ -51,6 +51,7 @@ void multiply(const RotationCurve& curve, const Cubics& to) {
   const double *q = curve.knots.rotations.data(), *length = curve.intervals.length.data();
   const ColumnView vector(curve.intervals.vector);
   const ColumnView begin(curve.slopes.begin), end(curve.slopes.end);
+  // ivdep: the outputs do not overlap the inputs.
   Four *one = to.one.get(), *two = to.two.get(), *three = to.three.get();
 #pragma GCC ivdep
   for (std::size_t k = 0; k < n; ++k) {
@@ -109,6 +110,7 @@ void blend(const Samples& s, std::size_t count, const double* knots, double* out
 void turn_far(const Samples& s, std::size_t count, std::span<const double> knots, double* out) {
   for (std::size_t i = 0; i < count; ++i) {
     if (s.square[i] <= most_rotation_parts) continue;
+    // The stored vector is knot c, so the product with the conjugate gives c again.
     const Quat knot = quat(knots, s.interval[i]), vector = quat(s.vector[i], 0);
     const Vec3 c = s.fraction[i] * (knot.conjugate() * vector).vec();
     put_quat({out + 4 * i, 4}, 0, knot * rotation(c));
@@ -127,6 +129,7 @@ void rotation_curve_at(const RotationCurve& curve, std::span<const double> at,
   for (std::size_t first = 0; first < at.size(); first += block) {
     const std::size_t count = std::min(block, at.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
+      // The last knot belongs to the last interval.
       while (k + 2 < t.size() && at[first + i] >= t[k + 1]) ++k;
       samples.interval[i] = k;
       samples.fraction[i] = (at[first + i] - t[k]) / (t[k + 1] - t[k]);

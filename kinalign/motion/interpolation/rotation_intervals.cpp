@@ -12,6 +12,7 @@ KA_EVERY_PROCESSOR
 void measure_vectors(const double* q, std::size_t n, double* rx, double* ry, double* rz) {
   for (std::size_t i = 0; i < n; ++i, q += 4) {
     // conjugate(left) * right
+    // Quaternions are multiplied without Eigen here, because the loop must become vector code.
     const double w = q[0] * q[4] + q[1] * q[5] + q[2] * q[6] + q[3] * q[7];
     const double x = q[0] * q[5] - q[1] * q[4] - q[2] * q[7] + q[3] * q[6];
     const double y = q[0] * q[6] + q[1] * q[7] - q[2] * q[4] - q[3] * q[5];

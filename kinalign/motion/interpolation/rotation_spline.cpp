@@ -34,6 +34,7 @@ void rotation_spline_at(const RotationKnots& knots, std::span<const double> at,
   RotationSlopes slopes;
   std::size_t sample = 0;
   for (std::size_t first = 0; first + 1 < t.size() && sample < at.size(); first += window) {
+    // The knots near the window's ends depend on knots beyond them.
     const std::size_t begin = first < rotation_spline_reach ? 0 : first - rotation_spline_reach;
     const std::size_t behind = first + window;
     const RotationKnots near =
@@ -42,6 +43,7 @@ void rotation_spline_at(const RotationKnots& knots, std::span<const double> at,
     for (auto& column : slopes.begin) column.resize(intervals.size());
     for (auto& column : slopes.end) column.resize(intervals.size());
     if (!slopes_in_lanes(intervals, slopes)) slopes_by_blocks(intervals, slopes);
+    // A sample at a window's end belongs to the next window, except at the curve's end.
     const auto end =
         behind + 1 < t.size() ? std::lower_bound(at.begin(), at.end(), t[behind]) : at.end();
     const auto count = static_cast<std::size_t>(end - at.begin()) - sample;

@@ -25,6 +25,7 @@ void eliminate(const Knots& knots, double* ratio, double* bends) {
   const std::size_t channels = knots.channels;
   for (std::size_t i = 1; i + 1 < t.size(); ++i) {
     const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
+    // The pivot of the row: 2 (before + after), less the part that was eliminated.
     const double scale = 1.0 / (2.0 * (before + after) - before * ratio[i - 1]);
     ratio[i] = after * scale;
     const double to_before = 6.0 * scale / before, to_after = 6.0 * scale / after;
@@ -87,6 +88,7 @@ void natural_spline(const Knots& knots, std::span<double> bends) {
   const auto first = bends.first(channels), last = bends.subspan((rows - 1) * channels, channels);
   std::fill(first.begin(), first.end(), 0.0);
   std::fill(last.begin(), last.end(), 0.0);
+  // With one or two knots the curve is a constant or a straight line.
   if (rows < 3) return;
   std::vector<double> ratio(rows, 0.0);
   eliminate(knots, ratio.data(), bends.data());

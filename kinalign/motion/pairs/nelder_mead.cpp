@@ -14,11 +14,13 @@ constexpr double tolerance = 1e-4;
 constexpr double first_share = 0.05, first_step = 0.00025;
 constexpr std::size_t calls_a_number = 200;
 
+/// A place and its cost. Costs are kept, because each call of the cost function visits all frames.
 struct Corner {
   std::vector<double> at;
   double cost = 0.0;
 };
 
+/// n + 1 corners for n numbers, sorted by cost: the best first, the worst last.
 class Simplex {
  public:
   Simplex(const CostFunction& cost, const std::vector<double>& start) : cost_(cost) {
@@ -28,6 +30,7 @@ class Simplex {
       at[k] = at[k] != 0.0 ? (1.0 + first_share) * at[k] : first_step;
       add(std::move(at));
     }
+    // The first corner is `start`; each other one differs from it in one number.
     sort();
   }
 
@@ -42,6 +45,7 @@ class Simplex {
         size = std::max(size, std::abs(corner.at[k] - best()[k]));
       }
     }
+    // Both conditions, as in SciPy: places near each other with about the same cost.
     return size <= tolerance && rise <= tolerance;
   }
 
@@ -51,12 +55,14 @@ class Simplex {
     const std::vector<double> middle = middle_of_others();
     Corner& worst = corners_.back();
     Corner reflected = corner(middle, 1.0);
+    // Better than the best: the step may go further.
     if (reflected.cost < corners_.front().cost) {
       Corner expanded = corner(middle, 2.0);
       worst = expanded.cost < reflected.cost ? std::move(expanded) : std::move(reflected);
     } else if (reflected.cost < corners_[corners_.size() - 2].cost) {
       worst = std::move(reflected);
     } else {
+      // No better than the second worst: a contraction, on the better side of the middle.
       const bool outside = reflected.cost < worst.cost;
       Corner contracted = corner(middle, outside ? 0.5 : -0.5);
       const bool better =
@@ -78,6 +84,7 @@ class Simplex {
   }
   void add(std::vector<double> place) { corners_.push_back(at(std::move(place))); }
 
+  /// The mean of all corners except the worst.
   std::vector<double> middle_of_others() const {
     std::vector<double> middle(best().size());
     for (std::size_t i = 0; i + 1 < corners_.size(); ++i) {
@@ -98,6 +105,7 @@ class Simplex {
   }
 
   void shrink() {
+    // The best corner stays. All others must be computed again.
     for (std::size_t i = 1; i < corners_.size(); ++i) {
       std::vector<double> place = corners_[i].at;
       for (std::size_t k = 0; k < place.size(); ++k) {
@@ -107,6 +115,7 @@ class Simplex {
     }
   }
 
+  /// Stable, so that equal costs keep their order and the result does not depend on the library.
   void sort() {
     std::stable_sort(corners_.begin(), corners_.end(),
                      [](const Corner& a, const Corner& b) { return a.cost < b.cost; });
@@ -122,6 +131,7 @@ class Simplex {
 std::vector<double> minimise(const CostFunction& cost, const std::vector<double>& start) {
   const std::size_t most = calls_a_number * start.size();
   Simplex simplex(cost, start);
+  // SciPy limits steps and calls alike.
   for (std::size_t steps = 1; steps < most && simplex.calls() < most; ++steps) {
     if (simplex.is_small()) break;
     simplex.step();

@@ -70,6 +70,7 @@ enum Joint : std::size_t {  // in the order of shared_joints
 
 /// The markers of one side of the body, the indices of its first joints, and the sign of the left
 /// direction.
+/// `left` is 1 on the left and -1 on the right, so one formula serves both sides.
 struct Side {
   std::size_t arm, leg;  // first of shoulder, elbow, wrist; first of hip, knee, ankle, foot
   Marker shoulder, elbow, wrist_a, wrist_b, thigh, knee, shank, ankle, toe;
@@ -85,6 +86,7 @@ constexpr double shoulder_below_marker_m = 0.05;
 constexpr double knee_depth_m = 0.057, ankle_depth_m = 0.042;
 constexpr double least_width_m = 0.20, most_width_m = 0.30;  // width of a pelvis
 
+// The limit avoids a division by zero for markers that were not seen and hold zeros.
 Vec3 unit(const Vec3& v) { return v / std::max(v.norm(), 1e-11); }
 
 /// Plug-in-Gait's chord function: the joint's centre is `depth` from the lateral marker,
@@ -95,6 +97,7 @@ Vec3 chord(const Vec3& above, const Vec3& marker, const Vec3& wand, double depth
   const double length = std::max(segment.norm(), 1e-11);
   const Vec3 along = segment / length;
   const Vec3 side = unit(to_wand - to_wand.dot(along) * along);
+  // The angle at the joint is a right one, so `a` is the part of the depth along the segment.
   const double a = depth * depth / length;
   return marker + a * along - std::sqrt(std::max(depth * depth - a * a, 0.0)) * side;
 }
@@ -107,6 +110,7 @@ ThighAxes thigh_axes(const Vec3& hip, const Vec3& knee, const Vec3& marker, cons
   return {along, side.left * unit(marker - knee).cross(along)};
 }
 
+/// The mean of the two middle values if their number is even, as NumPy's median.
 double median(std::vector<double> values) {
   const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), upper, values.end());
@@ -115,6 +119,7 @@ double median(std::vector<double> values) {
 }
 
 /// The markers of one frame.
+/// A marker that is not seen reads as zeros. Callers compute with it and mark the joint as invalid.
 class MarkerFrame {
  public:
   MarkerFrame(const MarkerFrames& all, std::size_t frame) : all_(all), at_(frame * marker_count) {}
@@ -138,6 +143,8 @@ struct PelvisSize {
   double depth_m = 0.0, width_m = 0.0;
 };
 
+/// One size for all frames, because the bones do not change. A median resists frames with wrong
+/// labels.
 PelvisSize pelvis_size(const MarkerFrames& markers) {
   std::vector<double> depths, widths;
   for (std::size_t t = 0; t < markers.frames(); ++t) {
@@ -146,11 +153,13 @@ PelvisSize pelvis_size(const MarkerFrames& markers) {
     depths.push_back(frame.depth().norm());
     widths.push_back(frame.width().norm());
   }
+  // Without a frame that shows the pelvis no hip is valid, so the size does not matter.
   if (depths.empty()) return {0.0, least_width_m};
   return {median(depths), std::clamp(median(widths), least_width_m, most_width_m)};
 }
 
 /// Writes the joints of one frame into the arrays.
+/// Joints are read back by the functions for the joints below them, so the order of calls matters.
 class FrameJoints {
  public:
   FrameJoints(JointCentres& out, std::size_t frame) : out_(out), at_(frame * shared_joint_count) {}
@@ -170,7 +179,9 @@ class FrameJoints {
 void put_hips(const MarkerFrame& m, const PelvisSize& size, FrameJoints& out) {
   const Vec3 y = unit(m.width());
   const Vec3 x = unit(m.depth() - m.depth().dot(y) * y);
+  // x: forward, y: to the left, z: up, the axes of the pelvis.
   const Vec3 z = x.cross(y);
+  // The regression's numbers are in metres here; the paper's are in millimetres.
   const double forward = -0.24 * size.depth_m - 0.0099, up = -0.30 * size.width_m - 0.0109;
   const double outward = 0.33 * size.width_m + 0.0073;
   const bool valid = m.sees_pelvis();
@@ -187,6 +198,7 @@ void put_trunk(const MarkerFrame& m, FrameJoints& out) {
 }
 
 void put_arm(const MarkerFrame& m, const Side& s, const SideShift& shift, FrameJoints& out) {
+  // The trunk gives the direction of up, so put_trunk() comes first.
   const Vec3 up = unit(out[spine_shoulder] - out[spine_mid]);
   const Vec3 shoulder = m[s.shoulder] - shoulder_below_marker_m * up;
   out.put(s.arm, shoulder, m.sees({s.shoulder, t10, strn, c7, clav}));
@@ -196,11 +208,13 @@ void put_arm(const MarkerFrame& m, const Side& s, const SideShift& shift, FrameJ
 }
 
 void put_leg(const MarkerFrame& m, const Side& s, const SideShift& shift, FrameJoints& out) {
+  // The hip was written by put_hips().
   const Vec3 hip = out[s.leg];
   const Vec3 unmoved = chord(hip, m[s.knee], m[s.thigh], knee_depth_m);
   const ThighAxes axes = thigh_axes(hip, unmoved, m[s.knee], s);
   const Vec3 knee = unmoved + shift.knee_along_m * axes.along + shift.knee_forward_m * axes.forward;
   const bool sees_knee = m.sees_pelvis() && m.sees({s.knee, s.thigh});
+  // A joint is valid only if the markers of the joints above it were seen, too.
   out.put(s.leg + 1, knee, sees_knee);
   out.put(s.leg + 2, chord(knee, m[s.ankle], m[s.shank], ankle_depth_m),
           sees_knee && m.sees({s.ankle, s.shank}));
@@ -235,9 +249,11 @@ std::vector<std::size_t> whole_frames(const JointCentres& joints, std::size_t fi
 
 /// The shift of the elbow, m, that minimises the variation of the forearm's length.
 double elbow_shift(const JointCentres& joints, const Side& side) {
+  // Shoulder, elbow and wrist.
   const auto frames = whole_frames(joints, side.arm, 3);
   if (frames.empty()) return 0.0;
   std::vector<double> lengths(frames.size());
+  // The forearm is a bone: the true elbow is where its length varies least.
   const auto cost = [&](std::span<const double> shift) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const std::size_t at = frames[i] * shared_joint_count + side.arm;
@@ -254,6 +270,7 @@ double elbow_shift(const JointCentres& joints, const Side& side) {
 /// length.
 void put_knee_shift(const MarkerFrames& markers, const JointCentres& joints, const Side& side,
                     SideShift& out) {
+  // Hip, knee and ankle.
   const auto frames = whole_frames(joints, side.leg, 3);
   if (frames.empty()) return;
   std::vector<double> lengths(frames.size());
@@ -262,6 +279,7 @@ void put_knee_shift(const MarkerFrames& markers, const JointCentres& joints, con
       const MarkerFrame m(markers, frames[i]);
       const std::size_t at = frames[i] * shared_joint_count + side.leg;
       const Vec3 hip = vec3(joints.positions, at), unmoved = vec3(joints.positions, at + 1);
+      // The ankle depends on the knee, so it is computed again for each shift.
       const ThighAxes axes = thigh_axes(hip, unmoved, m[side.knee], side);
       const Vec3 knee = unmoved + shift[0] * cm * axes.along + shift[1] * cm * axes.forward;
       lengths[i] = (knee - chord(knee, m[side.ankle], m[side.shank], ankle_depth_m)).norm();
@@ -306,6 +324,7 @@ void fill_joint(JointCentres& joints, std::size_t j) {
 }  // namespace
 
 FunctionalShifts functional_shifts(const MarkerFrames& markers) {
+  // The joints without shifts are the start of the search.
   const JointCentres joints = joint_centres(markers, {});
   return {side_shift(markers, joints, left_side), side_shift(markers, joints, right_side)};
 }
@@ -318,6 +337,7 @@ JointCentres joint_centres(const MarkerFrames& markers, const FunctionalShifts& 
   for (std::size_t t = 0; t < frames; ++t) {
     const MarkerFrame m(markers, t);
     FrameJoints joints(out, t);
+    // The order matters: hips before legs, trunk before arms.
     put_hips(m, size, joints);
     put_trunk(m, joints);
     put_arm(m, left_side, shifts.left, joints);

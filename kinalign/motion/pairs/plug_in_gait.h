@@ -21,6 +21,7 @@ inline constexpr std::array<std::string_view, 39> plug_in_gait_markers{
     "LANK", "LHEE", "LTOE", "RTHI", "RKNE", "RTIB", "RANK", "RHEE", "RTOE"};
 
 /// F frames of all markers of one person, in the order of plug_in_gait_markers.
+/// The arrays belong to the caller.
 struct MarkerFrames {
   std::span<const double> positions;   // [F,39,3] m; a marker that is not seen holds zeros
   std::span<const std::uint8_t> seen;  // [F,39]
@@ -30,6 +31,8 @@ struct MarkerFrames {
 
 /// The offset of joints from the places computed from the markers alone. Markers are 1 to 5 cm
 /// above a joint.
+/// The shift is the same in all frames of a person, because it is a property of the markers'
+/// places.
 struct SideShift {
   double elbow_m = 0.0;       // along the line from the elbow to the shoulder
   double knee_along_m = 0.0;  // along the thigh to the hip

@@ -35,9 +35,11 @@ std::optional<double> rms_at(const PointPiece& rough, const PieceCurve& precise,
   const CurvePoints points = precise.at(shift_s, rough.rate_hz, rough.frames());
   PairMoments moments;
   add_valid(rough, points, moments);
+  // A short overlap fits well by chance.
   if (static_cast<double>(moments.count) < least_frames * static_cast<double>(rough.joints)) {
     return std::nullopt;
   }
+  // Points on one line have no rigid fit; such a shift is left out.
   const auto rough_from_precise = fit_rigid(moments);
   if (!rough_from_precise) return std::nullopt;
   double square = 0.0;
@@ -52,6 +54,7 @@ std::optional<double> rms_at(const PointPiece& rough, const PieceCurve& precise,
 /// The values of NumPy's arange, exact to the last bit. A frame at the very end of the precise
 /// piece is inside or outside by rounding, and that can decide between two shifts.
 std::vector<double> arange(double start, double step, std::size_t count) {
+  // NumPy takes the step from the first two values, which are rounded.
   const double exact_step = (start + step) - start;
   std::vector<double> out(count);
   for (std::size_t i = 0; i < count; ++i) out[i] = start + static_cast<double>(i) * exact_step;
@@ -85,6 +88,7 @@ CurvePoints PieceCurve::at(double shift_s, double rate_hz, std::size_t frames) c
   std::size_t first = 0;       // the frame that belongs to places.front()
   for (std::size_t i = 0; i < frames; ++i) {
     const double s = (shift_s + static_cast<double>(i) / rate_hz) * piece_.rate_hz;
+    // Times rise, so all later frames are outside, too.
     if (s > numbers_.back()) break;
     if (s < 0.0) continue;
     if (places.empty()) first = i;
@@ -94,6 +98,7 @@ CurvePoints PieceCurve::at(double shift_s, double rate_hz, std::size_t frames) c
   spline_at(knots_of(piece_, numbers_), bends_, places,
             std::span(out.positions).subspan(3 * first * joints, 3 * places.size() * joints));
   for (std::size_t i = 0; i < places.size(); ++i) {
+    // The spline has a value everywhere, but between an invalid sample and another it is a guess.
     const auto before = static_cast<std::size_t>(std::floor(places[i])) * joints;
     const auto behind = static_cast<std::size_t>(std::ceil(places[i])) * joints;
     for (std::size_t j = 0; j < joints; ++j) {
@@ -109,10 +114,12 @@ std::optional<FoundShift> find_shift(const PointPiece& rough, const PieceCurve& 
                                      const ShiftOptions& options) {
   const double rough_s = rough.seconds(), precise_s = precise.piece().seconds();
   const double overlap = options.least_overlap * std::min(rough_s, precise_s);
+  // Shifts with which the rough piece begins before the precise one are negative.
   const double from = overlap - rough_s, to = precise_s - overlap + 1e-9;
   const auto steps = static_cast<std::size_t>(std::ceil((to - from) / options.first_step_s));
   const auto best = best_of(rough, precise, arange(from, options.first_step_s, steps));
   if (!best) return std::nullopt;
+  // Three steps to each side of the best shift.
   std::vector<double> fine = arange(-3.0 * options.last_step_s, options.last_step_s, 7);
   for (double& shift : fine) shift += best->shift_s;
   return best_of(rough, precise, fine);

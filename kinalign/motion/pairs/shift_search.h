@@ -15,6 +15,7 @@
 namespace kinalign {
 
 /// F frames of J points at a fixed rate.
+/// Frame i is at the time i / rate_hz from the first one.
 struct PointPiece {
   std::span<const double> positions;    // [F,J,3] m
   std::span<const std::uint8_t> valid;  // [F,J]; empty: all points are valid
@@ -33,6 +34,7 @@ struct CurvePoints {
 
 /// A natural cubic spline through a piece. All points of the piece need a place; for invalid points
 /// it is a guess. The piece's arrays must live longer.
+/// The knots are numbered, so a place on the curve is a time multiplied by the rate.
 class PieceCurve {
  public:
   explicit PieceCurve(const PointPiece& piece);
@@ -47,6 +49,8 @@ class PieceCurve {
   std::vector<double> bends_;
 };
 
+/// The first search visits all shifts with enough overlap in coarse steps. The second one refines
+/// the best of them.
 struct ShiftOptions {
   double least_overlap = 0.8;  // share of the shorter piece
   double first_step_s = 1.0 / 30.0;
