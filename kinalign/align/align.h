@@ -10,7 +10,8 @@
 
 namespace kinalign {
 
-/// The receiver of a take: first the header, then slabs in order.
+/// The receiver of a take: first the header, then slabs in order. A slab is valid during the call
+/// only. An error of a function ends the alignment and becomes its result.
 struct TakeSink {
   std::function<Result<void>(const TakeHeader&)> begin;
   std::function<Result<void>(const TakeSlab&)> rows;

@@ -11,6 +11,7 @@ Result<Take> align(const Recording& recording, const Manifest& manifest) {
     take.header = header;
     return {};
   };
+  // The slab is reused for the next rows, so it is copied.
   sink.rows = [&take](const TakeSlab& slab) -> Result<void> {
     append_rows(take.all, slab);
     return {};

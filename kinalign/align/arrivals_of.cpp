@@ -7,7 +7,9 @@ namespace kinalign {
 
 namespace {
 
-/// Reads one stream block by block.
+/// Reads one stream block by block. The window computes the arrivals on the way and keeps only the
+/// samples of one call. Copies of the returned function share one window, so each continues where
+/// another stopped.
 template <class Frames>
 ReadNext reading(Pass<Frames> pass, const RecordedStream& stream, const TakenStep& step,
                  Arrivals& out, std::uint64_t& rows) {
@@ -20,6 +22,7 @@ ReadNext reading(Pass<Frames> pass, const RecordedStream& stream, const TakenSte
       return std::optional<std::int64_t>();
     }
     rows += window->time_ns.size();
+    // Each call asks for samples after the last one, so the window drops all that were counted.
     from = window->time_ns.back() + 1;
     return std::optional(window->time_ns.back());
   };
@@ -43,6 +46,7 @@ Result<std::vector<Arrivals>> arrivals_of(
         },
         streams[i].data));
   }
+  // The streams are read side by side, so streams of one recording share its chunks.
   KA_TRY(read_side_by_side(passes, [&]() -> Result<void> {
     if (go_on(progress, "checking", rows, all)) return {};
     return Failure(interruption());

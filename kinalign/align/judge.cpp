@@ -11,16 +11,19 @@ namespace kinalign {
 
 namespace {
 
-/// The part of the clock offset that start_ns added, if the stream has several files.
+/// The part of the clock offset that start_ns added, if the stream has several files. A single file
+/// takes start_ns as the stamp of its first row instead and needs no offset.
 Duration own_offset(const RecordedStream& s, const StreamOptions& options) {
   return s.clock.pieces.front().offset - Duration{std::llround(options.offset_ms * 1e6)};
 }
 
+/// Findings name a file, or the stream if it comes from memory.
 std::string file_of(const RecordedStream& s) {
   return s.files.empty() ? s.name : s.files.front().name;
 }
 
-/// The steps between kept samples of a device that stamps its samples, ns.
+/// The steps between kept samples of a device that stamps its samples, ns. Absent for counted
+/// stamps, which are regular by construction, and for too few samples.
 struct Steps {
   double median = 0.0, mean = 0.0;
   std::uint64_t long_ones = 0;
@@ -32,6 +35,8 @@ std::optional<Steps> steps_of(const RecordedStream& s) {
   const StampSurvey& survey = s.survey;
   if (s.counted || survey.kept() < enough || survey.median_step_ns == 0) return std::nullopt;
   const double all = static_cast<double>(to_ns(survey.last) - to_ns(survey.first));
+  // The mean includes pauses, the median does not. Their ratio shows whether a device pauses or
+  // bursts.
   return Steps{static_cast<double>(survey.median_step_ns),
                all / static_cast<double>(survey.kept() - 1), survey.long_steps,
                static_cast<double>(survey.long_time_ns) / all};
@@ -58,8 +63,10 @@ Findings judge_unit(const Steps& steps, const RecordedStream& s) {
       "if a layout reads the stamps, correct the unit in its [time]: ns, us, ms, s or ticks_100ns");
 }
 
-/// Warns if a stated rate fits neither the median step nor the mean step.
+/// Warns if a stated rate fits neither the median step nor the mean step. A device that sends in
+/// bursts fits by its mean only.
 Findings judge_stated(const Steps& steps, double nominal_hz, const std::string& file) {
+  // A step fits the stated one if the two differ by less than this factor.
   constexpr double alike = 1.5;
   const auto fits = [nominal_hz](double step) {
     return step < alike * 1e9 / nominal_hz && alike * step > 1e9 / nominal_hz;
@@ -82,6 +89,7 @@ Findings judge_rate(const Steps& steps, const std::string& file) {
   }
   const std::string median =
       fmt::format("steps near their median of {:.3g} ms", 1e-6 * steps.median);
+  // The mean step counts all time, so it gives the rate if samples came in bursts.
   const double from_mean = 1e9 / steps.mean;
   if (steps.mean < burst * steps.median) {
     return warning(file, median, fmt::format("a mean of {:.3g} ms", 1e-6 * steps.mean),
@@ -102,6 +110,7 @@ Findings judge_rate(const Steps& steps, const std::string& file) {
 
 }  // namespace
 
+/// All judgements about stamps, from the survey's counts. No sample is read.
 Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   Findings out;
   const std::string file = file_of(s);
@@ -142,6 +151,8 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   return out;
 }
 
+/// The severities follow the effect: dropped or late samples change the take, an irregular step
+/// only hides them.
 Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role role) {
   Findings out;
   if (arrivals.near > 0) {
@@ -175,6 +186,8 @@ Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role 
   return out;
 }
 
+/// Findings name a file. If several streams read that file, the file alone does not say which
+/// stream is meant.
 Findings with_stream_name(const RecordedStream& stream, const Recording& recording,
                           Findings findings) {
   const auto reads_the_same = [&](const RecordedStream& other) {
@@ -188,6 +201,8 @@ Findings with_stream_name(const RecordedStream& stream, const Recording& recordi
   return findings;
 }
 
+/// start_ns is the stamp of the first row. If that row is dropped or late, its error shifts the
+/// whole stream.
 Findings judge_start(const RecordedStream& s, const StreamOptions& options,
                      const Arrivals& arrivals) {
   if (s.counted || !options.start_ns) return {};

@@ -9,7 +9,8 @@ namespace kinalign {
 
 namespace {
 
-/// A note on each stream of points or skeletons that keeps its own space, with its reason.
+/// A note on each stream of points or skeletons that keeps its own space, with its reason. It is
+/// only a note, since this can be intended.
 Findings judge_spaces(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
@@ -34,6 +35,7 @@ Findings judge_spaces(const TakeHeader& header) {
 }
 
 /// A warning for each file of nodes that has the same bytes as another one: it was named twice.
+/// Hashes are compared and not paths, so a copy is found, too.
 Findings judge_nodes_alike(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
@@ -53,7 +55,8 @@ Findings judge_nodes_alike(const TakeHeader& header) {
   return out;
 }
 
-/// Warns if two streams read the same samples.
+/// Warns if two streams read the same samples. One table may hold several bodies, so the same file
+/// with another selection is fine.
 Findings judge_streams_alike(const TakeHeader& header) {
   Findings out;
   const auto bytes_of = [](const TakeGroup& group) {
@@ -69,6 +72,7 @@ Findings judge_streams_alike(const TakeHeader& header) {
                  options_of(parameters, later->name).select;
     };
     const auto first = std::find_if(header.groups.begin(), later, same);
+    // Streams from memory have no files and are not compared.
     if (first == later || later->files.empty()) continue;
     out.push_back(
         {Severity::warning,
@@ -89,6 +93,7 @@ Findings judge_span(const Recording& recording, const AlignPlan& plan) {
   const auto by = [](auto value) {
     return [value](const auto& a, const auto& b) { return value(a) < value(b); };
   };
+  // The two streams that bound the common span are named, since one of them may have a wrong start.
   const RecordedStream& late = *std::max_element(streams.begin(), streams.end(), by(first_of));
   const RecordedStream& early = *std::min_element(streams.begin(), streams.end(), by(last_of));
   const RecordedStream& brief = *std::min_element(streams.begin(), streams.end(), by(span));
@@ -117,6 +122,8 @@ Findings judge_span(const Recording& recording, const AlignPlan& plan) {
 
 }  // namespace
 
+/// These findings are known before the first row, but they are reported with the others after the
+/// last.
 Findings judge_plan(const Recording& recording, const AlignPlan& plan) {
   Findings out = judge_span(recording, plan);
   append(out, judge_spaces(plan.header));
@@ -126,6 +133,7 @@ Findings judge_plan(const Recording& recording, const AlignPlan& plan) {
 }
 
 Findings judge_rows(const StreamReport& stream, std::uint64_t rows) {
+  // Half of the rows is the limit; shorter absences are shown as gaps.
   if (2 * stream.empty_rows <= rows) return {};
   std::string name = stream.stream;
   if (stream.nodes.size() == 1) name += " " + shown(stream.nodes.front());

@@ -10,6 +10,8 @@
 
 namespace kinalign {
 
+/// The counts of one stream over the rows of a take. `samples` counts cells, `empty_rows` counts
+/// rows: one lost joint and a lost body are different faults.
 struct Marks {
   std::uint64_t samples = 0;  // rows x joints (or nodes); for a skeleton the rows
   std::uint64_t invalid = 0, inferred = 0, bridged = 0;

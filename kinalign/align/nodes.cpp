@@ -13,6 +13,7 @@ namespace {
 template <class T>
 void put_columns(const std::vector<T>& from, std::size_t width, std::size_t rows,
                  const NodeColumns& columns, std::vector<T>& to) {
+  // A quantity that the stream lacks stays empty in the group, too.
   if (from.empty() || rows == 0) return;
   const std::size_t take = from.size() / rows;
   const std::size_t stride = columns.all * width, first = columns.first * width;
@@ -37,6 +38,8 @@ void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns
   put_columns(from.distance.over_loss, 1, rows, columns, to.distance.over_loss);
 }
 
+/// With a root node the vectors are already in the world (ImuResampler::rows), so a mounting does
+/// not concern them. Without one they are in the sensor's axes and are turned into the bone's.
 void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
   for (std::size_t s = 0; s < nodes; ++s) {
@@ -65,7 +68,8 @@ void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& ro
 
 namespace {
 
-// Sets all nodes of a row to zero and to not valid.
+/// Sets all nodes of a row to zero and to not valid: without the root no node can be brought into
+/// its space.
 void clear_row(const ImuGroup& group, std::size_t first, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
   const auto zero = [first, nodes](std::vector<double>& values, std::size_t width) {
@@ -86,11 +90,13 @@ struct RootPose {
   Vec3 acceleration;
 };
 
-/// Brings one node of a row into the root's space.
+/// Brings one node of a row into the root's space. The root's acceleration is subtracted in the
+/// world, before the rotation. Gravity disappears with it.
 void turn_node(const RootPose& root, bool is_root, std::size_t i, ImuRows& rows) {
   if (!is_root) put_quat(rows.orientation, i, root.to_root * quat(rows.orientation, i));
   if (!rows.acceleration.empty()) {
     auto a = vec3(std::span(rows.acceleration), i);
+    // The root keeps its own acceleration, as in DIP.
     a = (root.to_root * (is_root ? Vec3(a) : Vec3(a - root.acceleration))).eval();
   }
   if (!rows.angular_velocity.empty()) {
@@ -111,6 +117,7 @@ void bring_to_root(const ImuGroup& group, ImuRows& rows) {
       clear_row(group, first, rows);
       continue;
     }
+    // The root's pose is read before the loop changes its row.
     RootPose pose{quat(rows.orientation, first + root).conjugate(), Vec3::Zero()};
     if (group.content.acceleration) {
       pose.acceleration = vec3(std::span(rows.acceleration), first + root);
@@ -124,6 +131,7 @@ void bring_to_root(const ImuGroup& group, ImuRows& rows) {
 namespace {
 
 /// Rotates the vectors of one node from the root's space into the node's own space.
+/// `root_acceleration` is in the world; adding it returns the gravity that the difference removed.
 void turn_back(const Quat& from_root, const Vec3& root_acceleration, std::size_t i, ImuRows& rows) {
   const Quat to_node = quat(rows.orientation, i).conjugate();
   if (!rows.acceleration.empty()) {
@@ -147,12 +155,14 @@ void bring_from_root(const ImuGroup& group, ImuRows& rows) {
     if (rows.valid[first + root] == 0) continue;
     const Quat from_root = quat(rows.orientation, first + root);
     Vec3 acceleration = Vec3::Zero();
+    // The root's acceleration was only rotated, so rotating it back gives the world's.
     if (!rows.acceleration.empty()) {
       acceleration = from_root * vec3(std::span(rows.acceleration), first + root);
     }
     for (std::size_t i = first; i < first + nodes; ++i) {
       if (rows.valid[i] == 0) continue;
       const bool is_root = i == first + root;
+      // The orientation comes first, because turn_back() uses it in the world.
       if (!is_root) put_quat(rows.orientation, i, from_root * quat(rows.orientation, i));
       turn_back(from_root, is_root ? Vec3::Zero() : acceleration, i, rows);
     }

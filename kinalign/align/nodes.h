@@ -16,7 +16,8 @@ namespace kinalign {
 /// identity.
 using Mounting = std::map<std::string, std::vector<double>>;
 
-/// The columns of a stream's nodes among all nodes of a group.
+/// The columns of a stream's nodes among all nodes of a group. Several streams, usually one per
+/// node, fill one group of `all` columns.
 struct NodeColumns {
   std::size_t first = 0, all = 0;
 };

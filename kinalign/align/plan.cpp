@@ -24,6 +24,7 @@ Result<std::size_t> find_reference(const Recording& recording, const Manifest& m
   return Failure(unknown_name(wanted, "a stream as the reference", known));
 }
 
+/// The spans of all streams as text, for errors in which they do not overlap.
 std::string spans(const Recording& recording) {
   std::string text;
   for (const RecordedStream& s : recording.streams) {
@@ -41,6 +42,7 @@ Error no_samples(const RecordedStream& s, const Recording& recording) {
   if (s.shared_file) append(all, recording.shared_files[*s.shared_file].findings);
   const auto worst = std::max_element(
       all.begin(), all.end(), [](const auto& a, const auto& b) { return a.severity < b.severity; });
+  // The reader's own error says why nothing could be read, which helps more than the bare fact.
   if (worst != all.end() && worst->severity == Severity::error) return worst->what;
   return {s.files.empty() ? "" : s.files.front().name, 0,
           "at least one sample for stream '" + s.name + "'", "none"};
@@ -51,6 +53,7 @@ Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   plan.begin = Time::min();
   plan.end = Time::max();
   for (const RecordedStream& s : recording.streams) {
+    // A stream without samples has no span. Its error names the cause and not the times.
     if (s.survey.kept() == 0) return Failure(no_samples(s, recording));
     plan.begin = std::max(plan.begin, first_of(s));
     plan.end = std::min(plan.end, last_of(s));
@@ -63,7 +66,7 @@ Result<void> find_span(const Recording& recording, AlignPlan& plan) {
 }
 
 /// The first of the frames 0..count-1 at a fixed step whose take time is at or after `bound` (for
-/// `behind`: after it).
+/// `behind`: after it). Take times rise with the frame number, so the frame is found by bisection.
 std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, bool behind) {
   std::uint64_t low = 0, high = s.survey.samples;
   while (low < high) {
@@ -78,7 +81,8 @@ std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, b
   return low;
 }
 
-/// Counts the rows of a pass over the reference that are kept and within the common span.
+/// Counts the rows of a pass over the reference that are kept and within the common span. It uses
+/// the same Window as SlabMaker, so both agree on which rows are kept.
 template <class Frames>
 Result<std::uint64_t> count_in_span(Pass<Frames> pass, const RecordedStream& reference,
                                     const AlignPlan& plan) {
@@ -94,7 +98,8 @@ Result<std::uint64_t> count_in_span(Pass<Frames> pass, const RecordedStream& ref
   }
 }
 
-/// A pass over rows that have stamps but no values.
+/// A pass over rows that have stamps but no values. It lets a window count rows without reading the
+/// file again.
 Pass<PointFrames> stamps_alone(std::shared_ptr<const std::vector<Time>> stamps) {
   return [stamps = std::move(stamps), is_done = false](PointFrames& block) mutable -> Result<bool> {
     block = {};
@@ -128,6 +133,8 @@ Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPla
       reference.data);
 }
 
+/// The rule of a stream: its period, the longest stretch to interpolate over, and the curve for
+/// rotations.
 ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
                      const AlignOptions& options) {
   ResampleRule rule;
@@ -140,6 +147,7 @@ ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
   return rule;
 }
 
+/// The kind of a group follows from the stream's data.
 std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
                                                       const StreamOptions& options) {
   if (const auto* clip = std::get_if<ClipInput>(&s.data)) return ClipGroup{clip->skeleton};
@@ -177,6 +185,7 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
     return Failure(Error{"", 0, "nodes of '" + s.name + "' that measure the same quantities",
                          "'" + imu->node_names.front() + "', which measures other quantities"});
   }
+  // Node names are unique in a group, because they are the names of its columns.
   for (const std::string& node : imu->node_names) {
     if (std::find(nodes->node_names.begin(), nodes->node_names.end(), node) !=
         nodes->node_names.end()) {
@@ -188,6 +197,7 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
   const auto is_known = [&group](const InputFacts& facts) {
     return std::find(group.files.begin(), group.files.end(), facts) != group.files.end();
   };
+  // Nodes of one recording name the same files; each file is listed once in the group.
   const bool one_recording =
       s.format == "recording" && std::all_of(s.files.begin(), s.files.end(), is_known);
   if (!one_recording) group.files.insert(group.files.end(), s.files.begin(), s.files.end());
@@ -208,6 +218,8 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
                                    i == plan.reference ? Role::reference : Role::resampled);
     stream.rule.begin_ns = to_ns(plan.begin);
     stream.rule.end_ns = to_ns(plan.end);
+    // The grid is coarser than the stream if its step is clearly longer. Only then can it lose
+    // content.
     stream.rule.finer =
         static_cast<double>(stream.rule.step_ns) < 0.9 * static_cast<double>(grid.step_ns);
     const auto same = std::find_if(groups.begin(), groups.end(),
@@ -219,6 +231,7 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
                         resampled && any_known(s.clock), s.files,
                         space_of(s.name, reference.name, manifest)});
     } else {
+      // The columns of a further stream of nodes begin after those that the group already has.
       if (const auto* nodes = std::get_if<ImuGroup>(&same->kind)) {
         stream.first_node = nodes->node_names.size();
       }
@@ -256,7 +269,8 @@ Result<void> check_roots(const TakeHeader& header, const Manifest& manifest) {
   return {};
 }
 
-/// Fails if a mounting is given for a node that its stream does not have.
+/// Fails if a mounting is given for a node that its stream does not have. A misspelt name would
+/// leave the node without its mounting.
 Result<void> check_mountings(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);
@@ -275,6 +289,7 @@ Result<void> check_nodes(const TakeHeader& header, const Manifest& manifest) {
   return check_mountings(header, manifest);
 }
 
+/// The names become groups of the take, so they are checked before anything else.
 Result<void> check_streams(const Recording& recording) {
   if (recording.streams.empty()) return Failure(Error{"", 0, "at least one stream", "none"});
   for (const RecordedStream& stream : recording.streams) KA_TRY(check_stream_name(stream.name));
@@ -293,10 +308,12 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   AlignPlan plan;
   plan.reference = KA_TRY(find_reference(recording, manifest));
   const RecordedStream& reference = recording.streams[plan.reference];
+  // Streams of nodes share a group and may have different stamps, so none of them can be the grid.
   if (std::holds_alternative<ImuInput>(reference.data)) {
     return Failure(
         Error{"", 0, "a skeleton or points as the reference (reference = in [align])", "nodes"});
   }
+  // The order of the checks decides which of several faults is reported.
   KA_TRY(check_options_used(recording, manifest));
   KA_TRY(find_span(recording, plan));
   KA_TRY(make_groups(recording, manifest, plan));
@@ -304,6 +321,8 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   plan.header.subject = recording.subject;
   plan.header.action = recording.action;
   plan.header.parameters = manifest;
+  // The header must be complete before the first row, so the rows are counted last, when the span
+  // is known.
   plan.header.frames = KA_TRY(count_rows(reference, plan));
   if (plan.header.frames == 0) {
     return Failure(Error{"", 0, "frames of '" + reference.name + "' in the common span",

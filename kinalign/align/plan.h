@@ -11,12 +11,15 @@
 
 namespace kinalign {
 
+/// The plan of one stream: its columns in the take and the rule by which it is resampled.
 struct StreamPlan {
   std::size_t group = 0;       // index of the group in the take's header
   std::size_t first_node = 0;  // first column of the stream in a group of nodes
   ResampleRule rule;
 };
 
+/// Everything that is decided before rows are made. It does not change afterwards; all passes use
+/// the same plan.
 struct AlignPlan {
   std::size_t reference = 0;        // index of the stream whose stamps are the grid
   Time begin{}, end{};              // common span, both included, on the take's axis

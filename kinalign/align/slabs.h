@@ -20,6 +20,8 @@ constexpr std::size_t slab_bytes = std::size_t{16} << 20;
 /// memory.
 constexpr std::int64_t longest_slab_ns = 120'000'000'000;
 
+/// One pass over the streams of a take. It keeps the place of each stream: a call continues where
+/// the last one ended, and the samples that later rows need stay in windows.
 class SlabMaker {
  public:
   /// Starts a pass over the streams of the groups marked in `groups` (in the order of the header;

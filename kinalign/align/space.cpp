@@ -11,6 +11,7 @@ namespace kinalign {
 
 namespace {
 
+/// Nodes have no joints, so they have no place in a space: nullptr.
 const std::vector<std::string>* joint_names(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return &clip->skeleton.joint_names;
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) return &points->joint_names;
@@ -24,6 +25,7 @@ std::size_t find_joint(const std::vector<std::string>& names, std::string_view n
 
 Result<std::size_t> find_group(const TakeHeader& header, const std::string& name) {
   std::vector<std::string> known;
+  // Only groups with joints are candidates, also for the names that the error lists.
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
     if (joint_names(header.groups[g]) == nullptr) continue;
     if (header.groups[g].name == name) return g;
@@ -44,12 +46,15 @@ Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name,
   return Failure(std::move(error));
 }
 
+/// The pairs that the user names; else the usual ones; else joints with equal names. A named joint
+/// that is absent is an error, a usual one is left out.
 Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup& onto,
                                           const SpaceOptions& options) {
   std::vector<JointPair> pairs;
   for (const auto& [a, b] : options.joints) {
     const std::int64_t line = line_of(options.lines, "joints");
     const std::size_t other = KA_TRY(known_joint(onto, b, line));
+    // Two joints on one counterpart would weigh it twice and can't both be right.
     const auto same = [other](const JointPair& pair) { return pair.onto == other; };
     if (std::any_of(pairs.begin(), pairs.end(), same)) {
       return Failure(
@@ -77,6 +82,7 @@ Result<RigidTransform> given_transform(const SpaceOptions& options) {
   if (options.method == "paper") out.rotation = turn_about_y(options.rotation_y_deg);
   if (options.method != "given") return out;
   if (!options.rotation.empty()) {
+    // A quaternion far from length 1 is a mistake, such as angles; rounding is normalised.
     const Quat q = quat(options.rotation, 0);
     if (!(q.norm() > 0.5 && q.norm() < 2.0)) {
       return Failure(Error{"", 0, "a unit quaternion w,x,y,z as rotation", "another length"});
@@ -94,6 +100,7 @@ struct JointColumn {
   std::span<const Tracking> state;      // empty: all are tracked
   std::size_t joints = 0;
 
+  // A skeleton has one validity per row, points have one per joint.
   bool usable(std::size_t row, std::size_t j) const {
     if (!state.empty() && state[row * joints + j] != Tracking::tracked) return false;
     if (valid.empty()) return true;
@@ -102,6 +109,7 @@ struct JointColumn {
   Vec3 at(std::size_t row, std::size_t j) const { return vec3(positions, row * joints + j); }
 };
 
+/// A view into the slab's arrays. It is valid until the slab changes.
 JointColumn column(const TakeSlab& slab, std::size_t group) {
   JointColumn out;
   if (const auto* clip = std::get_if<ClipRows>(&slab.rows[group])) {
@@ -114,7 +122,8 @@ JointColumn column(const TakeSlab& slab, std::size_t group) {
   return out;
 }
 
-/// Checks that points are moved onto another stream that is not moved itself.
+/// Checks that points are moved onto another stream that is not moved itself. Chains of moves would
+/// depend on their order.
 Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
                           const Manifest& manifest) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
@@ -138,6 +147,7 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
     plan.root = {KA_TRY(known_joint(from, plan.options.root, line_of(lines, "root"))),
                  KA_TRY(known_joint(onto, plan.options.onto_root, line_of(lines, "onto_root")))};
   }
+  // Three points not on a line determine a rigid transform.
   if (plan.options.method == "fit" && plan.pairs.size() < 3) {
     return Failure(Error{"", line_of(plan.options.lines, "joints"),
                          "at least three named joints for a fit (joints = { ... })",
@@ -153,6 +163,8 @@ void move_row(const SpacePlan& plan, const JointColumn& onto, std::size_t row, s
   RigidTransform transform = plan.transform;
   double m = 1.0;
   bool placed = true;
+  // The paper places each row anew, so both roots must be seen in it. A fitted or given transform
+  // is the same in every row.
   if (plan.options.method == "paper") {
     m = plan.options.magnification;
     const std::size_t root = row * joints + plan.root.from;
@@ -166,6 +178,7 @@ void move_row(const SpacePlan& plan, const JointColumn& onto, std::size_t row, s
     if (placed) {
       p = (m * (transform * p)).eval();
     } else {
+      // Missing cells hold zeros by definition, also in rows without a root.
       p.setZero();
       points.valid[cell] = 0;
       points.state[cell] = Tracking::missing;
@@ -204,6 +217,8 @@ std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
           {"KneeRight", "RightLowerLeg"}};
 }
 
+/// Spaces are planned in the order of their streams' names. Streams with method "none" keep their
+/// own space.
 Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manifest& manifest,
                                            std::size_t reference_group) {
   std::vector<SpacePlan> plans;
@@ -232,6 +247,8 @@ void add_pairs(const SpacePlan& plan, const TakeSlab& slab, PairMoments& moments
   }
 }
 
+/// The distances before and after must be sums over the same cells. Both use the validity after the
+/// move, which is the stricter one.
 void ResidualSums::transform(const SpacePlan& plan, TakeSlab& slab) {
   auto& points = std::get<PointRows>(slab.rows[plan.group]);
   const std::vector<double> before = points.positions;
@@ -261,6 +278,7 @@ SpaceReport ResidualSums::report(const SpacePlan& plan, const TakeHeader& header
   out.magnification = plan.options.magnification;
   const auto& ours = *joint_names(header.groups[plan.group]);
   const auto& theirs = *joint_names(header.groups[plan.onto]);
+  // A pair that is never tracked has no distance; 0 with 0 rows says so.
   const auto rms = [](double square, std::uint64_t n) {
     return n == 0 ? 0.0 : std::sqrt(square / static_cast<double>(n));
   };

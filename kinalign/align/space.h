@@ -37,7 +37,8 @@ std::vector<std::pair<std::string_view, std::string_view>> usual_pairs();
 /// Adds the pairs of a slab in which both joints are valid and tracked.
 void add_pairs(const SpacePlan& plan, const TakeSlab& slab, PairMoments& moments);
 
-/// Sums of squared distances between paired joints, before and after the transform.
+/// Sums of squared distances between paired joints, before and after the transform. One object
+/// serves one space; all slabs of a take must pass through it.
 class ResidualSums {
  public:
   explicit ResidualSums(std::size_t pairs) : rows_(pairs), before_(pairs), after_(pairs) {}

@@ -13,7 +13,8 @@ namespace kinalign {
 
 namespace {
 
-/// Names of the options that differ between two structures of the same type.
+/// Names of the options that differ between two structures of the same type. Both lists come from
+/// describe(), so they have the same options in the same order.
 std::vector<std::string> differing(const Fields& some, const Fields& others) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < some.size(); ++i) {
@@ -37,6 +38,7 @@ std::vector<std::string> options_set(StreamOptions options) {
   return names;
 }
 
+/// The method itself decides which other options are used, so it never counts as unused.
 std::vector<std::string> options_set(SpaceOptions options) {
   SpaceOptions defaults;
   defaults.method = options.method;
@@ -46,6 +48,7 @@ std::vector<std::string> options_set(SpaceOptions options) {
   return names;
 }
 
+/// The options that a method of [space] uses.
 struct Method {
   std::string_view name;
   std::vector<std::string_view> takes;
@@ -114,6 +117,8 @@ Result<void> check_intervals(const Recording& recording, const Manifest& manifes
 
 }  // namespace
 
+/// The lists follow from what each kind of stream is. Nodes have no unit of length, points have no
+/// clicks. Only a recorded skeleton needs a hierarchy from elsewhere.
 std::span<const std::string_view> useless_options(const RecordedStream& stream) {
   static constexpr std::array<std::string_view, 4> clip{"rate_hz", "root_node", "mounting",
                                                         "skeleton"};
@@ -141,6 +146,7 @@ std::span<const std::string_view> useless_options(const RecordedStream& stream) 
   return nodes;
 }
 
+/// Only the first option without effect is reported.
 Result<void> check_options_used(const Recording& recording, const Manifest& manifest) {
   constexpr std::array<const char*, 3> kinds{"a skeleton", "points", "nodes"};
   for (const RecordedStream& stream : recording.streams) {

@@ -13,6 +13,7 @@ namespace {
 struct Limits {
   double usable = 0.0, bad = 0.0;
 };
+// The limits of docs/report.md, as shares of samples.
 constexpr Limits invalid_share{0.05, 0.5};
 constexpr Limits inferred_share{0.10, 0.5};
 constexpr Limits bridged_share{0.10, 0.5};
@@ -20,6 +21,8 @@ constexpr Limits bridged_share{0.10, 0.5};
 constexpr Limits longest_gap_s{1.0, 10.0};
 constexpr Limits interval_s{0.010, 0.1};
 constexpr Limits residual_m{0.10, 0.30};
+// A finding has no figure. Its weight places a warning at the limit of usable and an error far
+// above.
 constexpr double finding_weight = 1.0, error_weight = 10.0;
 
 Quality quality_of(double figure, const Limits& limits) {
@@ -27,6 +30,7 @@ Quality quality_of(double figure, const Limits& limits) {
   return figure > limits.usable ? Quality::usable : Quality::good;
 }
 
+/// The weight is the figure in units of its limit, so concerns of different kinds can be compared.
 Concern concern(const StreamReport& s, std::string what, double figure, const Limits& limits) {
   std::string part = fmt::format("{}", fmt::join(s.nodes, ", "));
   return {s.stream, std::move(part), std::move(what), figure / limits.usable,
@@ -42,6 +46,7 @@ std::string percent(double part) {
   return part < 0.0005 ? "less than 0.1 %" : fmt::format("{:.1f} %", 100.0 * part);
 }
 
+/// A share of 0 is no concern, not even a small one.
 void add_share(const StreamReport& s, std::uint64_t part, std::string_view what,
                const Limits& limits, std::vector<Concern>& out) {
   const double figure = share(part, s.samples);
@@ -59,6 +64,7 @@ void add_gaps(const StreamReport& s, std::vector<Concern>& out) {
 
 /// Adds a concern about the accuracy of the stream's stamps.
 void add_time(const StreamReport& s, std::vector<Concern>& out) {
+  // Unknown accuracy is just above the limit: it makes a stream usable, never bad.
   if (!s.worst_interval_ns) {
     out.push_back(concern(s, "stamps of unknown accuracy", 1.01, {1.0, 2.0}));
     return;
@@ -80,9 +86,12 @@ void add_stream(const StreamReport& s, bool reference, std::vector<Concern>& out
   add_share(s, s.inferred, "inferred", inferred_share, out);
   add_share(s, s.bridged, "interpolated over loss", bridged_share, out);
   add_gaps(s, out);
+  // The reference defines the take's time, so its stamps have no error against it.
   if (!reference) add_time(s, out);
 }
 
+/// The residual of a moved stream. Joints are sorted worst first, so the first one explains the
+/// most.
 void add_space(const SpaceReport& space, std::vector<Concern>& out) {
   Concern whole{space.stream, "", "", space.after_m / residual_m.usable,
                 quality_of(space.after_m, residual_m)};
@@ -106,6 +115,8 @@ bool is_about(const Finding& finding, const AlignmentReport& report, const std::
   };
   if (names(stream) || finding.what.file == stream) return true;
   const bool of_another = std::any_of(
+      // Findings of streams with one file name the stream in quotes (with_stream_name in
+      // judge.cpp).
       report.streams.begin(), report.streams.end(),
       [&](const StreamReport& other) { return other.stream != stream && names(other.stream); });
   if (of_another) return false;
@@ -127,12 +138,14 @@ void add_finding(const Finding& finding, const std::string& stream, std::vector<
                  error ? Quality::bad : Quality::usable});
 }
 
+/// Quality first, then weight.
 bool heavier(const Concern& a, const Concern& b) {
   if (a.quality != b.quality) return a.quality > b.quality;
   return a.weight > b.weight;
 }
 
-/// Sorts the concerns; the worst one decides.
+/// Sorts the concerns; the worst one decides. The sort is stable, so the reason is the same for
+/// equal weights.
 void settle(Verdict& verdict) {
   std::stable_sort(verdict.concerns.begin(), verdict.concerns.end(), heavier);
   verdict.quality = verdict.concerns.front().quality;

@@ -38,8 +38,11 @@ std::optional<double> hand_error_cm(const Sequence& sequence, Prediction predict
 
 std::string person_and_action(const Pair& pair) { return pair.subject + "/" + pair.action; }
 
+// A fit of a pose needs enough joints on several limbs; 12 of 18 is also the limit of the measure
+// PA (evaluate/protocol.h).
 constexpr std::size_t least_marked_joints = 12;
 
+/// The places of the shared joints among a layout's outputs, in the order of shared_joints.
 using Places = std::array<std::optional<std::size_t>, shared_joint_count>;
 
 /// The shared joints of an array [T,J,3], in their order; zeros for missing ones.
@@ -95,12 +98,16 @@ std::array<std::optional<double>, shared_joint_count> joint_errors_cm(const Sequ
 
 }  // namespace
 
+/// The true lengths of limbs are medians over all stretches of one person and action. Single
+/// stretches may be too short for a stable median.
 Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
                                           const std::vector<Pair>& pairs, MarkedIn marked_in) {
   DenoiseMarker out;
   out.marked_in_ = marked_in;
   const auto names = kinect_names(layout.outputs);
   out.places_ = shared_joints_there(names);
+  // Bones are indices among the marked joints only, so the indices are counted without the absent
+  // joints.
   std::array<std::size_t, shared_joint_count> own{};
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     own[j] = out.there_.size();
@@ -117,6 +124,7 @@ Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
   }
   out.joints_ = layout.outputs.size();
   out.rate_hz_ = layout.rate_hz;
+  // The arrays must outlive the sequences, which are spans. A deque does not move its elements.
   struct Copy {
     std::vector<double> truth;
     std::vector<std::uint8_t> valid;
@@ -140,12 +148,16 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
                                      const std::vector<float>& spread) const {
   auto truth = shared_of(places_, joints_, pair.truth);
   auto predicted = shared_of(places_, joints_, answer);
+  // Both skeletons are moved, so an error of horizontal position or heading disappears from all
+  // marks.
   if (marked_in_ == MarkedIn::own_root) {
     truth = own_root(truth, shared_joint_count, shared_root);
     predicted = own_root(predicted, shared_joint_count, shared_root);
   }
   const auto valid = shared_valid(places_, joints_, pair.valid);
   const Sequence sequence{shared_joint_count, rate_hz_, truth, valid};
+  // The protocol takes all 18 shared joints and skips the invalid ones. Table 9 knows no validity,
+  // so it gets the marked joints only.
   DenoiseMarks out;
   out.protocol = protocol_marks(sequence, predicted, lengths_.at(person_and_action(pair)));
   out.table_nine = table_nine(in_centimetres(there_, truth), in_centimetres(there_, predicted),
@@ -155,6 +167,8 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
   if (const auto lag = lag_s(sequence, predicted)) out.lag_ms = 1000.0 * *lag;
   out.amplitude = amplitude_ratio(sequence, predicted, shared_root.root);
   out.feet = feet_marks(sequence, predicted, shared_feet).value_or(FeetMarks{});
+  // A stated spread is one standard deviation per axis. `radius_90` makes of it the radius that
+  // should contain 90 % of the errors.
   for (std::size_t i = 0; i < valid.size() && !spread.empty(); ++i) {
     if (valid[i] == 0) continue;
     const std::size_t frame = i / shared_joint_count, shared = i % shared_joint_count;

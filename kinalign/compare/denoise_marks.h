@@ -44,14 +44,17 @@ enum class MarkedIn : std::uint8_t {
   own_root,  // each skeleton's own root and heading, as in BRA's published marks (own_root())
 };
 
-/// Marks many answers of one layout.
+/// Marks many answers of one layout. A marker is made once for all pairs of a data set and does not
+/// change afterwards. It keeps the limb lengths of every person and action, because a stretch is
+/// judged by the lengths of the whole take.
 class DenoiseMarker {
  public:
   /// Fails if the outputs have fewer than 12 of the 18 shared joints: a pose can't be fitted then.
   static Result<DenoiseMarker> make(const DenoiseLayout& layout, const std::vector<Pair>& pairs,
                                     MarkedIn marked_in = MarkedIn::space);
 
-  /// `answer`: [T,Jout,3] m; `spread`: [T,Jout] m per axis, or empty.
+  /// `answer`: [T,Jout,3] m; `spread`: [T,Jout] m per axis, or empty. `pair` must be of a person
+  /// and an action that were among the pairs of make().
   DenoiseMarks marks_of(const Pair& pair, const std::vector<float>& answer,
                         const std::vector<float>& spread) const;
 

@@ -10,14 +10,18 @@ namespace kinalign {
 
 namespace {
 
+// UI-PRMD's ten actions give two tested actions in each fold.
 constexpr std::size_t action_folds = 5;
 
+/// The values of one member over all takes, sorted, each once. The order of folds therefore does
+/// not depend on the order of takes.
 std::set<std::string> all_of(const std::vector<FoldTake>& takes, std::string FoldTake::*member) {
   std::set<std::string> out;
   for (const FoldTake& take : takes) out.insert(take.*member);
   return out;
 }
 
+/// Every take that is not tested is learnt from.
 Fold fold_where(std::string name, const std::vector<FoldTake>& takes,
                 const std::function<bool(const FoldTake&)>& is_tested) {
   Fold out{std::move(name), {}, {}};
@@ -33,6 +37,7 @@ int run_of(const std::string& take) {
   const std::size_t at = take.find("_run-");
   int run = 0;
   if (at != std::string::npos) {
+    // A name without a number leaves 0, which is no run of a take.
     std::from_chars(take.data() + at + 5, take.data() + take.size(), run);
   }
   return run;
@@ -54,6 +59,8 @@ Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<Fo
     for (std::size_t k = 0; k < action_folds; ++k) {
       out.push_back(
           fold_where("actions " + std::to_string(k + 1), takes, [&](const FoldTake& take) {
+            // The index in the sorted names decides, so a fold takes actions from the whole list
+            // and not five neighbours.
             const auto at =
                 std::find(actions.begin(), actions.end(), take.action) - actions.begin();
             return static_cast<std::size_t>(at) % action_folds == k;
@@ -69,6 +76,7 @@ Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<Fo
   } else {
     return Failure(Error{"", 0, "folds of people, runs or actions, or a split", kind});
   }
+  // An empty side would give marks of nothing, so it is refused before any method is fitted.
   for (const Fold& fold : out) {
     if (!fold.learnt.empty() && !fold.tested.empty()) continue;
     return Failure(Error{"", 0, "takes for training and for the test in every fold",

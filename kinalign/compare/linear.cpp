@@ -15,7 +15,10 @@ namespace kinalign {
 
 namespace {
 
+// Four frames before and four after the middle one: the nine frames of a window.
 constexpr std::size_t half_window = 4;
+// Features are divided by this length, so that they are about 1 and the penalty has a fixed
+// meaning.
 constexpr double feature_scale = 0.05;  // m
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -31,6 +34,7 @@ std::vector<BodyFrame> headings(const DenoiseLayout& layout, const JointFrames& 
 void put_features(const JointFrames& body, const std::vector<BodyFrame>& frames, std::size_t t,
                   double* out) {
   const std::size_t last = body.frames() - 1;
+  // At the ends of a take the first or last frame is repeated.
   for (std::size_t k = 0; k <= 2 * half_window; ++k) {
     const std::size_t u = std::min(t + k < half_window ? 0 : t + k - half_window, last);
     for (std::size_t j = 0; j < body.joints; ++j) {
@@ -48,6 +52,7 @@ std::array<float, 3> offset_of(const BodyFrame& frame, const float* truth, const
   return frame.turned(moved.data());
 }
 
+/// Moves a joint by an offset that is given in the body's heading.
 void add_turned(const BodyFrame& frame, const float* offset, float* at) {
   const auto turned = frame.turned_back(offset);
   for (std::size_t k = 0; k < 3; ++k) at[k] += turned[k];
@@ -60,10 +65,13 @@ struct Prepared {
   std::vector<float> base;  // [T,Jout,3] m
 
   Prepared(const DenoiseLayout& layout, JointFrames seen) : body(std::move(seen)) {
+    // Gaps are filled as the layout does for a network, without later frames if the layout is
+    // causal.
     fill_missing(body, layout.smoothing.causal);
     frames = headings(layout, body);
     for (std::size_t t = 0; t < body.frames(); ++t) {
       for (const int joint : layout.bases) {
+        // A negative base means that no input joint stands for this output: the root is used.
         const float* at =
             joint < 0 ? frames[t].root.data()
                       : &body.positions[(t * body.joints + static_cast<std::size_t>(joint)) * 3];
@@ -93,6 +101,7 @@ MeanOffset::MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair
       counts[i % joints] += 1.0;
     }
   }
+  // A joint that is never valid keeps the offset 0.
   for (std::size_t c = 0; c < sums.size(); ++c) {
     mean_.push_back(static_cast<float>(sums[c] / std::max(counts[c / 3], 1.0)));
   }
@@ -128,6 +137,8 @@ struct Normal {
     moment.noalias() += features.transpose() * targets;
   }
 
+  // Solves (G + penalty I) w = M by Cholesky. The last feature is the constant 1; it gets no
+  // penalty, so the mean offset is not pulled to 0.
   Matrix solved(double penalty) const {
     Matrix ridge = gram;
     for (Eigen::Index i = 0; i + 1 < ridge.rows(); ++i) ridge(i, i) += penalty;
@@ -142,6 +153,8 @@ void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVe
   const Prepared seen(layout, pair.input);
   const std::vector<BodyFrame>& frames = seen.frames;
   const std::size_t joints = layout.outputs.size();
+  // A frame with an invalid joint has no complete target and is left out. All outputs then share
+  // one Gram matrix.
   std::vector<std::size_t> rows;
   for (std::size_t t = 0; t < frames.size(); ++t) {
     const auto* valid = &pair.valid[t * joints];
@@ -169,6 +182,7 @@ void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVe
 }  // namespace
 
 /// Two passes: the first finds the mean of the features, the second sums up the normal equations.
+/// Only sums are kept, so memory does not grow with the number of takes.
 Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt, double penalty)
     : fit_(std::make_unique<Fit>()) {
   const auto width = whole((2 * half_window + 1) * 3 * layout.inputs.size());
@@ -178,6 +192,7 @@ Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt
   double count = 0.0;
   for (const Pair* pair : learnt) {
     frames_of(layout, *pair, zero, features, targets);
+    // With the mean 0 the features are only scaled. Scaling back gives their sum in metres.
     if (features.rows() == 0) continue;
     sum += features.leftCols(width).colwise().sum() * feature_scale;
     count += static_cast<double>(features.rows());
@@ -188,6 +203,7 @@ Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt
     frames_of(layout, *pair, fit_->mean, features, targets);
     if (features.rows() > 0) normal.add(features, targets);
   }
+  // Without a complete frame the weights are 0, and the answer is the input itself.
   fit_->weights = normal.gram.size() == 0 ? Matrix(Matrix::Zero(width + 1, whole(layout.answers())))
                                           : normal.solved(penalty);
 }
@@ -218,6 +234,7 @@ std::vector<float> Ridge::clean(const DenoiseLayout& layout, const JointFrames& 
 
 namespace {
 
+// Groups limit the number of fits: at most five, however many people there are.
 constexpr std::size_t most_groups = 5;
 constexpr double ratio_of_one_person = 1.5;
 /// Chosen from 24 simulated people, of whom a share of 0.95 held 96 %, and UI-PRMD's seven.
@@ -246,6 +263,8 @@ double share_of_people(std::size_t people) {
 double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs) {
   std::map<std::string, std::size_t> group_of;
   for (const Pair& pair : pairs) group_of.try_emplace(pair.subject, 0);
+  // People are dealt to the groups in the order of their names, so the result does not depend on
+  // the order of pairs.
   std::size_t next = 0;
   for (auto& [subject, group] : group_of) group = next++ % most_groups;
   const std::size_t groups = std::min(next, most_groups);
@@ -261,6 +280,7 @@ double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs)
       put_errors(layout, ridge, pair, group_of.at(pair.subject) == g ? unseen : seen);
     }
   }
+  // The ratio is never below 1: unseen people are not expected to be better than those of the fit.
   if (seen.empty() || unseen.empty()) return 1.0;
   const double least = quantile(std::move(seen), 0.9);
   if (least <= 0.0) return 1.0;

@@ -12,7 +12,8 @@
 
 namespace kinalign {
 
-/// Each output joint is its input joint moved by a constant vector in the body's heading.
+/// Each output joint is its input joint moved by a constant vector in the body's heading. The
+/// simplest method: it removes the difference between the joints' definitions and nothing else.
 class MeanOffset {
  public:
   MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt);
@@ -24,7 +25,8 @@ class MeanOffset {
 };
 
 /// The offset is a linear function of the input's joints in nine frames, in the heading of the
-/// middle frame.
+/// middle frame. `penalty` keeps the weights small; features are in units of 5 cm. Eigen's dense
+/// solvers stay in the .cpp file, hence `Fit`.
 class Ridge {
  public:
   Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt,

@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// The marks of one method and variant over people. `marks` and `radii` are sums that more seeds,
+/// folds or takes may be added to.
 struct MethodMarks {
   std::string method;   // "gated"
   std::string variant;  // "both", "kinect"; may be empty
@@ -27,6 +29,7 @@ struct MethodMarks {
   std::string label() const;
 };
 
+/// One comparison of two methods by one mark, over the people that both have.
 struct PairedTest {
   std::size_t first = 0, second = 0;  // indices of the methods
   std::size_t people = 0;             // with the mark of both

@@ -35,6 +35,7 @@ std::vector<std::string> ids_of(const std::vector<One>& all) {
 /// Fails if dataset.toml does not have the subject or the action.
 Result<void> check_known(const Catalogue& catalogue, const AddRequest& request,
                          const std::string& subject, const std::string& action) {
+  // The error names the flag if the id is missing, and similar ids if it is unknown.
   const auto fault = [&](const std::string& id, const std::string& what, const std::string& table,
                          const std::vector<std::string>& known) -> Failure {
     const std::string flag = what == "a subject" ? "--subject" : "--action";
@@ -46,6 +47,7 @@ Result<void> check_known(const Catalogue& catalogue, const AddRequest& request,
     error.file = request.path;
     return Failure(std::move(error));
   };
+  // An id must be described before takes can have it.
   if (find_subject(catalogue, subject) == nullptr) {
     return fault(subject, "a subject", "subject", ids_of(catalogue.subjects));
   }
@@ -62,6 +64,7 @@ std::string one_spelling(const std::string& path) {
   return fault ? path : whole.string();
 }
 
+/// Links are resolved on both sides, so a file is judged by its real place.
 bool is_below(const std::string& path, const std::string& folder) {
   return one_spelling(path).starts_with(one_spelling(folder) + "/");
 }
@@ -88,6 +91,7 @@ class CopyPlan {
   /// there.
   Manifest plan(Manifest manifest) {
     for (StreamOptions& stream : manifest.streams) {
+      // The reader must see the original paths while the stream's own are replaced one by one.
       const StreamOptions given_stream = stream;
       for (std::size_t i = 0; i < stream.files.size(); ++i) {
         stream.files[i].path = place(given_stream, given_stream.files[i]);
@@ -104,8 +108,10 @@ class CopyPlan {
   std::string place(const StreamOptions& stream, const StreamFile& file) {
     if (is_below(file.path, folder_)) return file.path;
     auto further = further_files_of(files_, stream, file);
+    // A layout is no neighbour of the file; it is placed by itself.
     std::erase(further, stream.layout);
     if (further.empty()) {
+      // The parts of a recording are found by their names, so all of them are copied.
       for (const std::string& one : with_siblings(files_, {file.path})) {
         place_alone(stream.name, one);
       }
@@ -114,6 +120,7 @@ class CopyPlan {
     const fs::path base = fs::path(one_spelling(file.path)).parent_path();
     const fs::path own = fs::path(to_) / stream.name / base.filename();
     for (const std::string& one : further) {
+      // The files keep their places relative to each other.
       const fs::path step = fs::path(one_spelling(one)).lexically_relative(base);
       copies_.push_back({one, (own / step).lexically_normal().string()});
     }
@@ -126,6 +133,7 @@ class CopyPlan {
     if (is_below(path, folder_)) return path;
     std::string to = to_ + std::string(file_name(path));
     for (const RawCopy& one : copies_) {
+      // Two streams may read one file; it is copied once.
       if (one.from == path) return one.to;
       if (one.to == to) to = to_ + stream + "/" + std::string(file_name(path));
     }
@@ -141,6 +149,7 @@ class CopyPlan {
 
 /// A manifest's text without its own run, so that the same raw files under another run are found.
 std::string without_own_name(std::string text, const TakeName& name) {
+  // The take's own folder occurs in the paths of copied files only.
   const std::string own = raw_folder(name);
   for (auto at = text.find(own); at != std::string::npos; at = text.find(own, at)) {
     text.erase(at, own.size());
@@ -150,6 +159,7 @@ std::string without_own_name(std::string text, const TakeName& name) {
 
 /// The manifest's text with paths relative to the folder of its subject.
 std::string placed_text(Manifest manifest, const std::string& folder, const TakeName& name) {
+  // Paths in a manifest are relative to the manifest's own folder.
   const std::string own = folder + "/sub-" + name.subject;
   for (std::string* path : paths_in(manifest)) *path = as_named(*path, folder, own);
   manifest.subject = name.subject;
@@ -157,6 +167,7 @@ std::string placed_text(Manifest manifest, const std::string& folder, const Take
   return manifest_toml(manifest);
 }
 
+/// Sizes are compared first, so most different files need no reading.
 Result<bool> same_bytes(FileSystem& files, const RawCopy& copy) {
   std::error_code fault;
   if (fs::file_size(copy.from, fault) != fs::file_size(copy.to, fault) || fault) return false;
@@ -171,6 +182,7 @@ Result<bool> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) 
     KA_TRY(make_folders(fs::path(copy.to).parent_path().string()));
     const Result<void> copied =
         is_there(copy.to) ? Result<void>{} : copy_file(files, copy.from, copy.to);
+    // Another process may have made the copy meanwhile; then its bytes decide.
     if (!copied && !is_there(copy.to)) return Failure(copied.error());
     if (!KA_TRY(same_bytes(files, copy))) return false;
   }
@@ -188,6 +200,7 @@ std::uint32_t free_run(const std::set<std::uint32_t>& runs, std::uint32_t wanted
 /// Reads the runs and manifests of a subject and an action.
 Result<TakeAdder::Known> TakeAdder::read_known(const std::string& subject,
                                                const std::string& action) const {
+  // The folder of a new person does not exist yet.
   KA_TRY(make_folders(folder_ + "/sub-" + subject));
   Known out;
   for (const auto& [name, there] : KA_TRY(scan_takes(folder_, subject))) {
@@ -195,11 +208,14 @@ Result<TakeAdder::Known> TakeAdder::read_known(const std::string& subject,
     out.runs.insert(name.run);
     const auto text =
         read_whole(files_, folder_ + "/" + path_of(name, TakeFile::manifest), longest_manifest);
+    // A take without a readable manifest can't be recognised, but its run is taken.
     if (text) out.by_text.emplace(without_own_name(*text, name), name);
   }
   return out;
 }
 
+/// The takes of a person and action, read when they are first needed. The pointer is valid until
+/// known_ is changed.
 Result<TakeAdder::Known*> TakeAdder::known(const std::string& subject, const std::string& action) {
   const auto key = std::pair(subject, action);
   auto at = known_.find(key);
@@ -214,9 +230,12 @@ Result<TakeAdder::Known*> TakeAdder::known(const std::string& subject, const std
 Result<std::optional<TakeName>> TakeAdder::find_same(const Known& known, const Manifest& manifest,
                                                      const std::string& text, bool copy) const {
   const auto [begin, end] = known.by_text.equal_range(text);
+  // Several takes may have the same text if their copies differ.
   for (auto one = begin; one != end; ++one) {
+    // Without copies the text alone decides: it names the same files.
     bool same = true;
     if (copy) {
+      // The copies would lie in the folder of that take.
       CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder(one->second));
       plan.plan(manifest);
       for (const RawCopy& file : plan.copies()) same = same && KA_TRY(same_bytes(files_, file));
@@ -236,10 +255,12 @@ Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
   for (;;) {  // repeat until no other process takes the same run
     Known& there = *KA_TRY(known(name.subject, name.action));
     name.run = free_run(there.runs, request.run);
+    // The copies depend on the run, so they are planned anew for each run that is tried.
     CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder(name));
     const std::string text =
         placed_text(request.copy ? plan.plan(manifest) : manifest, folder_, name);
     const std::string nameless = without_own_name(text, name);
+    // A second import of the same files adds nothing.
     if (const auto same = KA_TRY(find_same(there, manifest, nameless, request.copy))) {
       return Added{*same, true};
     }
@@ -248,19 +269,23 @@ Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
       continue;
     }
     const std::string path = folder_ + "/" + path_of(name, TakeFile::manifest);
+    // Creating the manifest reserves the run: only one process can create it.
     const Result<void> written = write_whole(files_, path, text, Overwrite::no);
     if (written) {
       there.runs.insert(name.run);
       there.by_text.emplace(nameless, name);
       return Added{name, false};
     }
+    // Only a file that appeared meanwhile is a reason to try the next run.
     if (!is_there(path) || there.runs.contains(name.run)) return Failure(written.error());
+    // The other process took the run; its takes are read again.
     known_.erase({name.subject, name.action});
   }
 }
 
 /// Subject and action come from the recording, if it states them.
 Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress& progress) {
+  // The clocks need not be learnt to list the devices.
   const auto source = KA_TRY(
       RecordingSource::open(files_, request.path, RecordingSource::Devices::unheard, {}, progress));
   const RecordingSurvey survey = source->survey();
@@ -274,13 +299,16 @@ Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress
 
 /// A take states its subject and action in its own bytes, so the request can't change them.
 Result<Added> TakeAdder::add_take(const AddRequest& request) {
+  // HDF5 can crash on a hostile file, so a child process opens the take.
   const Error blame{request.path, 0, "a take that HDF5 can read", ""};
   const std::string ids = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {
     const TakeReader reader = KA_TRY(TakeReader::open(files_, request.path));
+    // The child passes on text; a line end separates the two ids.
     return reader.header().subject + "\n" + reader.header().action;
   }));
   const std::string subject = ids.substr(0, ids.find('\n'));
   const std::string action = ids.substr(ids.find('\n') + 1);
+  // An empty request agrees with every take.
   const auto differs = [&](const std::string& wanted, const std::string& own) {
     return !wanted.empty() && wanted != own;
   };
@@ -295,9 +323,11 @@ Result<Added> TakeAdder::add_take(const AddRequest& request) {
   for (const std::uint32_t run : there.runs) {
     const TakeName one{subject, action, run};
     const RawCopy copy{request.path, folder_ + "/" + path_of(one, TakeFile::take)};
+    // The same take was added before, under this run.
     if (is_there(copy.to) && KA_TRY(same_bytes(files_, copy))) return Added{one, true};
   }
   const TakeName name{subject, action, free_run(there.runs, 0)};
+  // The take is copied unchanged, so its hash stays the same.
   KA_TRY(copy_file(files_, request.path, folder_ + "/" + path_of(name, TakeFile::take)));
   there.runs.insert(name.run);
   return Added{name, false};

@@ -17,6 +17,7 @@
 
 namespace kinalign {
 
+/// One file to add, with the options of the user.
 struct AddRequest {
   std::string path;             // a recording, a recording.toml or a take
   std::string subject, action;  // empty: as the file states
@@ -24,6 +25,7 @@ struct AddRequest {
   std::uint32_t run = 0;        // wanted run of a manifest, if free; 0: the next free one
 };
 
+/// The name that the take got, or that it has already.
 struct Added {
   TakeName name;
   bool was_there = false;  // the same manifest or take was added before
@@ -62,6 +64,7 @@ class TakeAdder {
   FileSystem& files_;
   const std::string& folder_;
   const Catalogue& catalogue_;
+  // Filled when a person and an action are first added to.
   std::map<std::pair<std::string, std::string>, Known> known_;  // by subject and action
 };
 

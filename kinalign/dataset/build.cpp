@@ -21,10 +21,12 @@ namespace kinalign {
 
 namespace {
 
+/// The path of a take's file, with the data set's folder.
 std::string place(const std::string& folder, const TakeName& name, TakeFile file) {
   return folder + "/" + path_of(name, file);
 }
 
+/// The folder of a take's manifest, to which the manifest's paths are relative.
 std::string folder_of(const std::string& folder, const TakeName& name) {
   return folder + "/sub-" + name.subject + "/";
 }
@@ -58,23 +60,31 @@ class Planner {
       return out;
     }
     out.manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
+    // Inputs that only the summary names, such as further files of a reader, are included.
     out.inputs = inputs_of(files_, out.manifest, folder_of(folder_, name),
                            out.summary ? out.summary->inputs : std::vector<InputFacts>{});
     for (const TakeInput& input : out.inputs) out.bytes += size_of(input.path);
     return out;
   }
 
+  // The checks go from the cheapest to the dearest: files, parameters, size, and the hashes of
+  // inputs last.
   Result<BuildReason> judge(const Candidate& one) const {
+    // A take without a manifest can't be made; at most its summary is missing.
     if (!one.files.manifest) {
+      // The size is compared, not the hash: `verify` reads every byte.
       const bool same = one.summary && one.summary->bytes == one.bytes;
       return same ? BuildReason::up_to_date : BuildReason::no_summary;
     }
     if (!one.summary || !one.files.take) return BuildReason::first;
+    // A request makes all takes that can be made.
     if (options_.all) return BuildReason::asked;
     if (recipe_of(one.manifest) != one.summary->recipe) return BuildReason::changed_parameters;
+    // The take was replaced or truncated, so its summary says nothing about it.
     if (size_of(place(folder_, one.name, TakeFile::take)) != one.summary->bytes) {
       return BuildReason::first;
     }
+    // Inputs that are older than the summary can't have changed since.
     const auto made = version_of(place(folder_, one.name, TakeFile::summary));
     const bool same = KA_TRY(
         same_inputs(files_, one.inputs, *one.summary, made ? made->changed_ns : 0, progress_));
@@ -82,6 +92,7 @@ class Planner {
   }
 
  private:
+  // A file that can't be found has size 0.
   static std::uint64_t size_of(const std::string& path) {
     const auto version = version_of(path);
     return version ? version->size : 0;
@@ -110,6 +121,7 @@ class BuildProgress {
   /// The progress of job i: reading is the first half, aligning the second.
   Progress part(std::size_t i, std::uint64_t bytes) {
     return [this, i, bytes](std::string_view what, std::uint64_t done, std::uint64_t total) {
+      // A pass of unknown length counts as not begun.
       const double share =
           total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
       const double half = what == "aligning" ? 0.5 + 0.5 * share : 0.5 * share;
@@ -119,9 +131,12 @@ class BuildProgress {
 
   /// False: the user stops the build.
   bool reach(std::size_t i, std::uint64_t bytes) {
+    // Jobs call from several threads; the sum and the user's callback are shared.
     const std::lock_guard lock(mutex_);
+    // A job's progress never steps back, though reading starts anew for each file.
     sum_ += bytes - std::min(bytes, done_[i]);
     done_[i] = std::max(bytes, done_[i]);
+    // Once stopped, all threads learn it at their next call.
     stopped_ = stopped_ || !go_on(progress_, "building", sum_, all_);
     return !stopped_;
   }
@@ -145,12 +160,14 @@ Result<TakeSummary> summarised(FileSystem& files, const std::string& folder, con
 
 Result<TakeSummary> TakeMaker::make(const TakeName& name, const Manifest& manifest,
                                     const std::string& base, const Progress& progress) {
+  // One thread for each take: several takes are made at once.
   const Recording recording =
       KA_TRY(open_recording(files_, manifest, base, {progress, 1, nullptr}));
   const std::string path = place(folder_, name, TakeFile::take);
   std::optional<TakeWriter> writer;
   TakeHeader header;
   TakeSink sink;
+  // The writer needs the header, which the aligner knows only after its plan.
   sink.begin = [&](const TakeHeader& of_take) -> Result<void> {
     header = of_take;
     const std::lock_guard lock(hdf5_);
@@ -161,9 +178,11 @@ Result<TakeSummary> TakeMaker::make(const TakeName& name, const Manifest& manife
   const AlignmentReport report = KA_TRY(align(recording, manifest, sink, progress, 1));
   {
     const std::lock_guard lock(hdf5_);
+    // The file gets its name only here, so an interrupted take leaves no file.
     KA_TRY(writer->finish(report));
   }
   TakeSummary summary = KA_TRY(summary_of(header, report_json(report)));
+  // This program has made the take.
   summary.software = take_software();
   return keep_summary(files_, folder_, name, std::move(summary));
 }
@@ -173,6 +192,7 @@ Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
   const std::string path = place(folder, name, TakeFile::manifest);
   Manifest manifest = KA_TRY(read_manifest(KA_TRY(read_whole(files, path, longest_manifest)),
                                            path_of(name, TakeFile::manifest), catalogue.align));
+  // The name decides, whatever the manifest's text says.
   manifest.subject = name.subject;
   manifest.action = name.action;
   return manifest;
@@ -188,15 +208,19 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
     // A faulty manifest is reported when its take is made, so that other takes are still made.
     takes.push_back(looked ? *std::move(looked) : Candidate{name, there, {}, {}, {}, 0});
   }
+  // The longest take first: short ones fill the gaps at the end.
   std::stable_sort(takes.begin(), takes.end(),
                    [](const Candidate& a, const Candidate& b) { return a.bytes > b.bytes; });
   std::vector<std::uint64_t> loads(options.share.size, 0);
   BuildPlan plan;
   plan.at_once = options.jobs;
+  // The progress of comparing, in takes.
   std::uint64_t seen = 0;
   for (const Candidate& one : takes) {
     const auto least = std::min_element(loads.begin(), loads.end());
+    // One more than the size, so that takes of unknown size are shared evenly, too.
     *least += one.bytes + 1;
+    // Only the own share is compared, since comparing may mean hashing.
     if (static_cast<std::size_t>(least - loads.begin()) != options.share.rank) continue;
     const BuildReason reason = KA_TRY(planner.judge(one));
     if (!go_on(progress, "comparing", ++seen, takes.size())) return Failure(interruption());
@@ -219,15 +243,18 @@ Result<void> build(FileSystem& files, const std::string& folder, const Catalogue
   };
   BuildProgress all(watch.progress, jobs);
   for (std::size_t i = 0; i < jobs.size() && !all.stopped(); ++i) {
+    // Takes that only lack a summary come first, while this is the only thread.
     if (jobs[i].reason != BuildReason::no_summary) continue;
     watch.done({jobs[i].name, summarised(files, folder, jobs[i].name)});
     all.reach(i, jobs[i].input_bytes);
   }
+  // Finished takes are reported one at a time.
   std::mutex telling;
   parallel_for(jobs.size(), plan.at_once, [&](std::size_t i) {
     if (all.stopped() || jobs[i].reason == BuildReason::no_summary) return;
     Built built{jobs[i].name, make(jobs[i], all.part(i, jobs[i].input_bytes))};
     all.reach(i, jobs[i].input_bytes);
+    // A take that was interrupted did not fail.
     if (!built.summary && is_interruption(built.summary.error())) return;
     const std::lock_guard lock(telling);
     watch.done(built);

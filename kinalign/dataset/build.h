@@ -23,14 +23,17 @@ struct BuildShare {
   std::size_t rank = 0, size = 1;
 };
 
+/// The choices of the user for one build.
 struct BuildOptions {
   std::size_t jobs = 1;  // takes made at once
   BuildShare share;
   bool all = false;  // make takes that are up to date, too
 };
 
+/// The reason why a take is made: its first time, a change, a request, or a missing summary.
 enum class BuildReason { up_to_date, first, changed_parameters, changed_inputs, asked, no_summary };
 
+/// One take to make. Its size decides the order and the share of the progress.
 struct BuildJob {
   TakeName name;
   std::uint64_t input_bytes = 0;
@@ -44,6 +47,7 @@ struct BuildPlan {
   std::uint64_t up_to_date = 0;  // takes of the share
 };
 
+/// A finished take: its summary, or the reason why it failed.
 struct Built {
   TakeName name;
   Result<TakeSummary> summary;

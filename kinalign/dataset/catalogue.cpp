@@ -13,8 +13,10 @@ namespace kinalign {
 
 namespace {
 
+// The ranges of people's measures refuse another unit, such as metres in place of centimetres.
 constexpr double least_m = 1e-6, most_m = 3.0, most_cm = 300.0, most_kg = 500.0;
 
+/// Ids become parts of file names.
 Result<void> check_id(const Value& entry) {
   if (is_label(entry.key)) return {};
   return at(entry, Error{"", 0, "an id of letters and digits, for file names", shown(entry.key)});
@@ -25,6 +27,7 @@ template <class One>
 Result<void> read_each(const Value& tables, std::vector<One>& out) {
   for (const Value& one : KA_TRY(entries_of(tables))) {
     KA_TRY(check_id(one));
+    // The entry is made first, because its options are read into it.
     One& made = out.emplace_back();
     made.id = one.key;
     KA_TRY(read_options(one, describe(made)));
@@ -44,10 +47,12 @@ Result<void> read_each(const Value& tables, std::vector<Described>& out) {
 
 /// Classes are checked at the end, since they may be defined after the actions that name them.
 Result<void> check_classes(const Value& top, const Catalogue& catalogue) {
+  // Class ids may be defined anywhere in the file.
   std::vector<std::string> known;
   for (const ActionClass& one : catalogue.classes) known.push_back(one.id);
   for (const Action& action : catalogue.actions) {
     if (std::find(known.begin(), known.end(), action.class_id) != known.end()) continue;
+    // The error has the line of the action's table.
     return at(*top.find({"action", action.id}),
               action.class_id.empty()
                   ? Error{"", 0, "class in [action." + action.id + "]", "none"}
@@ -56,6 +61,7 @@ Result<void> check_classes(const Value& top, const Catalogue& catalogue) {
   return {};
 }
 
+/// "07" for 7, as in the ids of the templates.
 std::string two_digits(int number) { return (number < 10 ? "0" : "") + std::to_string(number); }
 
 constexpr std::string_view head_of_template =
@@ -87,6 +93,7 @@ constexpr std::string_view empty_template = R"(
 # name = "a straight walk"
 )";
 
+/// A row of the paper's table 6, person by person.
 struct Person {
   std::string_view id, sex;
   int height_cm;
@@ -96,6 +103,7 @@ constexpr Person people[] = {{"00", "m", 175}, {"01", "m", 180}, {"02", "m", 180
                              {"03", "m", 175}, {"04", "m", 170}, {"05", "f", 165},
                              {"06", "m", 175}, {"07", "f", 170}, {"08", "m", 180},
                              {"09", "f", 155}, {"10", "f", 160}, {"11", "m", 175}};
+/// A class of the paper, with our number of actions.
 struct ClassShare {
   std::string_view id, name;
   int actions;  // ours: Baduanjin has eight pieces, Wuqinxi five animals
@@ -127,6 +135,7 @@ std::string hfut_template() {
 
 template <class One>
 const One* find_id(const std::vector<One>& all, std::string_view id) {
+  // Lists are short, so a search from the front is fast enough.
   const auto found =
       std::find_if(all.begin(), all.end(), [id](const One& one) { return one.id == id; });
   return found == all.end() ? nullptr : &*found;
@@ -168,6 +177,7 @@ const Action* find_action(const Catalogue& catalogue, std::string_view id) {
 
 Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name) {
   Catalogue out;
+  // The tables [subject.ID] and the like: each reader fills its list.
   const auto each = [](auto& all) {
     return [&all](const Value& tables) { return read_each(tables, all); };
   };
@@ -180,6 +190,7 @@ Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name) {
          {"action", each(out.actions)},
          {"device", each(out.devices)},
          {"rig", each(out.rigs)}}));
+    // The lines of the file are known only while it is being read.
     return check_classes(top, out);
   }));
   return out;
@@ -187,14 +198,17 @@ Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name) {
 
 std::string catalogue_toml(const Catalogue& catalogue) {
   std::string text = toml_options(catalogue);
+  // The head of a table; an empty id gives the table itself.
   const auto head = [](const std::string& kind, const std::string& id) {
     return "\n[" + kind + (id.empty() ? "" : "." + toml_key(id)) + "]\n";
   };
+  // Options that have their defaults are not written.
   const std::string align = toml_options(catalogue.align);
   if (!align.empty()) text += head("align", "") + align;
   const auto put = [&](const std::string& kind, const auto& all) {
     for (const auto& one : all) text += head(kind, one.id) + toml_options(one);
   };
+  // Devices and rigs have keys of the lab's own choice.
   const auto put_texts = [&](const std::string& kind, const std::vector<Described>& all) {
     for (const Described& one : all) {
       text += head(kind, one.id);
@@ -217,6 +231,7 @@ Result<std::string> catalogue_template(std::string_view template_name, const std
   if (template_name != "empty" && template_name != "hfut-mmd") {
     return Failure(unknown_name(template_name, "a template", catalogue_template_names()));
   }
+  // Both templates begin with the same texts.
   const std::string head = catalogue_head(name, "", "");
   return head + (template_name == "empty" ? std::string(empty_template) : hfut_template());
 }

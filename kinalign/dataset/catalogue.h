@@ -30,6 +30,7 @@ struct ActionClass {
   std::string id, name;
 };
 
+/// One action: what the person does. Its class groups actions of one kind.
 struct Action {
   std::string id;        // letters and digits: "S2A03"
   std::string class_id;  // id of one of the classes
@@ -42,6 +43,8 @@ struct Described {
   std::map<std::string, std::string> texts;
 };
 
+/// All of dataset.toml. Any combination of values can be written; read_catalogue() checks what a
+/// file says.
 struct Catalogue {
   std::string name, licence, contact, description, citation;
   std::vector<Subject> subjects;
@@ -51,6 +54,7 @@ struct Catalogue {
   AlignOptions align;  // defaults for the manifests of takes
 };
 
+/// Names, meanings and ranges of the keys, for reading and writing dataset.toml.
 Fields describe(Catalogue& catalogue);  // its texts
 Fields describe(Subject& subject);
 Fields describe(ActionClass& one);
@@ -71,6 +75,7 @@ std::string catalogue_toml(const Catalogue& catalogue);
 /// people, 6 classes and 34 actions. The paper neither names the actions nor states their number in
 /// each class, so ids are neutral and the numbers are ours (8, 8, 5, 5, 6, 2).
 Result<std::string> catalogue_template(std::string_view template_name, const std::string& name);
+/// The names that catalogue_template() knows.
 std::vector<std::string> catalogue_template_names();
 /// The first part of both templates: the texts, without people, classes and actions.
 std::string catalogue_head(const std::string& name, const std::string& licence,

@@ -14,6 +14,7 @@ namespace kinalign {
 
 namespace {
 
+// The limits, as the header describes them.
 constexpr double unit_slack = 1e-3;
 constexpr double bone_slack_m = 0.02, bone_slack = 0.05;
 constexpr double farthest_m = 100.0, fastest_m_s2 = 1000.0, fastest_rad_s = 100.0;
@@ -22,6 +23,7 @@ constexpr std::uint64_t steps_share = 100;  // one step in this number may diffe
 
 double length_of(const double* v) { return std::hypot(v[0], v[1], v[2]); }
 
+/// True if the quaternion w,x,y,z has length 1 within the slack.
 bool is_unit(const double* q) {
   const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   return std::abs(std::sqrt(square) - 1.0) <= unit_slack;
@@ -31,6 +33,7 @@ bool finite(std::span<const double> numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
+/// A finding without advice: the take has to be made again, whatever is wrong.
 Finding finding(Severity severity, const std::string& file, std::string expected,
                 std::string found) {
   return {severity, Error{file, 0, std::move(expected), std::move(found)}, "", ""};
@@ -46,6 +49,7 @@ ContentCheck::ContentCheck(const TakeHeader& header, double rate_hz)
     group.name = of_take.name;
     if (const auto* clip = std::get_if<ClipGroup>(&of_take.kind)) {
       group.parents = clip->skeleton.parents;
+      // Any length is shorter than infinity, so the first one counts.
       group.least.assign(group.parents.size(), std::numeric_limits<double>::infinity());
       group.most.assign(group.parents.size(), 0.0);
       group.global_least = group.least;
@@ -70,6 +74,7 @@ void ContentCheck::add_stamps(const std::vector<Time>& stamps) {
 
 void ContentCheck::add_bone(const ClipRows& rows, std::size_t cell, std::size_t parent_cell,
                             std::size_t joint, Group& group) {
+  // The length is measured twice, since local and global positions may disagree in a foreign take.
   const double bone = length_of(&rows.local_positions[3 * cell]);
   group.least[joint] = std::min(group.least[joint], bone);
   group.most[joint] = std::max(group.most[joint], bone);
@@ -82,6 +87,7 @@ void ContentCheck::add_bone(const ClipRows& rows, std::size_t cell, std::size_t 
 void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& group) const {
   const std::size_t joints = group.parents.size();
   for (std::size_t r = 0; r < count; ++r) {
+    // Invalid rows need not keep any rule.
     if (!rows.valid.empty() && rows.valid[r] == 0) continue;
     for (std::size_t j = 0; j < joints; ++j) {
       const std::size_t cell = r * joints + j;
@@ -94,6 +100,7 @@ void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& grou
       }
       group.not_unit += is_unit(turn) ? 0 : 1;
       group.far += length_of(place) > farthest_m ? 1 : 0;
+      // A root has no bone.
       if (group.parents[j] < 0) continue;
       add_bone(rows, cell, r * joints + static_cast<std::size_t>(group.parents[j]), j, group);
     }
@@ -137,6 +144,7 @@ void ContentCheck::add_rows(const ImuRows& rows, std::size_t, Group& group) cons
   }
 }
 
+/// Slabs must come in order: stamps are compared across their borders.
 void ContentCheck::add(const TakeSlab& slab) {
   add_stamps(slab.stamps);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -147,12 +155,14 @@ void ContentCheck::add(const TakeSlab& slab) {
 
 Findings ContentCheck::findings(const std::string& file) const {
   Findings out;
+  // A count of 0 is no finding.
   const auto report = [&](Severity severity, std::uint64_t count, const std::string& expected,
                           const std::string& found) {
     if (count > 0)
       out.push_back(finding(severity, file, expected, fmt::format("{} {}", count, found)));
   };
   report(Severity::error, not_rising_, "rising stamps", "that do not rise");
+  // Single uneven steps are usual after a lost frame.
   if (uneven_ * steps_share > steps_) {
     report(Severity::warning, uneven_, fmt::format("steps of {:.3f} ms", 1e-6 * step_ns_),
            fmt::format("of {} have another length", steps_));
@@ -171,6 +181,7 @@ Findings ContentCheck::findings(const std::string& file) const {
     std::uint64_t stretched = 0;
     double worst = 0.0;
     for (std::size_t j = 0; j < group.least.size(); ++j) {
+      // The larger of the two changes counts.
       const double by =
           std::max(group.most[j] - group.least[j], group.global_most[j] - group.global_least[j]);
       if (!(by > std::max(bone_slack_m, bone_slack * group.most[j]))) continue;

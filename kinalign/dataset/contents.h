@@ -44,9 +44,11 @@ class ContentCheck {
   void add_rows(const PointRows& rows, std::size_t count, Group& group) const;
   void add_rows(const ImuRows& rows, std::size_t count, Group& group) const;
 
+  // 0: the rate is not known, and steps are not judged.
   double step_ns_;
   std::vector<Group> groups_;
   std::uint64_t steps_ = 0, uneven_ = 0, not_rising_ = 0;
+  // The last stamp of the slab before; INT64_MIN before the first one.
   std::int64_t last_ns_ = INT64_MIN;
 };
 

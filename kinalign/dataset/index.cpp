@@ -70,6 +70,7 @@ create view streams as select take.name as take, stream.name, modality, columns,
   stream.inferred, gaps, stream.gap_s, interval_ms, nodes from stream join take on take.id = stream.take;
 )";
 
+/// The time of day, ns UTC. It is compared with dates of files only.
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -99,12 +100,14 @@ std::optional<double> over(const TakeSummary& take, Modality modality, Value val
   return out;
 }
 
+/// The stream with the fewest valid samples stands for the modality.
 std::optional<double> least_valid(const TakeSummary& take, Modality modality) {
   return over(
       take, modality, [](const StreamSummary& s) { return std::optional(s.valid); },
       [](double a, double b) { return std::min(a, b); });
 }
 
+/// The stream with the least certain stamps stands for the modality, ms.
 std::optional<double> widest_ms(const TakeSummary& take, Modality modality) {
   return over(
       take, modality,
@@ -122,6 +125,7 @@ std::vector<Cell> take_cells(std::int64_t id, const TakeName& name, const TakeSu
   const auto frames_of = [&](Modality modality) {
     return take.has(modality) ? whole(take.frames) : std::int64_t{0};
   };
+  // Gaps add up over streams; of inferred samples the worst stream counts.
   double gap_s = 0.0, inferred = 0.0;
   for (const StreamSummary& stream : take.streams) {
     gap_s += stream.gap_s;
@@ -159,6 +163,7 @@ std::string places(std::size_t count) {
   return text;
 }
 
+// The columns of the table `take`, as take_cells() fills them.
 constexpr std::size_t take_columns = 24;
 
 /// The statements that add a take, prepared once for many.
@@ -182,6 +187,7 @@ struct Known {
   std::int64_t id = 0, changed_ns = 0, size = 0;
 };
 
+/// The folders of people that have to be read again, and those to be forgotten.
 struct FolderChanges {
   std::set<std::string> changed, gone;
 };
@@ -199,6 +205,7 @@ Result<std::optional<Found>> found_in(const std::string& folder, const TakeName&
     return Found{name, version->changed_ns, whole(version->size)};
   }
   std::error_code fault;
+  // The folder can be entered, so the file itself is gone.
   if (fs::exists(folder + "/.", fault) || !fault) return std::nullopt;
   return Failure(Error{folder, 0, "a folder that can be read", fault.message()});
 }
@@ -208,6 +215,7 @@ Result<std::optional<Found>> found_in(const std::string& folder, const TakeName&
 Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder) {
   const std::string path = folder + "/" + std::string(catalogue_file);
   std::error_code fault;
+  // The reasons are distinguished, since each needs another repair.
   if (!fs::exists(folder, fault) || !fs::exists(path, fault)) {
     if (fault) return Failure(Error{folder, 0, "the folder of a data set", fault.message()});
     if (!is_there(folder))
@@ -218,6 +226,8 @@ Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder) {
   return read_catalogue(KA_TRY(read_whole(files, path, most_toml)), path);
 }
 
+/// The open database with the catalogue. The functions below change tables inside of the
+/// transaction that refresh() opens.
 struct DatasetIndex::State {
   FileSystem* files = nullptr;
   std::string folder;
@@ -253,6 +263,7 @@ struct DatasetIndex::State {
   Result<std::map<std::string, Known>> known_in(const std::string& name) const;
 };
 
+/// The layout's number stands in the database itself. A new file has 0.
 Result<bool> DatasetIndex::State::has_tables() const {
   auto version = KA_TRY(database.prepare("pragma user_version"));
   return KA_TRY(version.step()) && std::get<std::int64_t>(version.at(0)) == layout;
@@ -262,6 +273,7 @@ Result<bool> DatasetIndex::State::has_tables() const {
 Result<void> DatasetIndex::State::make(bool in_memory) {
   const std::string path = in_memory ? ":memory:" : folder + "/" + std::string(index_file);
   std::error_code fault;
+  // If the folder of the cache can't be made, opening fails, and open() goes on in memory.
   if (!in_memory) fs::create_directory(folder + "/" + std::string(cache_folder), fault);
   database = KA_TRY(sqlite::Database::open(
       path, in_memory ? sqlite::Access::in_memory : sqlite::Access::read_write));
@@ -272,6 +284,8 @@ Result<void> DatasetIndex::State::make(bool in_memory) {
   return KA_TRY(has_tables()) ? Result<void>{} : make_tables_of(path);
 }
 
+/// The lock is taken before the second look, so two processes never make the tables twice. An index
+/// of another layout is an error here; open() removes it then.
 Result<void> DatasetIndex::State::make_tables_of(const std::string& path) {
   KA_TRY(database.run("begin immediate"));
   if (!KA_TRY(has_tables())) {  // another process may have made them meanwhile
@@ -313,8 +327,11 @@ Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& tak
                                       TakeInserts& inserts) {
   KA_TRY(inserts.next_id.bind({}));
   KA_TRY(inserts.next_id.step());
+  // The same id joins the rows of all three tables.
   const auto id = std::get<std::int64_t>(inserts.next_id.at(0));
   KA_TRY(inserts.take.run(take_cells(id, found.name, take, catalogue)));
+  // Columns that are rarely asked for are in a table of their own, so that the table `take` stays
+  // small.
   KA_TRY(inserts.detail.run({id, "sub-" + found.name.subject, found.changed_ns, found.size,
                              take.worst, take.software, take.recipe, take.sha256}));
   for (const StreamSummary& stream : take.streams) {
@@ -328,6 +345,7 @@ Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& tak
   return {};
 }
 
+/// Streams and takes are found through `detail`, so its rows go after them.
 Result<void> DatasetIndex::State::forget_folder(const std::string& name) {
   for (const char* sql :
        {"delete from stream where take in (select id from detail where folder = ?)",
@@ -353,6 +371,7 @@ Result<void> DatasetIndex::State::refresh_take(const Found& found,
   if (old != known.end()) {
     const Known before = old->second;
     known.erase(old);
+    // A summary with the same date and size is taken for unchanged.
     if (before.changed_ns == found.changed_ns && before.size == found.size) return {};
     KA_TRY(drop.run(before.id));
   }
@@ -374,6 +393,7 @@ Result<void> DatasetIndex::State::refresh_takes(const std::string& name,
     const auto found = KA_TRY(read(found_in(place, take)));
     if (found) KA_TRY(refresh_take(*found, known, drop, add));
   }
+  // Takes that are left in `known` have lost their summary.
   for (const auto& [gone, one] : known) KA_TRY(drop.run(one.id));
   return {};
 }
@@ -382,6 +402,7 @@ Result<void> DatasetIndex::State::refresh_takes(const std::string& name,
 /// see racy_ns.
 Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   const std::string place = folder + "/" + name, below = name + "/";
+  // The date is taken before the names are read: a change in between shows next time.
   const std::int64_t began = now_ns();
   const std::int64_t changed = changed_ns(place);
   std::set<TakeName> all, summarised;
@@ -392,6 +413,7 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
     if (parsed->second == TakeFile::summary) summarised.insert(parsed->first);
   }
   KA_TRY(refresh_takes(name, summarised));
+  // With a finding the folder is read again next time, so that the finding is reported again.
   const bool settled = findings.empty() && changed < began - racy_ns;
   return remember_folder(name, settled ? changed : 0, whole(all.size() - summarised.size()));
 }
@@ -410,6 +432,7 @@ std::string DatasetIndex::State::catalogue_version() const {
   return fmt::format("{} {} {}", version->number, version->size, version->changed_ns);
 }
 
+/// True if the tables were made from the present dataset.toml.
 Result<bool> DatasetIndex::State::has_catalogue() const {
   auto known = KA_TRY(database.prepare("select version from catalogue"));
   return KA_TRY(known.step()) && std::get<std::string>(known.at(0)) == catalogue_version();
@@ -437,6 +460,7 @@ Result<void> DatasetIndex::State::refresh_catalogue() {
       put_all("insert into action values(?,?,?)", catalogue.actions, [](const Action& a) -> Cells {
         return {a.id, a.class_id, a.name};
       }));
+  // An action may have moved to another class, so the takes' copies are renewed.
   KA_TRY(database.run("update take set class = (select class from action where id = take.action)"));
   return KA_TRY(database.prepare("insert into catalogue values(?)")).run({catalogue_version()});
 }
@@ -452,6 +476,7 @@ Result<FolderChanges> DatasetIndex::State::folder_changes() {
   for (const std::string& name : KA_TRY(read(people_in(folder)))) {
     if (!is_label(name.substr(4))) continue;
     const auto old = known.find(name);
+    // A folder that was stored with the date 0 always differs.
     const bool same = old != known.end() && old->second == changed_ns(folder + "/" + name);
     if (!same) out.changed.insert(name);
     if (old != known.end()) known.erase(old);
@@ -464,8 +489,10 @@ Result<FolderChanges> DatasetIndex::State::folder_changes() {
 Result<void> DatasetIndex::State::refresh() {
   const FolderChanges folders = KA_TRY(folder_changes());
   const bool same_catalogue = KA_TRY(has_catalogue());
+  // The usual case: nothing has changed, and no lock is needed.
   if (same_catalogue && folders.changed.empty() && folders.gone.empty()) return {};
   KA_TRY(database.run("begin immediate"));
+  // The catalogue comes first, since rows of takes use its classes.
   if (!same_catalogue) KA_TRY(refresh_catalogue());
   for (const std::string& name : folders.gone) KA_TRY(forget_folder(name));
   for (const std::string& name : folders.changed) KA_TRY(refresh_folder(name));
@@ -489,10 +516,12 @@ Result<DatasetIndex> DatasetIndex::open(FileSystem& files, const std::string& fo
     state->folder = folder;
     state->catalogue = catalogue;
     if (attempt == 1) {
+      // The second attempt removes the index with the files that SQLite keeps next to it.
       for (const char* ending : {"", "-wal", "-shm"}) files.remove((path + ending).c_str());
     }
     done = state->make(attempt == 2);
     if (done) done = state->refresh();
+    // A folder that can't be read would fail in every attempt.
     if (state->unreadable) return Failure(*state->unreadable);
     if (done) return DatasetIndex(std::move(state));
   }
@@ -544,6 +573,7 @@ Result<Table> DatasetIndex::select(const std::string& sql, const std::vector<Cel
   KA_TRY(rows.bind(values));
   Table out;
   for (std::size_t c = 0; c < rows.columns(); ++c) {
+    // Columns of `takes` have titles; columns of other expressions are shown by their names.
     const std::string name = rows.column_name(c);
     const auto known = std::find_if(columns().begin(), columns().end(),
                                     [&](const TableColumn& one) { return one.key == name; });

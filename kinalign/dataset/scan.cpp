@@ -17,6 +17,7 @@ Failure unreadable(const std::string& folder, const std::error_code& fault) {
 
 }  // namespace
 
+/// Without an error code the standard library would throw.
 bool is_there(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
@@ -25,10 +26,12 @@ bool is_there(const std::string& path) {
 Result<std::vector<std::string>> names_in_folder(const std::string& path) {
   std::vector<std::string> out;
   std::error_code fault;
+  // increment() with an error code does not throw, unlike ++.
   for (fs::directory_iterator at(path, fault), end; !fault && at != end; at.increment(fault)) {
     out.push_back(at->path().filename().string());
   }
   if (fault) return unreadable(path, fault);
+  // A folder lists its files in no fixed order.
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -40,7 +43,9 @@ Result<std::vector<std::string>> people_in(const std::string& folder) {
     if (!name.starts_with("sub-")) continue;
     const std::string path = root + name;
     std::error_code fault;
+    // A link to a folder counts as a folder.
     const auto kind = fs::status(path, fault).type();
+    // A person that can't be read is an error: the takes would be missing without notice.
     if (kind == fs::file_type::none) return unreadable(path, fault);
     if (kind == fs::file_type::directory) out.push_back(name);
   }
@@ -60,6 +65,7 @@ Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder,
   std::map<TakeName, TakeFiles> out;
   const std::string below = "sub-" + subject + "/", path = folder + "/sub-" + subject;
   for (const std::string& file : KA_TRY(names_in_folder(path))) {
+    // Other files in the folder are none of ours.
     const auto parsed = parse_take_path(below + file);
     if (!parsed) continue;
     TakeFiles& take = out[parsed->first];

@@ -24,6 +24,8 @@ Result<std::vector<std::string>> names_in_folder(const std::string& path);
 /// The names of people's folders, "sub-03". Fails if the data set's folder can't be read.
 Result<std::vector<std::string>> people_in(const std::string& folder);
 
+/// The files that a take has. A take may have a manifest alone (not built), or no manifest (added
+/// as a take).
 struct TakeFiles {
   bool manifest = false, take = false, summary = false;
 };
@@ -34,6 +36,7 @@ Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder);
 Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder,
                                                  const std::string& subject);
 
+/// Reads the summary next to a take.
 Result<TakeSummary> read_summary(FileSystem& files, const std::string& folder,
                                  const TakeName& name);
 

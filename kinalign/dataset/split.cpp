@@ -26,6 +26,7 @@ class Random {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
     z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
     z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    // The remainder favours small numbers by a share that does not matter for so few units.
     return (z ^ (z >> 31U)) % end;
   }
 
@@ -49,11 +50,13 @@ Units units_of(const std::vector<const SplitTake*>& takes, bool by_subject) {
     unit.takes.push_back(take);
     unit.frames += take->summary.frames;
   }
+  // The map sorts the units by name, whatever the order of the takes.
   Units out;
   for (auto& [key, unit] : units) out.push_back(std::move(unit));
   return out;
 }
 
+/// Fisher and Yates: each order is equally likely.
 void shuffle(Units& units, Random& random) {
   for (std::size_t i = units.size(); i > 1; --i) std::swap(units[i - 1], units[random.below(i)]);
 }
@@ -61,6 +64,7 @@ void shuffle(Units& units, Random& random) {
 /// Moves units from the end of `from` until `to` has about that number of frames.
 void move_share(Units& from, std::uint64_t frames, std::vector<TakeName>& to) {
   std::uint64_t moved = 0;
+  // A unit is moved if more than half of it fits, so that the error is at most half a unit.
   while (!from.empty() && moved + from.back().frames / 2 < frames) {
     moved += from.back().frames;
     for (const SplitTake* take : from.back().takes) to.push_back(take->name);
@@ -73,10 +77,12 @@ void divide(Units units, const SplitOptions& options, Random& random,
             std::vector<SplitPart>& parts) {
   std::uint64_t frames = 0;
   for (const Unit& unit : units) frames += unit.frames;
+  // Units come in the order of their names, so the seed alone decides.
   shuffle(units, random);
   const auto share = [frames](double of) {
     return static_cast<std::uint64_t>(of * static_cast<double>(frames));
   };
+  // The test is drawn first: it stays the same if only the validation's share changes.
   move_share(units, share(options.test), parts[2].takes);
   move_share(units, share(options.validation), parts[1].takes);
   for (const Unit& unit : units) {
@@ -84,6 +90,7 @@ void divide(Units units, const SplitOptions& options, Random& random,
   }
 }
 
+/// Empty for an action that dataset.toml lacks.
 std::string class_of(const SplitTake& take, const Catalogue& catalogue) {
   const Action* action = find_action(catalogue, take.name.action);
   return action == nullptr ? "" : action->class_id;
@@ -91,6 +98,7 @@ std::string class_of(const SplitTake& take, const Catalogue& catalogue) {
 
 using Wanted = std::function<bool(const SplitTake&)>;
 
+/// The takes that a method uses.
 std::vector<const SplitTake*> chosen(const std::vector<SplitTake>& takes, const Wanted& wanted) {
   std::vector<const SplitTake*> out;
   for (const SplitTake& take : takes) {
@@ -103,6 +111,7 @@ std::vector<const SplitTake*> chosen(const std::vector<SplitTake>& takes, const 
 std::vector<SplitPart> random_parts(const std::vector<const SplitTake*>& takes,
                                     const Catalogue& catalogue, const SplitOptions& options,
                                     bool by_subject) {
+  // The order in which divide() expects the parts.
   std::vector<SplitPart> parts{{"train", {}}, {"validation", {}}, {"test", {}}};
   Random random(static_cast<std::uint64_t>(options.seed));
   std::map<std::string, std::vector<const SplitTake*>> strata;
@@ -114,6 +123,7 @@ std::vector<SplitPart> random_parts(const std::vector<const SplitTake*>& takes,
   for (const auto& [key, of_class] : strata) {
     divide(units_of(of_class, by_subject), options, random, parts);
   }
+  // Without a share the part would be empty, which make_split() refuses.
   if (options.validation == 0.0) parts.erase(parts.begin() + 1);
   return parts;
 }
@@ -135,6 +145,7 @@ std::vector<SplitPart> a_part_each(const std::vector<SplitTake>& takes) {
 /// The stated people are the test part, all others the training.
 Result<std::vector<SplitPart>> parts_of_people(const std::vector<SplitTake>& takes,
                                                const std::vector<std::string>& test_people) {
+  // An unknown person is an error: the test would be smaller than the user thinks.
   const std::set<std::string> tested(test_people.begin(), test_people.end());
   std::vector<SplitPart> parts{{"train", {}}, {"test", {}}};
   std::set<std::string> known;
@@ -149,6 +160,7 @@ Result<std::vector<SplitPart>> parts_of_people(const std::vector<SplitTake>& tak
   return parts;
 }
 
+/// The classes of the paper's section 4.2. Takes without nodes are in no part.
 std::vector<SplitPart> imu_parts(const std::vector<SplitTake>& takes, const Catalogue& catalogue) {
   std::vector<SplitPart> parts{{"train", {}}, {"test", {}}};
   for (const SplitTake& take : takes) {
@@ -159,6 +171,7 @@ std::vector<SplitPart> imu_parts(const std::vector<SplitTake>& takes, const Cata
   return parts;
 }
 
+/// The people of the paper's section 4.1.
 bool is_man_of_175(const SplitTake& take, const Catalogue& catalogue) {
   const Subject* subject = find_subject(catalogue, take.name.subject);
   return subject != nullptr && subject->sex == "m" && subject->height_cm == 175.0;
@@ -166,6 +179,7 @@ bool is_man_of_175(const SplitTake& take, const Catalogue& catalogue) {
 
 using TakesByName = std::map<TakeName, const SplitTake*>;
 
+/// The pointers lead into `takes`.
 TakesByName by_name(const std::vector<SplitTake>& takes) {
   TakesByName out;
   for (const SplitTake& take : takes) out.emplace(take.name, &take);
@@ -175,6 +189,7 @@ TakesByName by_name(const std::vector<SplitTake>& takes) {
 /// The parts in which a take, a person or a file occurs.
 using Places = std::map<std::string, std::set<std::string>>;
 
+/// All that check_split() needs to know of the parts, collected in one pass over them.
 struct Seen {
   Places names, subjects;
   /// By SHA-256 of a take or a raw file: for each part, a take with that content.
@@ -183,6 +198,7 @@ struct Seen {
   std::set<std::string> changed;  // takes with other bytes when the split was made
 };
 
+/// Notes in which parts each take, person and content occurs.
 Seen seen_in(const Split& split, const TakesByName& known) {
   Seen seen;
   for (const SplitPart& part : split.parts) {
@@ -195,13 +211,16 @@ Seen seen_in(const Split& split, const TakesByName& known) {
       seen.names[to_string(name)].insert(part.name);
       seen.subjects[name.subject].insert(part.name);
       const TakeSummary& summary = found->second->summary;
+      // The same bytes under two names are a leak as well.
       seen.contents[summary.sha256].emplace(part.name, to_string(name));
       for (const InputFacts& input : summary.inputs) {
         // A layout or a list of channels may be the same for all takes.
         if (!summary.sample_files.contains(input.name)) continue;
         seen.contents[input.sha256].emplace(part.name, to_string(name));
       }
+      // The hash from the time when the split was made.
       const auto then = split.sha256.find(name);
+      // A split without hashes says nothing about changes.
       if (then != split.sha256.end() && then->second != summary.sha256) {
         seen.changed.insert(to_string(name));
       }
@@ -210,6 +229,7 @@ Seen seen_in(const Split& split, const TakesByName& known) {
   return seen;
 }
 
+/// "test and train".
 std::string listed(const std::set<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, " and "));
 }
@@ -237,6 +257,7 @@ Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& c
     out.parts = random_parts(chosen(takes, wanted), catalogue, options, options.by == "subject");
   }
   for (SplitPart& part : out.parts) {
+    // Sorted, so that the file of a split does not depend on the order of takes.
     std::sort(part.takes.begin(), part.takes.end());
     if (!part.takes.empty()) continue;
     return Failure(Error{
@@ -262,12 +283,14 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
   }
   for (const auto& [hash, parts] : seen.contents) {
     if (parts.size() < 2) continue;
+    // Two parts are enough for an example.
     const auto& [one, take] = *parts.begin();
     const auto& [other, second] = *parts.rbegin();
     report(Severity::error, "the same bytes in one part only",
            fmt::format("{} in {} and {} in {} (SHA-256 {}...)", take, one, second, other,
                        hash.substr(0, 12)));
   }
+  // Other methods divide takes and may have a person in two parts.
   const bool apart = split.options.by == "subject" || split.options.by == "leave-one-out";
   for (const auto& [subject, parts] : seen.subjects) {
     if (parts.size() < 2) continue;
@@ -290,6 +313,7 @@ std::string split_json(const Split& split, const std::vector<SplitTake>& takes) 
   const SplitOptions& o = split.options;
   const TakesByName known = by_name(takes);
   Json out = {{"schema", split_schema}, {"by", o.by}};
+  // People take the place of the share of the test.
   if (o.test_people.empty()) {
     out["test"] = o.test;
   } else {
@@ -321,6 +345,7 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
     if (parsed.at("schema").get<std::string>() != split_schema)
       return wrong(parsed["schema"].get<std::string>());
     Split out;
+    // A split by people has no share of the test.
     const bool has_people = parsed.contains("test_people");
     out.options = {parsed.at("by").get<std::string>(),
                    has_people ? 0.0 : parsed.at("test").get<double>(),
@@ -346,6 +371,7 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
 }
 
 Result<Split> read_split(FileSystem& files, const std::string& path) {
+  // A longer file is refused before it is read.
   constexpr std::size_t longest = std::size_t{64} << 20;
   return parse_split_json(KA_TRY(read_whole(files, path, longest)), path);
 }
@@ -353,6 +379,7 @@ Result<Split> read_split(FileSystem& files, const std::string& path) {
 Result<Split> read_good_split(FileSystem& files, const std::string& path,
                               const std::vector<SplitTake>& takes) {
   Split split = KA_TRY(read_split(files, path));
+  // The most severe findings come first.
   for (const Finding& one : check_split(split, takes, path)) {
     if (one.severity == Severity::error) return Failure(one.what);
   }

@@ -38,11 +38,14 @@ struct SplitOptions {
 /// Kinect, at random. hfut-imu (paper, 4.2): takes with nodes, S2, S3 and S5 against the rest.
 std::vector<std::string> split_methods();
 
+/// The takes of one part, sorted by name.
 struct SplitPart {
   std::string name;  // "train", "validation", "test"; for leave-one-out the person's id
   std::vector<TakeName> takes;
 };
 
+/// A division of takes into parts, with the choices that it was made by. Takes that no part names
+/// are not used.
 struct Split {
   SplitOptions options;
   std::vector<SplitPart> parts;

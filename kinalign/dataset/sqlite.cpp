@@ -9,8 +9,10 @@ namespace kinalign::sqlite {
 
 namespace {
 
+// Another process may be writing; it holds its lock for one update only.
 constexpr int longest_wait_ms = 10'000;
 
+/// SQLite's own words say best what is wrong with a statement.
 Failure failure(sqlite3* database, const std::string& file, const std::string& expected) {
   return Failure(
       Error{file, 0, expected, database == nullptr ? "no memory" : sqlite3_errmsg(database)});
@@ -29,6 +31,7 @@ int allow_reading(void*, int action, const char*, const char*, const char*, cons
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
 
+/// A statement must be reset before it can be bound again, also after an error.
 Result<void> Statement::bind(const std::vector<Cell>& values) {
   sqlite3_reset(statement_.get());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -41,6 +44,7 @@ Result<void> Statement::bind(const std::vector<Cell>& values) {
           } else if constexpr (std::is_same_v<Value, double>) {
             return sqlite3_bind_double(statement_.get(), at, value);
           } else if constexpr (std::is_same_v<Value, std::string>) {
+            // SQLite copies the text, so the values may end before the statement.
             return sqlite3_bind_text(statement_.get(), at, value.data(),
                                      static_cast<int>(value.size()), SQLITE_TRANSIENT);
           } else {
@@ -100,6 +104,7 @@ Result<Database> Database::open(const std::string& path, Access access) {
   const int flags = access == Access::in_memory ? SQLITE_OPEN_MEMORY : 0;
   const int code = sqlite3_open_v2(path.c_str(), &opened,
                                    SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | flags, nullptr);
+  // Even a failed call may have made an object, which must be closed.
   out.database_.reset(opened);
   if (code != SQLITE_OK) return failure(opened, path, "an index that can be opened");
   sqlite3_busy_timeout(opened, longest_wait_ms);
@@ -130,10 +135,13 @@ Result<Statement> Database::prepare(const std::string& sql) const {
 }
 
 Result<Statement> Database::prepare_reading(const std::string& sql) const {
+  // The question is put to allow_reading() while the statement is parsed. Afterwards the index may
+  // write again.
   sqlite3_set_authorizer(database_.get(), &allow_reading, nullptr);
   auto made = prepare(sql);
   sqlite3_set_authorizer(database_.get(), nullptr, nullptr);
   const bool is_denied = !made && made.error().found == "not authorized";
+  // A statement without columns is no SELECT, even if it was allowed.
   const bool is_other =
       made && (made->columns() == 0 || sqlite3_stmt_readonly(made->statement_.get()) == 0);
   if (is_denied || is_other) {

@@ -41,6 +41,7 @@ class Statement {
 
 enum class Access { read_write, in_memory };
 
+/// An open database. Statements must not outlive it. One thread uses it at a time.
 class Database {
  public:
   /// Opens a database. Waits at most ten seconds while another process writes.

@@ -20,6 +20,7 @@ std::string take_path(const std::string& folder, const TakeName& name) {
   return folder + "/" + path_of(name, TakeFile::take);
 }
 
+/// An error crosses from the child process as JSON.
 Json error_json(const Error& error) {
   return {{"file", error.file},
           {"line", error.line},
@@ -39,16 +40,19 @@ std::string line_of(const Result<std::string>& answer) {
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// The answer in a line of line_of().
 Result<std::string> from_line(std::string_view line) {
   const Json json = Json::parse(line);
   if (json.contains("error")) return Failure(error_from(json["error"]));
   return json.at("answer").get<std::string>();
 }
 
+/// The question that summarise_takes() asks of each take.
 Result<std::string> summary_text(TakeReader& reader) {
   return summary_json(KA_TRY(summary_of(reader)));
 }
 
+/// The error for a take on which the child process ended.
 Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }
 
 }  // namespace
@@ -61,14 +65,18 @@ std::vector<Result<std::string>> ask_takes(
     TakeReader reader = KA_TRY(TakeReader::open(files, take_path(folder, name)));
     return ask(reader);
   };
+  // Each round starts one child, which answers for all remaining takes. If it ends early, the take
+  // in work is the culprit, and the next round begins after it.
   while (out.size() < names.size()) {
     const std::size_t first = out.size();
     std::string text;  // the line that has not ended yet
+    // The child is a copy of this process, so it needs no arguments.
     const auto work = [&](const GuardSend& send) -> Result<void> {
       for (std::size_t i = first; i < names.size(); ++i) KA_TRY(send(line_of(answer(names[i]))));
       return {};
     };
     const auto receive = [&](std::string_view bytes) -> Result<void> {
+      // A piece may end anywhere, so only complete lines are taken.
       text += bytes;
       for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
         out.push_back(from_line(std::string_view(text).substr(0, end)));
@@ -77,6 +85,7 @@ std::vector<Result<std::string>> ask_takes(
       return {};
     };
     auto done = run_guarded(GuardLimits{}, blame(take_path(folder, names[first])), work, receive);
+    // If the child fails after its last answer, all takes are answered nevertheless.
     if (done || out.size() == names.size()) continue;
     done.error().file = take_path(folder, names[out.size()]);
     out.push_back(Failure(std::move(done).error()));
@@ -86,12 +95,14 @@ std::vector<Result<std::string>> ask_takes(
 
 Result<TakeSummary> summary_of(TakeReader& reader) {
   TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
+  // The program that made the take, which may be an older one.
   made.software = reader.software();
   return made;
 }
 
 Result<TakeSummary> keep_summary(FileSystem& files, const std::string& folder, const TakeName& name,
                                  TakeSummary summary) {
+  // The hash is that of the file on the disk, not of what was meant to be written.
   const InputFacts facts = KA_TRY(facts_of(files, take_path(folder, name), "hashing", {}));
   summary.sha256 = facts.sha256;
   summary.bytes = facts.bytes;
@@ -105,6 +116,7 @@ std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::s
   std::vector<Result<TakeSummary>> out;
   const auto texts = ask_takes(files, folder, names, summary_text);
   for (std::size_t i = 0; i < names.size(); ++i) {
+    // The child may have read a hostile file, so its text is parsed like any foreign text.
     out.push_back(texts[i] ? parse_summary_json(*texts[i], take_path(folder, names[i]))
                            : Failure(texts[i].error()));
   }
@@ -120,6 +132,7 @@ Result<Findings> check_rows(FileSystem& files, const std::string& folder, const 
         ContentCheck check(reader.header(), rate_hz);
         TakeSlab slab;
         while (KA_TRY(reader.next(slab))) check.add(slab);
+        // Findings cross to the parent as JSON.
         Json all = Json::array();
         for (const Finding& finding : check.findings(path_of(name, TakeFile::take))) {
           Json one = error_json(finding.what);

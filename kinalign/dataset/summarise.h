@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// The reader of formats/take, which only the source file includes.
 class TakeReader;
 
 /// Calls `ask` with each take of a data set, in the order of `names`, and returns its texts. HDF5

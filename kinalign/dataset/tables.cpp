@@ -20,6 +20,7 @@ void add_sums(Table& table, std::size_t first, const std::string& title) {
     sums[c] = sum;
   }
   table.rows.push_back(std::move(sums));
+  // Views set the last row apart.
   table.has_sum = true;
 }
 
@@ -29,6 +30,7 @@ struct Published {
   std::int64_t frames, clips, kinds, people;  // the paper states either frames or clips
   const char* modalities;
 };
+// The numbers are copied from the paper.
 constexpr Published published[] = {{"HDM05", 1'531'745, -1, 100, 5, "joints"},
                                    {"CMU-MMAC", -1, 6'650, 23, 5, "RGB, 3D joints, IMU, audio"},
                                    {"Human3.6M", 3'578'080, -1, 6, 11, "RGB, depth, 3D joints"},
@@ -41,6 +43,7 @@ constexpr Published published[] = {{"HDM05", 1'531'745, -1, 100, 5, "joints"},
                                    {"UMONS-TAICHI", -1, 2'200, 13, 12, "RGB, depth, 3D joints"},
                                    {"TotalCapture", 1'892'176, -1, 4, 5, "RGB, 3D joints, IMU"}};
 
+/// A number that the paper does not state is an empty cell.
 Cell count(std::int64_t value) { return value < 0 ? Cell() : Cell(value); }
 
 std::int64_t whole(const Cell& cell) {
@@ -59,6 +62,7 @@ Result<Table> table_of_data_sets(const DatasetIndex& index) {
     out.rows.push_back({std::string(one.name), count(one.frames), count(one.clips),
                         count(one.kinds), count(one.people), std::string(one.modalities)});
   }
+  // The row of this data set: its frames are added over modalities.
   const Table own = KA_TRY(index.select(
       "select coalesce(sum(mocap + kinect + imu), 0), count(*), count(distinct action), "
       "count(distinct subject), coalesce(sum(mocap), 0), coalesce(sum(kinect), 0), "
@@ -67,6 +71,7 @@ Result<Table> table_of_data_sets(const DatasetIndex& index) {
   std::string modalities;
   const char* const names[] = {"mocap joints", "Kinect joints", "IMU"};
   for (std::size_t m = 0; m < 3; ++m) {
+    // The last three sums are the frames of each modality.
     if (whole(sums[4 + m]) > 0)
       modalities += (modalities.empty() ? "" : ", ") + std::string(names[m]);
   }
@@ -76,6 +81,8 @@ Result<Table> table_of_data_sets(const DatasetIndex& index) {
   return out;
 }
 
+/// People are summed first, then groups of sex and height: otherwise a person would be listed once
+/// for each take.
 Result<Table> table_by_subject(const DatasetIndex& index) {
   Table out = KA_TRY(index.select(
       "select group_concat(subject, ', ') as subjects, sex, height_cm, sum(mocap) as mocap, "
@@ -83,6 +90,7 @@ Result<Table> table_by_subject(const DatasetIndex& index) {
       "sum(mocap) as mocap, sum(kinect) as kinect, sum(imu) as imu from takes group by subject "
       "order by subject) group by sex, height_cm order by height_cm, sex"));
   out.caption = "Frames by sex and height (the paper's table 6)";
+  // The other columns have their usual titles.
   out.columns[0] = {"subjects", "people"};
   add_sums(out, 3, "sum");
   return out;
@@ -98,6 +106,7 @@ Result<Table> table_by_class(const DatasetIndex& index) {
   return out;
 }
 
+/// The names of the modalities are joined in SQL, so each combination is one group.
 Result<Table> table_by_modalities(const DatasetIndex& index) {
   Table out = KA_TRY(
       index.select("select case when mocap > 0 then 'mocap' else '' end || "

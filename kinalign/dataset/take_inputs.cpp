@@ -24,12 +24,14 @@ std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions
   if (!opened) return {};
   const auto head = opened->next();
   if (!head) return {};
+  // A reader that is not found or refuses the file has no further files.
   const auto format = find_format(files, options, file, *head);
   return format ? format->further_files : std::vector<std::string>{};
 }
 
 namespace {
 
+/// Adds an input once: several streams may read one file.
 void add_input(const TakeInput& input, std::vector<TakeInput>& out) {
   const bool has = std::any_of(out.begin(), out.end(),
                                [&](const TakeInput& one) { return one.name == input.name; });
@@ -45,6 +47,7 @@ void add_further(FileSystem& files, StreamOptions stream, const std::string& bas
   for (const StreamFile& file : stream.files) {
     const StreamFile placed{path_in(base, file.path), file.node};
     for (const std::string& one : further_files_of(files, stream, placed)) {
+      // The layout is among the named files already.
       if (one == stream.layout) continue;
       add_input({remembered_sibling(names.at(file.path), placed.path, one), one}, out);
     }
@@ -60,6 +63,8 @@ std::vector<TakeInput> named_inputs(FileSystem& files, Manifest& manifest, const
   const Names names = remembered_paths(paths);
   std::vector<TakeInput> out;
   for (const std::string& path : paths) add_input({names.at(path), path_in(base, path)}, out);
+  // Opening every file to ask its reader is slow, so it is done only if files are missing in the
+  // list.
   if (expected <= out.size()) return out;
   for (const StreamOptions& stream : manifest.streams) {
     add_further(files, stream, base, names, out);
@@ -76,6 +81,7 @@ std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known) {
   std::vector<TakeInput> out = named_inputs(files, manifest, base, known.size());
+  // Files that only the take names lie next to its first input.
   const std::string default_folder(out.empty() ? base : kinalign::folder(out.front().path));
   for (const InputFacts& input : known) {
     add_input({input.name, default_folder + std::string(file_name(input.name))}, out);
@@ -86,6 +92,7 @@ std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std
 Result<bool> same_inputs(FileSystem& files, const std::vector<TakeInput>& inputs,
                          const TakeSummary& summary, std::int64_t made_ns,
                          const Progress& progress) {
+  // A file more or less makes another take.
   if (inputs.size() != summary.inputs.size()) return false;
   for (const TakeInput& input : inputs) {
     const auto known =
@@ -93,6 +100,7 @@ Result<bool> same_inputs(FileSystem& files, const std::vector<TakeInput>& inputs
                      [&](const InputFacts& facts) { return facts.name == input.name; });
     const auto version = version_of(input.path);
     if (known == summary.inputs.end() || !version || version->size != known->bytes) return false;
+    // The file is older than the take's summary and has the same length.
     if (version->changed_ns < made_ns) continue;
     if (KA_TRY(facts_of(files, input.path, "hashing", progress)).sha256 != known->sha256)
       return false;
@@ -105,14 +113,17 @@ std::optional<std::string> place_in_sourcedata(const std::string& folder, const 
   const fs::path root = fs::canonical(folder, fault);
   if (fault) return std::nullopt;
   const fs::path whole = fs::absolute(path, fault);
+  // Only links above the file are followed: the file itself may be a link that is to be removed.
   const fs::path above = fs::canonical(whole.parent_path(), fault);
   if (fault) return std::nullopt;
+  // The name itself is kept, so a link stays a link.
   std::string place = (above / whole.filename()).lexically_relative(root).string();
   if (!place.starts_with(std::string(raw_files_folder) + "/")) return std::nullopt;
   return place;
 }
 
 bool is_unpacked(const std::string& place) {
+  // The form of the names that filled_folder() gives (import/new_folder.cpp).
   constexpr std::size_t hash_digits = 8;
   const std::size_t begin = raw_files_folder.size() + 1, end = place.find('/', begin);
   if (end == std::string::npos || end - begin < hash_digits + 2) return false;
@@ -127,9 +138,11 @@ Result<std::vector<TakeInput>> raw_files_of(FileSystem& files, const std::string
   if (!fs::exists(folder + "/" + path_of(name, TakeFile::manifest), fault)) {
     return std::vector<TakeInput>{};
   }
+  // Defaults of dataset.toml do not change which files are named.
   const Manifest manifest = KA_TRY(take_manifest(files, folder, Catalogue{}, name));
   const std::string base = folder + "/sub-" + name.subject + "/";
   const auto summary = read_summary(files, folder, name);
+  // A take that was built states its further files; otherwise readers are asked.
   return summary ? inputs_of(files, manifest, base, summary->inputs)
                  : inputs_of(files, manifest, base);
 }
@@ -138,6 +151,7 @@ Result<std::vector<std::string>> files_in_sourcedata(const std::string& folder) 
   const std::string top = folder + "/" + std::string(raw_files_folder);
   std::vector<std::string> out;
   std::error_code fault;
+  // A link in place of the folder leads out of the data set.
   if (!fs::is_directory(fs::symlink_status(top, fault))) return out;
   // Advanced by hand: a range-based `for` would throw at a folder that can't be read.
   fs::recursive_directory_iterator entry(top, fault);

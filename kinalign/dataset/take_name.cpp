@@ -12,6 +12,7 @@ namespace kinalign {
 
 namespace {
 
+// The longest label, and the endings of the three kinds of file.
 constexpr std::size_t longest_label = 64;
 constexpr std::array<std::pair<TakeFile, std::string_view>, 3> endings{
     {{TakeFile::manifest, "_recording.toml"},
@@ -41,6 +42,7 @@ std::string to_string(const TakeName& name) {
 }
 
 std::optional<TakeName> parse_take_name(std::string_view text) {
+  // Each step takes its part off the front; nothing may be left at the end.
   const auto subject = take_label(text, "sub-");
   const auto action = take_label(text, "_task-");
   const auto run = take_label(text, "_run-");
@@ -65,6 +67,8 @@ std::optional<std::pair<TakeName, TakeFile>> parse_take_path(std::string_view pa
   for (const auto& [kind, ending] : endings) {
     if (!file.ends_with(ending)) continue;
     const auto name = parse_take_name(file.substr(0, file.size() - ending.size()));
+    // The path must be exactly the one that the name gives: another folder or another number of
+    // digits is no file of the take.
     if (name && path_of(*name, kind) == path) return std::pair(*name, kind);
   }
   return std::nullopt;

@@ -20,6 +20,7 @@ namespace kinalign {
 /// Letters and digits, from one to 64: BIDS allows these in a label.
 bool is_label(std::string_view text);
 
+/// The identity of a take. Names sort by person, action and run.
 struct TakeName {
   std::string subject, action;
   std::uint32_t run = 1;
@@ -27,6 +28,7 @@ struct TakeName {
   auto operator<=>(const TakeName&) const = default;
 };
 
+/// The files that a take may have.
 enum class TakeFile { manifest, take, summary };
 
 /// "sub-03_task-S2A03_run-01".

@@ -35,6 +35,8 @@ struct StreamSummary {
   std::vector<std::string> nodes;           // for nodes: their places
 };
 
+/// One take in the index: all that lists, splits and reports need. It is written when the take is
+/// made or added.
 struct TakeSummary {
   std::string subject, action;  // the take's own
   std::uint64_t frames = 0;     // rows
@@ -63,6 +65,7 @@ std::string recipe_of(const Manifest& manifest);
 /// `report_json`: of the take, see report_json.h. Hash, length and software are left empty.
 Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report_json);
 
+/// The text of the file next to the take.
 std::string summary_json(const TakeSummary& summary);
 /// Parses the text of summary_json(). `file` appears in messages. Unknown keys are ignored.
 Result<TakeSummary> parse_summary_json(std::string_view json, const std::string& file);

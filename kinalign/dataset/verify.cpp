@@ -34,6 +34,9 @@ struct ToHash {
   std::uint64_t bytes = 0;
 };
 
+/// One check of a data set. The steps follow each other in run(). Takes are opened by a child
+/// process first, while there is only one thread; hashes are computed by several threads at the
+/// end.
 class Verifier {
  public:
   Verifier(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
@@ -47,6 +50,7 @@ class Verifier {
   Result<Verified> run() {
     takes_ = KA_TRY(scan_takes(folder_));
     check_catalogue();
+    // Summaries first: the later steps compare manifests and hashes with them.
     KA_TRY(check_summaries());
     for (const auto& [name, there] : takes_) check_take(name, there);
     KA_TRY(check_names());
@@ -57,6 +61,7 @@ class Verifier {
   }
 
  private:
+  // Adds a finding about a file below the data set's folder.
   void report(Severity severity, const std::string& file, std::string expected, std::string found,
               std::string repair = "") {
     out_.findings.push_back(
@@ -90,17 +95,20 @@ class Verifier {
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (!made[i]) {
         Error error = made[i].error();
+        // Messages name files below the data set's folder.
         error.file = path_of(names[i], TakeFile::take);
         out_.findings.push_back({Severity::error, std::move(error), "", ""});
       } else {
         compare_summary(names[i], *made[i]);
       }
+      // The rows are read in a child process, too, one take after the other.
       if (options_.deep && made[i]) KA_TRY(check_contents(names[i], made[i]->rate_hz));
       if (!go_on(progress_, "comparing", i + 1, names.size())) return Failure(interruption());
     }
     return {};
   }
 
+  // A take whose rows can't be read is an error of that take, unless the user stopped the check.
   Result<void> check_contents(const TakeName& name, double rate_hz) {
     const auto found = check_rows(files_, folder_, name, rate_hz);
     if (found) {
@@ -113,6 +121,7 @@ class Verifier {
     return {};
   }
 
+  // Compares the stored summary with the one that was just made of the take.
   void compare_summary(const TakeName& name, TakeSummary made) {
     const std::string file = path_of(name, TakeFile::summary);
     const std::string again = "remove this file; kinalign dataset build makes it again";
@@ -128,9 +137,11 @@ class Verifier {
              stored.error().found, again);
       return;
     }
+    // The hash is checked later, with all others; here it must not differ.
     made.sha256 = stored->sha256;
     std::error_code fault;
     made.bytes = std::filesystem::file_size(folder_ + "/" + path_of(name, TakeFile::take), fault);
+    // Everything in a summary follows from the take's bytes, so the texts must be equal.
     if (summary_json(made) != *text) {
       report(Severity::error, file, "the contents of the take", "other values", again);
     }
@@ -140,9 +151,11 @@ class Verifier {
     }
     hashes_.push_back({folder_ + "/" + path_of(name, TakeFile::take), stored->sha256,
                        path_of(name, TakeFile::take), stored->bytes});
+    // Only takes with a good summary are compared with their manifests.
     summaries_.emplace(name, *stored);
   }
 
+  // The take must exist, and dataset.toml must know its person and action.
   void check_take(const TakeName& name, const TakeFiles& there) {
     if (!there.take) {
       report(Severity::error,
@@ -161,6 +174,7 @@ class Verifier {
     if (there.manifest && summary != summaries_.end()) check_manifest(name, summary->second);
   }
 
+  // The manifest must still make the same take: with the same parameters, from the same files.
   void check_manifest(const TakeName& name, const TakeSummary& summary) {
     const std::string file = path_of(name, TakeFile::manifest), build = "kinalign dataset build";
     const auto manifest = take_manifest(files_, folder_, catalogue_, name);
@@ -177,6 +191,7 @@ class Verifier {
     }
   }
 
+  // Sizes are always compared. Raw files are hashed only in a deep check, since they may be large.
   void check_input(const std::string& manifest, const TakeInput& input,
                    const TakeSummary& summary) {
     const auto known = std::find_if(summary.inputs.begin(), summary.inputs.end(),
@@ -201,6 +216,7 @@ class Verifier {
     for (const std::string& name : KA_TRY(names_in_folder(folder_))) {
       const bool is_known =
           std::find(known_names.begin(), known_names.end(), name) != known_names.end();
+      // Hidden files belong to other programs, or to the index.
       if (is_known || name.starts_with('.')) continue;
       if (name == unfinished_rename_file) {
         report(Severity::error, name, "a finished rename", "a stopped rename",
@@ -209,6 +225,7 @@ class Verifier {
       }
       const std::string place = root + name, below = name + "/";
       std::error_code ignored;
+      // Only a folder with a valid id can hold takes.
       const bool is_person =
           name.starts_with("sub-") && is_label(name.substr(4)) && fs::is_directory(place, ignored);
       if (!is_person) {
@@ -234,9 +251,11 @@ class Verifier {
       return;
     }
     if (there->empty()) return;
+    // The raw files that some manifest names.
     std::set<std::string> named;
     for (const auto& [name, files] : takes_) {
       const auto inputs = raw_files_of(files_, folder_, name);
+      // Without this manifest it is not known which files it names.
       if (!inputs) return;
       for (const TakeInput& input : *inputs) {
         if (const auto place = place_in_sourcedata(folder_, input.path)) named.insert(*place);
@@ -248,12 +267,14 @@ class Verifier {
     }
     if (others.empty()) return;
     std::vector<std::string> first(others.begin(), others.end());
+    // A few names are enough to find the others.
     first.resize(std::min<std::size_t>(first.size(), 3));
     report(Severity::note, std::string(raw_files_folder), "only files that a manifest names",
            fmt::format("{} other files: {}{}", others.size(), fmt::join(first, ", "),
                        others.size() > first.size() ? ", ..." : ""));
   }
 
+  // Reads all files that were noted, in parallel. The lock covers progress and findings.
   Result<void> check_hashes() {
     std::uint64_t all = 0;
     for (const ToHash& one : hashes_) all += one.bytes;
@@ -265,6 +286,7 @@ class Verifier {
       std::uint64_t before = 0;
       const Progress part = [&](std::string_view, std::uint64_t so_far, std::uint64_t) {
         const std::lock_guard lock(mutex);
+        // Files progress at the same time, so each adds its own advance.
         done += so_far - before;
         before = so_far;
         is_stopped = is_stopped || !go_on(progress_, "hashing", done, all);
@@ -280,6 +302,7 @@ class Verifier {
                                          : "bytes with SHA-256 " + one.sha256.substr(0, 12) + "...",
              facts ? facts->sha256.substr(0, 12) + "..." : facts.error().found);
     });
+    // Takes are counted, whatever was found in them.
     out_.takes = takes_.size();
     return is_stopped ? Failure(interruption()) : Result<void>{};
   }

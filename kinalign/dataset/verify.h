@@ -11,11 +11,13 @@
 
 namespace kinalign {
 
+/// How thorough the check is. `jobs` changes only the time.
 struct VerifyOptions {
   std::size_t jobs = 1;
   bool deep = false;  // also every row of the takes (contents.h) and every byte of raw files
 };
 
+/// The outcome of a check that was not stopped.
 struct Verified {
   std::uint64_t takes = 0, bytes = 0;  // bytes of takes and, if deep, of raw files
   Findings findings;                   // by severity, then by place; paths below the folder

@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+// A standard deviation over fewer frames says nothing about a bone.
 constexpr std::size_t least_cells = 5;
 
 /// The lengths of a bone, m, in the frames in which both of its ends are valid.
@@ -30,6 +31,8 @@ std::vector<std::optional<double>> median_lengths(std::span<const Sequence> take
                                                   std::span<const Bone> bones) {
   std::vector<std::optional<double>> out(bones.size());
   for (std::size_t b = 0; b < bones.size(); ++b) {
+    // All stretches of a take are one sample: a bone has one length, and more frames make its
+    // median firmer.
     std::vector<double> all;
     for (const Sequence& sequence : take) {
       const auto lengths = lengths_of(sequence, sequence.truth, bones[b]);
@@ -48,6 +51,8 @@ std::optional<LengthMarks> length_marks(const Sequence& sequence, Prediction pre
   for (std::size_t b = 0; b < bones.size(); ++b) {
     const auto lengths = lengths_of(sequence, prediction, bones[b]);
     if (!given[b] || lengths.size() < least_cells) continue;
+    // The error is a mean over frames, so a bone that is seen often counts more. The constancy
+    // counts each bone once.
     for (const double length : lengths) error.add(std::abs(length - *given[b]));
     constancy.add(deviation(lengths));
   }

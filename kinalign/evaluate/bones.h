@@ -13,6 +13,8 @@ namespace kinalign {
 std::vector<std::optional<double>> median_lengths(std::span<const Sequence> take,
                                                   std::span<const Bone> bones);
 
+/// How well a prediction keeps its bones. The error needs known lengths; the constancy only
+/// compares a prediction with itself.
 struct LengthMarks {
   double error_m = 0.0;      // mean over all frames and bones of |length - given|
   double constancy_m = 0.0;  // mean over bones of the length's standard deviation

@@ -10,7 +10,8 @@ namespace kinalign {
 
 namespace {
 
-/// The lowest percentile of a foot's true height, m.
+/// The lowest percentile of a foot's true height, m. The minimum itself would follow a single
+/// outlier. The floor is found per foot, since ankles and toes stand at different heights.
 std::optional<double> floor_of(const Sequence& sequence, std::size_t foot) {
   std::vector<double> heights;
   for (std::size_t t = 0; t < sequence.frames(); ++t) {
@@ -34,6 +35,7 @@ std::vector<std::uint8_t> contacts(const Sequence& sequence, std::size_t foot, d
     const bool slow = (now - before).norm() * sequence.rate_hz < options.fastest_m_s;
     out[t] = slow && now.y() < floor_m + options.highest_m ? 1 : 0;
   }
+  // Short runs, of contact or not, are set to 0; runs without contact are 0 already.
   for (auto begin = out.begin(); begin != out.end();) {
     const auto end = std::find_if(begin, out.end(), [begin](auto c) { return c != *begin; });
     if (end - begin < static_cast<std::ptrdiff_t>(options.least_frames)) std::fill(begin, end, 0);
@@ -49,6 +51,7 @@ double skate(std::span<const double> places, std::size_t i, const Sequence& sequ
   return step.norm() * sequence.rate_hz;
 }
 
+/// The sums of both skates over the same frames, so that they can be compared.
 struct FootMeans {
   Mean skate, true_skate;
 
@@ -67,6 +70,8 @@ struct FootMeans {
 
 std::optional<FeetMarks> feet_marks(const Sequence& sequence, Prediction prediction,
                                     std::span<const std::size_t> feet,
+                                    // The truth decides where a foot stands; a prediction that
+                                    // lifts the foot can't avoid its marks.
                                     const ContactOptions& options) {
   assert(prediction.size() == sequence.truth.size());
   FootMeans means;

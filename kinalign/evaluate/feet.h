@@ -13,6 +13,8 @@ struct ContactOptions {
   std::size_t least_frames = 3;  // shorter contacts are ignored
 };
 
+/// Skate over all frames of contact. The truth skates a little, too, so its value is the mark that
+/// a method can reach.
 struct FeetMarks {
   std::size_t contacts = 0;  // frames in contact, summed over the feet
   double skate_m_s = 0.0;    // mean horizontal speed of predicted feet in contact

@@ -15,7 +15,9 @@ Vec3 mean_place(std::span<const double> places, const std::vector<std::size_t>& 
   return sum / static_cast<double>(cells.size());
 }
 
-/// Fits the prediction of one frame onto the truth and appends the remaining distances.
+/// Fits the prediction of one frame onto the truth and appends the remaining distances. Umeyama's
+/// closed form: the singular vectors of the cross-covariance give the rotation. The scale is the
+/// trace of the singular values, signed, divided by the prediction's spread.
 void append_fitted(const Sequence& sequence, Prediction prediction,
                    const std::vector<std::size_t>& cells, std::vector<double>& out) {
   const Vec3 from = mean_place(prediction, cells), to = mean_place(sequence.truth, cells);
@@ -30,6 +32,8 @@ void append_fitted(const Sequence& sequence, Prediction prediction,
   const Vec3& sizes = svd.singularValues();
   // All on one line: the rotation about that line is undefined.
   if (!(sizes[1] > 1e-9 * sizes[0])) return;
+  // The closest orthogonal matrix may be a reflection. Flipping the weakest axis makes it a
+  // rotation.
   const bool mirrored = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0;
   const Vec3 signs(1.0, 1.0, mirrored ? -1.0 : 1.0);
   const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
@@ -54,6 +58,8 @@ std::vector<double> distances(const Sequence& sequence, Prediction prediction) {
 
 std::vector<double> fitted_distances(const Sequence& sequence, Prediction prediction,
                                      std::size_t least_joints) {
+  // With fewer joints a similarity fit has almost as many unknowns (7) as the joints have
+  // coordinates.
   assert(prediction.size() == sequence.truth.size() && least_joints >= 4);
   std::vector<double> out;
   std::vector<std::size_t> cells;

@@ -13,9 +13,11 @@ namespace kinalign {
 
 namespace {
 
+// The protocol's units. The metrics below return metres.
 constexpr double cm = 0.01, mm = 0.001;
 constexpr std::size_t least_fitted_joints = 12;
 
+/// The limb bones as indices in the shared joints.
 std::array<Bone, limb_bones.size()> bones() {
   std::array<Bone, limb_bones.size()> out;
   for (std::size_t b = 0; b < out.size(); ++b) out[b] = {limb_bones[b].a, limb_bones[b].b};
@@ -30,6 +32,8 @@ std::optional<double> mean_cm(const std::vector<double>& distances) {
 
 }  // namespace
 
+/// All rows use these lengths, so that a method can't be right by changing its bones along with the
+/// motion.
 std::vector<std::optional<double>> limb_lengths(std::span<const Sequence> take) {
   return median_lengths(take, bones());
 }
@@ -44,6 +48,7 @@ ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
     out.bone_cm = lengths->error_m / cm;
     out.constancy_cm = lengths->constancy_m / cm;
   }
+  // A frame is the protocol's unit of time; the values are not divided by the step.
   out.acceleration_mm = acceleration_error(sequence, prediction).value_or(0.0) / mm;
   const Jitter third = jitter(sequence, prediction).value_or(Jitter{});
   out.jitter_mm = third.predicted / mm;
@@ -51,8 +56,11 @@ ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
   return out;
 }
 
+/// JIT divides the mean jitters of all repetitions. A mean of ratios would follow the repetitions
+/// that hardly move.
 ProtocolMeans protocol_row(std::span<const ProtocolMarks> repetitions) {
   Mean position, fitted, bone, constancy, acceleration, jitter, true_jitter;
+  // Absent measures are left out of their mean and don't count as 0.
   const auto add = [](Mean& mean, const std::optional<double>& value) {
     if (value) mean.add(*value);
   };

@@ -33,7 +33,8 @@ struct Bone {
   std::size_t a = 0, b = 0;
 };
 
-/// A running mean; absent if nothing was added.
+/// A running mean; absent if nothing was added. An absent mark stays visible in a table, whereas a
+/// 0 would look like a perfect one.
 class Mean {
  public:
   void add(double value) {

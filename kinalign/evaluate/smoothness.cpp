@@ -30,12 +30,13 @@ Vec3 third_difference(std::span<const double> places, std::size_t i, std::size_t
 }
 
 /// Speeds as distances between successive frames [T-1,J], m, minus each joint's mean over valid
-/// steps.
+/// steps. Without the mean removed, two speeds that are merely positive would correlate.
 struct Speeds {
   std::vector<double> values;
   std::vector<std::uint8_t> valid;
 };
 
+/// The steps are in the order of the cells: step i leads from cell i to the cell one frame later.
 Speeds centred_speeds(const Sequence& sequence, std::span<const double> places) {
   const std::size_t joints = sequence.joints;
   Speeds out;
@@ -77,6 +78,7 @@ std::optional<double> acceleration_error(const Sequence& sequence, Prediction pr
   assert(prediction.size() == sequence.truth.size());
   Mean mean;
   for (std::size_t i = 0; i < sequence.valid.size(); ++i) {
+    // Only complete windows count. A padded frame would add a jump that no method made.
     if (!valid_from(sequence, i, 3)) continue;
     const Vec3 apart = second_difference(prediction, i, sequence.joints) -
                        second_difference(sequence.truth, i, sequence.joints);
@@ -103,6 +105,7 @@ std::optional<double> lag_s(const Sequence& sequence, Prediction prediction,
   const Speeds predicted = centred_speeds(sequence, prediction);
   const Speeds truth = centred_speeds(sequence, sequence.truth);
   const auto most = static_cast<std::ptrdiff_t>(most_frames);
+  // A lag of one frame is `joints` cells, since the speeds of all joints stand in one array.
   const auto joints = static_cast<std::ptrdiff_t>(sequence.joints);
   std::vector<double> all;
   for (std::ptrdiff_t lag = -most; lag <= most; ++lag) {
@@ -112,8 +115,10 @@ std::optional<double> lag_s(const Sequence& sequence, Prediction prediction,
   for (std::size_t k = 1; k < all.size(); ++k) {
     if (all[k] > all[best]) best = k;
   }
+  // At the end of the range the true maximum may lie outside.
   if (best == 0 || best + 1 == all.size()) return std::nullopt;
   const double bend = all[best - 1] - 2.0 * all[best] + all[best + 1];
+  // The top of the parabola through the best correlation and its two neighbours, in frames.
   const double part = bend < 0.0 ? 0.5 * (all[best - 1] - all[best + 1]) / bend : 0.0;
   return (static_cast<double>(best) - static_cast<double>(most) + part) / sequence.rate_hz;
 }
@@ -123,6 +128,7 @@ std::optional<double> amplitude_ratio(const Sequence& sequence, Prediction predi
   assert(prediction.size() == sequence.truth.size() && root < sequence.joints);
   double predicted = 0.0, truth = 0.0;
   for (std::size_t j = 0; j < sequence.joints; ++j) {
+    // Distances from the root do not change with the heading, so only the pose counts.
     std::vector<double> far, true_far;
     for (std::size_t t = 0; t < sequence.frames(); ++t) {
       if (!sequence.has(t, j) || !sequence.has(t, root)) continue;

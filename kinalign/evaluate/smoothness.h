@@ -11,6 +11,8 @@ namespace kinalign {
 /// different rates must not be compared. Absent if no cell is valid in three successive frames.
 std::optional<double> acceleration_error(const Sequence& sequence, Prediction prediction);
 
+/// The roughness of both motions over the same frames. Human motion has jitter of its own, so a
+/// prediction is compared with the truth's and not with 0.
 struct Jitter {
   double predicted = 0.0, truth = 0.0;  // mean |third difference|, m/frame^3
   /// Below 0.7: over-smoothed; above 2: visibly shaky. Absent if the truth does not move.

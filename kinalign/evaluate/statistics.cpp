@@ -11,6 +11,7 @@ namespace kinalign {
 
 namespace {
 
+// Beyond this number of pairs the normal approximation is used, as the header says.
 constexpr std::size_t most_exact = 50;
 
 double mean_of(std::span<const double> values) {
@@ -27,6 +28,7 @@ std::vector<double> by_size(std::span<const double> differences) {
   return out;
 }
 
+/// The sums of Wilcoxon's ranks. The negative sum is all minus positive.
 struct RankSums {
   double positive = 0.0, all = 0.0;
   double ties = 0.0;  // sum of t^3 - t over groups of t equal sizes
@@ -51,7 +53,8 @@ RankSums rank_sums(const std::vector<double>& sorted) {
 }
 
 /// Twice the probability that a sum of ranks is at most `statistic`, if each rank 1 … n is included
-/// or not with equal probability.
+/// or not with equal probability. The distribution is built rank by rank: each rank shifts half of
+/// it.
 double exact_p(std::size_t n, double statistic) {
   std::vector<double> chances(n * (n + 1) / 2 + 1);
   chances[0] = 1.0;
@@ -64,6 +67,8 @@ double exact_p(std::size_t n, double statistic) {
   return std::min(1.0, 2.0 * std::accumulate(chances.begin(), chances.begin() + end, 0.0));
 }
 
+/// The two-sided p of the normal approximation. Ties make the variance smaller (Wilcoxon's
+/// correction).
 double normal_p(std::size_t pairs, double statistic, double ties) {
   const auto n = static_cast<double>(pairs);
   const double mean = n * (n + 1.0) / 4.0;
@@ -87,6 +92,7 @@ double quantile(std::vector<double> values, double q) {
   const double place = q * static_cast<double>(values.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(below);
+  // The next larger value is the smallest of those that nth_element left above the place.
   std::nth_element(values.begin(), at, values.end());
   const double share = place - static_cast<double>(below);
   if (share == 0.0) return *at;
@@ -104,6 +110,7 @@ double deviation(std::span<const double> values) {
 WilcoxonTest wilcoxon_signed_rank(std::span<const double> differences) {
   const std::vector<double> sorted = by_size(differences);
   const std::size_t n = sorted.size();
+  // If nothing differs, no test is possible: p stays 1.
   if (n == 0) return {};
   const RankSums sums = rank_sums(sorted);
   const double statistic = std::min(sums.positive, sums.all - sums.positive);
@@ -111,6 +118,8 @@ WilcoxonTest wilcoxon_signed_rank(std::span<const double> differences) {
   return {n, statistic, exact ? exact_p(n, statistic) : normal_p(n, statistic, sums.ties)};
 }
 
+/// The k-th smallest p is multiplied by the number of tests that remain. A corrected value is at
+/// most 1.
 std::vector<double> holm(std::span<const double> p) {
   std::vector<std::size_t> order(p.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -14,6 +14,7 @@ double quantile(std::vector<double> values, double q);
 /// The population's standard deviation (divides by n).
 double deviation(std::span<const double> values);
 
+/// A paired test that assumes no distribution: errors of methods are skewed, and people are few.
 struct WilcoxonTest {
   std::size_t pairs = 0;   // differences that are not 0
   double statistic = 0.0;  // the smaller sum of ranks
@@ -26,6 +27,7 @@ WilcoxonTest wilcoxon_signed_rank(std::span<const double> differences);
 /// Holm's correction (Scand. J. Stat. 6, 1979) of the p values of several tests; the order is kept.
 std::vector<double> holm(std::span<const double> p);
 
+/// A mean with the interval that contains it at the level of the options.
 struct MeanInterval {
   double mean = 0.0, low = 0.0, high = 0.0;
 };

@@ -54,12 +54,15 @@ TableNine table_nine(std::span<const double> truth, Prediction prediction, std::
 std::vector<double> own_root(std::span<const double> positions, std::size_t joints,
                              const OwnRootJoints& own) {
   std::vector<double> out(positions.size());
+  // The direction to the left is summed over hips and shoulders, so a twisted trunk gets a mean
+  // heading.
   for (std::size_t at = 0; at < positions.size() / 3; at += joints) {
     const Vec3 left = vec3(positions, at + own.hip_left) - vec3(positions, at + own.hip_right) +
                       vec3(positions, at + own.shoulder_left) -
                       vec3(positions, at + own.shoulder_right);
     const Quat turn(Eigen::AngleAxisd(std::atan2(left.z(), left.x()), Vec3::UnitY()));
     Vec3 root = vec3(positions, at + own.root);
+    // The height stays: only x and z are moved.
     root.y() = 0.0;
     for (std::size_t i = at; i < at + joints; ++i) {
       vec3(out, i) = turn * Vec3(vec3(positions, i) - root);

@@ -10,6 +10,8 @@
 
 namespace kinalign {
 
+/// The three columns, in the unit of the positions. They are kept although they judge badly,
+/// because the paper's table has no others.
 struct TableNine {
   double position = 0.0;  // E_p: mean square of a coordinate's error, unit^2
   double bone = 0.0;      // E_b: mean |length - true length|, unit

@@ -7,6 +7,7 @@ namespace kinalign {
 
 namespace {
 
+// Two metres in bins of a millimetre.
 constexpr std::size_t most_bins = 2000;
 
 }  // namespace
@@ -17,10 +18,12 @@ void RadiusMarks::add(double error_m, double radius_m) {
   sum_m += radius_m;
   const double last = most_bins - 1;
   const auto bin = static_cast<std::size_t>(std::clamp(1000.0 * error_m, 0.0, last));
+  // The histogram grows only as far as the largest error, so that a good method's marks stay small.
   if (errors.size() <= bin) errors.resize(bin + 1);
   ++errors[bin];
 }
 
+/// Shorter histograms are extended with zeros.
 void RadiusMarks::add(const RadiusMarks& other) {
   cells += other.cells;
   within += other.within;
@@ -37,6 +40,7 @@ double RadiusMarks::mean_radius_m() const {
   return cells == 0 ? 0.0 : sum_m / static_cast<double>(cells);
 }
 
+/// Counts up the histogram until as many errors are included as lie within the stated radii.
 double RadiusMarks::one_radius_m() const {
   std::size_t held = 0, bin = 0;
   while (bin < errors.size() && held < within) held += errors[bin++];

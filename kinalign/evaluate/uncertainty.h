@@ -10,7 +10,7 @@ namespace kinalign {
 
 /// A radius is stated for each cell and should contain a certain share of all errors. The stated
 /// radii are informative if they are smaller on average than the one common radius that contains as
-/// many errors.
+/// many errors. Sums of several takes may be added, since all members are counts or sums.
 struct RadiusMarks {
   std::size_t cells = 0, within = 0;  // within: the error is at most the stated radius
   double sum_m = 0.0;                 // sum of the stated radii

@@ -12,6 +12,8 @@ namespace kinalign {
 
 namespace {
 
+/// Ordered, so that a message begins with the names of its sender or port. survey.cpp finds the
+/// last message of each by this beginning.
 using Json = nlohmann::ordered_json;
 
 /// A count and its name in JSON.
@@ -21,6 +23,8 @@ struct NamedCount {
   std::uint64_t& (*in)(Counts&);
 };
 
+// The counts of a sender with their names in JSON. Writing, reading, subtraction and the schema use
+// this one list.
 constexpr std::array<NamedCount<SenderCounts>, 8> of_sender{
     {{"messages", [](SenderCounts& c) -> std::uint64_t& { return c.messages; }},
      {"bytes", [](SenderCounts& c) -> std::uint64_t& { return c.bytes; }},
@@ -50,6 +54,7 @@ std::string integers(const Named& named) {
   return properties;
 }
 
+/// `counts` is a copy, because the list gives references that may be written to.
 template <class Named, class Counts>
 void put(const Named& named, Counts counts, Json& json) {
   for (const auto& count : named) json[count.name] = count.in(counts);
@@ -67,6 +72,7 @@ Counts difference(const Named& named, Counts before, Counts now) {
   return out;
 }
 
+/// Files may be damaged or of another version, so a key of another type counts as absent.
 std::string text_at(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -142,18 +148,21 @@ McapSchema port_counts_schema() {
 
 PortCounts since(const PortCounts& before, const PortCounts& now) {
   PortCounts out = difference(of_port, before, now);
+  // Connections that were made before the take still carry its data.
   out.links = now.links;
   out.sifted = now.sifted;
   return out;
 }
 
 std::uint64_t strays(const PortCounts& counts, std::uint64_t lost) {
+  // Lost frames may have been dropped at the same buffer, so only the excess is surely foreign.
   return counts.sifted && counts.dropped > lost ? counts.dropped - lost : 0;
 }
 
 std::string to_json(const CountedPort& counted) {
   Json json{{"stream", counted.stream}};
   put(of_port, counted.counts, json);
+  // Only true is written: recordings made before this key have the same meaning without it.
   if (counted.counts.sifted) json["sifted"] = true;
   return line_of(json);
 }

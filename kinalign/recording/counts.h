@@ -32,6 +32,8 @@ constexpr bool are_many(std::uint64_t datagrams) { return datagrams >= 20; }
 /// Returns whether the sender uses another protocol. True if the protocol is decoded and none of
 /// many messages contained a frame, not even a late or duplicate one.
 bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCounts& counts);
+/// One message of /counts: a sender, identified by stream, address and node, and its counts so far
+/// in the take.
 struct CountedSender {
   std::string topic, stream, sender;  // topic: the channel of the sender's data
   std::string node;                   // the id of an inertial node, else empty
@@ -60,6 +62,7 @@ PortCounts since(const PortCounts& before, const PortCounts& now);
 /// The least number of foreign datagrams among the dropped ones of a sifted port. The others may be
 /// the `lost` frames of its nodes, dropped because the buffer was full.
 std::uint64_t strays(const PortCounts& counts, std::uint64_t lost);
+/// One message of /counts/ports: a device's port, or a port of marks, and its counts.
 struct CountedPort {
   std::string stream;
   PortCounts counts;

@@ -23,6 +23,7 @@ std::string text_of(const McapTexts& texts, const std::string& key) {
   return found == texts.end() ? std::string() : found->second;
 }
 
+/// The whole text must be the number: "12x" is damage.
 std::optional<std::int64_t> number_of(const McapTexts& texts, const std::string& key) {
   const std::string text = text_of(texts, key);
   std::int64_t number = 0;
@@ -53,6 +54,7 @@ std::optional<ClockPair> believable(HostTime raw, Time utc) {
   return ClockPair{raw, utc};
 }
 
+/// Part numbers stand in file names; the limit refuses damaged ones.
 bool is_part(std::int64_t number) { return 1 <= number && number <= 1'000'000; }
 
 /// Reads part numbers such as "1 3 4". Words that are not part numbers are left out.
@@ -70,8 +72,10 @@ std::set<int> parts_in(std::string_view text) {
 
 // The meaning of the flags of an exchange.
 constexpr std::uint32_t echoed = 1, clockless = 2;
+// A recorded number is 2^32 more than the request's; a larger one is damage.
 constexpr std::uint64_t most_frames = std::uint64_t{1} << 33U;  // nine years at 15 Hz
 
+/// The first 16 bytes are those of both kinds of exchange.
 std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags) {
   std::string out;
   append_little(boot, out);
@@ -82,6 +86,7 @@ std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags
 
 }  // namespace
 
+/// Every MCAP file begins so; the profile and the metadata tell a recording from others.
 bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_magic); }
 
 McapMetadata to_metadata(const RecordingFacts& facts) {
@@ -100,6 +105,8 @@ McapMetadata to_metadata(const RecordingFacts& facts) {
   return metadata;
 }
 
+/// The facts decide how all times of a file are read. A record with one wrong field is therefore
+/// refused as a whole.
 std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
   const McapTexts& texts = metadata.texts;
   const auto part = number_of(texts, "part"), raw = number_of(texts, "raw_ns"),
@@ -152,6 +159,8 @@ McapChannel to_channel(std::string topic, const RawChannel& raw) {
   return channel;
 }
 
+/// Channels of the recorder itself (marks, counts, clocks) have no `transport`, which tells them
+/// from devices.
 std::optional<RawChannel> to_raw(const McapChannel& channel) {
   const std::string stream = text_of(channel.metadata, "stream");
   if (stream.empty() || channel.metadata.count("transport") == 0) return std::nullopt;
@@ -183,6 +192,7 @@ std::optional<ClockPair> to_clock_pair(std::string_view json) {
     if (!object.is_object() || !object.contains(key) || !object[key].is_number_integer()) {
       return std::nullopt;
     }
+    // JSON numbers above INT64_MAX would wrap to negative times.
     if (object[key].is_number_unsigned() && object[key].get<std::uint64_t>() > INT64_MAX) {
       return std::nullopt;
     }
@@ -208,6 +218,7 @@ std::string to_json(const RecordedMark& recorded) {
   if (mark.latency) json["latency_ms"] = static_cast<double>(mark.latency->count()) / 1e6;
   if (!mark.id.empty()) json["id"] = mark.id;
   if (!recorded.sender.empty()) json["sender"] = recorded.sender;
+  // Texts of other programs may not be UTF-8; the broken bytes become U+FFFD.
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -252,6 +263,7 @@ std::optional<RecordedExchange> to_exchange(std::string_view bytes) {
   recorded.exchange.h_rx = take_stamp<HostTime>(from);
   const Exchange::Echo echo{take_stamp<NodeTime>(from), take_stamp<HostTime>(from)};
   if (flags == echoed) recorded.exchange.echo = echo;
+  // Bytes of another length or with an unknown flag are of another kind of exchange.
   if (!from.complete() || from.left() > 0 || (flags & ~echoed) != 0) return std::nullopt;
   const Exchange& e = recorded.exchange;
   const bool near = is_near(e.n_tx) && is_near(e.h_rx) && is_near(echo.n_rx) && is_near(echo.h_tx);

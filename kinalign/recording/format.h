@@ -22,6 +22,7 @@ namespace kinalign {
 /// Returns whether a file that begins with these bytes is an MCAP file.
 bool looks_like_recording(std::string_view head);
 
+// The profile in the MCAP header, and the name of the metadata record that identifies a recording.
 inline constexpr std::string_view recording_profile = "kinalign";
 inline constexpr std::string_view recording_metadata = "kinalign.recording";
 inline constexpr std::int64_t latest_log_time = 4'000'000'000'000'000'000;  // ns, the year 2096
@@ -124,7 +125,8 @@ struct RecordedMessage {
   bool is_exchange() const { return channel->protocol == exchange_encoding; }
 };
 
-/// The arrival of a message with this log time, ns UTC.
+/// The arrival of a message with this log time, ns UTC. A log time is the host's raw clock moved to
+/// UTC by one constant, so the raw clock is restored exactly.
 inline HostTime arrival_of(std::uint64_t log_time, Duration utc_minus_host) {
   return HostTime{Duration{static_cast<std::int64_t>(log_time)} - utc_minus_host};
 }

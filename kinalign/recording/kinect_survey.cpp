@@ -17,6 +17,7 @@ void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
   if (way == ways_.end()) return;
   messages_.clear();
   way->second.decoder.feed(octets(payload), messages_);
+  // A datagram never continues in the next one, so what is left of it is ended here.
   if (is_datagrams(way->second.raw.transport)) way->second.decoder.finish(messages_);
   for (const KinectMessage& message : messages_) {
     const auto* frame = std::get_if<KinectFrame>(&message);

@@ -15,6 +15,8 @@
 
 namespace kinalign {
 
+/// Follows the sessions of every sensor id. If two senders use one id at the same time, alignment
+/// can't tell their frames apart. Sums are small, so all frames of a recording can be examined.
 class KinectSurvey {
  public:
   /// Adds a channel. Channels of other devices than Kinects are ignored.

@@ -10,7 +10,9 @@
 
 namespace kinalign {
 
-/// A set of numbers for each channel, stored as ranges.
+/// A set of numbers for each channel, stored as ranges. Ranges of one channel neither overlap nor
+/// touch, so a complete recording needs one range for each channel. The end of a range is 64 bits
+/// wide, because one more than the last number may not fit into 32.
 class MessageNumbers {
  public:
   void add(const McapMessage& message);

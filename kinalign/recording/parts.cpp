@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::string_view suffix = ".mcap";
 
-/// "take" for "take.mcap" and for "take.part2.mcap".
+/// "take" for "take.mcap" and for "take.part2.mcap". Digits alone are no part: "walk2.mcap" keeps
+/// its name.
 std::string_view stem_of(std::string_view name) {
   if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
   constexpr std::string_view part = ".part";
@@ -36,6 +37,7 @@ Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::s
   InputFile file = KA_TRY(InputFile::open(files, path, page));
   McapReader reader;
   while (const auto record = KA_TRY(pull(reader, [&file] { return file.next(); }))) {
+    // Facts stand before the messages, so a long file need not be read.
     if (std::holds_alternative<McapMessage>(*record)) break;
     const auto* metadata = std::get_if<McapMetadata>(&*record);
     if (metadata == nullptr) continue;
@@ -44,7 +46,8 @@ Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::s
   return std::nullopt;
 }
 
-/// Returns whether two files are from the same run of the recorder.
+/// Returns whether two files are from the same run of the recorder. Both clocks at the start differ
+/// for any two runs, even on one host and with one name.
 bool is_same_recording(const std::optional<RecordingFacts>& a,
                        const std::optional<RecordingFacts>& b) {
   return a && b && a->first == b->first && a->host == b->host && a->anchor.raw == b->anchor.raw &&
@@ -61,6 +64,7 @@ std::set<std::string> folders_of(const std::string& path) {
   return folders;
 }
 
+/// Paths may differ in spelling or through links and still name one file.
 bool contains(const std::vector<std::string>& paths, const std::string& path) {
   return std::any_of(paths.begin(), paths.end(),
                      [&](const std::string& one) { return one == path || same_file(one, path); });
@@ -118,14 +122,19 @@ Result<RecordingParts> find_parts(FileSystem& files, const std::vector<std::stri
     known.push_back(path);
     RecordingPart part{path, KA_TRY(read_facts(files, path))};
     if (!parts.empty() && !is_same_recording(parts.front().facts, part.facts)) {
+      // Files that the user names together must belong together; siblings are only taken if they
+      // do.
       return Failure(is_no_part(part, parts));
     }
     parts.push_back(std::move(part));
   }
+  // Siblings are searched for the named files only, not for siblings again.
   const RecordingParts given = parts;
   for (const RecordingPart& one : given) {
     for (const std::string& path : siblings_of(one)) {
       auto facts = read_facts(files, path);
+      // A sibling that can't be read is reported by judge_parts(). Only a failing disk is an error,
+      // because data would be missing without notice.
       if (!facts && facts.error().kind == ErrorKind::unreadable_disk) return Failure(facts.error());
       if (!facts || !is_same_recording(*facts, one.facts) || contains(known, path)) continue;
       known.push_back(path);
@@ -140,6 +149,7 @@ Result<RecordingParts> find_parts(FileSystem& files, const std::vector<std::stri
   return parts;
 }
 
+/// The content is not examined: recover must not overwrite a damaged part either.
 std::vector<std::string> with_siblings(FileSystem& files, const std::vector<std::string>& named) {
   std::vector<std::string> all = named;
   for (const std::string& path : named) {
@@ -181,6 +191,7 @@ Findings judge_parts(FileSystem& files, const RecordingParts& parts, Severity se
   const char* join = "kinalign recover makes one file of all parts";
   const RecordingPart& front = parts.front();
   Findings findings;
+  // A file of another program stands alone and has no parts.
   const bool has_first = std::any_of(parts.begin(), parts.end(), [](const RecordingPart& one) {
     return !one.facts || one.facts->part == 1;
   });

@@ -13,6 +13,8 @@
 
 namespace kinalign {
 
+/// One file of a recording. `facts` are read from its beginning and prove to which recording it
+/// belongs.
 struct RecordingPart {
   std::string path;
   std::optional<RecordingFacts> facts{};  // absent: a file of another program, which stands alone

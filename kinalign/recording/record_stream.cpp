@@ -15,8 +15,10 @@ Result<RecordStream> RecordStream::open(FileSystem& files, const RecordingParts&
   stream.take_piece_ = std::move(take_piece);
   for (const RecordingPart& part : parts) {
     stream.parts_.push_back({KA_TRY(InputFile::open(files, part.path)), part.facts.has_value()});
+    // Progress counts the bytes of all files together.
     stream.total_ += stream.parts_.back().file.size();
   }
+  // With one part nothing can be repeated, so the pass that learns numbers is left out.
   if (parts.size() > 1) KA_TRY(stream.learn(files, parts));
   for (Part& part : stream.parts_) KA_TRY(stream.advance(part));
   return stream;
@@ -27,6 +29,7 @@ Result<void> RecordStream::learn(FileSystem& files, const RecordingParts& parts)
   for (std::size_t k = 0; k < parts.size(); ++k) {
     RecordStream alone = KA_TRY(open(files, {parts[k]}, progress_));
     while (const McapRecord* record = KA_TRY(alone.next())) {
+      // A definition or message without a checksum must not displace one with a checksum.
       if (alone.reader().unchecked()) continue;
       if (const auto* message = std::get_if<McapMessage>(record)) parts_[k].numbers.add(*message);
       const auto* schema = std::get_if<McapSchema>(record);
@@ -40,6 +43,7 @@ Result<void> RecordStream::learn(FileSystem& files, const RecordingParts& parts)
 
 Result<const McapRecord*> RecordStream::next() {
   for (;;) {
+    // The last record was handed out by pointer, so its part may advance only now.
     if (taken_) KA_TRY(advance(parts_[*taken_]));
     taken_ = first();
     if (!taken_) return nullptr;
@@ -58,6 +62,7 @@ Result<void> RecordStream::advance(Part& part) {
   };
   const auto* read = part.head ? std::get_if<McapMessage>(&*part.head) : nullptr;
   if (read != nullptr) {
+    // The numbers that the part has behind it. waits() asks only for those that are still to come.
     part.end[read->channel] = std::uint64_t{read->sequence} + 1;
     ++part.place;
   }
@@ -65,6 +70,7 @@ Result<void> RecordStream::advance(Part& part) {
   if (!part.reader.is_mcap()) {
     return Failure(Error{part.file.path(), 0, "an MCAP file", "another beginning"});
   }
+  // `place` counts within a chunk; at a new chunk it begins again.
   if (std::exchange(part.chunk, part.reader.at()) != part.reader.at()) part.place = 0;
   return {};
 }
@@ -78,6 +84,8 @@ std::optional<std::size_t> RecordStream::first() const {
     const Part& part = parts_[k];
     if (!part.head) continue;
     const auto* message = std::get_if<McapMessage>(&*part.head);
+    // Records without a time come first: they are definitions and metadata that later messages
+    // need.
     const std::tuple rank(part.reader.in_torn_chunk(), message != nullptr && waits(part, *message),
                           message == nullptr ? 0 : message->log_time);
     if (first && rank >= least) continue;
@@ -107,6 +115,7 @@ bool RecordStream::passes(Part& part) {
   if (const auto* channel = std::get_if<McapChannel>(&record)) {
     return !unchecked || !checked_.channels.contains(channel->id);
   }
+  // Parts repeat the metadata and attachments of the first file.
   if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
     return is_first("attachment " + attachment->name);
   }
@@ -132,6 +141,7 @@ bool RecordStream::is_first(const std::string& name) {
 bool RecordStream::passes(Part& part, const McapMessage& message) {
   constexpr std::uint32_t most_ahead = 1024;  // more messages of a device than a chunk holds
   const auto last = numbers_.last(message.channel);
+  // Files of other programs are not judged by numbers, because their numbers need not be unique.
   if (part.is_ours && numbers_.has(message)) {
     ++repeated_;
     return false;
@@ -141,6 +151,7 @@ bool RecordStream::passes(Part& part, const McapMessage& message) {
     ++part.impossible;
     return false;
   }
+  // Messages that fill a gap late are still given to the caller, and reported once.
   if (part.is_ours && last && message.sequence < *last) in_order_ = false;
   numbers_.add(message);
   ++part.passed;
@@ -152,6 +163,7 @@ std::uint64_t RecordStream::missing() const {
   const Part& part = parts_.front();
   // Other programs number their messages in other ways.
   const std::uint64_t by_number = part.is_ours ? numbers_.missing() : 0;
+  // The file's own statistics count messages that numbers can't know of: those at its very end.
   const bool is_counted =
       parts_.size() == 1 && part.reader.closed() && !part.reader.summary_spoilt();
   return is_counted && part.counted > part.passed ? std::max(by_number, part.counted - part.passed)
@@ -171,6 +183,7 @@ std::uint64_t RecordStream::skipped() const {
 }
 
 Ending RecordStream::ending() const {
+  // The last part decides, since only it may have the recording's end.
   return parts_.back().reader.closed() ? ending_ : std::max(ending_, Ending::torn);
 }
 

@@ -22,6 +22,9 @@
 
 namespace kinalign {
 
+/// Merges the parts record by record. Each part keeps one record in hand (`head`), and the next one
+/// of all parts is chosen by first(). Memory does not grow with the files, apart from ranges of
+/// numbers.
 class RecordStream {
  public:
   /// Receives each piece of a file, in the file's order, with the index of the part.
@@ -57,6 +60,7 @@ class RecordStream {
   Findings findings() const;
 
  private:
+  /// One file in the middle of being read.
   struct Part {
     InputFile file;
     bool is_ours = false;

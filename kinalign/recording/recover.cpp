@@ -21,7 +21,8 @@ namespace kinalign {
 
 namespace {
 
-/// The number of messages and their CRC-32, in order: channel, number, both times and payload.
+/// The number of messages and their CRC-32, in order: channel, number, both times and payload. It
+/// is made once while writing and once while reading again; both must be equal.
 struct Contents {
   std::uint64_t messages = 0;
   std::uint32_t crc = 0;
@@ -39,12 +40,15 @@ struct Contents {
   bool operator==(const Contents&) const = default;
 };
 
-/// Writes the records of a stream into the new file.
+/// Writes the records of a stream into the new file. Definitions are only remembered, and each
+/// chunk repeats those that its messages need. Metadata and attachments stand outside of chunks, so
+/// the open chunk is closed before them.
 class Copier {
  public:
   Copier(OutputFile& out, const RecordingParts& parts) : writer_(mcap_store(out)), parts_(parts) {}
 
   Result<void> take(const McapRecord& record) {
+    // A file whose header is damaged still gets one.
     if (!std::holds_alternative<McapHeader>(record)) KA_TRY(begin({}));
     return std::visit([this](const auto& one) { return add(one); }, record);
   }
@@ -91,6 +95,7 @@ class Copier {
     return writer_.write(attachment);
   }
   Result<void> add(const McapMessage& message) {
+    // A message whose channel has no definition can't be read by anybody, so it is only counted.
     const auto channel = channels_.find(message.channel);
     if (channel == channels_.end()) {
       ++nameless_;
@@ -104,6 +109,7 @@ class Copier {
     }
     chunk_.add(message);
     contents_.add(message);
+    // The recorder closes its chunks at the same size.
     constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
     return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
   }
@@ -120,6 +126,8 @@ class Copier {
       joined.insert(part.facts->part);
       joined.insert(part.facts->joined.begin(), part.facts->joined.end());
     }
+    // The joined file stands for all of these parts, so that none of them is read in addition to
+    // it.
     metadata.texts["part"] = std::to_string(*joined.begin());
     metadata.texts["joined"] = fmt::format("{}", fmt::join(joined, " "));
     return metadata;
@@ -175,6 +183,8 @@ Result<void> prove(const OutputFile& file, const Copier& copier, const Progress&
   while (const auto record = KA_TRY(pull(reader, next_piece))) {
     if (const auto* message = std::get_if<McapMessage>(&*record)) read.add(*message);
   }
+  // All three are needed: the index was reached, nothing was damaged, and the messages are the
+  // same.
   if (reader.closed() && reader.findings().empty() && read == copier.contents()) return {};
   return Failure(Error{file.path(), 0,
                        fmt::format("{} messages, read again", copier.contents().messages),
@@ -186,6 +196,8 @@ Result<void> prove(const OutputFile& file, const Copier& copier, const Progress&
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
+  // The names are checked first: a wrong `out` must not cost the reading of a long recording, nor a
+  // file.
   KA_TRY(check_names(files, paths, out));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   const RecordingParts parts = KA_TRY(find_parts(files, paths));
@@ -193,10 +205,12 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   Copier copier(file, parts);
   while (const McapRecord* record = KA_TRY(stream.next())) KA_TRY(copier.take(*record));
   const std::string& first = parts.front().path;
+  // A new file of nothing would look like a recovery.
   if (copier.is_empty()) {
     return Failure(Error{first, 0, "a recording of which anything can be read", "nothing"});
   }
   KA_TRY(copier.finish(stream.ending()));
+  // Until commit() the new file has a temporary name, so a failure here leaves nothing behind.
   KA_TRY(prove(file, copier, progress));
 
   Recovered done;

@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// The figures of one recovery. They describe the old files; the new file was read again and is
+/// complete.
 struct Recovered {
   std::uint64_t messages = 0;
   std::size_t channels = 0;  // with messages

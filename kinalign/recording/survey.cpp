@@ -28,6 +28,7 @@ std::uint32_t rotating_sensors(std::string_view payload) {
   return sensors;
 }
 
+// A limit on memory: a damaged or foreign file may name any number of senders.
 constexpr std::size_t most_counted = 4096;
 
 /// The part of a message on a channel of counts that identifies the counted sender or port. The
@@ -39,6 +40,7 @@ std::string_view counted(std::string_view json) {
 /// The last message of each sender or port.
 using LastCounts = std::map<std::string, std::string, std::less<>>;
 
+/// Messages that can't be decoded are left out; they are damaged.
 template <class Counted>
 std::vector<Counted> all_of(const LastCounts& last,
                             std::optional<Counted> (*decode)(std::string_view)) {
@@ -63,6 +65,8 @@ class RecordingSurveyor::State {
       channel.missing = stream.numbers().missing(id);
       survey_.channels.push_back(std::move(channel));
     }
+    // Topics sort by stream and node; the stable sort keeps channels of equal topic in the order of
+    // their ids.
     std::stable_sort(
         survey_.channels.begin(), survey_.channels.end(),
         [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
@@ -83,6 +87,7 @@ class RecordingSurveyor::State {
   /// definition is kept.
   void add(const McapChannel& channel) {
     const auto [known, is_new] = channels_.try_emplace(channel.id);
+    // A channel may have been created by a message before its definition; it then has no topic yet.
     if (!is_new && !known->second.channel.topic.empty()) return;
     known->second.channel = channel;
     const auto raw = to_raw(channel);
@@ -94,6 +99,7 @@ class RecordingSurveyor::State {
     if (const auto end = to_end(metadata)) survey_.end = end;
     if (survey_.facts) return;
     survey_.facts = to_facts(metadata);
+    // The anchor is the first of the pairs by which steps of the wall clock are found.
     if (survey_.facts) clock_.push_back(survey_.facts->anchor);
   }
   void add(const McapAttachment& attachment) {
@@ -122,6 +128,7 @@ class RecordingSurveyor::State {
       channel.sensors |= rotating_sensors(message.data);
     }
     kinects_.take(message.channel, message.data);
+    // Files of other programs may use the same topics with other contents.
     if (survey_.facts && channel.channel.message_encoding == "json") {
       add_own(channel.channel.topic, message);
     }
@@ -143,6 +150,7 @@ class RecordingSurveyor::State {
       ++survey_.more_marks;
     }
   }
+  // Counts grow within a take, so the last message of a sender says all.
   static void keep_last(std::string_view json, LastCounts& last) {
     const std::string_view who = counted(json);
     const auto known = last.find(who);
@@ -187,6 +195,7 @@ Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& p
 
 Result<bool> is_recording(FileSystem& files, const std::string& path) {
   const InputFile file = KA_TRY(InputFile::open(files, path));
+  // A file shorter than the magic is no MCAP file.
   std::array<char, mcap_magic.size()> head{};
   const std::size_t got = KA_TRY(file.read_at(0, head));
   return looks_like_recording(std::string_view(head.data(), got));

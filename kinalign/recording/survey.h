@@ -20,6 +20,8 @@
 
 namespace kinalign {
 
+/// One channel of the recording. Channels without messages are included, since a device that sent
+/// nothing is a fact, too.
 struct ChannelSurvey {
   McapChannel channel;
   std::uint64_t messages = 0, bytes = 0;  // bytes of payload
@@ -28,6 +30,8 @@ struct ChannelSurvey {
   std::uint32_t sensors = 0;  // sensors of a SlimeVR tracker with rotations, one bit each
 };
 
+/// All that `info` and `check` say of a recording. It is also the basis of the manifest that is
+/// made of it.
 struct RecordingSurvey {
   std::optional<RecordingFacts> facts;  // absent: not a recording of kinalign
   std::vector<ChannelSurvey> channels;  // sorted by topic

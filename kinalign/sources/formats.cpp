@@ -27,13 +27,16 @@ namespace kinalign {
 
 namespace {
 
+/// Everything that a reader needs to know of its file. Each later pass makes a new reader from it,
+/// so it is copied into the functions below.
 struct Source {
   FileSystem* files;
   StreamOptions options;
   StreamFile file;
 };
 
-/// A format with a reader of its own in this program.
+/// A format with a reader of its own in this program. `looks` sees the first bytes and the path. It
+/// must be sure: the first format that recognises a file gets it.
 struct Format {
   std::string_view name;
   bool (*looks)(std::string_view head, std::string_view path);
@@ -64,6 +67,8 @@ Result<std::vector<std::string>> ui_prmd_files(const Source& source) {
   return std::vector{KA_TRY(ui_prmd_angles_of(*source.files, source.file.path))};
 }
 
+/// UI-PRMD keeps positions and angles of one repetition in two files; the reader needs both. The
+/// file of positions is read as the stream, that of angles through `file`.
 Result<AnyReader> make_ui_prmd(const Source& source) {
   const std::string angles = KA_TRY(ui_prmd_angles_of(*source.files, source.file.path));
   auto file = std::make_shared<InputFile>(KA_TRY(InputFile::open(*source.files, angles)));
@@ -76,6 +81,7 @@ Result<AnyReader> make_ui_prmd(const Source& source) {
 bool is_bids(std::string_view, std::string_view path) { return named_as_bids_motion(path); }
 
 Result<std::vector<std::string>> bids_files(const Source& source) {
+  // A system that can't be read is an error here, before its sidecar files are listed as inputs.
   KA_TRY(read_bids_system(*source.files, source.file.path));
   return bids_sidecar_paths(*source.files, source.file.path);
 }
@@ -108,6 +114,8 @@ Result<AnyReader> make_mvnx(const Source& source) {
       Error{source.file.path, 0, "select part = segments or sensors", shown(part->second)});
 }
 
+// The order decides: formats that are known by content come before those that are known by name,
+// and all of them before the layouts.
 constexpr std::array<Format, 9> formats{{
     {"bvh", by_content<looks_like_bvh>,
      [](const Source& s) -> Result<AnyReader> {
@@ -143,6 +151,7 @@ constexpr std::array<Format, 9> formats{{
     {"bids", is_bids, make_bids, "kind", bids_files},
 }};
 
+/// The kind of a layout says whether its rows are points or nodes.
 Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& source) {
   if (layout.kind == TableKind::points) {
     return AnyReader(make_point_table_reader(layout, source.options, source.file.path));
@@ -151,6 +160,7 @@ Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& sou
       make_imu_table_reader(layout, source.options, source.file.path, source.file.node));
 }
 
+/// A declared layout reads one file and opens no other.
 FoundFormat table_format(TableLayout layout, const Source& source) {
   std::string name = layout.name;
   return {std::move(name),
@@ -173,7 +183,8 @@ Result<void> check_selection(const Format& format, const Source& source) {
   return {};
 }
 
-/// Makes each later pass fail if one of the further files has changed.
+/// Makes each later pass fail if one of the further files has changed. Only the main file is hashed
+/// while it is read, so the others are compared by their versions.
 FoundFormat watched(FoundFormat found) {
   std::vector<std::optional<FileVersion>> versions;
   for (const std::string& path : found.further_files) versions.push_back(version_of(path));
@@ -188,6 +199,7 @@ FoundFormat watched(FoundFormat found) {
 /// The format with its reader, its own survey and its further files, if it has any.
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
   KA_TRY(check_selection(format, source));
+  // `format` is a row of the constant table, so a reference to it stays valid.
   FoundFormat out{
       std::string(format.name), [&format, source] { return format.make(source); }, {}, {}};
   if (format.survey != nullptr) {
@@ -211,6 +223,7 @@ Result<Recognized> recognize(std::string_view head, std::string_view path) {
   for (const Format& format : formats) {
     if (format.looks(head, path)) return Recognized{&format};
   }
+  // A file of an export whose first row is broken still has the columns of its layout.
   std::optional<TableLayout> named;  // the first layout that knows the columns, if not the rows
   for (const std::string_view name : builtin_layout_names()) {
     TableLayout layout = KA_TRY(parse_layout(*builtin_layout(name), name));
@@ -220,6 +233,7 @@ Result<Recognized> recognize(std::string_view head, std::string_view path) {
   return Recognized{nullptr, std::move(named)};  // its reader reports the wrong row
 }
 
+/// The names for an error, in the order in which formats are tried.
 std::string known_formats() {
   std::string text;
   for (const std::string_view name : format_names()) {
@@ -242,11 +256,14 @@ Result<FoundFormat> named_format(const Source& source) {
                          "a layout's path (*.toml) or one of " + known_formats(),
                          "'" + shown(wanted) + "'"});
   }
+  // Far more than any layout needs; a file of data that was named by mistake is not read whole.
   constexpr std::size_t longest_layout = std::size_t{1} << 20;
   const auto version = version_of(wanted);
   const std::string text = KA_TRY(read_whole(*source.files, wanted, longest_layout));
   FoundFormat out = table_format(KA_TRY(parse_layout(text, wanted)), source);
   out.further_files.push_back(wanted);
+  // The file may have changed between its version and its text. The take would then name a layout
+  // that was not used.
   KA_TRY(unchanged(wanted, version));
   return watched(std::move(out));
 }
@@ -262,6 +279,8 @@ std::vector<std::string_view> format_names() {
   return names;
 }
 
+/// The user's choice comes before recognition, so that a file with an unusual beginning can be
+/// read.
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
                                 const StreamFile& file, std::string_view head) {
   const Source source{&files, options, file};
@@ -280,6 +299,7 @@ Result<FileKind> kind_of_file(FileSystem& files, const std::string& path) {
   if (looks_like_xdf(signature)) return FileKind::xdf;
   if (looks_like_hdf5(signature)) return FileKind::take;
   if (looks_like_model(signature)) return FileKind::model;
+  // A manifest is text without a signature, and a layout could take it for a table.
   if (path.ends_with(".toml")) return FileKind::manifest;
   const Recognized known = KA_TRY(recognize(KA_TRY(file.next()), path));
   return known.format != nullptr || known.layout ? FileKind::stream : FileKind::unknown;

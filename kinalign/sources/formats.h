@@ -22,6 +22,8 @@ using MakeReader = std::function<Result<AnyReader>()>;
 /// A first pass of the format's own, faster than reading every row.
 using SurveyClip = std::function<Result<ClipSurvey>(const Progress& progress)>;
 
+/// The reader that was chosen for one file. `make` and `survey` keep the file system and copies of
+/// the options; the file system must outlive them.
 struct FoundFormat {
   std::string name;  // "bvh", "trc", or the name of a layout
   MakeReader make;
@@ -45,7 +47,8 @@ enum class FileKind : std::uint8_t {
   unknown,  // also an empty file; a layout that the user names may read it as a stream
 };
 
-/// Reads the beginning of the file once. Fails if the file can't be opened or read.
+/// Reads the beginning of the file once. Fails if the file can't be opened or read. Signatures are
+/// tried first, then the ending .toml, then formats and layouts.
 Result<FileKind> kind_of_file(FileSystem& files, const std::string& path);
 
 /// The names that `layout` may have besides paths.

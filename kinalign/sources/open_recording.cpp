@@ -18,7 +18,8 @@ namespace kinalign {
 
 namespace {
 
-/// The clock by the stream's options: offset and drift begin at the first stamp.
+/// The clock by the stream's options: offset and drift begin at the first stamp. A file states no
+/// clock; the user does. One piece therefore describes it.
 TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   TimeModel model = options.clock == "shared" ? shared_clock() : TimeModel{};
   TimeModelPiece& piece = model.pieces.front();
@@ -29,14 +30,16 @@ TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   return model;
 }
 
-/// The clock that a recording states, moved by the user's offset.
+/// The clock that a recording states, moved by the user's offset. Its other options are refused
+/// (align/unused_options.h), since the recording knows better.
 TimeModel moved_by(TimeModel model, const StreamOptions& options) {
   const Duration by{std::llround(options.offset_ms * 1e6)};
   for (TimeModelPiece& piece : model.pieces) piece.offset += by;
   return model;
 }
 
-/// Sums up the progress of files that are read in parallel.
+/// Sums up the progress of files that are read in parallel. The lock also keeps the promise that
+/// progress is never called on two threads at once.
 class SharedProgress {
  public:
   SharedProgress(const Progress& progress, std::size_t parts)
@@ -47,6 +50,7 @@ class SharedProgress {
     return [this, i](std::string_view what, std::uint64_t done, std::uint64_t total) {
       const std::lock_guard lock(mutex_);
       parts_[i] = {done, total};
+      // Totals become known when files are opened, so the sum of totals grows at first.
       Part sum;
       for (const Part& each : parts_) {
         sum.done += each.done;
@@ -65,7 +69,7 @@ class SharedProgress {
   std::vector<Part> parts_;
 };
 
-/// A file of a stream.
+/// A file of a stream. The pointers lead into the manifest, which lives longer.
 struct NamedFile {
   const StreamOptions* options = nullptr;
   const StreamFile* file = nullptr;
@@ -74,7 +78,8 @@ struct NamedFile {
   std::string name() const { return options->name + (file->node.empty() ? "" : " " + file->node); }
 };
 
-/// A file with the options and paths as seen from the current folder.
+/// A file with the options and paths as seen from the current folder. The manifest itself is not
+/// changed: the take stores it as the user wrote it.
 struct PlacedFile {
   StreamOptions options;
   StreamFile file;
@@ -94,6 +99,7 @@ SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const Na
                            const StreamOptions& options) {
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
     std::string& name = out.stream.files[i].name;
+    // The order of the names is that of the paths: the stream's own file is first.
     if (i == 0) {
       name = named.remembered;
     } else if (out.paths[i] == options.layout) {
@@ -104,6 +110,7 @@ SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const Na
       name = remembered_sibling(named.remembered, out.paths[0], out.paths[i]);
     }
   }
+  // The files of the first node hold what all nodes share.
   if (named.file != &named.options->files.front()) {
     out.paths.resize(1);
     out.stream.files.resize(1);
@@ -113,6 +120,9 @@ SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const Na
   return out;
 }
 
+/// Opens a file that is no recording, or one that a layout reads as something else. Its version is
+/// taken before it is opened. A change during the first pass is then noticed by the passes after
+/// it.
 Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
                                const Progress& progress) {
   const PlacedFile place = place_of(folder, named);
@@ -137,6 +147,7 @@ Result<void> check_names(const std::vector<SurveyedFile>& opened) {
                              "'" + shown(facts.name) + "'"});
       }
       const auto [at, fresh] = seen.try_emplace(facts.name, Place{&each.paths[i], &facts});
+      // The same bytes under one name are no conflict: either file makes the same take.
       if (fresh || at->second.facts->sha256 == facts.sha256) continue;
       return Failure(Error{each.paths[i], 0,
                            "files that a take can tell apart by name (below the manifest's folder: "
@@ -161,6 +172,7 @@ Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFi
     if (!first || each.stream.name != options.name) continue;
     const std::int64_t shift = *options.start_ns - *first;
     const std::int64_t last = to_ns(each.stream.survey.last);
+    // Stamps far from 1970 could leave 64 bits when they are moved.
     if (std::abs(shift) > largest_stamp_ns ||
         last > largest_stamp_ns - std::max<std::int64_t>(0, shift)) {
       return Failure(Error{each.paths.front(), 0, "a stamp inside +-4e18 ns",
@@ -186,7 +198,8 @@ Result<void> check_texts(const Manifest& manifest) {
   return {};
 }
 
-/// The files of all streams, with their names in the take.
+/// The files of all streams, with their names in the take. Names depend on all paths together,
+/// since equal file names get their folders.
 Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams) {
   std::vector<std::string> paths;
   for (const StreamOptions& options : streams) {
@@ -213,13 +226,15 @@ struct Group {
   std::vector<std::size_t> named;  // indices of the files
 };
 
+/// Links are not followed: the same file under two names is read twice, which costs only time.
 std::filesystem::path normal_path(const std::string& path) {
   std::error_code fault;
   const auto whole = std::filesystem::absolute(path, fault);
   return fault ? std::filesystem::path(path) : whole.lexically_normal();
 }
 
-/// Streams without a layout that name one recording form a group, so that it is read once.
+/// Streams without a layout that name one recording form a group, so that it is read once. A layout
+/// states another reader, so such a file is opened by itself.
 std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
                              const std::vector<NamedFile>& named) {
   std::vector<Group> groups;
@@ -240,7 +255,8 @@ std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
   return groups;
 }
 
-/// Opens groups and stores the result of each file.
+/// Opens groups and stores the result of each file. Groups run in parallel; each writes only the
+/// results of its own files.
 struct Opening {
   FileSystem* files = nullptr;
   const std::string* folder = nullptr;
@@ -262,11 +278,13 @@ struct Opening {
       wanted.push_back(places.back().options);
       wanted.back().files = {places.back().file};
     }
+    // A source that the caller has opened already is used if it is this recording.
     const auto source =
         given && given->path() == group.path
             ? given
             : RecordingSource::open(*files, group.path, RecordingSource::Devices::heard, wanted,
                                     progress);
+    // If the recording can't be opened, each of its streams gets that error.
     for (std::size_t k = 0; k < group.named.size(); ++k) {
       const std::size_t i = group.named[k];
       opened[i] = source ? open_device(places[k], (*named)[i], *source, progress)
@@ -284,7 +302,8 @@ struct Opening {
   }
 };
 
-/// Opens all groups in parallel and returns the result of each file.
+/// Opens all groups in parallel and returns the result of each file. Failures stay at their files,
+/// so both callers can treat them as they need.
 std::vector<Result<SurveyedFile>> open_each(FileSystem& files, const std::string& folder,
                                             const std::vector<NamedFile>& named,
                                             const OpenWith& with) {
@@ -305,11 +324,13 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
   std::vector<SurveyedFile> out;
   out.reserve(opened.size());
   for (auto& one : opened) out.push_back(KA_TRY(std::move(one)));
+  // Only with all files open is the earliest stamp of a stream known.
   for (const StreamOptions& options : streams) KA_TRY(start_together(options, out));
   return out;
 }
 
-/// The recording of these files. Streams of one recording refer to it as a shared file.
+/// The recording of these files. Streams of one recording refer to it as a shared file, so that its
+/// findings and marks are reported once.
 Recording joined(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   Recording out{manifest.subject, manifest.action, {}, {}};
   std::vector<const RecordingSource*> sources;
@@ -335,6 +356,7 @@ Result<Recording> recording_of(const Manifest& manifest, std::vector<SurveyedFil
 
 }  // namespace
 
+/// Streams without a manifest are not stored in a take, so their names need not differ.
 Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOptions>& streams,
                                const OpenWith& with) {
   return joined({}, KA_TRY(open_all(files, "", streams, with)));
@@ -359,6 +381,7 @@ Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifes
     if (each[i]) {
       opened.push_back(*std::move(each[i]));
     } else if (is_interruption(each[i].error())) {
+      // An interruption concerns all files, so it ends the whole call.
       return Failure(each[i].error());
     } else {
       left_out.push_back(
@@ -373,6 +396,7 @@ Result<void> read_through(const Recording& recording, const Progress& progress) 
   std::vector<ReadNext> passes;
   std::uint64_t rows = 0, all = 0;
   for (const RecordedStream& stream : recording.streams) {
+    // Streams whose findings are known were read to their ends already.
     if (!stream.late_findings || *stream.late_findings) continue;
     all += stream.survey.samples;
     KA_TRY(std::visit(

@@ -15,6 +15,7 @@
 
 namespace kinalign {
 
+/// The way in which files are opened. None of it changes the result.
 struct OpenWith {
   Progress progress{};  // never called on two threads at once
   /// Threads to use. Files are read in parallel, which changes only the time needed.
@@ -34,6 +35,7 @@ Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  const std::string& folder, const OpenWith& with = {});
 
 /// The streams that could be opened, and a warning with the reason for each that could not.
+/// Programs that show or convert a recording use what there is.
 struct OpenedInPart {
   Recording recording;
   Findings left_out;

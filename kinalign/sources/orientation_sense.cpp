@@ -33,11 +33,14 @@ void OrientationSense::add(const ImuSamples& block) {
   for (std::size_t cell = 0; cell < block.valid.size(); ++cell) {
     Node& node = nodes_[cell % count];
     if (block.valid[cell] == 0) {
+      // After a missing sample the turn since the last one is not known.
       node.last.reset();
       continue;
     }
     Last now{to_ns(block.stamps[cell / count]), quat(block.orientation, cell), Vec3::Zero()};
     ++node.samples;
+    // At rest an accelerometer measures the support against gravity, which points up. The mean over
+    // a motion does, too.
     if (!block.acceleration.empty()) node.up += now.q * Vec3(vec3(block.acceleration, cell));
     if (!block.angular_velocity.empty()) {
       now.rate = vec3(block.angular_velocity, cell);
@@ -55,6 +58,7 @@ void OrientationSense::add_turn(Node& node, const Last& now) {
   const double seconds = 1e-9 * (static_cast<double>(now.t) - static_cast<double>(node.last->t));
   const Vec3 turn = rotation_vector(node.last->q.conjugate() * now.q);
   if (!(seconds > 0.0) || seconds > longest_s || turn.norm() > farthest_rad) return;
+  // The gyroscope's turn between two samples, by the mean of both rates.
   const Vec3 rate = 0.5 * (node.last->rate + now.rate), felt = rate * seconds;
   if (rate.norm() > quickest_rad_s) return;
   ++node.turns;
@@ -71,6 +75,7 @@ Findings OrientationSense::judge(const ImuHeader& header, const std::string& fil
     const Node& node = nodes_[s];
     const std::string name = s < header.node_names.size() ? shown(header.node_names[s]) : "";
     if (header.content.acceleration && header.content.gravity && node.samples >= enough_samples) {
+      // The angle between the mean acceleration in the world and +y.
       const double lean = std::atan2(std::hypot(node.up.x(), node.up.z()), node.up.y());
       const double lean_deg = lean * (180.0 / std::numbers::pi);
       if (lean_deg > most_lean_deg) {
@@ -81,7 +86,9 @@ Findings OrientationSense::judge(const ImuHeader& header, const std::string& fil
       }
     }
     const double least = node.times * least_turn_rad_s * least_turn_rad_s;
+    // Enough samples, and turns that are clearly above the bias: otherwise the likeness is noise.
     if (node.turns < enough_samples || node.felt < least) continue;
+    // The correlation of both turns: 1 for equal directions, whatever the scale.
     const double alike = node.both / std::sqrt(std::max(node.turned * node.felt, 1e-300));
     if (alike >= least_likeness) continue;
     out.push_back({Severity::warning,

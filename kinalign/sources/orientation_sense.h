@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// Sums over all samples of a stream, per node. Memory does not grow with the file. Blocks must be
+/// added in the order of the stream, since turns are measured between consecutive samples.
 class OrientationSense {
  public:
   void add(const ImuSamples& block);

@@ -35,7 +35,8 @@ ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
 
 using Version = std::optional<FileVersion>;
 
-/// A file in the middle of a pass.
+/// A file in the middle of a pass. All copies of a pass share one Reading, so they share its place
+/// in the file.
 template <class R>
 struct Reading {
   InputFile file;
@@ -44,9 +45,11 @@ struct Reading {
   bool ended = false;
 
   Result<bool> next(typename R::Frames& block) {
+    // A piece of a file may contain no complete row, but a pass never returns an empty block.
     block = {};
     while (block.size() == 0 && !ended) {
       const std::string_view piece = KA_TRY(file.next());
+      // Each piece is checked, because the file may change while it is read.
       KA_TRY(unchanged(file.path(), version));
       if (!piece.empty()) {
         KA_TRY(reader->feed(piece, block));
@@ -84,11 +87,13 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   typename R::Frames block;
   auto sizes = sizes_of(block);
   const auto take_block = [&] {
+    // The block is emptied after each piece, so that the survey needs little memory for any length.
     surveyor.add(block.stamps);
     sizes.add(block);
     block = {};
   };
   std::uint64_t bytes = 0;
+  // The first piece was read to find the format. It is the beginning of the same pass.
   std::string_view piece = head;
   while (!piece.empty()) {
     bytes += piece.size();
@@ -105,6 +110,7 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   RecordedStream out;
   out.name = job.options->name;
   out.format = format.name;
+  // The reader knows only now whether the file has stamps, and what its header says.
   out.counted = reader->counted;
   out.data =
       input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
@@ -130,7 +136,8 @@ Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
            "the true step may differ from the file's, or frames are missing"}};
 }
 
-/// The first pass of a format with its own survey, for skeletons.
+/// The first pass of a format with its own survey, for skeletons. A BVH has no stamps: they are
+/// counted by its step.
 Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path,
                                    const FoundFormat& format) {
   const ClipSurvey made = KA_TRY(format.survey(*job.progress));
@@ -144,6 +151,7 @@ Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path
   out.findings = made.findings;
   out.data =
       input_of(made.skeleton, passes_of<ClipReader>(*job.files, path, job.version, format.make));
+  // The clicks belong to the user's manifest, so the reader can't judge them.
   append(out.findings, judge_clicks(*job.options, out));
   return out;
 }
@@ -165,6 +173,8 @@ Passes<Frames> device_passes(DevicePasses<Frames> passes,
         reading->sizes.add(block);
         return true;
       }
+      // Several passes may end; the findings are the same for all of them, so the first ones are
+      // kept.
       if (*late) return false;
       Findings found = reading->pass.findings();
       append(found, reading->sizes.judge(header, path));
@@ -174,7 +184,7 @@ Passes<Frames> device_passes(DevicePasses<Frames> passes,
   };
 }
 
-/// Reads a stream to its end, so that its late findings are known.
+/// Reads a stream to its end, so that its late findings are known. The rows are dropped.
 template <class Frames>
 Result<void> read_through(const Passes<Frames>& passes) {
   const Pass<Frames> pass = KA_TRY(passes());
@@ -186,6 +196,7 @@ Result<void> read_through(const Passes<Frames>& passes) {
 
 }  // namespace
 
+/// The version of the file was taken by the caller before opening, so no change can hide between.
 Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) {
   InputFile file = KA_TRY(InputFile::open(*job.files, named.path));
   const std::string head(KA_TRY(file.next()));
@@ -200,6 +211,7 @@ Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) 
         [&](auto& any) { return survey(job, std::move(file), head, format, std::move(any)); },
         reader));
   }
+  // Files that the reader opens itself are inputs, too: the take stores their names and hashes.
   for (const std::string& further : format.further_files) {
     out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, "reading", *job.progress)));
     out.paths.push_back(further);
@@ -223,12 +235,14 @@ Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named
   stream.findings = std::move(made.findings);
   stream.late_findings = std::make_shared<std::optional<Findings>>();
   std::visit(
+      // One call for each kind of stream; passes and header are of the same kind.
       [&]<class Frames>(const DevicePasses<Frames>& passes) {
         const auto& header = std::get<typename DevicePass<Frames>::Header>(made.header);
         stream.data = input_of(
             header, device_passes<Frames>(passes, header, named.path, stream.late_findings));
       },
       made.passes);
+  // An empty stream has few reasons to be read later, but its findings say why it is empty.
   if (stream.survey.samples == 0) {
     KA_TRY(std::visit([](const auto& input) { return read_through(input.passes); }, stream.data));
   }

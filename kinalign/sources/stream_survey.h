@@ -16,6 +16,8 @@
 
 namespace kinalign {
 
+/// The job of surveying one file. The pointers belong to the caller and must be valid during the
+/// call; `files` as long as the stream.
 struct SurveyJob {
   FileSystem* files = nullptr;
   const StreamOptions* options = nullptr;  // with a layout's path that can be opened
@@ -23,6 +25,7 @@ struct SurveyJob {
   std::optional<FileVersion> version;  // the file's, before it was opened
 };
 
+/// A stream that was surveyed, and what its caller needs to name its files and to set its clock.
 struct SurveyedFile {
   RecordedStream stream;           // its files have only their names
   std::vector<std::string> paths;  // paths of these files; the stream's own first

@@ -32,7 +32,8 @@ double times_too_large(double size_m) {
 
 }  // namespace
 
-/// Counts zeros of a joint that was far from zero before or after: such zeros mark a lost joint.
+/// Counts zeros of a joint that was far from zero before or after: such zeros mark a lost joint. A
+/// joint that moves to zero in small steps is really there.
 void PointSizes::Seen::add(const Vec3& at) {
   if (at.isZero(0.0)) {
     ++now_at_zero;
@@ -52,10 +53,12 @@ void PointSizes::add(const PointFrames& block) {
   all_frames_ += block.size();
   joints_.resize(joints);
   for (std::size_t t = 0; t < block.size(); ++t) {
+    // An axis-aligned box is enough: its diagonal is between the body's size and 1.7 times that.
     Eigen::AlignedBox3d box;
     std::uint64_t seen = 0;
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
       if (block.state[cell] == Tracking::missing) continue;
+      // Inferred points count as seen: the device gave them a place.
       ++(block.state[cell] == Tracking::tracked ? tracked_ : inferred_);
       const Vec3 at = vec3(block.positions, cell);
       joints_[cell - t * joints].add(at);
@@ -73,6 +76,7 @@ void PointSizes::add(const PointFrames& block) {
 }
 
 Findings PointSizes::judge(const PointHeader& header, const std::string& file) const {
+  // With so few points nothing else can be judged.
   if (all_frames_ >= enough && 10 * seen_frames_ < all_frames_) {
     return {{Severity::warning,
              Error{file, 0, "frames with a point in them, one in ten at least",
@@ -85,7 +89,7 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
   return out;
 }
 
-/// Findings about points that were never tracked or never seen.
+/// Findings about points that were never tracked or never seen. Both are legal but rarely intended.
 Findings PointSizes::judge_seen(const PointHeader& header, const std::string& file) const {
   Findings out;
   if (inferred_ >= enough && tracked_ == 0) {
@@ -119,12 +123,14 @@ Findings PointSizes::judge_seen(const PointHeader& header, const std::string& fi
 /// each other can both be the origin.
 Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
   Findings out;
+  // Joints that were seen, but at zero only. One of them may be the file's origin.
   const auto stays = std::count_if(joints_.begin(), joints_.end(),
                                    [](const Seen& j) { return j.seen() && !j.elsewhere; });
   std::uint64_t at_zero = 0;
   std::string first;
   for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
     const Seen& joint = joints_[j];
+    // Several joints that stay at zero can't all be the origin, so they were never seen.
     const bool never_seen = !joint.elsewhere && stays > 1;
     const std::uint64_t zeros = never_seen ? joint.now_at_zero : joint.lost();
     if (at_zero == 0 && zeros > 0) first = shown(header.joint_names[j]);
@@ -137,6 +143,7 @@ Findings PointSizes::judge_marks(const PointHeader& header, const std::string& f
                    "read as places, as they stand there",
                    "missing_point = [0, 0, 0] in a layout of the file, where that means not seen"});
   }
+  // If most frames are too wide, the unit is wrong instead, and judge_unit() says so.
   if (far_.count > 0 && far_.count <= person_.count) {
     out.push_back({Severity::warning,
                    Error{file, 0, "the points of a frame within 20 m",
@@ -153,6 +160,7 @@ Findings PointSizes::judge_marks(const PointHeader& header, const std::string& f
 Findings PointSizes::judge_unit(const std::string& file) const {
   const Frames& most = far_.count > person_.count ? far_ : person_;
   if (far_.count + person_.count < enough) return {};
+  // The mean diagonal of the larger group stands for the person's size.
   const double size = most.diagonals_m / static_cast<double>(most.count);
   if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return {};
   const std::string found =
@@ -183,6 +191,7 @@ void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, Nor
   }
 }
 
+/// The quantities are summed by length; the orientations are judged against both.
 void ImuSizes::add(const ImuSamples& block) {
   samples_ += block.valid.size();
   valid_ += static_cast<std::uint64_t>(std::count(block.valid.begin(), block.valid.end(), 1));
@@ -194,6 +203,7 @@ void ImuSizes::add(const ImuSamples& block) {
 Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const {
   const bool gravity = header.content.gravity;
   Findings out;
+  // All findings of units have the same effect: values are used as they are in the file.
   const auto find = [&](const char* expected, const std::string& found, const char* advice) {
     out.push_back(
         {Severity::warning, Error{file, 0, expected, found}, "read as they stand there", advice});

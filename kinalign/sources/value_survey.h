@@ -15,6 +15,8 @@
 
 namespace kinalign {
 
+/// Sums over the points of a stream; memory does not grow with the file. Frames whose points span
+/// more than 20 m are counted apart, since one number that means "not seen" would spoil a mean.
 class PointSizes {
  public:
   void add(const PointFrames& block);
@@ -52,6 +54,8 @@ class PointSizes {
   std::vector<Seen> joints_;
 };
 
+/// Sums over the samples of all nodes of a stream. Only lengths of vectors are kept, because they
+/// do not depend on how a node is worn.
 class ImuSizes {
  public:
   void add(const ImuSamples& block);

@@ -21,6 +21,7 @@ bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Port 0 is allowed: the system then chooses a free one.
 Result<std::int64_t> parse_port(const std::string& text) {
   std::int64_t port = -1;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
@@ -43,6 +44,7 @@ bool is_ip_address(const std::string& text) {
          ::inet_pton(AF_INET6, text.substr(0, text.find('%')).c_str(), &room) == 1;
 }
 
+/// True if this machine opens the connection; otherwise it waits for the device.
 bool connects(const DeviceOptions& device) {
   return find_transport(device.transport) == Transport::tcp;
 }
@@ -50,6 +52,7 @@ bool connects(const DeviceOptions& device) {
 /// Fails if the device can't be reached and can't reach this machine.
 Result<void> check_place(const DeviceOptions& device, const ProtocolRow& row) {
   const auto transport = find_transport(device.transport);
+  // A protocol that has one transport is never recorded over another: no packet would arrive.
   if (transport && !may_come_over(row, *transport)) {
     return wrong(device,
                  "transport " + std::string(name_of(row.transports.front())) +
@@ -67,6 +70,7 @@ Result<void> check_place(const DeviceOptions& device, const ProtocolRow& row) {
   return {};
 }
 
+/// True for the addresses that stand for every interface of this machine, IPv4 or IPv6.
 bool is_every(const std::string& address) {
   return address.empty() || address == "0.0.0.0" || address == "::";
 }
@@ -76,6 +80,7 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   if (other.name == device.name) {
     return wrong(device, "a different name for each device", device.name + " twice");
   }
+  // One device stands for all nodes, which differ by their ids.
   const auto protocol = find_protocol(device.protocol);
   if (protocol && row_of(*protocol).has_node_ids && other.protocol == device.protocol) {
     return wrong(device, "one device for all nodes", "a second one, " + other.name);
@@ -83,6 +88,7 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   const bool serves = !connects(device);  // an address left out means every one
   const bool same_place = other.address == device.address ||
                           (serves && (is_every(device.address) || is_every(other.address)));
+  // A free port (0) never collides. The same number over UDP and TCP is two ports.
   const bool same_port = device.port != 0 && other.port == device.port &&
                          other.transport == device.transport && same_place;
   if (!same_port) return {};
@@ -103,6 +109,7 @@ Result<void> check_places(const DeviceOptions& device) {
       return wrong(device, "a place of its own for each node",
                    shown(place) + " of nodes " + other->second + " and " + id);
     }
+    // A place may be a number only if it is the node's own id.
     if (place != id && is_number(place)) {
       return wrong(device, "the name of a place, such as waist: a number may be another node's id",
                    shown(place) + " of node " + id);
@@ -125,6 +132,7 @@ Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   for (const auto& [id, place] : device.nodes) {
     std::uint32_t number = 0;
     const auto [end, fault] = std::from_chars(id.data(), id.data() + id.size(), number);
+    // The text must be the number's usual form: "07" and "7" would be one node under two keys.
     if (fault != std::errc() || end != id.data() + id.size() || std::to_string(number) != id) {
       return wrong(device, "a node's id, a whole number, as each key of nodes", shown(id));
     }
@@ -184,6 +192,7 @@ void come_from(Lab& lab, const DeviceOptions& stated) {
 }
 
 Result<void> validate(const Lab& lab) {
+  // Each device is compared with the earlier ones only, so a pair gives one error.
   for (std::size_t i = 0; i < lab.devices.size(); ++i) {
     const DeviceOptions& device = lab.devices[i];
     KA_TRY(check_stream_name(device.name));
@@ -203,6 +212,7 @@ double nominal_rate_hz(const DeviceOptions& device) {
   return protocol ? row_of(*protocol).usual_rate_hz : 0.0;
 }
 
+/// The options are listed once; flags, TOML and help are made from this list.
 Fields describe(DeviceOptions& o) {
   return {
       {"protocol", "protocol of the device", &o.protocol, -unlimited, unlimited, protocol_names()},

@@ -28,11 +28,14 @@ struct DeviceOptions {
   std::map<std::string, std::string> nodes;  // for nodes: their places by id: "7": "waist"
 };
 
+/// The options of recording that concern all devices together.
 struct RecordOptions {
   double pre_roll_s = 5.0;           // seconds kept in memory before a take
   std::string compression = "zstd";  // or none
 };
 
+/// One lab.toml, with the flags of `kinalign record` applied. Any combination can be built;
+/// validate() says which ones can be recorded.
 struct Lab {
   std::vector<DeviceOptions> devices;
   RecordOptions record;
@@ -49,7 +52,8 @@ void come_from(Lab& lab, const DeviceOptions& stated);
 /// Fails if an option is missing or has no meaning, or if two devices have one name or one port.
 Result<void> validate(const Lab& lab);
 
-/// The rate that the device should send at, frames a second; 0: not known.
+/// The rate that the device should send at, frames a second; 0: not known. A device may state its
+/// own rate; else it has the usual one of its protocol.
 double nominal_rate_hz(const DeviceOptions& device);
 
 /// Names, meanings and ranges of the options, for flags, TOML and --help.

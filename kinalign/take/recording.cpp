@@ -13,6 +13,7 @@ namespace kinalign {
 
 namespace {
 
+/// Streams in memory get the same survey as files, so alignment does not differ.
 StampSurvey survey(const std::vector<Time>& stamps) {
   StampSurveyor surveyor;
   surveyor.add(stamps);
@@ -22,6 +23,7 @@ StampSurvey survey(const std::vector<Time>& stamps) {
 /// Passes over frames in memory; each pass has all frames in one block.
 template <class Frames>
 Passes<Frames> from_memory(Frames frames) {
+  // All passes share one copy of the frames.
   return [all = std::make_shared<const Frames>(std::move(frames))]() -> Result<Pass<Frames>> {
     return Pass<Frames>([all, done = false](Frames& block) mutable -> Result<bool> {
       if (done || all->stamps.empty()) return false;
@@ -54,6 +56,7 @@ Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last)
 
 std::string stream_label(const RecordedStream& s) {
   const auto* imu = std::get_if<ImuInput>(&s.data);
+  // Several nodes in one stream have no single name; the stream's own name is then the label.
   const bool one = imu != nullptr && imu->node_names.size() == 1;
   return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
 }
@@ -71,6 +74,8 @@ Findings all_findings(const RecordedStream& stream) {
 
 const SharedFile* newly_read_file(const Recording& recording, std::size_t stream) {
   const auto file = recording.streams[stream].shared_file;
+  // Only the streams before this one are searched. A file's marks and findings are therefore
+  // reported once, for its first stream.
   const auto begin = recording.streams.begin();
   const bool is_known = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(stream),
                                     [&](const RecordedStream& s) { return s.shared_file == file; });
@@ -79,6 +84,8 @@ const SharedFile* newly_read_file(const Recording& recording, std::size_t stream
 
 Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
                                const std::function<Result<void>()>& go) {
+  // The pass that has reached the earliest stamp stands first. A pass that has ended is not put
+  // back. Passes that have read nothing start first, in their order.
   std::set<std::pair<std::int64_t, std::size_t>> reached;  // stamp, and index of its pass
   for (std::size_t i = 0; i < passes.size(); ++i) reached.emplace(INT64_MIN, i);
   while (!reached.empty()) {

@@ -30,6 +30,8 @@ using Pass = std::function<Result<bool>(Frames&)>;
 template <class Frames>
 using Passes = std::function<Result<Pass<Frames>>()>;
 
+/// The content of a stream by its kind. `passes` may be called as often as needed; each pass begins
+/// at the first row.
 struct ClipInput {
   Skeleton skeleton;
   Passes<ClipFrames> passes;
@@ -72,6 +74,8 @@ struct SharedFile {
   std::vector<TakeMark> marks;  // in the order of their arrival
 };
 
+/// One stream of a recording, as the aligner sees it. It holds facts about all samples; the values
+/// come from the passes of `data`.
 struct RecordedStream {
   std::string name;    // the take's group: "mocap", "kinect"; streams of nodes may share one, "imu"
   std::string format;  // the format read: "bvh", a layout's name; empty: memory
@@ -106,6 +110,8 @@ std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& op
 /// The reader's findings, then the late ones that are known.
 Findings all_findings(const RecordedStream& stream);
 
+/// All streams of one motion. The first stream is the reference unless the manifest names another
+/// one. The take's groups are in the order of the streams.
 struct Recording {
   std::string subject, action;  // empty if not known
   std::vector<RecordedStream> streams;
@@ -119,7 +125,8 @@ const SharedFile* newly_read_file(const Recording& recording, std::size_t stream
 /// its last sample on the take's axis, ns; absent after the last block.
 using ReadNext = std::function<Result<std::optional<std::int64_t>>()>;
 
-/// Continues `pass` block by block and counts its rows. `clock` and `rows` must outlive it.
+/// Continues `pass` block by block and counts its rows. `clock` and `rows` must outlive it. The
+/// values are dropped; the pass is read for what its reader finds on the way.
 template <class Frames>
 ReadNext read_on(Pass<Frames> pass, const TimeModel& clock, std::uint64_t& rows) {
   return [pass = std::move(pass), &clock, &rows]() -> Result<std::optional<std::int64_t>> {

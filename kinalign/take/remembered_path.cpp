@@ -11,7 +11,8 @@ namespace kinalign {
 
 namespace {
 
-/// The path's last `count` parts without "..". All parts if there are no more.
+/// The path's last `count` parts without "..". All parts if there are no more. Paths from the root
+/// of the disk lose their first slash, so that no name of a take begins with one.
 std::string tail(const std::string& path, std::size_t count) {
   std::vector<std::string> parts;
   for (const auto& part : std::filesystem::path(path).lexically_normal().relative_path()) {
@@ -30,7 +31,8 @@ bool may_be_one(const std::string& a, const std::string& b) {
   return all.ends_with(other) || other.ends_with(all);
 }
 
-/// True if the path is absolute or leads up, out of the manifest's folder.
+/// True if the path is absolute or leads up, out of the manifest's folder. Such a path says
+/// something about one machine and is not stored.
 bool leads_out(const std::string& normal) {
   return normal.starts_with('/') || normal == ".." || normal.starts_with("../");
 }
@@ -58,6 +60,7 @@ std::map<std::string, std::string> remembered_paths(const std::vector<std::strin
   for (const std::string& path : paths) {
     const std::string name = remembered_path(path), own = normal(path);
     out[path] = name;
+    // A file below the manifest's folder keeps its path, which is unique there.
     if (!leads_out(own)) continue;
     const auto is_shared = [&](std::size_t count) {
       const auto& all = by_name[name];
@@ -65,6 +68,7 @@ std::map<std::string, std::string> remembered_paths(const std::vector<std::strin
         return !may_be_one(other, own) && tail(other, count) == tail(own, count);
       });
     };
+    // Deeper paths than this stay ambiguous; the take then has two files of one name.
     constexpr std::size_t most = 32;
     for (std::size_t count = 1; count <= most; ++count) {
       out[path] = count == 1 ? name : tail(path, count);
@@ -78,12 +82,14 @@ std::string remembered_sibling(const std::string& name, const std::string& path,
                                const std::string& other) {
   const auto step = std::filesystem::path(other).lexically_normal().lexically_relative(
       std::filesystem::path(path).lexically_normal().parent_path());
+  // Paths without a common root have no relative step: only the file's name is left.
   if (step.empty()) return std::string(file_name(other));
   return remembered_path((std::filesystem::path(name).parent_path() / step).string());
 }
 
 std::string remembered_path(const std::string& folder, const std::string& given,
                             const std::string& path) {
+  // A file that was found elsewhere than below the manifest's folder is named without its folders.
   const bool below = !given.starts_with('/') && path.starts_with(folder);
   return below ? remembered_path(path.substr(folder.size())) : std::string(file_name(path));
 }

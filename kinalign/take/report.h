@@ -33,6 +33,8 @@ struct SpaceReport {
   std::vector<JointResidual> joints;     // worst first
 };
 
+/// The quality of one stream. Several streams of nodes may share the name of a group; `nodes` tells
+/// them apart.
 struct StreamReport {
   std::string stream;              // the take's group
   std::vector<std::string> nodes;  // nodes of the group that this stream measures
@@ -56,6 +58,8 @@ struct StreamReport {
   std::uint64_t unsure = 0;  // valid, of unknown time, while the interval of others is known
 };
 
+/// The report of one alignment. The take stores it as JSON. Lines, pages and verdicts are made from
+/// it, so the rows need not be read again.
 struct AlignmentReport {
   std::uint64_t frames = 0;
   Time begin{}, end{};   // the grid's

@@ -9,7 +9,9 @@
 namespace kinalign {
 
 /// Calls use(name, of) for each array of Rows; of(rows) gives the array. Arrays that a stream
-/// leaves empty are included.
+/// leaves empty are included. Readers, writers and joins of takes all go through this list, so an
+/// array that is added here is in all of them. SampleDistance::over_loss is absent, since no file
+/// stores it.
 template <class Rows, class Use>
 void for_each_column(Use&& use) {
   if constexpr (std::is_same_v<Rows, ImuRows>) {

@@ -52,6 +52,7 @@ struct ImuRows {
   SampleDistance distance;               // [n,S]
 };
 
+/// The constant part of a group, by its kind: the names of the columns of its rows.
 struct ClipGroup {
   Skeleton skeleton;
 };
@@ -79,6 +80,8 @@ struct TakeGroup {
   std::string space = "take";
 };
 
+/// The facts about a take that are known before its first row. Writers need `frames` in advance,
+/// because they create arrays of their final size.
 struct TakeHeader {
   std::string subject, action;
   std::uint64_t frames = 0;
@@ -96,7 +99,7 @@ struct TakeSlab {
 /// Appends the rows of `slab` to `all`, which has the same groups or is still empty.
 void append_rows(TakeSlab& all, const TakeSlab& slab);
 
-/// A whole take in memory.
+/// A whole take in memory, for tests and small jobs. Programs pass slabs instead.
 struct Take {
   TakeHeader header;
   TakeSlab all;

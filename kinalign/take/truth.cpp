@@ -10,6 +10,7 @@ namespace kinalign {
 std::optional<Time> true_time(const TrueClock& clock, Time stamp) {
   const auto& stamps = clock.stamps_ns;
   if (stamps.size() < 2) return std::nullopt;
+  // The search leaves out both ends, so stamps outside use the first or last two pairs.
   const auto behind = std::upper_bound(stamps.begin() + 1, stamps.end() - 1, to_ns(stamp));
   const auto i = static_cast<std::size_t>(behind - stamps.begin()) - 1;
   const std::int64_t step = stamps[i + 1] - stamps[i];

@@ -15,7 +15,8 @@ namespace kinalign {
 /// The limit of stamps and times, of either sign: until 2033; sums of a few fit into 64 bits.
 inline constexpr std::int64_t most_true_ns = 2'000'000'000'000'000'000;
 
-/// The stamps of a device, rising, and their true times; linear in between.
+/// The stamps of a device, rising, and their true times; linear in between. Clocks drift slowly, so
+/// a few pairs describe a long recording.
 struct TrueClock {
   std::vector<std::int64_t> stamps_ns;  // stamps in the device's file or packets
   std::vector<std::int64_t> times_ns;   // UTC
@@ -25,6 +26,8 @@ struct TrueClock {
 /// are known.
 std::optional<Time> true_time(const TrueClock& clock, Time stamp);
 
+/// The suit's stream. Its file has no stamps of its own, so the clicks on record and stop are part
+/// of the truth.
 struct TrueMocap {
   std::string stream;
   double rate_hz = 0.0;
@@ -34,6 +37,7 @@ struct TrueMocap {
   std::int64_t frame_ns(std::uint64_t frame) const;
 };
 
+/// The camera's stream and where the camera stood.
 struct TrueKinect {
   std::string stream;
   RigidTransform world_from_kinect;
@@ -41,6 +45,7 @@ struct TrueKinect {
   TrueClock clock;
 };
 
+/// One inertial node: where it is worn, how it is turned, and the errors of its sensors and clock.
 struct TrueNode {
   std::string stream, node, joint;  // worn on the bone that begins at the joint
   std::uint32_t id = 0;
@@ -56,6 +61,7 @@ struct TrueHost {
   std::int64_t raw_ns = 0, utc_ns = 0;
 };
 
+/// All that a simulation knows of one recording. Tests and benchmarks compare takes with it.
 struct TrueRecording {
   std::uint64_t seed = 0;
   std::string motion;       // "built-in", or the motion's file

@@ -20,6 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Collects the files of the wanted takes in the order in which they must go. It only reads;
+/// remove_takes() does the work. A take that a stopped run has removed in part is still found by
+/// its manifest or its raw files.
 class RemovalPlanner {
  public:
   RemovalPlanner(FileSystem& files, const std::string& folder, bool with_raw,
@@ -35,7 +38,9 @@ class RemovalPlanner {
     }
     if (wanted.empty()) return unknown(words.front());
     plan_.takes.assign(wanted.begin(), wanted.end());
+    // Other takes need a look only if raw files are removed.
     if (with_raw_) KA_TRY(check_others(wanted));
+    // Each person's folders are listed once, after all of its takes.
     std::set<std::string> people;
     for (const TakeName& name : plan_.takes) {
       KA_TRY(add_take(name));
@@ -43,6 +48,7 @@ class RemovalPlanner {
     }
     for (const std::string& subject : people) {
       if (with_raw_) plan_.folders.push_back("sourcedata/sub-" + subject);
+      // Folders of people are tried last; those that still have files stay.
       plan_.folders.push_back("sub-" + subject);
     }
     // A folder's path begins with the path of the one above it, so inner ones come first.
@@ -58,6 +64,7 @@ class RemovalPlanner {
     return fs::exists(folder_ + "/" + raw_folder(name), fault) || (with_raw_ && fault);
   }
 
+  // The takes that a word of the user means: one take, or all takes of a person.
   std::set<TakeName> takes_named(const std::string& word) const {
     std::set<TakeName> out;
     const auto name = parse_take_name(word);
@@ -73,11 +80,13 @@ class RemovalPlanner {
 
   Failure unknown(const std::string& word) const {
     std::vector<std::string> known;
+    // The names serve for the suggestion of a similar one.
     for (const auto& [take, there] : takes_) known.push_back(to_string(take));
     return Failure(
         unknown_name(word, "a take of " + folder_ + ", or a person such as sub-03", known));
   }
 
+  // The takes of a person of which only the copied raw files are left.
   std::set<TakeName> takes_with_raw(const std::string& person) const {
     std::set<TakeName> out;
     const std::string folder = folder_ + "/sourcedata/" + person;
@@ -94,6 +103,7 @@ class RemovalPlanner {
     for (const auto& [name, there] : takes_) {
       if (!there.manifest || wanted.contains(name)) continue;
       for (const std::string& place : KA_TRY(raw_places(name))) {
+        // The input itself stays, whichever take goes.
         needed_.insert(place);
         for (const TakeName& going : wanted) {
           if (!place.starts_with(raw_folder(going))) continue;
@@ -111,6 +121,7 @@ class RemovalPlanner {
     std::vector<std::string> out;
     for (const TakeInput& input : KA_TRY(raw_files_of(files_, folder_, name))) {
       const auto place = place_in_sourcedata(folder_, input.path);
+      // Both the link and its target are needed by the take that stays.
       if (place) out.push_back(*place);
       std::error_code fault;
       if (!fs::is_symlink(input.path, fault)) continue;
@@ -122,6 +133,7 @@ class RemovalPlanner {
 
   /// The manifest is removed last: until then a stopped removal can be run again.
   Result<void> add_take(const TakeName& name) {
+    // The page of a take is useless without the take.
     add_file("report/" + to_string(name) + ".html");
     if (has_raw(name)) {
       if (with_raw_) {
@@ -155,7 +167,9 @@ class RemovalPlanner {
       std::error_code fault;
       const bool is_own = place && place->starts_with(raw_folder(name));
       if (!place || is_own || !fs::exists(fs::symlink_status(input.path, fault))) continue;
+      // Several takes may share an input; it is judged once.
       if (!seen_.insert(*place).second) continue;
+      // Only files that an import unpacked can be made again, so only these are removed.
       if (!is_unpacked(*place)) {
         plan_.raw_kept.push_back(*place);
       } else if (!with_raw_) {
@@ -170,6 +184,8 @@ class RemovalPlanner {
     return {};
   }
 
+  // The folders that may become empty when the file is gone. If one is known, all above it are
+  // known, too.
   void add_folders_above(const std::string& place) {
     for (fs::path above = fs::path(place).parent_path(); !above.empty();
          above = above.parent_path()) {
@@ -177,6 +193,8 @@ class RemovalPlanner {
     }
   }
 
+  // Adds a file or a link, if it exists. The size of a link's target does not count, since it
+  // stays.
   void add_file(const std::string& path) {
     std::error_code fault;
     const fs::path whole = folder_ + "/" + path;
@@ -211,6 +229,7 @@ class RemovalPlanner {
     if (fault)
       return Failure(
           Error{folder_ + "/" + folder, 0, "a folder that can be read", fault.message()});
+    // Folders were found from the outside in, and are removed in the reverse order.
     plan_.folders.insert(plan_.folders.end(), inner.rbegin(), inner.rend());
     plan_.folders.push_back(folder);
     return {};
@@ -237,6 +256,7 @@ Result<void> remove_takes(FileSystem& files, const std::string& folder, const Re
   const std::string root = folder + "/";
   for (const std::string& file : plan.files) {
     const std::string path = path_in(root, file);
+    // A file that is already gone is no fault: the run may continue a stopped one.
     if (files.remove(path.c_str()) == 0 || errno == ENOENT) continue;
     return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
   }

@@ -11,6 +11,8 @@
 
 namespace kinalign {
 
+/// The whole removal, planned before any file is touched, so that the user can be shown it and
+/// asked. Each list has paths below the data set's folder.
 struct RemovalPlan {
   std::vector<TakeName> takes;
   std::vector<std::string> files;     // below the data set's folder, in the order of removal

@@ -25,9 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+// The journal's schema, and limits on the files that are read whole.
 constexpr std::string_view schema = "kinalign.rename/1";
 constexpr std::size_t longest_journal = std::size_t{64} << 20;
 constexpr std::size_t longest_catalogue = std::size_t{16} << 20;
+// The names of RenameKind in the journal, in the order of its values.
 constexpr std::array<std::string_view, 3> kind_names{"take", "subject", "action"};
 
 std::string place(const std::string& folder, const TakeName& name, TakeFile file) {
@@ -44,6 +46,7 @@ std::string journal_path(const std::string& folder) {
 std::string journal_json(const RenamePlan& plan) {
   Json takes = Json::array();
   for (const auto& [from, to] : plan.takes) takes.push_back({to_string(from), to_string(to)});
+  // The takes are listed, too: a later run can't find those that have moved by their old names.
   return Json{{"schema", schema},
               {"kind", kind_names[static_cast<std::size_t>(plan.kind)]},
               {"from", plan.from},
@@ -66,6 +69,7 @@ Result<RenamePlan> read_journal(FileSystem& files, const std::string& path) {
     plan.kind = static_cast<RenameKind>(kind - kind_names.begin());
     plan.from = json.at("from").get<std::string>();
     plan.to = json.at("to").get<std::string>();
+    // A plan from the journal was begun, so its journal must not be written again.
     plan.was_begun = true;
     for (const Json& pair : json.at("takes")) {
       const auto from = parse_take_name(pair.at(0).get<std::string>());
@@ -84,6 +88,8 @@ std::string without(std::string_view lead, const std::string& word) {
   return word.starts_with(lead) ? word.substr(lead.size()) : word;
 }
 
+/// Checks a rename and lists the takes concerned. Nothing is changed. All reasons to refuse are
+/// found here, so that a rename that was begun can also be finished.
 class RenamePlanner {
  public:
   RenamePlanner(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
@@ -97,11 +103,13 @@ class RenamePlanner {
     } else {
       out = KA_TRY(plan_id(from, to));
     }
+    // Every take is checked before the first one moves.
     for (const auto& [old, renamed] : out.takes) KA_TRY(check(old, renamed));
     return out;
   }
 
  private:
+  // A single take may get any known subject and action, and any free run.
   Result<RenamePlan> plan_take(const TakeName& from, const std::string& to_text) const {
     const auto to = parse_take_name(to_text);
     if (!to)
@@ -136,6 +144,8 @@ class RenamePlanner {
     return fault(from, "a take, a subject (sub-03) or an action of " + folder_, shown(from));
   }
 
+  // An id that only takes have may become one of dataset.toml. Two ids of dataset.toml can't become
+  // one.
   Result<RenamePlan> plan_subject(const std::string& from, const std::string& to) const {
     const bool both =
         find_subject(catalogue_, from) != nullptr && find_subject(catalogue_, to) != nullptr;
@@ -147,6 +157,7 @@ class RenamePlanner {
     return out;
   }
 
+  // The same as for a subject.
   Result<RenamePlan> plan_action(const std::string& from, const std::string& to) const {
     const bool both =
         find_action(catalogue_, from) != nullptr && find_action(catalogue_, to) != nullptr;
@@ -158,17 +169,21 @@ class RenamePlanner {
     return out;
   }
 
+  // `word`: the id with its prefix, for messages.
   static Result<void> check_new_id(const std::string& word, const std::string& id, bool is_taken) {
     if (!is_label(id)) return fault(word, "an id of letters and digits", shown(id));
     if (is_taken) return fault(word, "an id that the data set does not have", "an id that it has");
     return {};
   }
 
+  // True if a take has the id, even if dataset.toml lacks it.
   bool has(const std::string& id, std::string TakeName::*part) const {
     return std::any_of(takes_.begin(), takes_.end(),
                        [&](const auto& take) { return take.first.*part == id; });
   }
 
+  // The new name must be free, with its raw files. If subject or action changes, the take is made
+  // again, so everything that it is made from must exist.
   Result<void> check(const TakeName& from, const TakeName& to) const {
     if (takes_.contains(to)) {
       return fault(folder_ + "/" + path_of(to, TakeFile::take), "no take of the new name",
@@ -186,12 +201,14 @@ class RenamePlanner {
     const std::string take = folder_ + "/" + path_of(name, TakeFile::take);
     const std::string why =
         " (a take's file contains subject and action, so the take has to be made again)";
+    // A take that was added as a take has no manifest to make it from.
     if (!takes_.at(name).manifest) {
       return fault(take, "a take with a manifest" + why, "a take that was added as a take");
     }
     const Manifest manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
     for (const TakeInput& input :
          inputs_of(files_, manifest, folder_ + "/sub-" + name.subject + "/", {})) {
+      // One missing raw file is enough: the take could not be made again.
       std::error_code missing;
       if (fs::exists(input.path, missing)) continue;
       return fault(input.path, "the raw file of " + to_string(name) + why, "no such file");
@@ -212,11 +229,14 @@ class RenamePlanner {
 
 // ---- renaming
 
-/// Each step checks what exists and does the rest.
+/// Each step checks what exists and does the rest. A run that was stopped at any step is continued
+/// by the same calls. Therefore the new file is always written before the old one is removed.
 class Renamer {
  public:
   Renamer(FileSystem& files, const std::string& folder) : files_(files), folder_(folder) {}
 
+  // The order matters: manifest, raw files, then take and summary. The old manifest is removed
+  // last, because it shows a later run that the take has not moved completely.
   Result<void> move(const TakeName& from, const TakeName& to, Renamed& out) {
     KA_TRY(make_folders(folder_ + "/sub-" + to.subject));
     const bool same_name = from.subject == to.subject && from.action == to.action;
@@ -226,6 +246,7 @@ class Renamer {
     }
     KA_TRY(move_raw_files(from, to));
     const bool had_take = is_there(place(folder_, from, TakeFile::take));
+    // A take whose bytes would state another name or recipe is dropped; build makes it again.
     for (const TakeFile file : {TakeFile::summary, TakeFile::take}) {
       KA_TRY(move_or_drop(place(folder_, from, file), place(folder_, to, file),
                           same_name && same_recipe));
@@ -238,6 +259,7 @@ class Renamer {
   }
 
   Result<void> edit_catalogue(const RenamePlan& plan) {
+    // A take's name is not in dataset.toml.
     if (plan.kind == RenameKind::take) return {};
     const std::string path = folder_ + "/" + std::string(catalogue_file);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_catalogue));
@@ -245,6 +267,7 @@ class Renamer {
     const bool is_subject = plan.kind == RenameKind::subject;
     const bool has_old = is_subject ? find_subject(now, plan.from) != nullptr
                                     : find_action(now, plan.from) != nullptr;
+    // The edit was done by the run that was stopped.
     if (!has_old) return {};
     const std::string text =
         KA_TRY(with_id_renamed(toml, is_subject ? "subject" : "action", plan.from, plan.to, path));
@@ -263,10 +286,12 @@ class Renamer {
     const std::string toml = KA_TRY(read_whole(files_, path, longest_manifest));
     const std::string text = KA_TRY(manifest_of_renamed(toml, from, to, path));
     KA_TRY(write_whole(files_, place(folder_, to, TakeFile::manifest), text, Overwrite::yes));
+    // The recipes show whether the edit changed a parameter of the take.
     return recipe_of(KA_TRY(read_manifest(toml, path))) ==
            recipe_of(KA_TRY(read_manifest(text, path)));
   }
 
+  // Raw files move as a folder, in one step of the file system.
   Result<void> move_raw_files(const TakeName& from, const TakeName& to) {
     const std::string old = folder_ + "/" + raw_folder(from),
                       renamed = folder_ + "/" + raw_folder(to);
@@ -276,6 +301,7 @@ class Renamer {
     return move_path(old.substr(0, old.size() - 1), renamed.substr(0, renamed.size() - 1));
   }
 
+  // A file that is not there was moved or removed before.
   Result<void> move_or_drop(const std::string& from, const std::string& to, bool keeps_bytes) {
     if (!is_there(from)) return {};
     return keeps_bytes ? move_path(from, to) : remove(from);
@@ -293,6 +319,7 @@ class Renamer {
 /// Removes a person's folders if they are empty.
 void remove_if_empty(const std::string& folder, const std::string& subject) {
   for (const char* above : {"/sub-", "/sourcedata/sub-"}) {
+    // A folder that still has files stays.
     std::error_code ignored;  // not empty, or missing
     std::string path = folder;
     path.append(above).append(subject);
@@ -313,6 +340,7 @@ Result<RenamePlan> plan_rename(FileSystem& files, const std::string& folder,
   const std::string lead = begun.kind == RenameKind::subject  ? "sub-"
                            : begun.kind == RenameKind::action ? "task-"
                                                               : "";
+  // The same request continues the stopped rename.
   if (without(lead, from) == begun.from && without(lead, to) == begun.to) return begun;
   return Failure(Error{journal, 0,
                        "the stopped rename to be finished first: kinalign dataset rename " +
@@ -325,10 +353,12 @@ Result<Renamed> rename_takes(FileSystem& files, const std::string& folder, const
   if (!plan.was_begun) {
     KA_TRY(write_whole(files, journal_path(folder), journal_json(plan), Overwrite::no));
   }
+  // The catalogue is edited first, so that no moved take has an id that dataset.toml lacks.
   KA_TRY(renamer.edit_catalogue(plan));
   Renamed out;
   for (const auto& [from, to] : plan.takes) KA_TRY(renamer.move(from, to, out));
   for (const auto& [from, to] : plan.takes) remove_if_empty(folder, from.subject);
+  // The journal goes last. Until then every step can be repeated.
   KA_TRY(renamer.remove(journal_path(folder)));
   return out;
 }

@@ -13,6 +13,7 @@
 
 namespace kinalign {
 
+/// The thing that is renamed. A subject or an action renames all of its takes.
 enum class RenameKind { take, subject, action };
 
 /// The steps of one rename, planned before anything is changed.
@@ -31,6 +32,7 @@ Result<RenamePlan> plan_rename(FileSystem& files, const std::string& folder,
                                const Catalogue& catalogue, const std::string& from,
                                const std::string& to);
 
+/// The outcome for the user: which takes only moved, and which have to be built again.
 struct Renamed {
   std::uint64_t moved = 0;     // takes whose bytes are unchanged
   std::uint64_t to_build = 0;  // takes that were dropped, to be made again under the new name

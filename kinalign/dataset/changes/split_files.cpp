@@ -14,6 +14,7 @@ std::map<std::string, Split> splits_in(FileSystem& files, const std::string& fol
     if (!names) continue;
     for (const std::string& name : *names) {
       if (!name.ends_with(".json")) continue;
+      // Other programs may keep JSON files here, too. A file that is no split is no error.
       auto split = read_split(files, place + name);
       if (split) out.emplace(below + name, *std::move(split));
     }
@@ -25,6 +26,7 @@ std::vector<SplitFile> splits_naming(FileSystem& files, const std::string& folde
                                      const std::set<TakeName>& takes) {
   std::vector<SplitFile> out;
   for (const auto& [path, split] : splits_in(files, folder)) {
+    // Takes are counted over all parts of the split.
     SplitFile one{path, 0};
     for (const SplitPart& part : split.parts) {
       for (const TakeName& take : part.takes) one.takes += takes.contains(take) ? 1 : 0;

@@ -24,10 +24,12 @@ std::string each_line(std::string_view text,
   return out;
 }
 
+/// The functions below step through a line; `at` is the place reached.
 void skip_blanks(std::string_view line, std::size_t& at) {
   while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
 }
 
+/// Steps over `word` if it is next.
 bool skip(std::string_view line, std::size_t& at, std::string_view word) {
   if (!line.substr(at).starts_with(word)) return false;
   at += word.size();
@@ -50,6 +52,8 @@ std::size_t id_in_head(std::string_view line, std::string_view table, std::strin
   const std::size_t place = at;
   if (!skip(line, at, id) || !skip(line, at, quote)) return std::string_view::npos;
   skip_blanks(line, at);
+  // The id must end here, so that "03" is not found in "031". After a dot a table of the same id
+  // follows.
   const bool ends = line.substr(at, 1) == "]" || line.substr(at, 1) == ".";
   return ends ? place : std::string_view::npos;
 }
@@ -61,6 +65,7 @@ void rename_id(std::vector<One>& all, const std::string& from, const std::string
   }
 }
 
+/// Replaces every occurrence; the search continues after the new text.
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
     text.replace(at, from.size(), to);
@@ -74,11 +79,13 @@ std::string with_value(const std::string& toml, std::string_view key, const std:
   return each_line(toml, [&](std::string_view line) {
     std::size_t at = 0;
     skip_blanks(line, at);
+    // Keys after the first table belong to that table.
     is_top = is_top && line.substr(at, 1) != "[";
     if (!is_top || !skip(line, at, key)) return std::string(line);
     skip_blanks(line, at);
     if (!skip(line, at, "=")) return std::string(line);
     skip_blanks(line, at);
+    // Only a plain string on one line is replaced; the proof refuses other forms.
     const char quote = at < line.size() ? line[at] : ' ';
     const std::size_t end = line.find(quote, at + 1);
     if ((quote != '"' && quote != '\'') || end == std::string_view::npos) return std::string(line);
@@ -92,6 +99,8 @@ std::string with_value(const std::string& toml, std::string_view key, const std:
 Result<std::string> with_id_renamed(const std::string& toml, const std::string& table,
                                     const std::string& from, const std::string& to,
                                     const std::string& file) {
+  // The wanted result is known as values. The edited text is accepted only if it reads back as
+  // these values, so the simple search above can't do harm.
   Catalogue wanted = KA_TRY(read_catalogue(toml, file));
   if (table == "subject") {
     rename_id(wanted.subjects, from, to);
@@ -114,6 +123,8 @@ Result<std::string> with_id_renamed(const std::string& toml, const std::string& 
 
 Result<std::string> manifest_of_renamed(const std::string& toml, const TakeName& from,
                                         const TakeName& to, const std::string& file) {
+  // The same proof as for dataset.toml. If the edit fails it, the text is written anew from the
+  // values.
   Manifest wanted = KA_TRY(read_manifest(toml, file));
   for (std::string* path : paths_in(wanted)) replace_all(*path, raw_folder(from), raw_folder(to));
   if (!wanted.subject.empty()) wanted.subject = to.subject;

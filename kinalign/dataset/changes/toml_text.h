@@ -13,7 +13,7 @@ namespace kinalign {
 
 /// dataset.toml with a changed id of a table: "subject" or "action", as in [subject.03] and
 /// [subject.03.segments_m]. Fails if the id is written in another form, with the advice to change
-/// it by hand. `file`: for messages.
+/// it by hand. `file`: for messages. The order of the tables and all comments stay.
 Result<std::string> with_id_renamed(const std::string& toml, const std::string& table,
                                     const std::string& from, const std::string& to,
                                     const std::string& file);

@@ -32,6 +32,7 @@ std::string label_of(const std::string& stream) {
   return out.empty() ? "stream" : out;
 }
 
+/// The stream's kind decides which columns its tracking system has.
 BidsSource source_of(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton;
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
@@ -41,6 +42,7 @@ BidsSource source_of(const TakeGroup& group) {
   return ImuHeader{nodes.node_names, nodes.content};
 }
 
+/// Empty if dataset.toml does not describe the device, or lacks this text.
 std::string text_of(const Described* device, const char* key) {
   if (device == nullptr) return "";
   const auto found = device->texts.find(key);
@@ -57,6 +59,7 @@ BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
   BidsSystemFacts facts;
   facts.task_name = take.name().action;
   facts.task_description = action == nullptr ? "" : action->name;
+  // The stream's own name is kept here, since a label can't have all of its characters.
   facts.system_name = group.name;
   facts.rate_hz = take.rate_hz();
   facts.manufacturer = text_of(known, "make");
@@ -65,12 +68,14 @@ BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
   return facts;
 }
 
+/// An absent number gives an empty cell.
 std::string number_text(const std::optional<double>& value) {
   return value ? fmt::format("{:g}", *value) : "";
 }
 
 }  // namespace
 
+/// Overwrite::no: the folder is new, so an existing file would be written twice by mistake.
 Result<void> BidsExport::write(const std::string& path, std::string_view text) {
   const std::string whole = folder_ + "/" + path;
   KA_TRY(make_folders(std::string(kinalign::folder(whole))));
@@ -85,6 +90,7 @@ Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t gr
   TextOut out = KA_TRY(TextOut::create(files_, path, Overwrite::no));
   BidsMotionWriter writer(source_of(of), out);
   const auto append = [&](const auto& rows) { return writer.append(rows); };
+  // Exactly one of the three kinds fits; rows are passed on slab by slab.
   if (std::holds_alternative<ClipGroup>(of.kind)) KA_TRY(take.clip_frames(group, append));
   if (std::holds_alternative<PointGroup>(of.kind)) KA_TRY(take.point_frames(group, append));
   if (std::holds_alternative<ImuGroup>(of.kind)) KA_TRY(take.node_samples(group, append));
@@ -105,10 +111,13 @@ Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, Files
   KA_TRY(write(bids_path(entities, "channels.tsv"), sidecars.channels_tsv));
   KA_TRY(write(bids_path(entities, "channels.json"), sidecars.channels_json));
   KA_TRY(write(bids_path(entities, "motion.json"), sidecars.motion_json));
+  // scans.tsv names files by their paths below the subject's folder.
   const std::string below = bids_subject_folder(entities);
+  // A date is left out if the set is released or if the stamps do not count from 1970.
   const bool is_dated = !released_ && sidecars.onset >= first_date;
   scans_[entities.subject].emplace_back(motion.substr(below.size()),
                                         is_dated ? std::optional(sidecars.onset) : std::nullopt);
+  // Sidecar files are not counted: the result lists a file for each stream.
   made.paths.push_back(folder_ + "/" + motion);
   return {};
 }
@@ -117,6 +126,7 @@ Result<FilesMade> BidsExport::add(ExportedTake& take) {
   FilesMade made;
   for (std::size_t g = 0; g < take.header().groups.size(); ++g) {
     const auto done = add_system(take, g, made);
+    // A stream that fails does not stop the others, but the user can stop all.
     if (!done && is_interruption(done.error())) return Failure(done.error());
     if (!done) made.failed.push_back(done.error());
   }
@@ -136,8 +146,10 @@ BidsParticipants BidsExport::participants() const {
          "",
          {{"left", "left"}, {"right", "right"}, {"both", "ambidextrous"}}}};
   }
+  // Only people with an exported take are participants.
   for (const auto& [id, scans] : scans_) {
     std::vector<std::string> cells;
+    // A released set has no columns about the body.
     if (!released_) {
       const Subject* person = find_subject(catalogue_, id);
       const Subject known = person == nullptr ? Subject{} : *person;
@@ -153,11 +165,14 @@ BidsParticipants BidsExport::participants() const {
 }
 
 Result<Findings> BidsExport::finish() {
+  // The description names our program as the one that made the data set.
   BidsDataset description;
   description.name = catalogue_.name;
   description.license = catalogue_.licence;
   description.how_to_acknowledge = catalogue_.citation;
+  // The software's text is its name and its version.
   const std::string software = take_software();
+  // BIDS wants name and version of the program apart.
   description.generated_by = software.substr(0, software.find(' '));
   description.generated_by_version = software.substr(software.find(' ') + 1);
   KA_TRY(write("dataset_description.json", dataset_description_json(description)));
@@ -167,6 +182,7 @@ Result<Findings> BidsExport::finish() {
   KA_TRY(write("participants.tsv", participants_tsv(people)));
   KA_TRY(write("participants.json", participants_json(people)));
   for (auto& [subject, scans] : scans_) {
+    // Takes come in the order of the job; the file is sorted.
     std::sort(scans.begin(), scans.end());
     KA_TRY(write(bids_scans_path({subject, "", "", "", "", ""}), scans_tsv(scans)));
   }

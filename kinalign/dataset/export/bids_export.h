@@ -13,6 +13,8 @@
 
 namespace kinalign {
 
+/// One export. Takes are added one by one and written at once; participants and scans are collected
+/// and written by finish(). `catalogue` must outlive the object.
 class BidsExport {
  public:
   /// `folder`: of the new data set. `released`: participants.tsv has no height, weight and the

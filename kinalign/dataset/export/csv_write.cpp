@@ -21,6 +21,8 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+/// One name for each number of a row. A column with a single number per row has no part after its
+/// name.
 std::string head_of(const TakeGroup& group, Precision precision) {
   std::string out = "time_ns";
   for (const TakeColumn& column : columns_of(group, precision)) {
@@ -35,9 +37,11 @@ std::string head_of(const TakeGroup& group, Precision precision) {
 template <class Value>
 void put_row(const std::vector<Value>& values, std::size_t row, std::size_t rows,
              Precision precision, std::string& text) {
+  // An array that the stream leaves empty has width 0 and adds nothing.
   const std::size_t width = values.size() / rows;
   for (std::size_t k = row * width; k < (row + 1) * width; ++k) {
     text += ',';
+    // Flags, states and times are whole numbers, also those of one byte.
     if constexpr (!std::is_same_v<Value, double>) {
       fmt::format_to(std::back_inserter(text), "{}", static_cast<std::int64_t>(values[k]));
     } else if (precision == Precision::full) {
@@ -52,6 +56,7 @@ void put_row(const std::vector<Value>& values, std::size_t row, std::size_t rows
 Result<void> put_slab(const TakeSlab& slab, std::size_t group, Precision precision, TextOut& out) {
   std::string text;
   for (std::size_t row = 0; row < slab.stamps.size(); ++row) {
+    // A line is built in memory and written as a whole.
     text = std::to_string(slab.stamps[row].time_since_epoch().count());
     const auto use = [&](std::string_view, const auto& values) -> Result<void> {
       put_row(values, row, slab.stamps.size(), precision, text);
@@ -67,8 +72,10 @@ Result<void> put_slab(const TakeSlab& slab, std::size_t group, Precision precisi
 
 }  // namespace
 
+/// The rows pass through one slab at a time. The file gets its name when it is complete.
 Result<void> write_stream_csv(ExportedTake& take, std::size_t group, FileSystem& files,
                               const std::string& path) {
+  // Floats are printed with the digits of floats: more digits would be noise.
   const Precision precision = precision_of(take.header());
   TextOut out = KA_TRY(TextOut::create(files, path, Overwrite::no));
   out.text(head_of(take.header().groups[group], precision));
@@ -81,6 +88,7 @@ Result<void> write_stream_csv(ExportedTake& take, std::size_t group, FileSystem&
 std::string streams_json(const TakeHeader& header) {
   Json out{{"subject", header.subject}, {"action", header.action}, {"frames", header.frames}};
   for (const TakeGroup& group : header.groups) {
+    // The same facts as in a take's file, with the units of the arrays added.
     Json stream = Json::parse(stream_json(group));
     for (const TakeColumn& column : columns_of(group, precision_of(header))) {
       Json& array = stream["arrays"][column.name] = Json::object();

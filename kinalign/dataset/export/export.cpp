@@ -33,6 +33,7 @@ struct Made {
   /// take must have for this format.
   Result<void> holds_something(const ExportJob& job, std::string_view needs) const {
     if (files > 0) return {};
+    // The first fault explains the empty result best.
     if (!findings.empty()) return Failure(findings.front().what);
     return Failure(Error{job.folder, 0,
                          fmt::format("{} in at least one take, for {}", needs, job.format),
@@ -48,6 +49,7 @@ struct Made {
   }
 };
 
+/// A take is copied byte for byte if nothing has to be hidden, so its hash stays the same.
 Result<FilesMade> copy_take(FileSystem& files, const std::string& from, const std::string& to) {
   KA_TRY(copy_file(files, from, to));
   return FilesMade{{to}, {}, {}};
@@ -56,6 +58,7 @@ Result<FilesMade> copy_take(FileSystem& files, const std::string& from, const st
 /// The take rewritten without names and dates.
 Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std::string& to) {
   TakeHeader header = take.header();
+  // The report is read back as data, because names and dates in it must change, too.
   AlignmentReport report = KA_TRY(parse_report_json(KA_TRY(take.report_json()), to));
   hide_names(header, report);
   move_dates(take.moved(), header, report);
@@ -74,6 +77,8 @@ Result<FilesMade> with_summary(FilesMade made, FileSystem& files, const std::str
   return made;
 }
 
+/// One export in the child process. `folder` is the unfinished folder. The writers for whole data
+/// sets exist in every export, but only that of the job's format is used.
 class Exporting {
  public:
   Exporting(FileSystem& files, const Catalogue& catalogue, const ExportJob& job, std::string folder)
@@ -118,17 +123,20 @@ Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
   const auto& formats = take_formats();
   const auto format = std::find_if(formats.begin(), formats.end(),
                                    [&](const TakeFormat& one) { return one.name == job_.format; });
+  // The format's name was checked before the job began, so the row exists.
   return format->write(take, files_, path, folder + "/" + to_string(of.name));
 }
 
 Result<void> Exporting::finish() {
   if (job_.format == "bids") {
+    // Files of a whole set can be written only when all takes are known.
     for (Finding& finding : KA_TRY(bids_.finish())) made.findings.push_back(std::move(finding));
   }
   if (job_.format == "webdataset") made.add({}, KA_TRY(shards_.finish()));
   if (job_.format == "take") {
     constexpr std::size_t longest = std::size_t{64} << 20;
     const std::string toml(catalogue_file);
+    // A released dataset.toml lists only people whose takes are in it.
     std::set<std::string> used;
     for (const ExportTake& take : job_.takes) used.insert(take.name.subject);
     const std::string text = job_.release
@@ -141,11 +149,13 @@ Result<void> Exporting::finish() {
 
 Result<void> Exporting::run(const Progress& progress) {
   std::uint64_t done = 0, total = 0;
+  // Progress counts frames, since takes differ in length.
   for (const ExportTake& take : job_.takes) total += take.summary.frames;
   for (const ExportTake& of : job_.takes) {
     const std::string path = job_.folder + "/" + path_of(of.name, TakeFile::take);
     ExportedTake take =
         KA_TRY(ExportedTake::open(files_, path, of.name, of.summary.rate_hz, job_.release));
+    // Results are added take by take; the first error of a take ends the export.
     made.add(of.name, KA_TRY(write(take, of, path)));
     done += of.summary.frames;
     if (!go_on(progress, "exporting", done, total)) return Failure(interruption());
@@ -153,6 +163,7 @@ Result<void> Exporting::run(const Progress& progress) {
   return finish();
 }
 
+/// The child process can pass on text only; made_from() reads it in the parent.
 std::string text_of(const Made& made) {
   return Json{{"files", made.files},
               {"left_out", made.left_out},
@@ -165,6 +176,7 @@ Result<ExportMade> made_from(const std::string& text) {
   ExportMade made;
   made.files = json.at("files").get<std::uint64_t>();
   for (const Json& one : json.at("left_out")) {
+    // Results of the set as a whole have no take's name.
     made.left_out.push_back(
         {parse_take_name(one.at(0).get<std::string>()).value_or(TakeName{}), one.at(1)});
   }
@@ -174,6 +186,7 @@ Result<ExportMade> made_from(const std::string& text) {
   return made;
 }
 
+/// The words for the content that a format needs, for the error of an empty export.
 std::string_view needs_of(const std::string& name) {
   const auto& formats = take_formats();
   const auto format = std::find_if(formats.begin(), formats.end(),
@@ -181,17 +194,20 @@ std::string_view needs_of(const std::string& name) {
   return format == formats.end() ? "a stream" : format->needs;
 }
 
-/// A folder that is removed at the end unless it is kept.
+/// A folder that is removed at the end unless it is kept. The export is written into it, and one
+/// rename at the end makes all files appear at once.
 class PartFolder {
  public:
   static Result<PartFolder> make(const std::string& target) {
     std::error_code failed;
+    // A link counts as existing, even if it leads nowhere.
     if (fs::exists(fs::symlink_status(target, failed))) {
       return Failure(Error{target, 0, "a folder that does not exist yet", "an existing one"});
     }
     const auto above = fs::path(target).parent_path();
     if (!above.empty()) fs::create_directories(above, failed);
     const std::string path = target + ".part";
+    // Another export may be writing there, so the folder is never taken over.
     if (fs::exists(fs::symlink_status(path, failed))) {
       return Failure(Error{path, 0, "no unfinished export (if no export is running, remove it)",
                            "an existing folder"});
@@ -199,6 +215,7 @@ class PartFolder {
     KA_TRY(make_new_folder(path));
     return PartFolder(path);
   }
+  // A moved-from object has an empty path and removes nothing.
   PartFolder(PartFolder&& other) noexcept : path(std::exchange(other.path, {})) {}
   PartFolder& operator=(PartFolder&&) = delete;
   PartFolder(const PartFolder&) = delete;
@@ -208,6 +225,7 @@ class PartFolder {
     if (!path.empty()) fs::remove_all(path, ignored);
   }
 
+  // Gives the folder its final name. After that it belongs to the user.
   Result<void> keep_as(const std::string& target) {
     std::error_code failed;
     fs::rename(path, target, failed);
@@ -241,14 +259,18 @@ std::vector<ExportFormat> export_formats() {
 
 Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, const ExportJob& job,
                                 const Progress& progress) {
+  // Takes that were not built have nothing to export.
   if (job.takes.empty()) return Failure(Error{job.folder, 0, "takes that are built", "none"});
   PartFolder part = KA_TRY(PartFolder::make(job.target));
   GuardLimits limits;
+  // The limits grow with the work: ten minutes of computing and an hour of waiting for each take.
   limits.cpu_seconds += 600 * job.takes.size();
   limits.wall_seconds += 3600.0 * static_cast<double>(job.takes.size());
+  // The error if the child process crashes.
   const Error blame{job.folder, 0, "takes that HDF5 can read", ""};
   const std::string text = KA_TRY(run_guarded(
       limits, blame, progress, [&](const Progress& child_progress) -> Result<std::string> {
+        // Everything that opens a take happens in the child process.
         Exporting exporting(files, catalogue, job, part.path);
         KA_TRY(exporting.run(child_progress));
         KA_TRY(exporting.made.holds_something(job, needs_of(job.format)));

@@ -12,12 +12,14 @@
 
 namespace kinalign {
 
+/// A take to export, with the facts that the index knows of it.
 struct ExportTake {
   TakeName name;
   TakeSummary summary;
   std::string part;  // the part of a split; names of shards begin with it
 };
 
+/// The whole order of an export: from where, to where, how, and which takes.
 struct ExportJob {
   std::string folder;    // the data set's
   std::string target;    // a new folder
@@ -26,17 +28,20 @@ struct ExportJob {
   std::vector<ExportTake> takes;
 };
 
+/// A format as the user sees it in lists and messages.
 struct ExportFormat {
   std::string name, title;
   std::string lost;  // the content that the format can't hold
 };
 std::vector<ExportFormat> export_formats();
 
+/// A stream that the format can't hold; this is no fault.
 struct LeftOutStream {
   TakeName name;
   std::string why;
 };
 
+/// The outcome of an export that succeeded.
 struct ExportMade {
   std::uint64_t files = 0;
   std::vector<LeftOutStream> left_out;

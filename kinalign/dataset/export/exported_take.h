@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// An open take. Its rows can be read several times, as formats need them; only one slab is in
+/// memory. Stamps may be moved, so writers use the rows and never the file's own stamps.
 class ExportedTake {
  public:
   /// `without_date`: stamps are moved so that the first one is 2000-01-01T00:00:00Z.
@@ -20,6 +22,7 @@ class ExportedTake {
 
   const TakeName& name() const { return name_; }
   const TakeHeader& header() const { return reader_.header(); }
+  // The rate comes from the index, since a take's rows only have stamps.
   double rate_hz() const { return rate_hz_; }
   Time first() const { return first_; }      // stamp of the first row, after moving
   Duration moved() const { return moved_; }  // by which stamps were moved

@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+/// A regular expression with the words for what it finds.
 struct Pattern {
   const char* what;
   std::regex text;
@@ -44,6 +45,8 @@ bool reads_like_a_name(const std::string& id) {
          std::none_of(id.begin(), id.end(), is(std::isdigit));
 }
 
+/// True for a key whose value names one device or its owner. Words are searched in lower case
+/// anywhere in the key; "sn" and "ip" only as the whole key, since they occur in other words.
 bool names_a_device(std::string key) {
   std::transform(key.begin(), key.end(), key.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -54,6 +57,8 @@ bool names_a_device(std::string key) {
                      [&](std::string_view word) { return key.find(word) != std::string::npos; });
 }
 
+/// Collects findings about texts. `where` names the place in dataset.toml; the found text itself is
+/// part of the message, so that the user can find it.
 class Look {
  public:
   explicit Look(const std::string& file) : file_(file) {}
@@ -65,6 +70,7 @@ class Look {
          "", std::move(repair)});
   }
 
+  // Checks a text in which no date or number is expected.
   void text(const std::string& where, const std::string& value) {
     find_first_of(where, value, patterns());
   }
@@ -79,6 +85,7 @@ class Look {
   void id(const char* table, const std::string& value) {
     text(fmt::format("the id of a {}", table), value);
     const auto letter = [&](std::size_t i) { return static_cast<unsigned char>(value[i]); };
+    // A capital followed by a small letter looks like a proper name.
     const bool is_proper = value.size() > 1 && std::isupper(letter(0)) && std::islower(letter(1));
     if (!is_proper || !reads_like_a_name(value)) return;
     add(Severity::warning, fmt::format("the id of a {}", table),
@@ -88,10 +95,12 @@ class Look {
   Findings findings;
 
  private:
+  // One finding for each text: the user must read the whole text anyway.
   void find_first_of(const std::string& where, const std::string& value,
                      std::span<const Pattern> kinds) {
     for (const Pattern& pattern : kinds) {
       std::smatch match;
+      // The patterns are tried in their order, so an address wins over a number in it.
       if (!std::regex_search(value, match, pattern.text)) continue;
       add(Severity::error, where, fmt::format("{}: \"{}\"", pattern.what, shown(match.str())),
           "remove it from dataset.toml");
@@ -122,10 +131,12 @@ void look_at_devices(const std::vector<Described>& all, const char* table, Look&
 void look_at_measures(const std::vector<Subject>& people, const char* what,
                       std::optional<double> Subject::*measure, Look& look) {
   for (const Subject& person : people) {
+    // A measure that is not stated identifies nobody.
     if (!(person.*measure)) continue;
     const auto same = std::count_if(people.begin(), people.end(), [&](const Subject& other) {
       return other.*measure == person.*measure;
     });
+    // A value that two people share singles out neither of them.
     if (same > 1) continue;
     look.add(Severity::note, fmt::format("subject.{}.{}", person.id, what),
              fmt::format("{:g}, which no other person in this data set has", *(person.*measure)),
@@ -133,7 +144,9 @@ void look_at_measures(const std::vector<Subject>& people, const char* what,
   }
 }
 
-/// The new names of raw files, by their old names.
+/// The new names of raw files, by their old names. The same old name always gets the same new one,
+/// so that inputs, parameters and findings still agree. The ending stays, because it states the
+/// format.
 class HiddenNames {
  public:
   const std::string& of(const std::string& name, const std::string& stream, std::size_t number) {
@@ -147,6 +160,7 @@ class HiddenNames {
     return to;
   }
 
+  // Findings quote file names in their texts.
   void put_into(std::string& text) const {
     for (const auto& [from, to] : names_) {
       if (from.empty()) continue;
@@ -163,9 +177,12 @@ class HiddenNames {
 
 }  // namespace
 
+/// The search is a help and no proof: it finds what looks like a name, a date or an address.
+/// Warnings and notes are left to the user's judgement.
 Findings look_for_people(const Catalogue& catalogue, const std::string& file,
                          const std::set<std::string>& names) {
   Look look(file);
+  // People come first, because their texts are the most likely to name somebody.
   for (const Subject& person : catalogue.subjects) {
     if (reads_like_a_name(person.id)) {
       look.add(Severity::error, "a subject's id", fmt::format("\"{}\"", shown(person.id)),
@@ -193,6 +210,7 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file,
   }
   for (const std::string& name : names) look.text("a stream or node", name);
   look.text("name", catalogue.name);
+  // Licences and citations have years, pages and numbers that identify nobody.
   look.published_text("licence", catalogue.licence);
   look.published_text("citation", catalogue.citation);
   look.text("description", catalogue.description);
@@ -205,10 +223,12 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file,
   return look.findings;
 }
 
+/// Every place of a take that can hold a file's name is treated: inputs, parameters and findings.
 void hide_names(TakeHeader& header, AlignmentReport& report) {
   HiddenNames names;
   for (TakeGroup& group : header.groups) {
     for (std::size_t i = 0; i < group.files.size(); ++i) {
+      // The names are learnt from the inputs first; the texts below are then replaced by them.
       group.files[i].name = names.of(group.files[i].name, group.name, i);
     }
   }
@@ -221,9 +241,11 @@ void hide_names(TakeHeader& header, AlignmentReport& report) {
       stream.skeleton = names.of(stream.skeleton, stream.name + "_skeleton", 0);
     }
     for (auto& [column, value] : stream.select) {
+      // A number selects a row without naming anybody; other texts might.
       if (value.find_first_not_of("0123456789") != std::string::npos) value.clear();
     }
   }
+  // Marks are free text with times of day.
   report.marks.clear();
   for (Finding& finding : report.findings) {
     for (std::string* text : {&finding.what.file, &finding.what.expected, &finding.what.found,
@@ -233,14 +255,17 @@ void hide_names(TakeHeader& header, AlignmentReport& report) {
   }
 }
 
+/// The rows are moved by ExportedTake; this moves the rest by the same time.
 void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report) {
   report.begin += moved;
   report.end += moved;
   for (StreamReport& stream : report.streams) {
+    // The length stays, since it is part of the quality.
     stream.survey.last = Time{stream.survey.last - stream.survey.first};
     stream.survey.first = Time{};
   }
   for (StreamOptions& stream : header.parameters.streams) {
+    // Clicks keep their distance from each other and lose their date.
     const std::int64_t first = stream.start_ns.value_or(stream.end_ns.value_or(0));
     for (std::optional<std::int64_t>* stamp : {&stream.start_ns, &stream.end_ns}) {
       if (*stamp) **stamp -= first;
@@ -250,6 +275,7 @@ void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report) {
 
 std::string released_catalogue(Catalogue catalogue, const std::set<std::string>& used) {
   std::erase_if(catalogue.subjects, [&](const Subject& one) { return !used.contains(one.id); });
+  // Defaults for manifests have no use in a data set without manifests.
   catalogue.align = {};
   return catalogue_toml(catalogue);
 }

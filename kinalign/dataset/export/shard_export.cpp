@@ -21,6 +21,7 @@ struct Npy {
 std::vector<Npy> heads_of(const TakeHeader& header) {
   std::vector<Npy> out;
   const auto add = [&](const std::string& name, Stored stored, std::vector<std::uint64_t> shape) {
+    // The number of rows is known in advance, so the headers can be written before the values.
     shape.insert(shape.begin(), header.frames);
     out.push_back({name + ".npy", npy_header(npz_numbers(name, stored, shape))});
   };
@@ -39,10 +40,13 @@ Result<void> add_values(const TakeHeader& header, const TakeSlab& slab, NumberSt
   members.front().bytes += bytes_of(std::span<const Time>(slab.stamps));
   auto member = members.begin() + 1;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
+    // The members were made from these columns, in the same order.
     const auto columns = columns_of(header.groups[g], precision_of(header));
     auto column = columns.begin();
     const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
+      // Both lists have the same order; arrays without a column are passed over.
       if (column == columns.end() || column->name != name) return {};
+      // The values follow the header of their member; slabs are appended in order.
       std::string& bytes = (member++)->bytes;
       const Stored stored = (column++)->stored;
       const std::span given(values);
@@ -69,6 +73,7 @@ std::string sample_json(const ExportedTake& take, const SampleFacts& facts) {
            {"part", facts.part},
            {"rate_hz", take.rate_hz()}};
   out.update(Json::parse(streams_json(take.header())));
+  // The name's ids replace the take's own texts, so that samples can be grouped by them.
   out["subject"] = take.name().subject;
   out["action"] = take.name().action;
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -76,6 +81,8 @@ std::string sample_json(const ExportedTake& take, const SampleFacts& facts) {
 
 }  // namespace
 
+/// An open shard. The writer counts the bytes as it writes them, and refers to this object. It must
+/// therefore not move.
 struct ShardExport::Shard {
   explicit Shard(OutputFile file) : out(std::move(file)) {}
 
@@ -87,6 +94,7 @@ struct ShardExport::Shard {
   }};
 };
 
+/// The open shard of a part; a new one with the next number if none is open.
 Result<ShardExport::Shard*> ShardExport::shard_of(const std::string& part) {
   auto& shard = open_[part];
   if (!shard) {
@@ -96,6 +104,7 @@ Result<ShardExport::Shard*> ShardExport::shard_of(const std::string& part) {
   return shard.get();
 }
 
+/// The shard's file gets its name only here, when its last block is written.
 Result<void> ShardExport::end(Shard& shard, FilesMade& made) {
   KA_TRY(shard.writer.finish());
   KA_TRY(shard.out.commit());
@@ -109,12 +118,14 @@ Result<FilesMade> ShardExport::add(ExportedTake& take, const SampleFacts& facts)
   KA_TRY(take.rows(
       [&](const TakeSlab& slab) { return add_values(take.header(), slab, numbers, members); }));
   members.push_back({"json", sample_json(take, facts)});
+  // The members stay in `members` until the sample is written.
   std::vector<ShardMember> views;
   views.reserve(members.size());
   for (const Npy& one : members) views.push_back({one.ending, one.bytes});
   Shard* shard = KA_TRY(shard_of(facts.part));
   KA_TRY(shard->writer.add(to_string(take.name()), views));
   FilesMade made;
+  // A shard is only ended between samples, so that a sample is never divided.
   if (shard->bytes >= shard_bytes_) {
     KA_TRY(end(*shard, made));
     open_.erase(facts.part);

@@ -16,6 +16,8 @@ struct SampleFacts {
   std::string class_id, part;
 };
 
+/// One export to shards. Each part of a split has its own open shard, so samples of two parts are
+/// never in one file. Without finish() the open shards stay incomplete.
 class ShardExport {
  public:
   /// A shard ends after the sample with which it reaches `shard_bytes`.

@@ -52,6 +52,7 @@ Result<void> write_mot(ExportedTake& take, std::size_t group, FileSystem& files,
                        const std::string& path) {
   const TakeHeader& header = take.header();
   TextOut out = KA_TRY(TextOut::create(files, path, Overwrite::no));
+  // MOT has angles of joints; the skeleton of the group gives their names.
   auto writer = KA_TRY(MotWriter::begin({std::get<ClipGroup>(header.groups[group].kind).skeleton,
                                          MotColumns::joint_angles, header.frames, take.first()},
                                         out));
@@ -72,6 +73,7 @@ Result<void> write_sto(ExportedTake& take, std::size_t group, FileSystem& files,
   return out.commit();
 }
 
+/// The following functions say why a format can't hold a stream; an empty text means that it can.
 std::string_view no_points(const TakeGroup& group) {
   return std::holds_alternative<ImuGroup>(group.kind) ? "the format holds points" : "";
 }
@@ -99,6 +101,7 @@ Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::
   FilesMade made;
   const auto& groups = take.header().groups;
   for (std::size_t g = 0; g < groups.size(); ++g) {
+    // The reason is asked for before a file is created, so no empty file is left.
     const std::string_view why = format.refused(groups[g]);
     if (!why.empty()) {
       made.left_out.push_back(fmt::format("{}: {}", groups[g].name, why));
@@ -113,6 +116,8 @@ Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::
   return made;
 }
 
+/// One function for each format. Their signature is that of the table, so some arguments are not
+/// used.
 Result<FilesMade> as_trc(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
   return each_stream(take, files, stem, {"trc", no_points, write_trc});
@@ -133,6 +138,7 @@ Result<FilesMade> as_sto(ExportedTake& take, FileSystem& files, const std::strin
 Result<FilesMade> as_csv(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
   FilesMade made = KA_TRY(each_stream(take, files, stem, {"csv", nothing, write_stream_csv}));
+  // A table can't state skeletons and units, so a JSON file stands next to the tables.
   made.paths.push_back(stem + ".json");
   KA_TRY(write_streams_json(take, files, made.paths.back()));
   return made;
@@ -155,6 +161,7 @@ Result<FilesMade> as_bvh(ExportedTake& take, FileSystem& files, const std::strin
   bool written = false;
   for (const TakeGroup& group : take.header().groups) {
     const bool is_first = !written && std::holds_alternative<ClipGroup>(group.kind);
+    // Further skeletons and all other streams are left out.
     if (!is_first) {
       made.left_out.push_back(group.name + ": the format holds one skeleton");
       continue;

@@ -10,16 +10,20 @@
 
 namespace kinalign {
 
+/// The outcome of writing one take. Streams that were left out or failed are reported; they do not
+/// fail the export.
 struct FilesMade {
   std::vector<std::string> paths;
   std::vector<std::string> left_out;  // "imu: the format holds points"
   std::vector<Error> failed;          // streams that could not be written
 };
 
-/// Writes files whose paths begin with `stem`: "out/sub-03/sub-03_task-S2A03_run-01".
+/// Writes files whose paths begin with `stem`: "out/sub-03/sub-03_task-S2A03_run-01". `take_path`:
+/// the take's own file, for writers that read it themselves.
 using WriteTake = Result<FilesMade> (*)(ExportedTake& take, FileSystem& files,
                                         const std::string& take_path, const std::string& stem);
 
+/// A row of the table of formats: its words for users, and its writer.
 struct TakeFormat {
   std::string_view name;   // "trc"
   std::string_view title;  // for people

@@ -13,6 +13,7 @@ namespace kinalign {
 
 namespace {
 
+/// Only the names of files are needed to recognise the corpus.
 bool is_motion(const SourceFile& file) { return named_as_bids_motion(file.name); }
 
 bool looks_like_bids(FileSystem&, const std::vector<SourceFile>& sources) {
@@ -28,17 +29,20 @@ struct Recorded {
     std::string out = "sub-" + subject;
     for (const auto& [key, label] : {std::pair("_ses-", session), std::pair("_task-", task),
                                      std::pair("_acq-", acquisition), std::pair("_run-", run)}) {
+      // Entities that the name lacks are left out.
       if (!label.empty()) out += key + label;
     }
     return out;
   }
 };
 
+/// A tracking system of a recording: one stream of the take.
 struct System {
   std::string name, path;
   bool has_points = false;
 };
 
+/// The number of a run; 0 for a label that does not begin with a number.
 std::uint32_t run_number(const std::string& run) {
   std::uint32_t value = 0;
   std::from_chars(run.data(), run.data() + run.size(), value);
@@ -52,27 +56,33 @@ Manifest systems_manifest(std::vector<System> systems) {
   Manifest out;
   for (const System& one : systems) {
     out.streams.push_back(stream_of(one.name, one.path, "bids"));
+    // A system without positions is read as nodes.
     if (!one.has_points) out.streams.back().select = {{"kind", "nodes"}};
   }
   return out;
 }
 
+/// Every recording with a position is a take; its tracking systems are the streams.
 Result<Corpus> list_bids(const ImportInput& input) {
   Corpus out{.name = "BIDS-Motion", .classes = {{"bids", "tasks"}}, .class_id = "bids"};
+  // Sorted by the entities, so takes have the same order in every import.
   std::map<Recorded, std::vector<System>> recorded;
   for (const SourceFile& file : input.sources) {
     const auto name = parse_bids_name(file_name(file.name));
     if (!is_motion(file) || !name) continue;
     const auto label = [&](std::string_view key) { return std::string(name->label(key)); };
+    // A system whose sidecar files can't be read is left out; others of its recording stay.
     const auto system = read_bids_system(input.files, file.path);
     if (!system) {
       out.left_out.push_back({std::string(stem_of(file.name)), to_string(system.error())});
       continue;
     }
+    // Systems with the same entities were recorded together.
     recorded[{label("sub"), label("ses"), label("task"), label("acq"), label("run")}].push_back(
         {label("tracksys"), file.path, has_positions(*system)});
   }
   for (const auto& [key, systems] : recorded) {
+    // A take needs a reference with positions.
     const bool has_points = std::any_of(systems.begin(), systems.end(),
                                         [](const System& one) { return one.has_points; });
     if (!has_points) {
@@ -89,6 +99,7 @@ Result<Corpus> list_bids(const ImportInput& input) {
 }  // namespace
 
 CorpusKind bids_corpus() {
+  // A BIDS data set is a corpus of its own kind and no mere folder of motion files.
   return {"bids", "sub-*_tracksys-*_motion.tsv", false, looks_like_bids, list_bids};
 }
 

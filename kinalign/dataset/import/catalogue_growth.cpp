@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+/// A class that the user has described keeps that description.
 bool has_class(const Catalogue& catalogue, const std::string& id) {
   return std::any_of(catalogue.classes.begin(), catalogue.classes.end(),
                      [&](const ActionClass& one) { return one.id == id; });
@@ -24,8 +25,10 @@ std::string table_head(const std::string& kind, const std::string& id) {
 Result<std::string> grown_catalogue(const std::string& toml, const std::string& name,
                                     const CatalogueNeeds& needs) {
   const Catalogue has = KA_TRY(read_catalogue(toml, name));
+  // Actions come after the classes that they name, so the file reads from top to bottom.
   std::string more, actions;
   for (const std::string& id : needs.subjects) {
+    // Existing entries stay as the user wrote them.
     if (find_subject(has, id) == nullptr) more += table_head("subject", id);
   }
   std::set<std::string> classes;
@@ -36,11 +39,13 @@ Result<std::string> grown_catalogue(const std::string& toml, const std::string& 
                "\nname = " + toml_string(action.name) + "\n";
   }
   for (const ActionClass& one : needs.classes) {
+    // Only classes that a new action needs are added.
     if (!classes.contains(one.id) || has_class(has, one.id)) continue;
     more += table_head("class", one.id) + "name = " + toml_string(one.name) + "\n";
   }
   more += actions;
   if (more.empty()) return toml;
+  // The result is parsed before anything is written: appended tables can break an inline table.
   const std::string grown = toml + (toml.empty() || toml.ends_with('\n') ? "" : "\n") + more;
   const auto read = read_catalogue(grown, name);
   if (read) return grown;

@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+/// The packs are known by their names; other NPZ files are not read.
 bool is_clip_pack(const SourceFile& file) {
   const std::string_view stem = stem_of(file.name);
   return has_ending(file.name, ".npz") && (stem.starts_with("asf_") || stem.starts_with("daz_"));
@@ -29,6 +30,7 @@ bool looks_like_cmu(FileSystem&, const std::vector<SourceFile>& sources) {
 std::uint32_t trial_of(const PackedClip& clip) {
   const std::string lead = clip.person + "_";
   std::uint32_t number = 0;
+  // Other collections have names of their own; their clips get the next free run.
   if (!clip.take.starts_with(lead)) return 0;
   const char* const end = clip.take.data() + clip.take.size();
   const auto [behind, fault] = std::from_chars(clip.take.data() + lead.size(), end, number);
@@ -42,12 +44,14 @@ std::vector<std::string> file_names_of(const std::vector<PackedClip>& clips) {
   for (const PackedClip& clip : clips) {
     const auto safe = [](std::string text) {
       for (char& c : text) {
+        // label_of() keeps letters and digits; of the rest only the dash is harmless in a name.
         if (label_of({&c, 1}) == "x" && c != 'x' && c != '-') c = '_';
       }
       return text;
     };
     const std::string name = safe(clip.person) + "__" + safe(clip.take);
     std::string own = name + ".bvh";
+    // Two clips of one name get different files.
     for (int number = 2; !given.insert(own).second; ++number) {
       own = name + "__" + std::to_string(number) + ".bvh";
     }
@@ -61,6 +65,7 @@ Result<void> write_clips(const PackedClips& packed, const std::vector<std::strin
                          const PutFile& put, const ImportInput& input, const std::string& file) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     OutputFile out = KA_TRY(put(names[k]));
+    // The clip's own rate becomes the frame time of the BVH.
     const BvhFile bvh = bvh_from_clip(packed.clip(packed.clips()[k]), packed.frame_seconds());
     KA_TRY(write_bvh(bvh, [&out](std::string_view bytes) { return out.write(bytes); }));
     KA_TRY(out.commit());
@@ -71,6 +76,7 @@ Result<void> write_clips(const PackedClips& packed, const std::vector<std::strin
   return {};
 }
 
+/// A clip is a take of one stream. The action is CMU's label, not its description.
 CorpusTake take_of(const PackedClip& clip, const std::string& path) {
   CorpusTake out{clip.person, clip.label, trial_of(clip), {}, clip.take};
   out.manifest.streams.push_back(stream_of("mocap", path));
@@ -90,6 +96,7 @@ void leave_out_doubles(std::map<std::string, CorpusTake>& takes,
   }
 }
 
+/// Reads each pack once, writes its clips as BVHs, and lists a take for each clip.
 Result<Corpus> list_cmu(const ImportInput& input) {
   Corpus out{.name = "CMU Graphics Lab Motion Capture Database",
              .licence = "free for all uses; the data itself may not be resold",
@@ -99,11 +106,13 @@ Result<Corpus> list_cmu(const ImportInput& input) {
              .classes = {{"cmu", "CMU's database, sorted by its descriptions"}},
              .class_id = "cmu"};
   std::map<std::string, CorpusTake> takes;  // by names as in clip_same: "asf_06:06_01"
+  // The clips that another pack has as well.
   std::set<std::string> doubles;
   for (const SourceFile& file : input.sources) {
     if (!is_clip_pack(file)) continue;
     const auto packed = KA_TRY(PackedClips::read(KA_TRY(archive_bytes(input.files, file.path))));
     const auto names = file_names_of(packed.clips());
+    // The BVHs are written once; a later import finds the same folder.
     const std::string folder =
         KA_TRY(unpacked_folder(input.files, input.raw_folder, file.path, [&](const PutFile& put) {
           return write_clips(packed, names, put, input, file.path);
@@ -111,11 +120,13 @@ Result<Corpus> list_cmu(const ImportInput& input) {
     for (std::size_t k = 0; k < names.size(); ++k) {
       const PackedClip& clip = packed.clips()[k];
       std::string key = std::string(stem_of(file.name)) + ":" + clip.take;
+      // A second clip of one name is no double of the first.
       if (takes.contains(key)) key += " of clip " + std::to_string(k);
       takes.emplace(std::move(key), take_of(clip, folder + "/" + names[k]));
       if (!clip.same.empty()) doubles.insert(clip.same);
     }
   }
+  // Doubles are known only when all packs were read.
   leave_out_doubles(takes, doubles, out);
   return out;
 }

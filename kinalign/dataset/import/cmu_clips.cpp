@@ -12,7 +12,9 @@ namespace kinalign {
 
 namespace {
 
+// The steps of the pack's whole numbers.
 constexpr double metres_per_step = 0.0005, degrees_per_step = 0.015;
+// Limits against archives that unpack to far more than they should.
 constexpr ArchiveLimits largest_pack{
     .entries = 100, .bytes = std::uint64_t{512} << 20, .ratio = 1000};
 
@@ -30,9 +32,12 @@ std::vector<std::int16_t> unpacked(const std::vector<std::int64_t>& planes, std:
                                    std::size_t frames) {
   std::vector<std::int16_t> out(channels * frames);
   for (std::size_t c = 0; c < channels; ++c) {
+    // Two running sums: of second differences to steps, and of steps to values.
     std::uint16_t step = 0, value = 0;
     for (std::size_t f = 0; f < frames; ++f) {
       const std::size_t at = c * frames + f;
+      // The high byte and the low byte are in two planes; zigzag makes small differences small
+      // numbers.
       const auto coded =
           static_cast<std::uint32_t>(planes[at] | planes[channels * frames + at] << 8);
       step = static_cast<std::uint16_t>(step + ((coded >> 1) ^ (0U - (coded & 1U))));
@@ -43,6 +48,7 @@ std::vector<std::int16_t> unpacked(const std::vector<std::int64_t>& planes, std:
   return out;
 }
 
+/// `count` vectors of an array of numbers, from the vector `first` on.
 std::vector<Vec3> vectors(const std::vector<double>& numbers, std::size_t first,
                           std::size_t count) {
   std::vector<Vec3> out;
@@ -53,6 +59,7 @@ std::vector<Vec3> vectors(const std::vector<double>& numbers, std::size_t first,
 /// The people's skeletons, which share joints and end sites.
 Result<std::vector<Skeleton>> read_skeletons(const Npz& npz, const std::string& name,
                                              std::size_t people) {
+  // Names and parents are the same for all people; lengths are each person's own.
   Skeleton body;
   body.joint_names = KA_TRY(npz.texts("joints", {0}));
   const std::size_t joints = body.joint_names.size();
@@ -72,6 +79,7 @@ Result<std::vector<Skeleton>> read_skeletons(const Npz& npz, const std::string& 
       }
       own.end_sites.push_back({static_cast<int>(ends[e]), vec3(tips, p * ends.size() + e)});
     }
+    // A pack may be damaged, so the skeletons are checked like those of any file.
     if (auto sound = validate(own); !sound) {
       sound.error().file = name;
       return Failure(sound.error());
@@ -91,6 +99,7 @@ Result<std::vector<PackedClip>> read_clips(const Npz& npz, const std::string& na
   const auto length = KA_TRY(npz.integers("clip_len", {count}));
   const auto label = KA_TRY(npz.texts("clip_class", {count}));
   const auto text = KA_TRY(npz.texts("clip_text", {count}));
+  // Packs without this array have no doubles.
   const auto same = npz.has("clip_same") ? KA_TRY(npz.texts("clip_same", {count}))
                                          : std::vector<std::string>(count);
   std::vector<PackedClip> out;
@@ -125,6 +134,7 @@ Result<std::vector<std::vector<Quat>>> read_axes(const Npz& npz, std::size_t peo
   return out;
 }
 
+/// The limits refuse a damaged rate, by which all stamps would be wrong.
 Result<double> read_rate(const Npz& npz, const std::string& name) {
   const double rate_hz = KA_TRY(npz.numbers("rate", {})).front();
   if (rate_hz >= 1.0 && rate_hz <= 1e4) return rate_hz;
@@ -139,15 +149,18 @@ Result<PackedClips> PackedClips::read(const ArchiveBytes& bytes) {
   const auto people = KA_TRY(npz.texts("people", {0}));
   if (people.empty()) return Failure(Error{bytes.name, 0, "people", "none"});
   out.skeletons_ = KA_TRY(read_skeletons(npz, bytes.name, people.size()));
+  // All skeletons have the same joints.
   const std::size_t joints = out.skeletons_.front().joints();
   out.axes_ = KA_TRY(read_axes(npz, people.size(), joints));
   const std::size_t channels = 3 + 3 * joints;
   {
+    // The planes are larger than the values, so they are freed at once.
     const auto planes = KA_TRY(npz.integers("planes", {2, channels, 0}));
     out.frames_ = planes.size() / (2 * channels);
     out.values_ = unpacked(planes, channels, out.frames_);
   }
   out.clips_ = KA_TRY(read_clips(npz, bytes.name, people, out.frames_));
+  // A pack without a rate has 60 Hz.
   if (npz.has("rate")) out.frame_seconds_ = 1.0 / KA_TRY(read_rate(npz, bytes.name));
   return out;
 }
@@ -162,6 +175,7 @@ Clip PackedClips::clip(const PackedClip& packed) const {
   to.local_positions.reserve(packed.frames * joints * 3);
   to.local_rotations.resize(packed.frames * joints * 4);
   for (std::size_t t = 0; t < packed.frames; ++t) {
+    // Channels are rows of the array, frames are columns.
     const auto value = [&](std::size_t channel) {
       return static_cast<double>(values_[channel * frames_ + packed.begin + t]);
     };
@@ -169,6 +183,7 @@ Clip PackedClips::clip(const PackedClip& packed) const {
                         Duration{std::llround(1e9 * frame_seconds_ * static_cast<double>(t))});
     for (std::size_t j = 0; j < joints; ++j) {
       Vec3 at = out.skeleton.rest_offsets[j];
+      // Only the root moves; all other joints keep their offsets.
       if (j == 0) at += metres_per_step * Vec3(value(0), value(1), value(2));
       to.local_positions.insert(to.local_positions.end(), at.begin(), at.end());
       const std::size_t c = 3 + 3 * j;

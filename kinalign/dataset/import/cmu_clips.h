@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// One clip in the pack: a range of frames of one person.
 struct PackedClip {
   std::string person, take, label, text;  // "13", "13_29", "climb", CMU's description
   std::string same;      // the same clip in another pack: "daz_05:06_01"; empty: none
@@ -19,6 +20,8 @@ struct PackedClip {
   std::size_t begin = 0, frames = 0;
 };
 
+/// A pack in memory, unpacked but still as whole numbers. clip() makes the values of one clip when
+/// they are needed.
 class PackedClips {
  public:
   /// Fails if an array is missing, has another shape, or has impossible values.
@@ -26,6 +29,7 @@ class PackedClips {
 
   const std::vector<PackedClip>& clips() const { return clips_; }
   double frame_seconds() const { return frame_seconds_; }
+  // `packed` must be one of clips().
   Clip clip(const PackedClip& packed) const;
 
  private:

@@ -7,6 +7,7 @@ namespace kinalign {
 
 namespace {
 
+/// The kinds with the names of files by which they are known, for an error.
 std::string words_of_kinds(const std::vector<CorpusKind>& kinds) {
   std::string text;
   for (const CorpusKind& kind : kinds) {
@@ -38,9 +39,11 @@ Result<CorpusKind> find_corpus(FileSystem& files, const std::vector<SourceFile>&
   for (const CorpusKind& kind : corpus_kinds()) {
     if (!wanted.empty() && kind.name == wanted) return kind;
     if (!wanted.empty() || !kind.looks(files, sources)) continue;
+    // A BVH may also belong to a corpus with more to say of it, so general kinds count last.
     (kind.general ? general : own).push_back(kind);
   }
   if (!wanted.empty()) return Failure(unknown_name(wanted, "a corpus", corpus_kind_names()));
+  // Files of two kinds are refused: the user must choose with --from.
   const std::vector<CorpusKind>& found = own.empty() ? general : own;
   if (found.size() == 1) return found.front();
   if (found.empty()) {

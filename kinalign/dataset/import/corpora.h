@@ -18,6 +18,7 @@ CorpusKind ui_prmd_corpus();
 CorpusKind ui_prmd_joints_corpus();
 std::vector<CorpusKind> motion_file_corpora();  // bvh, c3d, mvnx, trc
 
+/// All kinds, the specific ones first.
 std::vector<CorpusKind> corpus_kinds();
 std::vector<std::string> corpus_kind_names();
 

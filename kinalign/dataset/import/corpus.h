@@ -38,6 +38,8 @@ struct LeftOut {
   std::string what, why;  // "m03_s03_e01", "without Vicon"
 };
 
+/// All that an importer knows of a corpus. The terms go into a new dataset.toml, the takes become
+/// manifests.
 struct Corpus {
   std::string name, licence{}, citation{};
   std::vector<ActionClass> classes{};

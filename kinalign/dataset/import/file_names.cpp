@@ -12,10 +12,12 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/// At most six digits: a longer number is not taken for a run.
 bool is_number(std::string_view text) {
   return !text.empty() && text.size() <= 6 && std::all_of(text.begin(), text.end(), is_digit);
 }
 
+/// The value of a text of digits.
 std::uint32_t number_of(std::string_view text) {
   std::uint32_t value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -33,6 +35,7 @@ void read_action(std::string_view stem, FileSays& out) {
   stem = without_character(stem);
   std::size_t end = stem.size();
   while (end > 0 && is_digit(stem[end - 1])) --end;
+  // The separator before the run belongs to neither part.
   if (is_number(stem.substr(end))) {
     out.run = number_of(stem.substr(end));
     stem = stem.substr(0, end);
@@ -43,6 +46,7 @@ void read_action(std::string_view stem, FileSays& out) {
   out.action = stem;
 }
 
+/// CMU's form has two numbers: the subject and the trial. False for other names.
 bool read_cmu(std::string_view stem, FileSays& out) {
   const auto line = stem.find('_');
   if (line == stem.npos) return false;
@@ -53,6 +57,7 @@ bool read_cmu(std::string_view stem, FileSays& out) {
   return true;
 }
 
+/// The folders of a name, from the outside in.
 std::vector<std::string_view> folders_of(std::string_view name) {
   std::vector<std::string_view> out;
   for (auto slash = name.find('/'); slash != name.npos; slash = name.find('/')) {
@@ -79,18 +84,21 @@ std::size_t shared_folders(const std::vector<std::string>& names) {
 
 std::vector<FileSays> read_file_names(const std::vector<std::string>& names) {
   const std::size_t shared = shared_folders(names);
+  // People's folders lie below the shared ones. If one file lies outside, folders say nothing.
   const bool has_people = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return folders_of(name).size() > shared;
   });
   std::vector<FileSays> out;
   for (const std::string& name : names) {
     FileSays& says = out.emplace_back();
+    // CMU's form is tried first, since its numbers would look like an action and a run.
     if (read_cmu(stem_of(name), says)) continue;
     read_action(stem_of(name), says);
     const auto folders = folders_of(name);
     if (has_people) {
       says.subject = folders[shared];
     } else if (shared > 0) {
+      // All files lie in one folder: it is the person's.
       says.subject = folders[shared - 1];
     }
   }

@@ -10,6 +10,7 @@
 
 namespace kinalign {
 
+/// The facts that a name states.
 struct FileSays {
   std::string subject;    // empty: not stated
   std::string action;     // empty: the name is only a number

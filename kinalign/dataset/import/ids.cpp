@@ -9,10 +9,12 @@ namespace {
 
 constexpr std::size_t longest = 60;  // leaves room for a number
 
+/// Letters of ASCII only: BIDS allows no others in a label, and the locale must not matter.
 bool is_small(char c) { return c >= 'a' && c <= 'z'; }
 bool is_latin(char c) { return is_small(c) || (c >= 'A' && c <= 'Z'); }
 bool is_figure(char c) { return c >= '0' && c <= '9'; }
 
+/// Ids are compared in lower case, because some file systems ignore case.
 std::string in_small(std::string text) {
   for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   return text;
@@ -25,9 +27,11 @@ std::string label_of(std::string_view word) {
   bool is_behind_gap = false;
   for (const char c : word) {
     if (!is_latin(c) && !is_figure(c)) {
+      // Characters that are dropped at the beginning leave no gap.
       is_behind_gap = !out.empty();
       continue;
     }
+    // Words that were apart stay readable: the next one begins with a capital.
     out += is_behind_gap && is_small(c) ? static_cast<char>(c - 32) : c;
     is_behind_gap = false;
     if (out.size() == longest) break;
@@ -47,8 +51,10 @@ Ids::Ids(const std::vector<std::pair<std::string, std::string>>& known) {
 bool Ids::is_free(const std::string& id, const std::string& word) const {
   if (!taken_.contains(in_small(id))) return true;
   const auto known = names_.find(id);
+  // The id differs from a known one only in case, or was given to another word.
   if (known == names_.end()) return false;
   for (const auto& [other, given] : given_) {
+    // One import never gives an id to two words.
     if (given == id) return false;
   }
   return known->second == word || (id == word && label_of(known->second) != id);
@@ -58,7 +64,9 @@ std::string Ids::of(const std::string& word) {
   if (const auto known = given_.find(word); known != given_.end()) return known->second;
   const std::string label = label_of(word);
   std::string id = label;
+  // A taken id gets a number: walk, walkx2, walkx3.
   for (int number = 2; !is_free(id, word); ++number) id = label + "x" + std::to_string(number);
+  // The id is taken for all other words from now on.
   taken_.insert(in_small(id));
   given_[word] = id;
   return id;

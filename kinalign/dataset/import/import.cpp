@@ -30,6 +30,7 @@ Result<std::optional<std::string>> read_catalogue_text(FileSystem& files,
   return KA_TRY(read_whole(files, path, longest_catalogue));
 }
 
+/// Known actions with their names, from which Ids recognises the words of an earlier import.
 std::vector<std::pair<std::string, std::string>> named(const std::vector<Action>& actions) {
   std::vector<std::pair<std::string, std::string>> out;
   out.reserve(actions.size());
@@ -43,12 +44,14 @@ struct Named {
   CatalogueNeeds needs;
 };
 
+/// The description of an action, if the corpus has one.
 const Action* action_of(const Corpus& corpus, const std::string& word) {
   const auto at = std::find_if(corpus.actions.begin(), corpus.actions.end(),
                                [&](const Action& one) { return one.id == word; });
   return at == corpus.actions.end() ? nullptr : &*at;
 }
 
+/// Replaces the words of the takes by ids, and collects the entries that these ids need.
 Named name_takes(Corpus& corpus, const Catalogue& has) {
   // Names of people are not stored, so the same word means the same person in every import.
   Named out{Ids({}), Ids(named(has.actions)), {}};
@@ -58,18 +61,21 @@ Named name_takes(Corpus& corpus, const Catalogue& has) {
     if (subjects.insert(subject).second) out.needs.subjects.push_back(subject);
     take.subject = subject;
     take.action = out.actions.of(word);
+    // Each action is described once, by the first take that has it.
     if (!actions.insert(take.action).second) continue;
     const Action* const known = action_of(corpus, word);
     out.needs.actions.push_back(
         {take.action, known ? known->class_id : corpus.class_id, known ? known->name : word});
   }
   out.needs.classes = corpus.classes;
+  // Sorted, so that dataset.toml does not depend on the order of files.
   std::sort(out.needs.subjects.begin(), out.needs.subjects.end());
   std::sort(out.needs.actions.begin(), out.needs.actions.end(),
             [](const Action& a, const Action& b) { return a.id < b.id; });
   return out;
 }
 
+/// The folder may be new; importing makes it a data set.
 Result<void> write_catalogue(FileSystem& files, const std::string& folder,
                              const std::string& text) {
   KA_TRY(make_folders(folder));
@@ -83,6 +89,7 @@ Result<void> check_units(const CorpusKind& kind, const ImportRequest& request) {
   return Failure(Error{flag, 0, "files of bvh, c3d or trc", std::string(kind.name)});
 }
 
+/// All streams of the corpus have the unit and the axis that the user states.
 void put_units(const ImportRequest& request, Corpus& corpus) {
   for (CorpusTake& take : corpus.takes) {
     for (StreamOptions& stream : take.manifest.streams) {
@@ -92,9 +99,12 @@ void put_units(const ImportRequest& request, Corpus& corpus) {
   }
 }
 
+/// Finds the files, recognises the corpus and lists its takes. Archives and packs are unpacked on
+/// the way. If nothing comes of it, unpacked files are removed.
 Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                            const ImportRequest& request, const Progress& progress,
                            std::string& kind_name) {
+  // Unpacked files are raw files of the data set.
   const std::string raw_folder = folder + "/sourcedata";
   std::optional<UnfinishedFolder> unfinished;  // unpacked files, removed unless the import succeeds
   if (!is_there(raw_folder)) unfinished.emplace(raw_folder);
@@ -107,9 +117,11 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
       {files, sources, raw_folder, request.subject, request.action, progress, request.jobs}));
   if (kind.unit_is_open) put_units(request, corpus);
   if (!corpus.takes.empty()) {
+    // From here on the takes need the unpacked files.
     if (unfinished) unfinished->keep();
     return corpus;
   }
+  // The first part that was left out explains the empty result.
   const std::string why = corpus.left_out.empty()
                               ? "none"
                               : corpus.left_out.front().what + ": " + corpus.left_out.front().why;
@@ -121,6 +133,7 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
 std::string with_terms(std::string text, const Corpus& corpus) {
   for (const auto& [key, value] :
        {std::pair("licence", &corpus.licence), {"citation", &corpus.citation}}) {
+    // Only an empty text is replaced: the user's own terms stay.
     const std::string empty = std::string("\n") + key + " = \"\"";
     if (const auto at = text.find(empty); at != std::string::npos) {
       text.replace(at, empty.size(), std::string("\n") + key + " = " + toml_string(*value));
@@ -135,7 +148,9 @@ Result<Catalogue> grow_catalogue(FileSystem& files, const std::string& folder,
                                  const std::optional<std::string>& text, const Corpus& corpus,
                                  const CatalogueNeeds& needs) {
   const std::string path = catalogue_path(folder);
+  // A new data set gets the corpus's name and terms.
   std::string before = text.value_or(catalogue_head(corpus.name, corpus.licence, corpus.citation));
+  // Once there are people, the terms are those of several sources and the user's to state.
   if (KA_TRY(read_catalogue(before, path)).subjects.empty()) {
     before = with_terms(std::move(before), corpus);
   }
@@ -150,6 +165,7 @@ Result<std::uint64_t> add_takes(const Corpus& corpus, const ImportRequest& reque
                                 const ImportStep& step) {
   std::uint64_t done = 0, were_there = 0;
   for (const CorpusTake& take : corpus.takes) {
+    // Takes that exist already are found again by their manifests.
     const AddRequest add{take.from, take.subject, take.action, request.copy, take.run};
     if (KA_TRY(adder.add(take.manifest, "", add)).was_there) ++were_there;
     step(++done, corpus.takes.size());
@@ -169,6 +185,7 @@ Result<Imported> import_corpus(FileSystem& files, const std::string& folder,
   out.is_new = !text;
   Corpus corpus = KA_TRY(list_corpus(files, folder, request, progress, out.kind));
   const Named names = name_takes(corpus, catalogue);
+  // The catalogue must be complete before takes are added, since TakeAdder refuses unknown ids.
   catalogue = KA_TRY(grow_catalogue(files, folder, text, corpus, names.needs));
   TakeAdder adder(files, folder, catalogue);
   out.were_there = KA_TRY(add_takes(corpus, request, adder, progress, step));

@@ -16,6 +16,7 @@
 
 namespace kinalign {
 
+/// The order of the user. Subject and action serve files that state none themselves.
 struct ImportRequest {
   std::vector<std::string> sources;  // folders, files and archives
   std::string from;                  // a kind of corpus; empty: by the files
@@ -26,6 +27,7 @@ struct ImportRequest {
   std::size_t jobs = 1;              // threads to use
 };
 
+/// The outcome for the user: what was found, what is new, and what was left out.
 struct Imported {
   std::string kind;
   std::uint64_t takes = 0, were_there = 0;  // takes of the corpus, and those that existed before

@@ -12,11 +12,13 @@ namespace kinalign {
 
 namespace {
 
+/// The parts of a file's name. Two files of one recording have the same key.
 struct RecordingName {
   std::string device, subject, action;  // "Kinect", "G3P1", "CTK"
   std::string key;                      // the name without the device
 };
 
+/// "G3-Kinect-CTK" gives three words.
 std::vector<std::string> words_between_dashes(std::string_view stem) {
   std::vector<std::string> out;
   for (;;) {
@@ -34,12 +36,14 @@ std::optional<RecordingName> recording_of(std::string_view name) {
       !parts[3].starts_with('P') || (parts[1] != "Kinect" && parts[1] != "Vicon")) {
     return std::nullopt;
   }
+  // "P1T1" is person 1, trial 1; persons are numbered within their group.
   const auto end = parts[3].find_first_not_of("0123456789", 1);
   RecordingName out{parts[1], parts[0] + parts[3].substr(0, end), parts[2], parts[0]};
   for (std::size_t i = 2; i < parts.size(); ++i) out.key += "-" + parts[i];
   return out;
 }
 
+/// One file with such a name is enough.
 bool looks_like_keraal(FileSystem&, const std::vector<SourceFile>& sources) {
   return std::any_of(sources.begin(), sources.end(),
                      [](const SourceFile& file) { return recording_of(file.name).has_value(); });
@@ -50,6 +54,7 @@ Manifest recording_manifest(const std::string& kinect, const std::string& vicon)
   Manifest out;
   out.streams.push_back(stream_of("mocap", vicon, "keraal_vicon"));
   out.streams.push_back(stream_of("kinect", kinect, "keraal_kinect"));
+  // The targets lie on the skin near joints, so their names are paired here by hand.
   SpaceOptions& space = out.spaces["kinect"];
   space.method = "fit";
   space.joints = {{"SpineBase", "Hips"},         {"Head", "Head"},
@@ -59,6 +64,7 @@ Manifest recording_manifest(const std::string& kinect, const std::string& vicon)
   return out;
 }
 
+/// The files of one recording; a path is empty until its file is found.
 struct DevicePair {
   RecordingName name;
   std::string kinect, vicon;
@@ -73,6 +79,7 @@ Result<Corpus> list_keraal(const ImportInput& input) {
                  "Dataset for Human Body Movement Analysis. IJCNN 2024",
              .classes = {{"keraal", "exercises of the back"}},
              .class_id = "keraal"};
+  // Sorted by key, so takes have the same order in every import.
   std::map<std::string, DevicePair> pairs;
   for (const SourceFile& file : input.sources) {
     const auto name = recording_of(file.name);
@@ -82,6 +89,7 @@ Result<Corpus> list_keraal(const ImportInput& input) {
     (name->device == "Kinect" ? pair.kinect : pair.vicon) = file.path;
   }
   for (const auto& [key, pair] : pairs) {
+    // A take needs both devices.
     if (pair.kinect.empty() || pair.vicon.empty()) {
       out.left_out.push_back({key, pair.vicon.empty() ? "without Vicon" : "without Kinect"});
       continue;

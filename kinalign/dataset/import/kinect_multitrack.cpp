@@ -11,8 +11,10 @@ namespace kinalign {
 
 namespace {
 
+// The built-in layout that reads these logs.
 constexpr std::string_view layout = "kinect_multitrack";
 
+/// A log is known by its columns, so its beginning is read. A file that can't be opened is none.
 bool is_log(FileSystem& files, const SourceFile& file) {
   if (!has_ending(file.name, ".csv")) return false;
   auto opened = InputFile::open(files, file.path, 4096);
@@ -37,6 +39,7 @@ std::string number_behind(std::string_view text, std::string_view lead) {
   return std::string(text.substr(0, end));
 }
 
+/// Both Kinects are in one table; each stream selects its rows.
 Manifest log_manifest(const std::string& path) {
   Manifest out;
   constexpr std::array<const char*, 2> names{"kinect0", "kinect1"};
@@ -63,6 +66,7 @@ Result<Corpus> list_kinect_multitrack(const ImportInput& input) {
     if (!is_log(input.files, file)) continue;
     const std::string stem(stem_of(file.name));
     const std::string study = number_behind(stem, "Study_"), rig = number_behind(stem, "Kinect_");
+    // The user's words serve only files whose names state nothing.
     const std::string subject = study.empty() ? input.subject : study;
     const std::string action = rig.empty() ? input.action : "kinect" + rig;
     if (subject.empty() || action.empty()) {

@@ -11,11 +11,13 @@ namespace kinalign {
 
 namespace {
 
+// The endings of the four kinds; the functions below exist once for each of them.
 constexpr std::string_view bvh = ".bvh", c3d = ".c3d", mvnx = ".mvnx", packed_mvnx = ".mvnx.gz",
                            trc = ".trc";
 
 template <const std::string_view& ending>
 bool is_one(const SourceFile& file) {
+  // MVNX is often packed; it is read without unpacking it first.
   if (ending == mvnx && has_ending(file.name, packed_mvnx)) return true;
   return has_ending(file.name, ending);
 }
@@ -35,6 +37,7 @@ std::string folder_name(const std::vector<SourceFile>& sources) {
   const std::filesystem::path path(sources.front().path);
   std::error_code fault;
   std::filesystem::path up = std::filesystem::weakly_canonical(path, fault).parent_path();
+  // The name has one slash for each folder between the given folder and the file.
   const std::string& name = sources.front().name;
   for (auto slash = std::count(name.begin(), name.end(), '/'); slash > 0; --slash) {
     up = up.parent_path();
@@ -56,9 +59,11 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
     files.push_back(file);
     names.push_back(without_packing(file.name));
   }
+  // Names are judged together: folders mean people only if all files agree.
   const auto says = read_file_names(names);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string subject = says[i].subject.empty() ? input.subject : says[i].subject;
+    // A name that is only a number states no action.
     const std::string named = says[i].action.empty() ? unnamed : says[i].action;
     if (subject.empty()) {
       out.left_out.push_back({files[i].name, "no folder or name states the person (--subject ID)"});
@@ -74,6 +79,7 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
 
 template <const std::string_view& ending>
 CorpusKind kind(std::string_view name, std::string_view known_by) {
+  // MVNX states its unit and axes, so none may be given.
   return {name,          known_by, true, looks_like_motion_files<ending>, list_motion_files<ending>,
           ending != mvnx};
 }

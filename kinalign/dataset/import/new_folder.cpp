@@ -27,6 +27,8 @@ void remove_abandoned(const std::string& parent, const std::string& lead) {
     const char* const end = name.data() + name.size();
     const auto [behind, fault] = std::from_chars(name.data() + lead.size(), end, process);
     if (fault != std::errc{} || behind != end || process <= 0) continue;
+    // A process that can't be signalled but exists still runs. A folder of this process is left
+    // over from before.
     const bool runs = process != ::getpid() && (::kill(process, 0) == 0 || errno != ESRCH);
     std::error_code ignored;
     if (!runs) fs::remove_all(fs::path(parent) / name, ignored);
@@ -39,6 +41,7 @@ Result<void> fill_in(const fs::path& from, const fs::path& to) {
   fs::recursive_directory_iterator at(from, fault);
   for (; !fault && at != fs::recursive_directory_iterator(); at.increment(fault)) {
     const fs::path target = to / at->path().lexically_relative(from);
+    // Files that exist stay: takes may have been made from them.
     if (at->is_directory(fault) || is_there(target.string())) continue;
     KA_TRY(make_folders(target.parent_path().string()));
     fs::rename(at->path(), target, fault);
@@ -53,11 +56,13 @@ Result<void> fill_in(const fs::path& from, const fs::path& to) {
 UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
   for (fs::path up = fs::path(path_).parent_path(); !up.empty() && !is_there(up.string());
        up = up.parent_path()) {
+    // Only folders that do not exist yet are remembered.
     above_.push_back(up.string());
   }
 }
 
 UnfinishedFolder::~UnfinishedFolder() {
+  // A failed import removes what it made, and no folder that existed before.
   if (kept_) return;
   std::error_code ignored;
   fs::remove_all(path_, ignored);
@@ -74,14 +79,17 @@ Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent
 Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
                                   const std::string& stem, const std::string& sha256,
                                   const FillFolder& fill) {
+  // Eight digits tell sources apart; is_unpacked() knows this form.
   const std::string own = stem + "-" + sha256.substr(0, 8);
   const fs::path to = fs::path(parent) / own;
   // The process id is in the name, since another process may unpack the same source.
   const std::string lead = "." + own + "-";
+  // An import that was killed could not remove its folder.
   remove_abandoned(parent, lead);
   const fs::path sibling = fs::path(parent) / (lead + std::to_string(::getpid()));
   UnfinishedFolder unfinished(sibling.string());
   KA_TRY(make_folders(sibling.string()));
+  // The content is made under the hidden name, where no take looks for it.
   KA_TRY(fill([&](const std::string& file) -> Result<OutputFile> {
     const fs::path path = sibling / file;
     KA_TRY(make_folders(path.parent_path().string()));
@@ -89,7 +97,9 @@ Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
   }));
   std::error_code fault;
   fs::rename(sibling, to, fault);
+  // After the rename the hidden name is free, and nothing is left to remove.
   if (!fault) unfinished.keep();
+  // The folder exists from an earlier import: only its missing files are added.
   if (fault && is_there(to.string())) {
     KA_TRY(fill_in(sibling, to));
   } else if (fault) {

@@ -12,6 +12,7 @@ namespace kinalign {
 
 namespace {
 
+/// The numbers of a clip's name.
 struct ClipName {
   std::uint32_t setup = 0, camera = 0, person = 0, repetition = 0, action = 0;
 
@@ -19,6 +20,7 @@ struct ClipName {
   std::uint32_t run() const { return 100 * setup + 10 * camera + repetition; }
   /// True for actions of two people (rose1.ntu.edu.sg); the second person has no number.
   bool is_mutual() const { return (action >= 50 && action <= 60) || action >= 106; }
+  // The classes of the corpus's own list of actions.
   std::string_view class_id() const {
     if (is_mutual()) return "mutual";
     return (action >= 41 && action <= 49) || action >= 103 ? "medical" : "daily";
@@ -37,6 +39,7 @@ bool take_three_digits(std::string_view& text, char lead, std::uint32_t& out) {
   return true;
 }
 
+/// The numbers of a file's name; absent for other files.
 std::optional<ClipName> clip_of(std::string_view name) {
   ClipName out;
   std::string_view rest = stem_of(name);
@@ -47,6 +50,7 @@ std::optional<ClipName> clip_of(std::string_view name) {
   return fits && rest.empty() ? std::optional(out) : std::nullopt;
 }
 
+/// One clip is enough.
 bool looks_like_ntu(FileSystem&, const std::vector<SourceFile>& sources) {
   return std::any_of(sources.begin(), sources.end(),
                      [](const SourceFile& file) { return clip_of(file.name).has_value(); });
@@ -56,6 +60,7 @@ bool looks_like_ntu(FileSystem&, const std::vector<SourceFile>& sources) {
 Manifest clip_manifest(const std::string& path, const std::vector<NtuBody>& bodies,
                        bool is_mutual) {
   Manifest out;
+  // Bodies that were seen for a shorter time are left out.
   const std::size_t count = is_mutual ? std::min<std::size_t>(bodies.size(), 2) : 1;
   for (std::size_t k = 0; k < count; ++k) {
     out.streams.push_back(stream_of(k == 0 ? "kinect" : "partner", path, "ntu"));
@@ -81,7 +86,9 @@ Result<Corpus> list_ntu(const ImportInput& input) {
     if (!clip) continue;
     const std::string stem(stem_of(file.name)), action = fmt::format("A{:03}", clip->action);
     InputFile opened = KA_TRY(InputFile::open(input.files, file.path));
+    // The bodies must be read to know which one to select.
     const auto bodies = KA_TRY(ntu_bodies([&opened] { return opened.next(); }, file.path));
+    // Each clip is read to its end, so the user can stop between clips.
     if (!go_on(input.progress, "reading", out.takes.size(), input.sources.size())) {
       return Failure(interruption(file.path));
     }
@@ -91,6 +98,7 @@ Result<Corpus> list_ntu(const ImportInput& input) {
     }
     out.takes.push_back({fmt::format("{:03}", clip->person), action, clip->run(),
                          clip_manifest(file.path, bodies, clip->is_mutual()), stem});
+    // The corpus numbers its actions and gives no names in the files.
     const bool is_known = std::any_of(out.actions.begin(), out.actions.end(),
                                       [&](const Action& one) { return one.id == action; });
     if (!is_known) out.actions.push_back({action, std::string(clip->class_id()), ""});

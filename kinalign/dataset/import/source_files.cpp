@@ -28,10 +28,12 @@ Result<void> list_folder(const fs::path& top, std::vector<SourceFile>& out) {
   for (; !fault && at != fs::recursive_directory_iterator(); at.increment(fault)) {
     const std::string name = at->path().filename().string();
     if (name.starts_with('.') || name == mac_folder) {
+      // Hidden folders are not entered.
       at.disable_recursion_pending();
       continue;
     }
     std::error_code gone;
+    // A file that disappears meanwhile is passed over.
     if (!at->is_regular_file(gone)) continue;
     out.push_back({at->path().string(), at->path().lexically_relative(top).generic_string()});
   }
@@ -39,7 +41,9 @@ Result<void> list_folder(const fs::path& top, std::vector<SourceFile>& out) {
   return {};
 }
 
+/// Archives are known by their first bytes. A gzip must also have the ending of a packed tar.
 Result<bool> is_archive(FileSystem& files, const std::string& path) {
+  // An NPZ is a ZIP, too, but importers read it as a whole.
   if (has_ending(path, ".npz")) return false;
   const InputFile file = KA_TRY(InputFile::open(files, path, 1));
   std::array<char, 512> head{};
@@ -49,6 +53,7 @@ Result<bool> is_archive(FileSystem& files, const std::string& path) {
 /// Unpacks an archive into a folder of its own.
 Result<std::string> unpack(FileSystem& files, const std::string& path,
                            const std::string& raw_folder, const Progress& progress) {
+  // Files are unpacked one by one, block by block, so a large archive needs little memory.
   const ArchiveBytes bytes = KA_TRY(archive_bytes(files, path));
   return unpacked_folder(files, raw_folder, path, [&](const PutFile& put) {
     std::uint64_t done = 0;
@@ -70,6 +75,7 @@ Result<std::string> unpack(FileSystem& files, const std::string& path,
 }  // namespace
 
 Result<ArchiveBytes> archive_bytes(FileSystem& files, const std::string& path) {
+  // The reader of the archive jumps in the file, so the file stays open.
   const auto file = std::make_shared<InputFile>(KA_TRY(InputFile::open(files, path, 1)));
   return ArchiveBytes{path, file->size(), [file](std::uint64_t at, std::span<char> to) {
                         return file->read_at(at, to);
@@ -88,10 +94,12 @@ Result<std::vector<SourceFile>> list_sources(FileSystem& files,
     } else if (KA_TRY(is_archive(files, source))) {
       KA_TRY(list_folder(KA_TRY(unpack(files, source, raw_folder, progress)), out));
     } else {
+      // A single file has no folder in its name.
       out.push_back({source, std::string(file_name(source))});
     }
   }
   std::sort(out.begin(), out.end(), [](const SourceFile& a, const SourceFile& b) {
+    // Sources may have files of one name; their paths then decide.
     return a.name != b.name ? a.name < b.name : a.path < b.path;
   });
   return out;

@@ -15,6 +15,7 @@ namespace kinalign {
 
 namespace {
 
+// The names of the movements, in the order of their numbers.
 constexpr std::array<std::string_view, 10> movements{"deep squat",
                                                      "hurdle step",
                                                      "inline lunge",
@@ -49,6 +50,7 @@ std::optional<PieceName> piece_of(std::string_view name) {
   return out.incorrect || rest == "_positions" ? std::optional(out) : std::nullopt;
 }
 
+/// A pack has all pieces of one person: "s01.npz".
 bool is_piece_pack(const SourceFile& file) {
   std::string_view stem = stem_of(file.name);
   int number = 0;
@@ -60,17 +62,21 @@ void add_texts(const std::vector<SourceFile>& sources, double vicon_hz, PiecePai
   for (const SourceFile& file : sources) {
     const auto piece = piece_of(file.name);
     if (!piece) continue;
+    // Both devices have files of the same name; the folder tells them apart.
     const bool is_kinect = file.path.find("/Kinect/") != std::string::npos;
     const bool is_vicon = file.path.find("/Vicon/") != std::string::npos;
+    // A file outside of both folders belongs to no device.
     if (is_kinect == is_vicon) continue;
     PiecePair& pair = out[*piece];
     std::string& path = is_kinect ? pair.kinect : pair.vicon;
+    // The first file of a repetition stays.
     if (!path.empty()) continue;
     path = file.path;
     if (is_vicon) pair.vicon_hz = vicon_hz;
   }
 }
 
+/// Packs are unpacked to texts first and then read like the texts of the source.
 Result<void> add_packs(const ImportInput& input, PiecePairs& out) {
   for (const SourceFile& file : input.sources) {
     if (!is_piece_pack(file)) continue;
@@ -87,6 +93,7 @@ Result<void> add_packs(const ImportInput& input, PiecePairs& out) {
   return {};
 }
 
+/// The Kinect is fitted to the markers.
 Manifest pair_manifest(const PiecePair& pair) {
   Manifest out;
   out.streams = {marker_stream_of(pair), kinect_stream_of(pair)};
@@ -134,6 +141,7 @@ bool looks_like_ui_prmd(const std::vector<SourceFile>& sources) {
 
 Result<PiecePairs> find_ui_prmd_pairs(const ImportInput& input) {
   PiecePairs pairs;
+  // Texts come first: they have the full rate of the markers.
   add_texts(input.sources, 100.0, pairs);
   KA_TRY(add_packs(input, pairs));
   return pairs;
@@ -145,6 +153,7 @@ StreamOptions kinect_stream_of(const PiecePair& pair) {
 
 StreamOptions marker_stream_of(const PiecePair& pair) {
   StreamOptions out = stream_of("mocap", pair.vicon, "ui_prmd_vicon");
+  // The layout's own rate is that of the source, 100 Hz; packs have half of it.
   if (pair.vicon_hz != 100.0) out.rate_hz = pair.vicon_hz;
   return out;
 }
@@ -158,6 +167,7 @@ Corpus ui_prmd_without_takes() {
              .classes = {{"uiprmd", "movements of rehabilitation"},
                          {"uiprmdinc", "movements of rehabilitation, done wrongly on purpose"}},
              .class_id = "uiprmd"};
+  // Each movement is two actions: done right, and done wrongly on purpose.
   for (std::size_t k = 0; k < movements.size(); ++k) {
     const std::string id = fmt::format("m{:02}", k + 1), name(movements[k]);
     out.actions.push_back({id, "uiprmd", name});

@@ -22,10 +22,12 @@ struct PieceName {
   std::string text() const;    // "m01_s02_e03"
 };
 
+/// The files of one repetition. Each path is empty until the device's file is found.
 struct PiecePair {
   std::string kinect, vicon;  // files of positions; empty: none
   double vicon_hz = 100.0;
 };
+/// Sorted by movement, person and repetition.
 using PiecePairs = std::map<PieceName, PiecePair>;
 
 bool looks_like_ui_prmd(const std::vector<SourceFile>& sources);

@@ -25,6 +25,7 @@ namespace kinalign {
 
 namespace {
 
+// The rates of the protocol.
 constexpr double kinect_hz = 30.0, truth_hz = 50.0;
 constexpr double most_rms_m = 0.12;      // limit for an accepted repetition
 constexpr std::size_t least_taken = 3;   // repetitions of a person's movement
@@ -66,6 +67,7 @@ Result<PointFrames> all_frames(const PointInput& points) {
 
 /// Reads the joints that the Kinect shares with other devices.
 Result<void> read_kinect(const PointInput& points, Repetition& out) {
+  // The layout of the corpus has all shared joints; a missing one is an error.
   const auto joints = KA_TRY(shared_joints_among(points.joint_names));
   const PointFrames frames = KA_TRY(all_frames(points));
   out.kinect.resize(3 * shared_joint_count * frames.size());
@@ -81,6 +83,7 @@ Result<void> read_kinect(const PointInput& points, Repetition& out) {
 /// Every second frame of markers at 100 Hz is used, since packs contain only those.
 Result<void> read_markers(const PointInput& points, Repetition& out) {
   const PointFrames frames = KA_TRY(all_frames(points));
+  // Texts and packs give the same joints in this way.
   const std::size_t stride = out.files.vicon_hz > truth_hz ? 2 : 1;
   for (std::size_t t = 0; t < frames.size(); t += stride) {
     for (std::size_t i = t * marker_count; i < (t + 1) * marker_count; ++i) {
@@ -120,6 +123,7 @@ void put_truth(std::vector<Repetition>& all) {
     seen.insert(seen.end(), one.seen.begin(), one.seen.end());
   }
   for (std::size_t i = 0; i < seen.size(); ++i) {
+    // Elbows and knees are fitted to a fifth of the frames.
     if (i / marker_count % shift_stride != 0) continue;
     few_seen.push_back(seen[i]);
     few_places.insert(few_places.end(), &places[3 * i], &places[3 * i] + 3);
@@ -134,22 +138,26 @@ void put_truth(std::vector<Repetition>& all) {
     one.truth = {{place, place + 3 * cells}, {valid, valid + cells}};
     place += 3 * cells;
     valid += cells;
+    // Invalid cells are interpolated, so that a spline can be fitted. They stay marked as invalid.
     fill_invalid(one.truth);
     one.markers = {};
     one.seen = {};
   }
 }
 
+/// The repetitions of one person, right or wrong ones.
 using Group = std::vector<std::pair<PieceName, PiecePair>>;
 
 /// All repetitions of one person, with their joints and time shifts.
 Result<std::vector<Repetition>> read_person(const ImportInput& input, const Group& group) {
+  // Each thread fills its own place; the order is that of the group.
   std::vector<Result<Repetition>> read(group.size());
   parallel_for(group.size(), input.jobs, [&](std::size_t i) {
     read[i] = read_repetition(input.files, group[i].first, group[i].second);
   });
   std::vector<Repetition> out;
   out.reserve(read.size());
+  // The first failure in the order of the group is returned.
   for (auto& one : read) out.push_back(KA_TRY(std::move(one)));
   put_truth(out);
   parallel_for(out.size(), input.jobs, [&](std::size_t i) {
@@ -161,6 +169,7 @@ Result<std::vector<Repetition>> read_person(const ImportInput& input, const Grou
 /// Accepts repetitions of one person's movement: those that pass are moved to `taken`, the others
 /// are noted with the reason.
 void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken, Corpus& corpus) {
+  // A movement needs several good repetitions (least_taken).
   const auto fitting = static_cast<std::size_t>(std::count_if(
       movement.begin(), movement.end(), [](const Repetition& one) { return one.fits(); }));
   for (Repetition& one : movement) {
@@ -181,6 +190,7 @@ void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken,
 
 /// Fits one transform for all repetitions of the movement.
 Result<void> put_transform(std::span<Repetition> movement) {
+  // The sums of all repetitions: one transform serves the whole movement.
   PairMoments moments;
   for (const Repetition& one : movement) {
     add_pairs_at(one.rough(), PieceCurve(one.precise()), one.found->shift_s, moments);
@@ -195,8 +205,10 @@ Result<std::vector<Repetition>> take_person(std::vector<Repetition> all, Corpus&
   std::vector<Repetition> taken;
   for (auto begin = all.begin(); begin != all.end();) {
     const auto end = std::find_if(begin, all.end(), [&](const Repetition& one) {
+      // The repetitions are sorted by movement, so those of one movement follow each other.
       return one.name.movement != begin->name.movement;
     });
+    // The accepted repetitions of this movement are those added from here on.
     const std::size_t before = taken.size();
     pass_gate({std::make_move_iterator(begin), std::make_move_iterator(end)}, taken, corpus);
     if (taken.size() > before) KA_TRY(put_transform(std::span(taken).subspan(before)));
@@ -214,6 +226,7 @@ PointFrames truth_frames(const Repetition& one) {
   const auto first = std::find_if(valid.begin(), valid.end(), is_valid) - valid.begin();
   const auto behind = valid.rend() - std::find_if(valid.rbegin(), valid.rend(), is_valid);
   const std::size_t begin = static_cast<std::size_t>(first) / shared_joint_count;
+  // Frames without a valid joint at either end are cut off; those between stay as missing.
   const std::size_t end =
       (static_cast<std::size_t>(behind) + shared_joint_count - 1) / shared_joint_count;
   PointFrames out;
@@ -258,6 +271,7 @@ Result<std::string> truth_folder(const ImportInput& input, const std::string& sh
 
 Manifest manifest_of(const Repetition& one, const std::string& folder) {
   Manifest out;
+  // The Kinect's frames are the grid of these takes.
   out.align.reference = "kinect";
   out.align.gap_ms = gap_ms;
   out.streams = {kinect_stream_of(one.files),
@@ -280,8 +294,10 @@ Manifest manifest_of(const Repetition& one, const std::string& folder) {
 Result<void> add_person(const ImportInput& input, const Group& group, Corpus& corpus) {
   std::vector<Repetition> all = KA_TRY(read_person(input, group));
   Sha256 hash;
+  // The hash includes repetitions that are not accepted: they influence the joints.
   for (const Repetition& one : all) hash.update(one.sha256);
   const auto taken = KA_TRY(take_person(std::move(all), corpus));
+  // No file of joints is written for a person without an accepted repetition.
   if (taken.empty()) return {};
   const std::string folder = KA_TRY(truth_folder(input, hash.hex(), taken));
   for (const Repetition& one : taken) {
@@ -296,6 +312,7 @@ Result<Corpus> list_ui_prmd_joints(const ImportInput& input) {
   Corpus out = ui_prmd_without_takes();
   PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));
   leave_out_single(pairs, out);
+  // Each person is read as a whole, because all repetitions share the body's size.
   std::map<std::pair<int, bool>, Group> people;  // wrong repetitions are a session of their own
   for (auto& pair : pairs) {
     people[{pair.first.subject, pair.first.incorrect}].emplace_back(std::move(pair));

@@ -27,6 +27,7 @@ struct PackedTable {
   int decimals = 0;
 };
 
+/// The name of an array in the pack, and how its numbers were packed.
 struct Packing {
   const char* array;
   std::size_t columns;
@@ -40,8 +41,10 @@ Result<PackedTable> read_table(const Npz& npz, const Packing& packing) {
   for (int i = 0; i < packing.decimals; ++i) out.scale *= 10.0;
   out.values.reserve(steps.size());
   for (std::size_t c = 0; c < out.columns; ++c) {
+    // One running sum for each time that differences were taken.
     std::array<std::uint16_t, 2> sums{};
     for (std::size_t f = 0; f < out.frames; ++f) {
+      // Unsigned numbers wrap around in a defined way.
       auto value = static_cast<std::uint16_t>(steps[c * out.frames + f]);
       for (int k = 0; k < packing.times; ++k) {
         auto& sum = sums[static_cast<std::size_t>(k)];
@@ -56,6 +59,7 @@ Result<PackedTable> read_table(const Npz& npz, const Packing& packing) {
 /// Rows of numbers between commas, in the source's form.
 std::string text_of(const PackedTable& table, std::size_t begin, std::size_t rows) {
   std::string out;
+  // The digits are written without the locale.
   std::array<char, number_room> room{};
   for (std::size_t f = begin; f < begin + rows; ++f) {
     for (std::size_t c = 0; c < table.columns; ++c) {
@@ -68,10 +72,12 @@ std::string text_of(const PackedTable& table, std::size_t begin, std::size_t row
   return out;
 }
 
+/// A row of the pack's index: where a repetition begins in the arrays, and how long it is.
 struct Piece {
   std::int64_t movement, repetition, kinect_begin, kinect_rows, vicon_begin, vicon_rows;
 };
 
+/// True if the rows exist. Written so that no sum can overflow.
 bool lies_in(std::int64_t begin, std::int64_t rows, const PackedTable& table) {
   const auto all = static_cast<std::int64_t>(table.frames);
   return begin >= 0 && begin <= all && rows >= 0 && rows <= all - begin;
@@ -85,10 +91,12 @@ Result<void> write_text(const PutFile& put, const std::string& name, const Packe
   return out.commit();
 }
 
+/// All numbers of one person: positions and angles of the Kinect, and markers.
 struct Tables {
   PackedTable offsets, angles, markers;
 };
 
+/// A damaged index must not lead outside of the arrays or to strange file names.
 Result<void> check_piece(const Piece& p, const Tables& tables, const std::string& file) {
   const bool fits = p.movement >= 0 && p.movement < 100 && p.repetition >= 0 &&
                     p.repetition < 100 && lies_in(p.kinect_begin, p.kinect_rows, tables.offsets) &&
@@ -119,6 +127,7 @@ Result<void> write_piece(const Piece& p, const Tables& tables, const std::string
 Result<void> write_ui_prmd_pieces(const ArchiveBytes& bytes, const std::string& person,
                                   const PutFile& put) {
   const Npz npz = KA_TRY(Npz::read(bytes, largest_pieces));
+  // Six numbers for each piece, in the order of Piece.
   const auto index = KA_TRY(npz.integers("index", {0, 6}));
   const Tables tables{KA_TRY(read_table(npz, {"kinect_local", kinect_columns, 1, kinect_decimals})),
                       KA_TRY(read_table(npz, {"kinect_euler", kinect_columns, 1, kinect_decimals})),
@@ -126,6 +135,7 @@ Result<void> write_ui_prmd_pieces(const ArchiveBytes& bytes, const std::string& 
   for (std::size_t i = 0; i + 6 <= index.size(); i += 6) {
     const Piece piece{index[i],     index[i + 1], index[i + 2],
                       index[i + 3], index[i + 4], index[i + 5]};
+    // A bad row stops the import before its files are written.
     KA_TRY(check_piece(piece, tables, bytes.name));
     KA_TRY(write_piece(piece, tables, person, put));
   }

@@ -24,6 +24,7 @@ std::string plain(std::string_view text) {
     if (c == '\n' || c == '\r') {
       out += ' ';
     } else if (c == '<') {
+      // A tag in a description must not become a part of the page.
       out += "&lt;";
     } else {
       if (std::string_view("\\`*_[]|#").find(c) != std::string_view::npos) out += '\\';
@@ -33,16 +34,19 @@ std::string plain(std::string_view text) {
   return out;
 }
 
+/// Terms that are missing are named as missing: a reader must not take silence for permission.
 std::string or_not_stated(const std::string& text) {
   return text.empty() ? "not stated in dataset.toml" : plain(text);
 }
 
+/// An absent value is an empty text.
 std::string text_at(const Cell& cell, const TableColumn& column) {
   return std::holds_alternative<std::monostate>(cell) ? "" : cell_text(cell, column);
 }
 
 /// The user's own blocks of the old card, with their marks.
 Result<std::string> own_texts(FileSystem& files, const std::string& path) {
+  // A new card has an empty block, which shows the user where own text may stand.
   const std::string empty = fmt::format("{}\n\n{}\n", own_begin, own_end);
   if (path.empty() || !is_there(path)) return empty;
   const std::string text = KA_TRY(read_whole(files, path, longest_card));
@@ -56,17 +60,21 @@ Result<std::string> own_texts(FileSystem& files, const std::string& path) {
       return Failure(Error{path, line, std::string(own_end) + " behind the own text", "none"});
     }
     out += (out.empty() ? "" : "\n") + text.substr(at, end + own_end.size() - at) + "\n";
+    // The search goes on after this block; a card may have several.
     at = end;
   }
   return out.empty() ? empty : out;
 }
 
+/// Writes the card part by part into `text_`. Everything comes from the index and dataset.toml, so
+/// the same data set gives the same card.
 class Card {
  public:
   Card(const DatasetIndex& index, const std::string& folder, const std::string& software)
       : index_(index), catalogue_(index.catalogue()), folder_(folder), software_(software) {}
 
   Result<std::string> written(const std::string& own) {
+    // The order of the parts is that of a reader's questions.
     KA_TRY(put_head(own));
     KA_TRY(put_tables());
     KA_TRY(put_units());
@@ -79,6 +87,7 @@ class Card {
   }
 
  private:
+  // A heading of Markdown.
   void title(std::string_view words) { text_ += fmt::format("\n## {}\n\n", words); }
   void line(std::string_view words) { text_ += fmt::format("{}\n", words); }
 
@@ -88,6 +97,7 @@ class Card {
     std::vector<std::string> words;
     for (const auto& row : table.rows) {
       std::string one = plain(text_at(row.at(0), table.columns[0]));
+      // The second column is a number of takes in all queries.
       if (row.size() > 1) one += " (" + text_at(row.at(1), table.columns[1]) + ")";
       words.push_back(one);
     }
@@ -95,8 +105,10 @@ class Card {
   }
 
   Result<void> put_head(const std::string& own) {
+    // Without a name the folder's name is the title.
     const std::string name =
         catalogue_.name.empty() ? std::string(file_name(folder_)) : catalogue_.name;
+    // The mark below the title shows a later run that kinalign wrote the file.
     line("# " + plain(name));
     line(
         fmt::format("{}: `kinalign dataset report FOLDER --card` writes it again. Text between the "
@@ -107,9 +119,11 @@ class Card {
     const Table sums = KA_TRY(index_.select(
         "select count(*) as takes, count(distinct subject) as people, "
         "coalesce(sum(frames), 0) as frames, coalesce(sum(seconds), 0.0) from takes"));
+    // The sums are numbers; cell_text() writes them as the tables do.
     const auto cell = [&](std::size_t c) {
       return cell_text(sums.rows.at(0).at(c), sums.columns[c]);
     };
+    // The best verdict comes first.
     const std::string verdicts =
         KA_TRY(joined("select verdict, count(*) as takes from takes group by verdict order by "
                       "case verdict when 'good' then 0 when 'usable' then 1 else 2 end"));
@@ -123,6 +137,7 @@ class Card {
     return {};
   }
 
+  // The tables of the paper, as `kinalign dataset tables` prints them.
   Result<void> put_tables() {
     title("Composition");
     for (auto* const table : {table_by_subject, table_by_class, table_by_modalities}) {
@@ -133,6 +148,7 @@ class Card {
 
   Result<void> put_units() {
     title("Rates, units and axes");
+    // Equal streams of many takes are one row; the list is limited to the most frequent ones.
     Table streams = KA_TRY(
         index_.select("select name, modality, columns, count(*) as takes from streams "
                       "group by name, modality, columns order by count(*) desc, name limit 20"));
@@ -171,10 +187,12 @@ class Card {
         "`kinalign dataset verify` compares every byte with its SHA-256.\n";
   }
 
+  // An example that works for this data set: it opens the take with the most kinds of streams.
   Result<void> put_reading() {
     const Table takes =
         KA_TRY(index_.select("select name from takes order by (mocap > 0) + (kinect > 0) + (imu > "
                              "0) desc, name limit 1"));
+    // Without a take there is nothing to read.
     if (takes.rows.empty()) return {};
     const std::string take = std::get<std::string>(takes.rows[0].at(0));
     const auto name = parse_take_name(take);
@@ -198,6 +216,7 @@ class Card {
     return {};
   }
 
+  // Devices and rigs, with the texts that the lab chose.
   void put_devices() {
     if (catalogue_.devices.empty() && catalogue_.rigs.empty()) return;
     title("Devices");
@@ -213,6 +232,7 @@ class Card {
     }
   }
 
+  // Only files that exist are listed; they are not read.
   void put_splits() {
     std::vector<std::string> names =
         names_in_folder(folder_ + "/splits").value_or(std::vector<std::string>{});
@@ -223,11 +243,13 @@ class Card {
     line("\n`kinalign dataset split FOLDER --check FILE` checks whether a split still fits.");
   }
 
+  // The terms of use. People with the same consent are listed together.
   void put_terms() {
     title("Terms");
     line("- Licence: " + or_not_stated(catalogue_.licence));
     line("- Citation: " + or_not_stated(catalogue_.citation));
     line("- Contact: " + or_not_stated(catalogue_.contact));
+    // Sorted by the text of the consent.
     std::map<std::string, std::vector<std::string>> consents;
     for (const Subject& one : catalogue_.subjects) {
       consents[one.consent].push_back(one.id);
@@ -251,6 +273,7 @@ class Card {
 Result<std::string> data_card(FileSystem& files, const DatasetIndex& index,
                               const std::string& folder, const std::string& old_card,
                               const std::string& software) {
+  // The own texts are read before anything is written: the card replaces the old file.
   const std::string own = KA_TRY(own_texts(files, old_card));
   return Card(index, folder, software).written(own);
 }

@@ -14,7 +14,8 @@ namespace kinalign {
 inline constexpr std::string_view data_card_mark = "<!-- data card of kinalign";
 
 /// The text of the card. `old_card`: the path of an existing card; text between "<!-- own text -->"
-/// and "<!-- end -->" in it is kept. Fails if such a text has no end.
+/// and "<!-- end -->" in it is kept. Fails if such a text has no end. An unreadable card is an
+/// error, too: its own text would be lost.
 Result<std::string> data_card(FileSystem& files, const DatasetIndex& index,
                               const std::string& folder, const std::string& old_card,
                               const std::string& software);

@@ -12,11 +12,14 @@ namespace kinalign {
 
 namespace {
 
+/// The following functions take a value out of a cell; an absent value gives 0, nothing or an empty
+/// text.
 std::int64_t whole(const Cell& cell) {
   const auto* value = std::get_if<std::int64_t>(&cell);
   return value == nullptr ? 0 : *value;
 }
 
+/// Counts are never negative; a damaged index gives 0.
 std::uint64_t count(const Cell& cell) {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(0, whole(cell)));
 }
@@ -31,6 +34,7 @@ std::string text(const Cell& cell) {
   return value == nullptr ? std::string() : *value;
 }
 
+// The takes to look at first. Absent measures sort as if they were good.
 constexpr const char* worst_first =
     "select name, subject, class, action, action_name, verdict, worst, frames, seconds, mocap, "
     "kinect, imu, residual_cm, kinect_valid, imu_valid from takes order by "
@@ -41,6 +45,7 @@ constexpr const char* worst_first =
 /// A take from a row, whose cells have the order of the query.
 DatasetTake take_of(const std::vector<Cell>& row) {
   DatasetTake take;
+  // The first seven columns of the query.
   const std::array<std::string*, 7> texts{&take.name,   &take.subject,     &take.class_id,
                                           &take.action, &take.action_name, &take.verdict,
                                           &take.reason};
@@ -65,6 +70,7 @@ Result<void> add_sums(const DatasetIndex& index, DatasetPage& page) {
                    "coalesce(sum(verdict = 'usable'), 0), coalesce(sum(verdict = 'bad'), 0), "
                    "coalesce(sum(seconds), 0.0) from takes"));
   const std::vector<Cell>& row = sums.rows.at(0);
+  // The first eight columns of the query.
   const std::array<std::uint64_t*, 8> counts{
       &page.takes,      &page.people, &page.mocap_frames, &page.kinect_frames,
       &page.imu_frames, &page.good,   &page.usable,       &page.bad};
@@ -86,13 +92,16 @@ Result<DatasetPage> dataset_figures(const DatasetIndex& index, const std::string
   page.citation = catalogue.citation;
   page.folder = folder;
   KA_TRY(add_sums(index, page));
+  // The limit is a value of the query, so the index need not give all takes.
   const Table rows = KA_TRY(index.select(worst_first, {static_cast<std::int64_t>(most)}));
   for (const auto& row : rows.rows) page.worst.push_back(take_of(row));
+  // No page is known yet; the caller subtracts those that exist.
   page.takes_without_page = page.worst.size();
   for (auto* const table : {table_by_subject, table_by_class, table_by_modalities}) {
     page.tables.push_back(KA_TRY(table(index)));
   }
   for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
+    // The index knows only takes with a summary, so the folder is asked for the others.
     page.not_built += there.manifest && !there.summary ? 1 : 0;
   }
   return page;
@@ -100,6 +109,7 @@ Result<DatasetPage> dataset_figures(const DatasetIndex& index, const std::string
 
 void add_pictures(FileSystem& files, const std::string& folder, DatasetPage& page) {
   std::vector<TakeName> names;
+  // The pointers lead into the page, which does not change meanwhile.
   std::vector<DatasetTake*> takes;
   for (DatasetTake& take : page.worst) {
     const auto name = parse_take_name(take.name);
@@ -107,6 +117,7 @@ void add_pictures(FileSystem& files, const std::string& folder, DatasetPage& pag
     names.push_back(*name);
     takes.push_back(&take);
   }
+  // All takes are opened in one go, which needs few child processes.
   auto rows = typical_rows(files, folder, names);
   for (std::size_t i = 0; i < takes.size(); ++i) takes[i]->bodies = std::move(rows[i]);
 }

@@ -31,13 +31,17 @@ std::map<std::string, std::string> read_ledger(FileSystem& files, const std::str
   const auto text = read_whole(files, path, longest_ledger);
   if (!text) return out;
   try {
+    // Any fault of the text makes the ledger count as empty.
     const Json json = Json::parse(*text);
     if (json.at("schema").get<std::string>() != schema) return out;
+    // Another version may write other pages, so all of them are made again.
     if (json.at("software").get<std::string>() != software) return out;
     for (const auto& [name, sha256] : json.at("pages").items()) {
+      // The names become paths that may be removed, so other texts are not accepted.
       if (parse_take_name(name)) out[name] = sha256.get<std::string>();
     }
   } catch (const Json::exception&) {
+    // Pages that were read before the fault are not trusted either.
     out.clear();
   }
   return out;
@@ -48,17 +52,20 @@ std::string inputs_folder(FileSystem& files, const std::string& folder, const Ca
                           const TakeName& name) {
   const std::string base = folder + "/sub-" + name.subject + "/";
   const auto manifest = take_manifest(files, folder, catalogue, name);
+  // A take that was added as a take has no raw files.
   if (!manifest) return "";
   std::string out;
   for (const TakeInput& input : inputs_of(files, *manifest, base, {})) {
     if (!input.path.ends_with("/" + input.name)) return "";
     const std::string one = input.path.substr(0, input.path.size() - input.name.size());
+    // Inputs in several folders can't be given by one folder.
     if (!out.empty() && one != out) return "";
     out = one;
   }
   return out;
 }
 
+/// The hashes of all takes by their names, from a table of these two columns.
 std::map<std::string, std::string> hashes_of(const Table& table) {
   std::map<std::string, std::string> out;
   for (const auto& row : table.rows) {
@@ -69,6 +76,7 @@ std::map<std::string, std::string> hashes_of(const Table& table) {
 
 }  // namespace
 
+/// A page states its generator near its beginning, so the first block is enough.
 bool is_own_page(FileSystem& files, const std::string& path, std::string_view mark) {
   auto file = InputFile::open(files, path, head_bytes);
   if (!file) return false;
@@ -81,12 +89,14 @@ TakePages::TakePages(FileSystem& files, std::string folder, std::string place, s
       folder_(std::move(folder)),
       place_(std::move(place)),
       software_(std::move(software)) {
+  // File names are appended to the folder's path below.
   if (!place_.ends_with('/')) place_ += '/';
   pages_ = read_ledger(files_, place_ + std::string(ledger_name), software_);
 }
 
 std::string TakePages::page_of(const std::string& name, const std::string& sha256) const {
   const auto known = pages_.find(name);
+  // The hash proves that the page shows the take's present bytes.
   const bool current = known != pages_.end() && known->second == sha256;
   return current && is_there(path_of_page(name)) ? name + ".html" : "";
 }
@@ -110,7 +120,9 @@ Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
   return jobs;
 }
 
+/// Only pages of the ledger are removed: kinalign made these and no others.
 std::uint64_t TakePages::remove_old(const std::map<std::string, std::string>& known) {
+  // Entries leave the ledger even if their file was removed by hand.
   std::uint64_t removed = 0;
   std::erase_if(pages_, [&](const auto& page) {
     if (known.contains(page.first)) return false;
@@ -120,6 +132,7 @@ std::uint64_t TakePages::remove_old(const std::map<std::string, std::string>& kn
   return removed;
 }
 
+/// The ledger replaces the old one in one step, so it is never half written.
 Result<void> TakePages::remember() const {
   const Json json{{"schema", schema}, {"software", software_}, {"pages", pages_}};
   OutputFile out =
@@ -134,12 +147,14 @@ Result<PagesMade> TakePages::make(const DatasetIndex& index, const std::vector<s
   KA_TRY(make_folders(place_));
   const std::vector<PageJob> to_make = KA_TRY(plan(index, takes));
   PagesMade out;
+  // Takes that the index lacks count as up to date: nothing can be made of them.
   out.up_to_date = takes.size() - to_make.size();
   out.removed = remove_old(hashes_of(KA_TRY(index.select("select name, sha256 from takes"))));
   std::mutex mutex;
   std::uint64_t done = 0;
   bool stopped = false;
   parallel_for(to_make.size(), jobs, [&](std::size_t i) {
+    // After the user stopped the run, no further page is begun.
     if (std::lock_guard lock(mutex); stopped) return;
     const Result<void> made = make_page(to_make[i]);
     const std::lock_guard lock(mutex);
@@ -149,10 +164,13 @@ Result<PagesMade> TakePages::make(const DatasetIndex& index, const std::vector<s
       return;
     }
     pages_[to_string(to_make[i].name)] = to_make[i].sha256;
+    // A failure here is no loss: the ledger is written again at the end.
     if (++out.made % pages_between_writes == 0) (void)remember();
   });
+  // The ledger is written after a stop, too, so that finished pages are kept.
   KA_TRY(remember());
   if (stopped) return Failure(interruption());
+  // Pages end in the order of the threads; the report must not depend on it.
   std::sort(out.failed.begin(), out.failed.end(),
             [](const Error& a, const Error& b) { return a.file < b.file; });
   return out;

@@ -16,6 +16,7 @@
 
 namespace kinalign {
 
+/// One page to make. The paths can be opened as they are.
 struct PageJob {
   TakeName name;
   std::string take, page;  // paths
@@ -26,11 +27,14 @@ struct PageJob {
 /// Makes one page. Called from several threads at once.
 using MakePage = std::function<Result<void>(const PageJob&)>;
 
+/// The outcome; failed pages are made again by the next run.
 struct PagesMade {
   std::uint64_t made = 0, up_to_date = 0, removed = 0;
   std::vector<Error> failed;
 };
 
+/// The pages in one folder, with the ledger pages.json. A page is up to date if the ledger has the
+/// take's hash and the file exists. Pages of another version of the software count as missing.
 class TakePages {
  public:
   /// `folder`: of the data set. `place`: folder of the pages, which may not exist yet.

@@ -22,6 +22,7 @@ struct PaperPeople {
   std::array<std::string_view, 4> ids;  // unused ones at the end are empty
   ModalityFrames frames;
 
+  // The number of people in the row.
   std::size_t count() const;
 };
 inline constexpr std::array<PaperPeople, 7> paper_people{

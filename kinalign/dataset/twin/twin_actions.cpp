@@ -13,6 +13,7 @@ namespace kinalign {
 namespace {
 
 constexpr double t_pose_s = 3.5;  // still for two of them; the arms come down in the last 1.3
+// A rest shorter than this is added to the movement before.
 constexpr double least_piece_s = 5.0;
 
 /// The mean length of a movement, s. A walk returns to its beginning.
@@ -75,12 +76,14 @@ std::vector<const TwinAction*> twin_actions_of(std::string_view class_id) {
 Programme twin_programme(const TwinAction& action, double length_s, std::uint64_t seed) {
   const RandomStream random(seed, 130);
   const auto count = static_cast<double>(action.pieces.size());
+  // The first movement is drawn, so that takes of one action do not all begin alike.
   auto next = static_cast<std::size_t>(random.uniform(0, 0) * count);
   Programme out{{Piece::t_pose, t_pose_s}};
   double end = t_pose_s;
   for (std::uint64_t number = 1; end < length_s; ++number) {
     const Piece piece = action.pieces[next++ % action.pieces.size()];
     double length = mean_length(piece) * (0.8 + 0.4 * random.uniform(number, 0));
+    // The last movement ends with the take.
     if (length_s - end - length < least_piece_s) length = length_s - end;
     out.push_back({piece, length});
     end += length;
@@ -90,6 +93,7 @@ Programme twin_programme(const TwinAction& action, double length_s, std::uint64_
 
 Result<std::string> twin_catalogue(const std::string& name) {
   std::string text = KA_TRY(catalogue_template("hfut-mmd", name));
+  // The template is edited as text; its comments stay.
   constexpr std::string_view undescribed = "description = \"\"";
   if (const std::size_t at = text.find(undescribed); at != std::string::npos) {
     text.replace(at, undescribed.size(),

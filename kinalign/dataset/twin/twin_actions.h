@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// An action with its movements. They repeat, so an action fits a take of any length.
 struct TwinAction {
   std::string_view id, name;
   std::vector<Piece> pieces;  // in order, again from the first until the take ends
@@ -27,7 +28,8 @@ std::vector<const TwinAction*> twin_actions_of(std::string_view class_id);
 /// until `length_s` (at least 7 s) is reached.
 Programme twin_programme(const TwinAction& action, double length_s, std::uint64_t seed);
 
-/// A dataset.toml: the template hfut-mmd with the names of actions.
+/// A dataset.toml: the template hfut-mmd with the names of actions. Its description says that it is
+/// simulated, so that nobody takes it for the paper's data.
 Result<std::string> twin_catalogue(const std::string& name);
 
 }  // namespace kinalign

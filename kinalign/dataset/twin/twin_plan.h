@@ -13,9 +13,12 @@
 
 namespace kinalign {
 
+// The rate at which the paper counts frames.
 inline constexpr double twin_rate_hz = 60.0;
 inline constexpr std::uint64_t longest_twin_take = 1800, shortest_twin_take = 600;  // in frames
 
+/// One take of the plan: everything that its simulation needs. The same plan gives the same takes
+/// on every machine.
 struct TwinTake {
   TakeName name;
   std::size_t people = 0, of_class = 0;  // rows of the paper's tables
@@ -28,6 +31,7 @@ struct TwinTake {
   bool operator==(const TwinTake&) const = default;
 };
 
+/// The choices of the user. The paper's own numbers are fixed.
 struct TwinOptions {
   double scale = 0.02;  // share of the paper's frames
   std::uint64_t seed = 1;
@@ -50,6 +54,7 @@ struct TwinCounts {
 inline constexpr std::array<std::string_view, 3> device_choices{"mocap + Kinect", "mocap + IMU",
                                                                 "all three"};
 
+/// Adds a take with this number of frames, which may be fewer than planned.
 void count(const TwinTake& take, std::uint64_t frames, TwinCounts& counts);
 /// The paper's own counts times `scale`, rounded.
 TwinCounts paper_counts(double scale);

@@ -51,6 +51,7 @@ std::vector<TakeColumn> window_columns(const TakeGroup& group) {
   std::erase_if(columns, [&](const TakeColumn& one) {
     return std::find(wanted.begin(), wanted.end(), one.name) == wanted.end();
   });
+  // A reference has no validity of its own: all of its rows are valid.
   const auto is_valid = [](const TakeColumn& one) { return one.name == "valid"; };
   if (std::none_of(columns.begin(), columns.end(), is_valid)) {
     columns.push_back({"valid", Stored::uint8, {}, {{"values", "0 no, 1 yes"}}});
@@ -58,6 +59,7 @@ std::vector<TakeColumn> window_columns(const TakeGroup& group) {
   return columns;
 }
 
+/// The meaning of one array: its axes, its unit, and the names of its columns.
 Json array_json(const TakeGroup& group, const TakeColumn& column) {
   Json out{{"stream", group.name}, {"axes", {"window", "row", "column"}}};
   for (const auto& [key, text] : column.facts) out[key] = text;
@@ -65,6 +67,7 @@ Json array_json(const TakeGroup& group, const TakeColumn& column) {
   return out;
 }
 
+/// The origin of windows, with the hash of the take, so that a file can be traced to its bytes.
 Json take_json(const WindowTake& take, const std::vector<std::string>& parts) {
   return {{"name", to_string(take.name)},  {"subject", take.name.subject},
           {"action", take.name.action},    {"class", take.class_id},
@@ -84,6 +87,7 @@ Json windows_stream_json(const TakeGroup& group) {
 /// The manifest of a file of windows: takes, streams and the meaning of each array.
 std::string manifest_json(const WindowSource& source, const WindowOptions& options,
                           const WindowStreams& streams, const std::vector<WindowedTake>& takes) {
+  // Without --rate all takes have the same rate, so the first take's will do.
   const double rate =
       options.rate_hz > 0.0 ? options.rate_hz : source.takes[takes.front().index].summary.rate_hz;
   Json out{{"schema", "kinalign.windows/1"}, {"software", take_software()},
@@ -110,6 +114,7 @@ void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>
   for (const TakeGroup& group : streams.groups) {
     const auto* clip = std::get_if<ClipGroup>(&group.kind);
     if (clip == nullptr) continue;
+    // Parents are the same in all takes (difference()), bones are each take's own.
     const auto& parents = clip->skeleton.parents;
     layout.contents.emplace_back(layout.arrays.size(), bytes_of(std::span<const int>(parents)));
     layout.arrays.push_back(npz_numbers(group.name + "_parents", Stored::int32, {parents.size()}));
@@ -126,6 +131,7 @@ void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>
   }
 }
 
+/// The arrays of one number per window, and the manifest as a text without dimensions.
 WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
   WindowLayout out;
   out.arrays = {npz_numbers("take", Stored::int32, {windows}),
@@ -134,6 +140,7 @@ WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
                 npz_numbers("time_ns", Stored::int64, {windows}),
                 npz_numbers("rows", Stored::int32, {windows})};
   NpzTexts text = npz_texts("manifest", {manifest});
+  // NumPy reads a text without dimensions as one string.
   text.array.shape.clear();  // a scalar
   out.contents.emplace_back(out.arrays.size(), std::move(text.bytes));
   out.arrays.push_back(std::move(text.array));
@@ -160,6 +167,7 @@ std::vector<std::string> window_array_names() {
 
 void WindowStreams::add(const TakeHeader& header, const std::vector<std::size_t>& found) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
+    // If one take has the array, all windows get it.
     groups[g].resampled |= header.groups[found[g]].resampled;
     groups[g].interval_known |= header.groups[found[g]].interval_known;
   }
@@ -210,6 +218,7 @@ Result<WindowFile> WindowFile::create(FileSystem& files, const NewFile& target,
 
 Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<std::size_t>& groups,
                                 const TakeSlab& rows) {
+  // The order of the arrays is that of `Fixed`.
   KA_TRY(writer_.append(take_array, one(static_cast<int>(origin.take))));
   KA_TRY(writer_.append(part_array, one(origin.part)));
   KA_TRY(writer_.append(first_array, one(static_cast<std::int64_t>(origin.place.first))));
@@ -227,6 +236,7 @@ Result<void> WindowFile::append_stream(const std::vector<WindowLayout::Column>& 
   const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
     const auto column = std::find_if(columns.begin(), columns.end(),
                                      [&](const WindowLayout::Column& c) { return c.name == name; });
+    // Windows have no arrays that follow from others, such as a skeleton's local positions.
     if (column == columns.end()) return {};
     const auto put = [&](std::string_view bytes) { return writer_.append(column->array, bytes); };
     const std::span given(values);
@@ -235,6 +245,7 @@ Result<void> WindowFile::append_stream(const std::vector<WindowLayout::Column>& 
       return numbers_.store(given, column->stored, put);
     } else {
       if (!given.empty()) return put(bytes_of(given));
+      // The take lacks the array; the same value stands in every cell.
       const auto value = static_cast<Value>(value_of_absent(name));
       const std::vector<Value> all(length * column->row_values, value);
       return put(bytes_of(std::span<const Value>(all)));

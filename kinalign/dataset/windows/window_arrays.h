@@ -33,7 +33,8 @@ struct WindowedTake {
   std::vector<WindowPlace> places;
 };
 
-/// The arrays of a file of windows.
+/// The arrays of a file of windows. Their shapes must be known before the first value is written.
+/// `array` of a column is its index in `arrays`.
 struct WindowLayout {
   struct Column {
     std::string name;
@@ -55,8 +56,10 @@ struct WindowOrigin {
   WindowPlace place;
 };
 
+/// The file in the making. Windows are appended one after the other; all arrays grow together.
 class WindowFile {
  public:
+  // Writes everything that does not depend on windows: the manifest and the skeletons.
   static Result<WindowFile> create(FileSystem& files, const NewFile& target, WindowLayout layout);
   /// Appends a window. If a take lacks an array, values replace it: valid flags 1 (all rows are
   /// valid), intervals -1 (none is known), distances 0 (its rows are its own samples). `rows`: of

@@ -24,6 +24,7 @@ std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   for (std::size_t i = 0; i < steps.size(); ++i) {
+    // Whole numbers: a step of 1.5 medians or less is no gap.
     if (2 * steps[i] <= 3 * *middle) continue;
     out.back().end = i + 1;
     out.push_back({i + 1, stamps.size()});
@@ -36,6 +37,7 @@ std::uint64_t grid_rows(std::span<const Time> stamps, const Stretch& stretch, do
   if (rate_hz <= 0.0) return stretch.end - stretch.begin;
   const double seconds =
       std::chrono::duration<double>(stamps[stretch.end - 1] - stamps[stretch.begin]).count();
+  // A last row that is late by rounding still counts.
   constexpr double rounding = 1e-6;  // share of a row
   return static_cast<std::uint64_t>(seconds * rate_hz + rounding) + 1;
 }
@@ -51,6 +53,7 @@ WindowPlace place_at(std::span<const Time> stamps, const Stretch& stretch, doubl
     return stamps[stretch.begin] + Duration(std::llround(1e9 * static_cast<double>(row) / rate_hz));
   };
   const Time begin = stamp(offset), end = stamp(offset + rows - 1);
+  // Both ends of the window lie between these rows of the take, which are read.
   const auto before = std::upper_bound(stamps.begin(), stamps.end(), begin) - 1;
   const auto behind = std::min(std::lower_bound(before, stamps.end(), end), stamps.end() - 1);
   return {begin, static_cast<std::uint64_t>(before - stamps.begin()),
@@ -67,12 +70,14 @@ WindowPlaces place_windows(std::span<const Time> stamps, const WindowGrid& grid)
       out.places.push_back(place_at(stamps, stretch, grid.rate_hz, offset, count));
     };
     if (rows < grid.length) {
+      // A short stretch gives one window with fewer rows, or none if it is too short.
       if (2 * rows >= grid.length) add(0, rows);
       if (2 * rows < grid.length) out.rows_left_out += stretch.end - stretch.begin;
       continue;
     }
     std::uint64_t offset = 0;
     for (; offset + grid.length <= rows; offset += grid.step) add(offset, grid.length);
+    // The last window would leave rows at the end; one more window ends with the stretch.
     const bool has_rest = offset - grid.step + grid.length < rows;
     if (has_rest) add(rows - grid.length, grid.length);
   }

@@ -10,11 +10,14 @@
 
 namespace kinalign {
 
+/// The wanted form of windows.
 struct WindowGrid {
   std::uint64_t length = 64, step = 32;  // rows
   double rate_hz = 0.0;                  // 0: the take's own rows
 };
 
+/// The place of one window in its take. Both the window's rows and the take's rows are counted,
+/// because they differ if the rates differ.
 struct WindowPlace {
   Time begin{};                 // stamp of its first row
   std::uint64_t first = 0;      // row of the take at `begin` or before it
@@ -23,6 +26,7 @@ struct WindowPlace {
                            // gap
 };
 
+/// All windows of one take.
 struct WindowPlaces {
   std::vector<WindowPlace> places;
   std::uint64_t rows_left_out = 0;  // rows of the take in stretches shorter than half a window

@@ -26,6 +26,7 @@ std::vector<Between> between(const std::vector<Time>& stamps, const WindowPlace&
   std::size_t row = 0;
   for (std::uint64_t i = 0; i < place.rows; ++i) {
     const Time at = place.begin + Duration(std::llround(1e9 * static_cast<double>(i) / rate_hz));
+    // Stamps and rows rise, so the search goes on from the last row.
     while (row + 1 < stamps.size() && stamps[row + 1] <= at) ++row;
     double share = 0.0;
     if (row + 1 < stamps.size()) {
@@ -37,6 +38,7 @@ std::vector<Between> between(const std::vector<Time>& stamps, const WindowPlace&
   return out;
 }
 
+/// Rotations can't be blended part by part.
 bool is_rotation(std::string_view name) {
   return name == "orientation" || name == "local_rotations";
 }
@@ -44,10 +46,12 @@ bool is_rotation(std::string_view name) {
 /// Makes the `width` values of one row from the take's row at `from` and the one after it.
 using Blend = void (*)(const double* from, std::size_t width, double share, double* to);
 
+/// Vectors lie on the straight line between both rows.
 void on_line(const double* from, std::size_t width, double share, double* to) {
   for (std::size_t k = 0; k < width; ++k) to[k] = from[k] + share * (from[width + k] - from[k]);
 }
 
+/// Rotations lie on the shorter arc between both rows.
 void on_arc(const double* from, std::size_t width, double share, double* to) {
   const std::span<const double> one(from, width), next(from + width, width);
   const std::span<double> out(to, width);
@@ -96,6 +100,7 @@ void blend(std::string_view, const std::vector<Between>& rows, std::size_t width
 /// kind.
 template <class Rows, class Use>
 void for_each_pair(const Rows& from, Rows& to, Use&& use) {
+  // Both sides have the same arrays in the same order.
   for_each_column<Rows>([&](std::string_view name, auto of) { use(name, of(from), of(to)); });
 }
 
@@ -124,6 +129,7 @@ void resample(const TakeSlab& raw, const WindowPlace& place, double rate_hz, Tak
     out.stamps.push_back(place.begin +
                          Duration(std::llround(1e9 * static_cast<double>(i) / rate_hz)));
   }
+  // The copy has the right kinds of rows; its arrays are overwritten below.
   out.rows = raw.rows;
   for (std::size_t g = 0; g < raw.rows.size(); ++g) {
     std::visit(
@@ -143,6 +149,7 @@ void resample(const TakeSlab& raw, const WindowPlace& place, double rate_hz, Tak
 /// Repeats the last row until there are `length` rows.
 template <class Value>
 void pad(std::vector<Value>& values, std::size_t rows, std::size_t length) {
+  // An array that the stream lacks is empty and stays so.
   const std::size_t width = values.size() / rows;
   const std::vector<Value> last(values.end() - static_cast<std::ptrdiff_t>(width), values.end());
   for (std::size_t i = rows; i < length; ++i) values.insert(values.end(), last.begin(), last.end());
@@ -156,8 +163,11 @@ void pad(TakeSlab& slab, std::size_t length) {
         [&](auto& one) {
           using Rows = std::decay_t<decltype(one)>;
           if constexpr (std::is_same_v<Rows, ClipRows>) {
+            // Rows without validity are all valid. They need flags now, because the added rows are
+            // not.
             if (one.valid.empty()) one.valid.assign(rows, 1);
           }
+          // The flags are repeated with the other arrays; the added ones are cleared afterwards.
           const std::size_t cells = one.valid.size();
           for_each_column<Rows>([&](std::string_view, auto of) { pad(of(one), rows, length); });
           std::fill(one.valid.begin() + static_cast<std::ptrdiff_t>(cells), one.valid.end(),
@@ -173,6 +183,7 @@ void pad(TakeSlab& slab, std::size_t length) {
 Result<void> read_window(TakeReader& reader, const WindowPlace& place, const WindowGrid& grid,
                          TakeSlab& raw, TakeSlab& out) {
   if (grid.rate_hz <= 0.0) {
+    // The rows are the take's own, so they are read straight into the window.
     KA_TRY(reader.read(place.first, place.take_rows, out));
   } else {
     KA_TRY(reader.read(place.first, place.take_rows, raw));
@@ -186,6 +197,7 @@ Result<void> read_window(TakeReader& reader, const WindowPlace& place, const Win
 double valid_share(const TakeSlab& window, std::size_t stream, std::uint64_t rows) {
   return std::visit(
       [&](const auto& one) {
+        // A stream without validity is valid everywhere.
         if (one.valid.empty()) return 1.0;
         const auto cells = one.valid.size() / window.stamps.size() * rows;
         const auto sum = std::accumulate(one.valid.begin(), one.valid.end(), std::uint64_t{0});

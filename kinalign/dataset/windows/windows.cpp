@@ -21,6 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The names of a take's streams, from its summary: no take has to be opened for them.
 std::set<std::string> streams_of(const WindowTake& take) {
   std::set<std::string> out;
   for (const StreamSummary& stream : take.summary.streams) out.insert(stream.name);
@@ -55,6 +56,7 @@ Result<void> check_rates(const WindowSource& source, const WindowOptions& option
   if (options.rate_hz > 0.0) return {};
   const double rate = source.takes.front().summary.rate_hz;
   for (const WindowTake& take : source.takes) {
+    // Rates that were estimated from stamps differ a little from take to take.
     const double other = take.summary.rate_hz;
     constexpr double tolerance = 0.005;
     if (std::abs(other - rate) <= tolerance * rate) continue;
@@ -66,7 +68,9 @@ Result<void> check_rates(const WindowSource& source, const WindowOptions& option
   return {};
 }
 
-/// The data of both passes.
+/// The data of both passes. The first pass fills `takes_` with the places of the kept windows. The
+/// second pass reads these places again and writes them. `raw_` and `window_` are memory that all
+/// windows share.
 class Job {
  public:
   Job(FileSystem& files, const WindowSource& source, const WindowOptions& options,
@@ -77,6 +81,7 @@ class Job {
         progress_(progress),
         grid_{static_cast<std::uint64_t>(options.length), static_cast<std::uint64_t>(options.step),
               options.rate_hz} {
+    // Each take is read twice.
     for (const WindowTake& take : source.takes) total_ += 2 * take.summary.frames;
   }
 
@@ -85,6 +90,7 @@ class Job {
   WindowsMade made;
 
  private:
+  // Opens only the streams and arrays that windows have.
   Result<TakeReader> open(std::size_t take) const {
     return TakeReader::open(
         files_, source_.folder + "/" + path_of(source_.takes[take].name, TakeFile::take), parts_);
@@ -132,10 +138,12 @@ Result<void> Job::set_streams(const std::vector<std::string>& names) {
   };
   std::vector<Spaces> all;
   for (std::size_t take = 0; take < source_.takes.size(); ++take) {
+    // Takes that lack a stream have no say in the choice of spaces.
     if (!lacking(names, source_.takes[take]).empty()) continue;
     const TakeReader reader = KA_TRY(open(take));
     std::vector<TakeGroup> groups = groups_of(reader.header(), names);
     const auto same = [&](const Spaces& one) {
+      // Only the spaces are compared: takes in another space can't be in one array.
       return std::equal(one.groups.begin(), one.groups.end(), groups.begin(), groups.end(),
                         [](const TakeGroup& a, const TakeGroup& b) { return a.space == b.space; });
     };
@@ -143,6 +151,7 @@ Result<void> Job::set_streams(const std::vector<std::string>& names) {
     if (known != all.end()) ++known->takes;
     if (known == all.end()) all.push_back({std::move(groups), 1});
   }
+  // The spaces of most takes are chosen, so that the fewest takes are left out.
   const auto most = std::max_element(
       all.begin(), all.end(), [](const Spaces& a, const Spaces& b) { return a.takes < b.takes; });
   if (most != all.end()) streams_.groups = std::move(most->groups);
@@ -161,6 +170,7 @@ std::string Job::reasons() const {
   return out.empty() ? "none" : out;
 }
 
+/// A window is kept if each of its streams has enough valid cells. It must be read for that.
 Result<bool> Job::is_valid(TakeReader& reader, const WindowPlace& place,
                            const std::vector<std::size_t>& groups) {
   KA_TRY(read_window(reader, place, grid_, raw_, window_));
@@ -177,8 +187,10 @@ Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
     if (clip != nullptr) out.rest_offsets.push_back(clip->skeleton.rest_offsets);
   }
   const WindowPlaces found = place_windows(KA_TRY(reader.stamps()), grid_);
+  // Rows of short stretches are counted for the user.
   made.rows_left_out += found.rows_left_out;
   for (const WindowPlace& place : found.places) {
+    // Without a limit no window has to be read in this pass.
     const bool kept = options_.valid <= 0.0 || KA_TRY(is_valid(reader, place, out.groups));
     if (kept) out.places.push_back(place);
     if (!kept) ++made.too_little_valid;
@@ -198,11 +210,13 @@ Result<void> Job::find(const std::vector<std::string>& names) {
       continue;
     }
     TakeReader reader = KA_TRY(open(take));
+    // A take with other joints or nodes than the first is left out, not an error.
     const auto fits = streams_.find_in(reader.header());
     if (!fits) {
       made.takes_left_out.push_back({of.name, fits.error().found});
       continue;
     }
+    // The arrays are complete only when all takes were seen.
     streams_.add(reader.header(), *fits);
     WindowedTake found = KA_TRY(windowed(take, reader));
     made.windows[of.part] += found.places.size();
@@ -213,6 +227,7 @@ Result<void> Job::find(const std::vector<std::string>& names) {
     }
     KA_TRY(done_with(take));
   }
+  // Without a window the error says why each take was left out.
   if (!takes_.empty()) return {};
   return Failure(Error{source_.folder, 0, "at least one window", reasons()});
 }
@@ -226,6 +241,7 @@ Result<void> Job::write(const NewFile& target) {
     TakeReader reader = KA_TRY(open(take.index));
     for (const WindowPlace& place : take.places) {
       KA_TRY(read_window(reader, place, grid_, raw_, window_));
+      // The index is that in the file's list, which has no left-out takes.
       KA_TRY(file.append({i, source_.takes[take.index].part, place}, take.groups, window_));
     }
     KA_TRY(done_with(take.index));
@@ -268,10 +284,12 @@ Result<WindowsMade> write_windows(FileSystem& files, const WindowSource& source,
   const auto names = KA_TRY(chosen_streams(source, options));
   KA_TRY(check_rates(source, options));
   GuardLimits limits;
+  // The limits of the child process grow with the number of takes.
   limits.cpu_seconds += 60 * source.takes.size();
   limits.wall_seconds += 600.0 * static_cast<double>(source.takes.size());
   const Error blame{source.folder, 0, "takes that HDF5 can read", ""};
   const auto work = [&](const Progress& child_progress) -> Result<std::string> {
+    // Both passes run in the same child process.
     Job job(files, source, options, child_progress);
     KA_TRY(job.find(names));
     KA_TRY(job.write(target));

@@ -15,6 +15,7 @@
 
 namespace kinalign {
 
+/// The choices of the user; docs/windows.md explains them.
 struct WindowOptions {
   std::int64_t length = 64, step = 32;  // rows
   double rate_hz = 0.0;                 // 0: the takes' own, which must all be the same
@@ -22,6 +23,7 @@ struct WindowOptions {
   std::vector<std::string> streams;     // empty: those that all takes have
 };
 
+/// A take to cut, with its part of the split as an index in WindowSource::parts.
 struct WindowTake {
   TakeName name;
   std::string class_id;
@@ -29,6 +31,7 @@ struct WindowTake {
   std::uint8_t part = 0;
 };
 
+/// The takes and the facts about their data set that the file states.
 struct WindowSource {
   std::string folder;                   // the data set's
   std::string name, licence, citation;  // the data set's
@@ -36,11 +39,13 @@ struct WindowSource {
   std::vector<WindowTake> takes;
 };
 
+/// A take without windows, with the reason in words.
 struct TakeLeftOut {
   TakeName name;
   std::string why;
 };
 
+/// The outcome, for the user.
 struct WindowsMade {
   std::vector<std::uint64_t> windows;  // for each part
   std::uint64_t rows_left_out = 0;     // rows of takes in stretches shorter than half a window
@@ -48,6 +53,7 @@ struct WindowsMade {
   std::vector<TakeLeftOut> takes_left_out;
 };
 
+/// The file to write, and whether an older one may be replaced.
 struct NewFile {
   std::string path;
   Overwrite overwrite = Overwrite::no;

@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+// A larger counter is damage. The limit keeps sums of stamps within 64 bits of nanoseconds.
 constexpr std::uint64_t most_counter_us = 1'000'000'000'000'000;  // 31 years
 
 NodeTime counter_at(std::uint64_t us) {
@@ -20,6 +21,8 @@ NodeTime counter_at(std::uint64_t us) {
 std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
   Envelope envelope;
   if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
+  // The recorder checked the node's key when the datagram arrived. The key is not stored in the
+  // recording, so it can't be checked again.
   envelope.mac_was_checked = true;
   AcceptedFrame out;
   out.number = envelope.origin.sequence;
@@ -60,10 +63,12 @@ AnyExchange AcceptedFrames::take_exchange(const RecordedMessage& message) {
 
 // The message must be the one that follows its exchange: same arrival, and same counter or number.
 std::optional<AcceptedFrame> AcceptedFrames::take(const RecordedMessage& message) {
+  // An exchange is used once, whether its datagram follows or not.
   const auto accepted = std::exchange(accepted_, std::nullopt);
   const bool in_time = accepted && accepted->at == message.arrival;
   if (in_time && accepted->confirms) return std::nullopt;  // a confirm has no sample
   auto frame = frame_in(message);
+  // The number in a datagram has 32 bits; the exchange has the whole number.
   const auto low = [](std::int64_t number) { return static_cast<std::uint32_t>(number); };
   const bool same = in_time && frame && accepted->n_tx == frame->n_tx &&
                     (accepted->n_tx || low(accepted->number) == low(frame->number));

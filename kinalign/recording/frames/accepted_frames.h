@@ -27,6 +27,7 @@ struct AcceptedFrame {
   std::size_t sample_count = 0;
 };
 
+/// An exchange of a node with a counter, of one without, or (monostate) a message that is neither.
 using AnyExchange = std::variant<std::monostate, Exchange, ClocklessExchange>;
 
 /// Selects the accepted datagrams. A recording also contains held, duplicate and late datagrams.
@@ -43,6 +44,8 @@ class AcceptedFrames {
   std::uint64_t others = 0;
 
  private:
+  /// The exchange that was read last. `confirms`: it belongs to a confirm and not to a request with
+  /// a sample.
   struct Accepted {
     BootKey life = 0;
     std::optional<NodeTime> n_tx;

@@ -17,7 +17,8 @@
 
 namespace kinalign {
 
-/// The frames of one sensor, in the order of arrival.
+/// The frames of one sensor, in the order of arrival. A sender over TCP may cut a message anywhere,
+/// so each channel has a decoder that keeps the incomplete rest.
 class KinectFrames {
  public:
   /// Appends the frames that the message completes. The single parts are appended to `heard`.
@@ -31,6 +32,7 @@ class KinectFrames {
     for (KinectMessage& one : messages_) {
       auto* frame = std::get_if<KinectFrame>(&one);
       if (frame == nullptr) continue;
+      // The first frame decides, so a second sensor on the same port does not mix with it.
       if (!sensor_) sensor_ = frame->origin.sensor;
       if (frame->origin.sensor != *sensor_) {
         ++of_other_sensors;

@@ -25,9 +25,11 @@ bool is_credible(Time stamp, Time arrival) {
 /// The number of missing messages between two messages of a channel, whose numbers increase.
 std::uint32_t missing_between(std::uint32_t before, std::uint32_t behind) {
   const std::uint32_t missing = behind - before - 1U;
+  // A difference in the upper half means that the number went back: nothing is missing then.
   return missing < 0x8000'0000U ? missing : 0U;
 }
 
+/// The bytes come from the address that the user gave with --live, so errors name that flag.
 Failure no_stream(std::string found) {
   return Failure(Error{"--live", 0, "the stream of kinalign record --live-port", std::move(found)});
 }
@@ -42,6 +44,8 @@ struct LiveStream::Channel {
   std::optional<std::uint32_t> number;  // number of the newest message
 };
 
+/// The pieces of one node. Its frames need their exchanges, which come on another channel of the
+/// same node.
 struct LiveStream::NodeDevice {
   RawChannel raw;
   AcceptedFrames frames;
@@ -69,8 +73,11 @@ Duration LiveStream::utc_minus_host() const {
 
 Result<void> LiveStream::take(std::string_view bytes, LiveData& news) {
   reader_.feed(bytes);
+  // Records stay valid until the next one only; their contents are copied into `news`.
   while (const auto record = reader_.next()) KA_TRY(take_record(*record, news));
   if (!reader_.is_mcap()) return no_stream("another beginning");
+  // Over TCP nothing is damaged on the way, so any finding means that the bytes are not a stream of
+  // record.
   if (reader_.findings().empty()) return {};
   return no_stream(reader_.findings().front().what.found);
 }
@@ -94,6 +101,7 @@ Result<void> LiveStream::take_record(const McapRecord& record, LiveData& news) {
 
 // A channel without raw payloads is only remembered.
 Result<void> LiveStream::define(const McapChannel& channel) {
+  // The stream may repeat definitions; a channel keeps its first one.
   if (channels_.contains(channel.id)) return {};
   if (channels_.size() == most_channels) {
     return no_stream("more than " + std::to_string(most_channels) + " channels");
@@ -122,11 +130,13 @@ Result<void> LiveStream::define(const McapChannel& channel) {
 
 // The checks refuse a stream that is not kinalign's before its times are used.
 Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news) {
+  // Without the anchor no log time can be converted.
   if (!facts_) return no_stream("messages before what record says of itself");
   if (message.log_time > static_cast<std::uint64_t>(latest_log_time))
     return no_stream("a year behind 2096");
   const Time arrival = utc_time(static_cast<std::int64_t>(message.log_time));
   if (now_ && arrival > *now_ + longest_silence) return no_stream("a minute without any message");
+  // Channels are merged by the recorder, so an arrival may be a little earlier than the newest.
   now_ = now_ ? std::max(*now_, arrival) : arrival;
   const auto found = channels_.find(message.channel);
   if (found == channels_.end()) return {};
@@ -161,6 +171,7 @@ void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, L
     const auto at =
         frame->n_tx ? device.clock.host_from_node(frame->life, *frame->n_tx - age) : std::nullopt;
     const Time stamp = at ? on_axis(at->time) : arrival - age;
+    // A sample that can't be right is counted here, because no later step sees its raw values.
     const SampleFaults wrong = faults(sample);
     if (!is_credible(stamp, arrival) || wrong.not_finite || wrong.zero_orientation) {
       ++counts_.refused;
@@ -174,6 +185,8 @@ void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, L
 void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& message, LiveData& news) {
   if (message.is_exchange()) {
     if (auto recorded = to_exchange(message.payload)) {
+      // Frames do not state the epoch of the host's axis, so that of the newest exchange is used
+      // for them.
       device.epoch = recorded->epoch;
       recorded->exchange.boot = life_of(recorded->exchange.boot, recorded->epoch);
       device.sender.push(recorded->exchange);
@@ -202,6 +215,7 @@ void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
   const auto at = device.sensor.host_from_node(life, ticks);
   const Time arrival = on_axis(message.arrival);
   LiveKinectRow row{&device.raw, arrival, {}};
+  // The id 0 stands for no body: without the person the row has no joints.
   append_kinect_row(frame, device.person(frame).value_or(0), row.row);
   row.row.stamps.back() = on_axis(at ? at->time : sender_had);
   if (is_credible(row.row.stamps.back(), arrival)) {

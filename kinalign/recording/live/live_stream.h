@@ -22,6 +22,7 @@
 
 namespace kinalign {
 
+/// One sample of a node, stamped, with the arrival of its datagram.
 struct LiveNodeSample {
   const RawChannel* node = nullptr;  // valid as long as the stream object
   Time stamp{}, arrival{};
@@ -35,6 +36,7 @@ struct LiveKinectRow {
   PointFrames row;  // one row, with its stamp
 };
 
+/// A mark and its arrival, on the same axis as all stamps.
 struct LiveMark {
   RecordedMark mark;
   Time at{};
@@ -47,12 +49,16 @@ struct LiveData {
   std::vector<LiveMark> marks;
 };
 
+/// Counts since the beginning of the stream.
 struct LiveStreamCounts {
   std::uint64_t messages = 0;
   std::uint64_t lost = 0;     // missing in the stream, because this program read too slowly
   std::uint64_t refused = 0;  // samples and frames with an implausible stamp or impossible values
 };
 
+/// One connection to the recorder. Devices are created when their channels are defined and live as
+/// long as the object, so the pointers in LiveData stay valid. Memory is limited: by the size of a
+/// record, the number of channels, and the clocks' own limits.
 class LiveStream {
  public:
   // Bytes of one record.

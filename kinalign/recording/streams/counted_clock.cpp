@@ -27,7 +27,9 @@ constexpr double slowest_step_ns = 2e9;  // keeps the counter of a 32-bit number
 std::vector<CountedFrame> earliest_of_windows(const std::vector<CountedFrame>& frames,
                                               Duration window, double step) {
   std::vector<CountedFrame> out;
+  // The start of the present window, by the arrival of its first frame.
   HostTime begin;
+  // The delay of a frame beyond that of the window's earliest frame so far, ns.
   const auto way = [&](const CountedFrame& frame) {
     return static_cast<double>((frame.arrival - begin).count()) -
            step * static_cast<double>(frame.number - out.back().number);
@@ -55,6 +57,7 @@ Steps steps_of(const std::vector<CountedFrame>& frames) {
   steps.reserve(frames.size());
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const CountedFrame &a = frames[i - 1], &b = frames[i];
+    // A frame of an earlier number arrived late; its step would be negative.
     if (a.life != b.life || b.number <= a.number) continue;
     steps.push_back(static_cast<double>((b.arrival - a.arrival).count()) /
                     static_cast<double>(b.number - a.number));
@@ -74,9 +77,11 @@ double measured_step_ns(const std::vector<CountedFrame>& frames) {
   const Duration length = frames.back().arrival - frames.front().arrival;
   const Duration window = std::clamp(length / windows, shortest_window, longest_window);
   Steps steps;  // the first round uses the first frame of each window
+  // Each round knows the step better, so it finds the earliest frame of each window better.
   for (int round = 0; round < 3; ++round) {
     steps = steps_of(earliest_of_windows(frames, window, steps.middle));
   }
+  // Windows that disagree contain pauses without a count.
   return steps.agree() ? steps.middle : steps_of(frames).middle;
 }
 
@@ -85,6 +90,7 @@ std::string rate_text(double step_ns) { return fmt::format("{:.6g} Hz", 1e9 / st
 }  // namespace
 
 CountedFrame FrameNumbers::place(std::uint32_t number, HostTime arrival) {
+  // The signed difference is right across the end of the 32-bit count.
   const auto ahead = static_cast<std::int32_t>(number - static_cast<std::uint32_t>(last_));
   if (begins_ || ahead < -furthest_back || ahead > furthest_ahead) {
     ++life_;
@@ -104,6 +110,7 @@ CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_
                            Duration utc_minus_host, const std::string& file) {
   CountedClock out;
   const double measured = measured_step_ns(frames);
+  // The stated rate is preferred. Only many frames at another rate can contradict it.
   out.step_ns = stated_step_ns > 0.0 ? stated_step_ns : measured;
   const bool many = static_cast<std::int64_t>(frames.size()) > enough_frames;
   if (stated_step_ns > 0.0 && many && std::abs(measured / stated_step_ns - 1.0) > believed) {
@@ -114,6 +121,8 @@ CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_
                             "stamps were counted by the rate at which they arrive",
                             "state the true rate: rate_hz"});
   }
+  // Each frame is an exchange without an echo: its arrival is late by an unknown delay, and the
+  // clock keeps the earliest ones.
   std::vector<Exchange> exchanges;
   exchanges.reserve(frames.size());
   for (const CountedFrame& frame : frames) {

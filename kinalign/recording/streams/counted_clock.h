@@ -20,7 +20,8 @@ struct CountedFrame {
   HostTime arrival{};
 };
 
-/// Unwraps a sender's numbers. A new life begins when the sender starts a new count.
+/// Unwraps a sender's numbers. A new life begins when the sender starts a new count. Numbers of one
+/// life rise by the differences of the 32-bit numbers, so a count that passes 2^32 goes on.
 class FrameNumbers {
  public:
   CountedFrame place(std::uint32_t number, HostTime arrival);
@@ -33,6 +34,7 @@ class FrameNumbers {
   std::int64_t last_ = 0;
 };
 
+/// The clock of a device that counts its frames, learnt from all of them.
 struct CountedClock {
   double step_ns = 0.0;  // between two numbers
   DeviceClock clock;     // for the counter number * step
@@ -43,6 +45,7 @@ struct CountedClock {
 CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_ns,
                            Duration utc_minus_host, const std::string& file);
 
+/// The device's counter at a frame: its number times the step, as the clock model expects it.
 NodeTime counter_of(const CountedFrame& frame, double step_ns);
 
 }  // namespace kinalign

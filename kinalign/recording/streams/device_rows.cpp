@@ -20,12 +20,14 @@ DeviceProtocol maker_of(Protocol protocol) {
       return xsens_protocol();
     case Protocol::kinect:
       return kinect_protocol();
+    // The switch leaves at this case, so that every path returns a value.
     case Protocol::slimevr:
       break;
   }
   return slimevr_protocol();
 }
 
+/// The value of a key in `select`, or `otherwise` if the user gave none.
 std::string selected(const StreamOptions& options, const char* key, const std::string& otherwise) {
   const auto found = options.select.find(key);
   return found == options.select.end() ? otherwise : found->second;
@@ -46,11 +48,13 @@ std::pair<std::string, std::string> tracker_of(const std::string& node) {
 std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers) {
   const auto protocol = find_recorded_protocol(recorded_name);
   if (!protocol) return std::nullopt;
+  // Trackers are another content of the same stream; only some protocols have them.
   if (!trackers) return maker_of(*protocol);
   return row_of(*protocol).has_trackers ? std::optional(xsens_tracker_protocol()) : std::nullopt;
 }
 
 Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file) {
+  // An unknown key would select nothing without notice.
   for (const auto& [name, value] : options.select) {
     if (name == "stream" || name == "node" || name == "sender" || name == "body") continue;
     if (name == "kind" && (value == "poses" || value == "trackers")) continue;
@@ -62,6 +66,7 @@ Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file)
   wish.trackers = selected(options, "kind", "poses") == "trackers";
   wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
                  selected(options, "sender", "")};
+  // A tracker is known by its address, which then selects the sender as well.
   const auto [tracker, sensor] = tracker_of(wish.choice.node);
   if (wish.choice.sender.empty()) wish.choice.sender = tracker;
   const std::string body = selected(options, "body", sensor);

@@ -23,7 +23,8 @@
 
 namespace kinalign {
 
-/// Selects one device of a recording.
+/// Selects one device of a recording. Fields that the user left open are filled in when the
+/// recording is known (SenderTable::complete, choose in recording_source.cpp).
 struct DeviceChoice {
   std::string stream;
   std::string node;  // inertial nodes: an id, or a place if the lab named it; empty: the only node
@@ -50,7 +51,8 @@ struct DeviceWish {
 /// a body is not a number.
 Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file);
 
-/// The result of the first pass over a device's messages.
+/// The result of the first pass over a device's messages. It is complete before the first row is
+/// made, and all passes over the rows share it.
 struct HeardDevice {
   RawChannel channel;
   std::string skeleton;  // header of a BVH; empty: the recording has none
@@ -87,7 +89,8 @@ inline void stamp_by_arrival(const std::string& file, HeardDevice& heard) {
        "stamps are arrivals, late by unknown times", "offset_ms takes off a delay that is known"});
 }
 
-/// The first pass: learns from a device's messages how to stamp its rows.
+/// The first pass: learns from a device's messages how to stamp its rows. It keeps only what the
+/// clock and the stamps need, because recordings last for hours.
 class DeviceListener {
  public:
   using TakeStamp = std::function<void(Time)>;
@@ -101,7 +104,8 @@ class DeviceListener {
   virtual void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const = 0;
 };
 
-/// The stamps of rows in the order of RowsInOrder. `Row`: the data kept of a row.
+/// The stamps of rows in the order of RowsInOrder. `Row`: the data kept of a row. A listener uses
+/// it, so that its stamps have the same order as the rows of the later passes.
 template <class Row>
 class OrderedStamps {
  public:
@@ -122,7 +126,9 @@ class OrderedStamps {
   std::function<void(Time, const Row&)> take_;
 };
 
-/// A later pass: makes rows from the same messages. It must not be used again after a failure.
+/// A later pass: makes rows from the same messages. It must not be used again after a failure. Rows
+/// and stamps of DeviceListener::stamp_rows must agree one by one: the take's number of rows is
+/// planned by the stamps.
 template <class Frames>
 class DeviceRows {
  public:

@@ -11,6 +11,8 @@
 
 namespace kinalign {
 
+/// The epochs in which a device's exchanges were made, for each boot of the device. Epochs of a
+/// boot are in the order of arrival; each one keeps its first and its last exchange only.
 class HostEpochs {
  public:
   /// Call in the order of arrival.

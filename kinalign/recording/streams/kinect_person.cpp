@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+// A limit on memory: a damaged recording may have a new id in every frame.
 constexpr std::size_t most_ids = 1000;
 // Both values are choices. A person moves less than near_m while the SDK assigns another id, and
 // does not walk faster than walk_m_per_s in a lab.
@@ -34,6 +35,7 @@ std::optional<Vec3> place_of(const KinectBody& body) {
 
 std::optional<std::uint64_t> KinectPerson::operator()(const KinectFrame& frame) {
   several_ += frame.bodies.size() > 1 ? 1 : 0;
+  // Ids are counted even if one is selected, so that the report can say which ids there were.
   for (const KinectBody& body : frame.bodies) {
     if (ids_.size() < most_ids) ids_.insert(body.id);
   }
@@ -71,6 +73,8 @@ const KinectBody* KinectPerson::body_in(const KinectFrame& frame) const {
 
 // The longer the person was lost, the further away it may be found.
 bool KinectPerson::may_be(const KinectBody& body, const Vec3& place, std::int64_t ticks) const {
+  // Before the person was seen, every body may be the person, and the nearest to the sensor is
+  // taken.
   if (!seen_) return true;
   const double lost_s = tick_s * static_cast<double>(std::max<std::int64_t>(0, ticks - *seen_));
   return !others_.contains(body.id) && (place - place_).norm() < near_m + walk_m_per_s * lost_s;
@@ -80,6 +84,7 @@ void KinectPerson::follow(const KinectFrame& frame, const KinectBody& body) {
   followed_ += body.id != last_ ? 1 : 0;
   last_ = body.id;
   seen_ = frame.device_ticks;
+  // A body without tracked joints keeps the last place.
   place_ = place_of(body).value_or(place_);
   for (const KinectBody& other : frame.bodies) {
     if (other.id == last_ || others_.size() >= most_ids) continue;

@@ -28,6 +28,7 @@ class KinectPerson {
   void report(const std::string& file, Findings& findings) const;
 
  private:
+  // The body of the frame to follow; nullptr: none of them may be the person.
   const KinectBody* body_in(const KinectFrame& frame) const;
   bool may_be(const KinectBody& body, const Vec3& place, std::int64_t ticks) const;
   void follow(const KinectFrame& frame, const KinectBody& body);
@@ -39,7 +40,9 @@ class KinectPerson {
   Vec3 place_ = Vec3::Zero();
   // time of that, device ticks; absent: not seen in this session
   std::optional<std::int64_t> seen_;
+  // All ids that were seen, for the report, and those that were seen apart from the person.
   std::set<std::uint64_t> ids_, others_;
+  // Frames with several bodies; changes of the followed id; frames with others only.
   std::uint64_t several_ = 0, followed_ = 0, without_ = 0;
 };
 

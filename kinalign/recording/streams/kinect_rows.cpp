@@ -27,6 +27,7 @@ struct Taken {
   HostTime arrival{};
 };
 
+/// The order in which exchanges reached the host. device_clock() needs it.
 bool came_before(const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; }
 
 /// The stamp of a frame. `arrival`: arrival of the message that completed the frame.
@@ -38,6 +39,8 @@ std::optional<Time> stamp_of_frame(const HeardDevice& heard, BootKey session, No
 constexpr std::size_t most_overtaking_kinect_frames =
     16;  // half a second: no network delays one for longer
 
+/// Learns both clocks of a Kinect and keeps the times of its frames. Each frame also serves as a
+/// one-way exchange of the sender's clock.
 class KinectListener final : public DeviceListener {
  public:
   explicit KinectListener(std::optional<std::uint64_t>) {}
@@ -48,6 +51,7 @@ class KinectListener final : public DeviceListener {
       if (const auto recorded = to_exchange(message.payload)) {
         epochs_.add(*recorded);
         exchanges_.push_back(recorded->exchange);
+        // The epoch is part of the key, since the host's axis jumps between epochs.
         exchanges_.back().boot = life_of(recorded->exchange.boot, recorded->epoch);
       }
       return;
@@ -71,21 +75,25 @@ class KinectListener final : public DeviceListener {
     joined_.clear();
     frames_.finish(joined_);
     add_joined();
+    // Only now are all epochs known, so frames get theirs here.
     for (Taken& one : taken_) {
       one.life = epochs_.life_at(one.life, one.sent, one.arrival);
       exchanges_.push_back({one.life, one.sent, one.arrival, std::nullopt});
     }
     std::stable_sort(exchanges_.begin(), exchanges_.end(), came_before);
+    // The first clock is left on the host's axis; the second one takes its times as arrivals.
     const DeviceClock sender = device_clock(exchanges_, {});
     std::vector<Exchange> from_sensor;
     from_sensor.reserve(taken_.size());
     for (const Taken& one : taken_) {
       const auto at = host_from_node(sender.model, one.life, one.sender, one.arrival);
+      // A part whose session has no clock gives no time.
       if (at) from_sensor.push_back({one.life, one.device, at->time, std::nullopt});
     }
     std::stable_sort(from_sensor.begin(), from_sensor.end(), came_before);
     heard.clock = device_clock(from_sensor, heard.utc_minus_host);
     heard.epochs = std::move(epochs_);
+    // The times of all parts take much memory and are not needed for stamps.
     taken_ = {};
     exchanges_ = {};
     return {};
@@ -96,6 +104,7 @@ class KinectListener final : public DeviceListener {
                                [&take](Time stamp, bool) { take(stamp); });
     for (const Joined& one : rows_) {
       const auto stamp = stamp_of_frame(heard, one.session, one.sent, one.device, one.arrival);
+      // A frame without a stamp makes no row, here and in KinectRows.
       if (stamp) stamps.add(*stamp, true);
       if (one.ends_message) stamps.settle();
     }
@@ -103,6 +112,7 @@ class KinectListener final : public DeviceListener {
   }
 
  private:
+  // The times of one complete frame, from which its stamp is computed when the clocks are known.
   struct Joined {
     BootKey session = 0;
     NodeTime sent{}, device{};
@@ -127,6 +137,8 @@ class KinectListener final : public DeviceListener {
   std::vector<Taken> taken_;
 };
 
+/// Makes one row for each complete frame, in the order of stamps, with the joints of the followed
+/// person. A frame without the person gives a row without joints.
 class KinectRows final : public DeviceRows<PointFrames> {
  public:
   KinectRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
@@ -191,6 +203,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     }
   }
 
+  // Rows are made when they leave the queue, so the person is followed in the order of time.
   void append_waiting(PointFrames& out) {
     while (const auto first = waiting_.take_first()) {
       const KinectFrame& frame = first->second;

@@ -42,7 +42,8 @@ struct Nodes {
   std::map<std::string, std::uint32_t> sensors;
   std::map<std::string, std::set<std::string>> called;  // ids of nodes, by stream and name
 };
-/// The key of Nodes::called. A name is an id or a place.
+/// The key of Nodes::called. A name is an id or a place. Both share one map, because a place may
+/// equal another node's id.
 std::string called(const RawChannel& raw, const std::string& name) {
   return raw.stream + "/" + name;
 }
@@ -53,6 +54,7 @@ Nodes nodes_in(const RecordingSurvey& survey) {
   for (const ChannelSurvey& one : survey.channels) {
     const auto raw = to_raw(one.channel);
     if (!raw) continue;
+    // A tracker's sensors may come over several channels of one address.
     nodes.sensors[host_of(raw->sender)] |= one.sensors;
     for (const std::string& name : {raw->node, raw->place}) {
       if (!name.empty()) nodes.called[called(*raw, name)].insert(raw->node);
@@ -73,6 +75,7 @@ std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
   }
   const std::string host = host_of(raw.sender);
   const std::uint32_t sensors = nodes.sensors.at(host);
+  // One sensor needs no number after the address.
   if (std::popcount(sensors) < 2) return {host};
   std::vector<std::string> names;
   for (unsigned k = 0; k < 32; ++k) {
@@ -106,10 +109,13 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
   for (const ChannelSurvey& one : survey.channels) {
     const auto raw = to_raw(one.channel);
     if (!raw || raw->protocol == exchange_encoding || one.messages == 0) continue;
+    // A port of trackers also receives packets without rotations, such as those of other programs.
+    // If some tracker rotates, addresses without rotations are none.
     if (is_named_by_address(*raw) && one.sensors == 0 && some_rotate) continue;
     auto device = std::find_if(devices.begin(), devices.end(),
                                [&](const Device& d) { return d.options.name == raw->stream; });
     if (device == devices.end()) {
+      // The device is inserted at the end, in the order of channels; ranks are applied below.
       device = devices.insert(device, {rank_of(raw->protocol), {}});
       device->options.name = raw->stream;
       device->options.select = {{"stream", raw->stream}};
@@ -126,6 +132,8 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
   manifest.subject = survey.facts->subject;
   manifest.action = survey.facts->action;
   for (Device& device : devices) {
+    // A Kinect has its own space. If there is a stream before it with joints, it is fitted to that
+    // stream.
     const bool follows = !manifest.streams.empty() && devices.front().rank <= kinect_rank;
     if (follows && device.rank == kinect_rank) manifest.spaces[device.options.name].method = "fit";
     manifest.streams.push_back(std::move(device.options));

@@ -49,6 +49,8 @@ std::optional<Time> stamp_of_sample(const HeardDevice& heard, const AcceptedFram
 constexpr std::size_t most_overtaking_samples =
     64;  // samples of some frames: a radio reorders them
 
+/// Learns the clock of one node and keeps what its samples' stamps need: per frame a few bytes, per
+/// sample its age.
 class NodeListener final : public DeviceListener {
  public:
   explicit NodeListener(std::optional<std::uint64_t>) {}
@@ -65,6 +67,8 @@ class NodeListener final : public DeviceListener {
     if (!frame) return;
     const bool has_counter = frame->n_tx.has_value();
     const std::size_t exchanges = has_counter ? exchanges_.size() : clockless_.size();
+    // The frame's exchange is the last one that was stored, since it stands directly before the
+    // frame.
     heard_.push_back({message.arrival, static_cast<std::uint32_t>(exchanges - 1),
                       static_cast<std::uint8_t>(frame->sample_count), has_counter});
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
@@ -73,6 +77,8 @@ class NodeListener final : public DeviceListener {
       content_.orientation |= sample.has_orientation;
       content_.acceleration |= sample.has_acceleration;
       content_.angular_velocity |= sample.has_angular_velocity;
+      // A stream has one kind of acceleration. If one sample lacks gravity, the stream is without
+      // it, and the others become invalid.
       if (sample.has_acceleration) content_.gravity &= sample.gravity_included;
     }
   }
@@ -84,6 +90,8 @@ class NodeListener final : public DeviceListener {
                            "none that was accepted"});
     }
     heard.content = content_;
+    // If the node has sent counters, its requests without one have no clock and are left out
+    // (stamp_of_sample).
     if (exchanges_.empty()) {
       clockless_clock({clockless_.begin(), clockless_.end()}, wish, heard);
     } else {
@@ -96,6 +104,7 @@ class NodeListener final : public DeviceListener {
   /// Stamps the samples in the order in which NodeRows makes its rows.
   void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
     OrderedStamps<bool> stamps(most_overtaking_samples, [&take](Time stamp, bool) { take(stamp); });
+    // The ages are consumed in the order in which take() stored them.
     auto age_us = ages_us_.begin();
     for (const HeardFrame& one : heard_) {
       AcceptedFrame frame;
@@ -133,6 +142,7 @@ class NodeListener final : public DeviceListener {
   ImuContent content_;
 };
 
+/// Makes the rows of one node: one for each sample of an accepted frame, in the order of stamps.
 class NodeRows final : public DeviceRows<ImuSamples> {
  public:
   NodeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
@@ -141,6 +151,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
         converter_(ImuUnits{axes_of(y_up, wish.options), 1.0, 1.0}) {
     const RawChannel& channel = heard_->channel;
     const std::string& own = channel.place.empty() ? channel.node : channel.place;
+    // The manifest's name comes first, then the place of the lab, then the id.
     header_.node_names = {wish.file.node.empty() ? own : wish.file.node};
     header_.content = heard_->content;
   }
@@ -149,6 +160,8 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   /// out.
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
     if (message.is_exchange()) {
+      // The exchange must be decoded although nothing is done with it: it accepts the frame after
+      // it.
       (void)frames_.take_exchange(message);
       return {};
     }
@@ -203,10 +216,12 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     const std::array<double, 3> w{sample.angular_velocity[0], sample.angular_velocity[1],
                                   sample.angular_velocity[2]};
     const ImuContent& content = header_.content;
+    // The converter turns axes and checks the quaternion; absent quantities stay null.
     RawImuSample raw;
     if (content.orientation) raw.orientation = q.data();
     if (content.acceleration) raw.acceleration = a.data();
     if (content.angular_velocity) raw.angular_velocity = w.data();
+    // A sample with the other kind of acceleration would be wrong by 1 g.
     const bool mixed = sample.has_acceleration && sample.gravity_included != content.gravity;
     raw.valid = sample.has_orientation >= content.orientation &&
                 sample.has_acceleration >= content.acceleration &&

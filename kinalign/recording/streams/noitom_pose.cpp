@@ -17,6 +17,7 @@ constexpr std::string_view both =
     "the stream does not say which of Noitom's two 59-joint hierarchies it follows, legacy (Axis "
     "Neuron: joint 10 is Spine3) or Studio (Axis Studio: joint 10 is Neck)";
 
+/// The words for an error about the header.
 std::string_view word(NoitomHierarchy hierarchy) {
   if (hierarchy == NoitomHierarchy::legacy) return "the legacy one";
   return hierarchy == NoitomHierarchy::studio ? "the Studio one" : "neither";
@@ -38,6 +39,7 @@ NoitomHierarchy noitom_hierarchy(const BvhHierarchy& hierarchy) {
 }
 
 NoitomPoser::NoitomPoser(BvhHierarchy hierarchy, const BvhOptions& options, std::string name)
+    // The poser refers to the hierarchy, which is therefore a member and comes first.
     : hierarchy_(std::move(hierarchy)), poser_(hierarchy_, options), name_(std::move(name)) {}
 
 Result<void> NoitomPoser::append(const NoitomFrame& frame, Time stamp, ClipFrames& out) {
@@ -56,6 +58,7 @@ Result<void> NoitomPoser::append(const NoitomFrame& frame, Time stamp, ClipFrame
   }
   row_.assign(row.begin(), row.end());
   poser_.append(row_, out);
+  // The poser counts stamps by the BVH's step; a recorded frame has its own stamp.
   out.stamps.back() = stamp;
   return {};
 }

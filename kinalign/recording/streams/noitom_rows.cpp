@@ -11,6 +11,7 @@ namespace kinalign {
 
 namespace {
 
+/// The parts of NumberedFrames and NumberedRows that differ between sources, for Noitom.
 struct NoitomSource {
   static constexpr std::string_view what = "frames of Noitom's stream";
   static constexpr std::string_view frames = "frames";
@@ -32,6 +33,7 @@ Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& f
                              "lab.toml while recording, or now in the manifest",
                          "none", ErrorKind::no_rows_in_recording});
   }
+  // The number of rows and the findings of the header's own file do not matter here.
   std::size_t rows = 0;
   Findings odd;
   return parse_bvh_hierarchy(heard.skeleton, heard.channel.stream + ".bvh", rows, odd);
@@ -44,6 +46,7 @@ std::uint32_t noitom_shape(const NoitomFrame& frame) {
   return has_sound_values(row) ? static_cast<std::uint32_t>(row.size()) : 0;
 }
 
+/// Learns the clock from the numbers of frames. Only a frame's number, arrival and size are kept.
 class NoitomListener final : public DeviceListener {
  public:
   explicit NoitomListener(std::optional<std::uint64_t> body) : frames_(body) {}
@@ -63,6 +66,7 @@ class NoitomListener final : public DeviceListener {
     if (keys_.empty()) {
       return Failure(nothing_of(NoitomSource::what, wish.file.path, heard, frames_.others()));
     }
+    // A recording without a header fails here, before the later passes need it.
     const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(heard, wish.file.path));
     row_size_ = hierarchy.row_size();
     heard.step_ns = 1e9 * hierarchy.frame_seconds;
@@ -75,6 +79,7 @@ class NoitomListener final : public DeviceListener {
   }
 
   void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
+    // The same test as in NoitomPoser::append, by the frame's number of values.
     keys_.stamp_rows(
         heard, [this](std::uint32_t values) { return values == row_size_; }, take);
   }

@@ -20,6 +20,7 @@
 
 namespace kinalign {
 
+/// A frame, and its place in the count of its sender.
 template <class Frame>
 struct PlacedFrame {
   Frame frame;
@@ -103,12 +104,15 @@ class NumberedFrames {
         continue;
       }
       if (one.order == Order::duplicate) continue;
+      // A connection loses nothing, so counting frames gives the numbers that the source did not
+      // send.
       auto number = Source::number(one);
       if (!number && from.lossless) number = from.counted++;
       Placed placed{std::move(*frame), {}, arrival};
       if constexpr (holds_back) placed.arrival = one.arrival.value_or(arrival);
       if (number) {
         placed.place = from.numbers.place(*number, placed.arrival);
+        // Life numbers of a channel are small; its id takes the upper bits.
         placed.place->life |= BootKey{from.id} << 32U;
       }
       out.push_back(std::move(placed));
@@ -142,8 +146,10 @@ class ArrivalStamps {
   template <class Take>
   void add(HostTime arrived, std::size_t frames, const Take& take) {
     const Time arrival{arrived.time_since_epoch() + utc_minus_host_};
+    // The number of steps from a frame to the message's last one, which has the arrival itself.
     auto behind = static_cast<Duration::rep>(frames);
     Duration step = step_;
+    // Frames must not reach back before the message before, or stamps would not rise.
     if (any_before_) step = std::clamp((arrival - before_) / behind, Duration{0}, step);
     for (std::size_t k = 0; k < frames; ++k) take(k, arrival - --behind * step);
     any_before_ = true;
@@ -182,7 +188,7 @@ class FrameKeys {
     return frames;
   }
   /// Passes on the stamp of each row. `fits`: decides by a frame's shape; called in the order of
-  /// the rows.
+  /// the rows. Frames wait and leave the queue as in NumberedRows, so the orders are equal.
   template <class Fits>
   void stamp_rows(const HeardDevice& heard, Fits fits,
                   const DeviceListener::TakeStamp& take) const {
@@ -270,6 +276,7 @@ class NumberedRows : public DeviceRows<Frames> {
   virtual Result<void> append(const typename Source::Frame& frame, Time stamp, Frames& out) = 0;
   virtual Findings further_findings() const { return {}; }
 
+  // The first frame that does not fit is kept as an example for the finding.
   void put(const typename Source::Frame& frame, Time stamp, Frames& out) {
     auto appended = append(frame, stamp, out);
     if (appended) {
@@ -282,6 +289,7 @@ class NumberedRows : public DeviceRows<Frames> {
   /// Makes rows of the placed frames, which are stamped by arrival or by their clock.
   void put_placed(Frames& out) {
     if (placed_.empty()) return;
+    // Arrivals rise by themselves, so rows stamped by them need no sorting.
     if (heard_->by_arrival) {
       arrivals_.add(placed_.back().arrival, placed_.size(),
                     [&](std::size_t k, Time stamp) { put(placed_[k].frame, stamp, out); });

@@ -15,18 +15,21 @@ namespace {
 
 constexpr std::size_t most_hosts = 8;  // hosts of one stream that are listened to in the first pass
 
-/// The streams to listen to, and their variants.
+/// The streams to listen to, and their variants. A stream that is wanted twice, with another body
+/// or as trackers, gets a listener for each.
 class Wanted {
  public:
   explicit Wanted(const std::vector<StreamOptions>& streams) {
     for (const StreamOptions& options : streams) {
       for (const StreamFile& file : options.files) {
+        // A wrong selection is reported when its stream is opened; here it is left out.
         const auto wish = wish_of(options, file);
         if (wish) variants_[wish->choice.stream].insert({wish->trackers, wish->body});
       }
     }
   }
   std::set<ListenVariant> variants_of(const std::string& stream) const {
+    // Without a manifest all streams are listened to, with their default options.
     if (variants_.empty()) return {ListenVariant{}};
     const auto found = variants_.find(stream);
     return found == variants_.end() ? std::set<ListenVariant>{} : found->second;
@@ -36,7 +39,8 @@ class Wanted {
   std::map<std::string, std::set<ListenVariant>> variants_;
 };
 
-/// The first pass: indexes the files, surveys and hashes them, and learns the devices' clocks.
+/// The first pass: indexes the files, surveys and hashes them, and learns the devices' clocks. All
+/// of it happens in one reading, because recordings are larger than memory and disks are slow.
 class Scan {
  public:
   Scan(ScannedRecording& state, std::optional<Wanted> wanted)
@@ -45,6 +49,7 @@ class Scan {
   Result<void> read(const Progress& progress) {
     std::vector<StoredChunks::File> versions;
     for (const RecordingPart& part : state_.parts) {
+      // Versions are taken before the files are read, so a change during the pass is noticed later.
       versions.push_back({part.path, version_of(part.path)});
       state_.input_facts.push_back({std::string(file_name(part.path)), "", 0});
     }
@@ -59,6 +64,7 @@ class Scan {
       surveyor.take(*record);
       take_record(*record, stream);
     }
+    // The last chunk has no successor that would close it.
     end_chunk();
     state_.chunks =
         std::make_shared<StoredChunks>(*state_.files, std::move(versions), std::move(chunks_));
@@ -92,12 +98,14 @@ class Scan {
     if (state_.channels.contains(channel.id)) return;
     add_json(channel);
     const auto raw = to_raw(channel);
+    // Marks have a channel like a device, but are no stream.
     if (!raw || channel.topic == marks_topic) return;
     DeviceChannel& added = state_.channels[channel.id];
     added.raw = *raw;
     added.id = channel.id;
     state_.in_order.push_back(&added);
     if (raw->node.empty() && raw->protocol != exchange_encoding) {
+      // Nodes are distinguished by their ids, whatever address they have.
       added.sender = state_.senders[raw->stream].add(raw->sender);
     }
     if (wanted_) listen_to(added);
@@ -105,6 +113,7 @@ class Scan {
   void add_json(const McapChannel& channel) {
     const auto schema = schemas_.find(channel.schema_id);
     if (channel.message_encoding != "json" || schema == schemas_.end()) return;
+    // The recorder's own channels are shown by viewers; they need the schema.
     if (json_channels_.insert(channel.id).second) {
       state_.json.push_back({channel.id, channel.topic, schema->second});
     }
@@ -113,11 +122,13 @@ class Scan {
   /// Assigns a channel to the listeners of its device, one for each variant.
   void listen_to(DeviceChannel& channel) {
     const RawChannel& raw = channel.raw;
+    // A node is one device at any address; other senders are one device per host.
     const std::string host = raw.node.empty() ? host_of(raw.sender) : "";
     for (const ListenVariant& variant : wanted_->variants_of(raw.stream)) {
       const DeviceKey key{raw.stream, raw.node, host, variant};
       auto found = state_.listening.find(key);
       if (found == state_.listening.end()) {
+        // Any program may send to a port. A flood of hosts must not cost a listener each.
         if (!host.empty() && ++hosts_[raw.stream] > most_hosts) continue;
         found = state_.listening.emplace(key, Listening(variant)).first;
       }
@@ -130,6 +141,7 @@ class Scan {
     const auto found = state_.channels.find(message.channel);
     const bool is_device = found != state_.channels.end();
     const bool is_json = json_channels_.contains(message.channel);
+    // Without facts the file is another program's, whose times mean something else.
     const bool counts = state_.facts && message.log_time <= latest_log_time;
     if (!counts || !(is_device || is_json)) return;
     add_to_index(message.channel, stream);
@@ -138,6 +150,7 @@ class Scan {
 
   void hear(DeviceChannel& from, const McapMessage& message) {
     const HostTime arrival = arrival_of(message.log_time, state_.utc_minus_host());
+    // Nodes are not counted as senders: their ids name them.
     if (from.sender) state_.senders[from.raw.stream].count(*from.sender, arrival);
     for (Listening* one : from.listening) {
       one->take({&from.raw, from.id, arrival, message.data});
@@ -155,9 +168,11 @@ class Scan {
       chunk_.at = reader.at();
       chunk_.size = reader.size();
     }
+    // Messages between the last one and this one did not pass: they are damaged or repeated.
     for (; chunk_.end < stream.place(); ++chunk_.end) chunk_.left_out.push_back(chunk_.end);
     ++chunk_.end;
     auto& channels = chunk_.channels;
+    // The channels are kept sorted, for a fast test in MessagePass.
     const auto at = std::lower_bound(channels.begin(), channels.end(), channel);
     if (at == channels.end() || *at != channel) channels.insert(at, channel);
   }
@@ -171,6 +186,7 @@ class Scan {
     const RecordingSurvey& survey = state_.survey;
     const std::string& last = state_.parts.back().path;
     for (const auto& [recorded, log_time] : survey.marks) {
+      // A later log time is damage and could not be a stamp.
       if (log_time > latest_log_time) continue;
       const Time at{Duration{static_cast<std::int64_t>(log_time)}};
       state_.shared.marks.push_back({at, name_of(recorded.mark.kind), recorded.mark.text,

@@ -32,7 +32,9 @@ struct ListenVariant {
   auto operator<=>(const ListenVariant&) const = default;
 };
 
-/// Passes the messages of one device's channels to a listener.
+/// Passes the messages of one device's channels to a listener. The protocol is known with the first
+/// channel of payloads only. Exchanges may come before it and are kept until then, at most
+/// `most_early`.
 class Listening {
  public:
   explicit Listening(ListenVariant variant) : variant_(variant) {}
@@ -48,6 +50,7 @@ class Listening {
       return;
     }
     if (!begin()) return;
+    // The early exchanges come first, in their order.
     for (Early& early : early_) {
       early.message.payload = early.payload;
       listener_->take(early.message);
@@ -65,6 +68,7 @@ class Listening {
   bool is_released() const { return begun_ && !listener_; }
 
  private:
+  // Makes the listener when the protocol is known. It is made once, even if the protocol has none.
   bool begin() {
     if (begun_) return listener_ != nullptr;
     begun_ = true;
@@ -89,6 +93,7 @@ class Listening {
 /// A device, identified by its stream and node id or, without a node id, by its sender's host.
 using DeviceKey = std::tuple<std::string, std::string, std::string, ListenVariant>;
 
+/// One channel of the recording, with the listeners that take its messages.
 struct DeviceChannel {
   RawChannel raw;
   std::uint16_t id = 0;
@@ -97,7 +102,9 @@ struct DeviceChannel {
   std::vector<Listening*> listening{};
 };
 
-/// The result of the first pass.
+/// The result of the first pass. Later passes need nothing else of the files: chunks are found by
+/// the index, and clocks are learnt by the listeners. Pointers into `channels` and `listening` stay
+/// valid, because maps do not move their elements.
 struct ScannedRecording {
   FileSystem* files = nullptr;
   std::string path;
@@ -120,7 +127,7 @@ struct ScannedRecording {
   }
 };
 
-/// Selects the streams to listen to.
+/// Selects the streams to listen to. Without any, the recording is only surveyed.
 struct ListenTo {
   bool any = false;
   std::vector<StreamOptions> wanted{};  // paths can be opened as they are; empty: all streams

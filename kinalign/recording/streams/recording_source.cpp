@@ -22,6 +22,7 @@ constexpr std::size_t most_names = 32;  // streams or nodes named in one message
 Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
   const std::string& file = wish.file.path;
   const auto protocol = find_recorded_protocol(channel.protocol);
+  // A skeleton that no one reads would be a mistake of the manifest.
   if (!wish.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
     return Failure(Error{file, 0, "a skeleton of a noitom stream alone",
                          "one of " + shown(channel.stream) + ", of " + shown(channel.protocol)});
@@ -45,11 +46,13 @@ std::string node_name(const RawChannel& raw) {
   return shown(raw.node) + (raw.place.empty() ? "" : " (" + shown(raw.place) + ")");
 }
 
+/// The names appear in one message, so a few are enough.
 void remember(std::set<std::string>& names, const std::string& name) {
   if (names.size() < most_names) names.insert(name);
 }
 
-/// The channels of the wanted device, and names for an error.
+/// The channels of the wanted device, and names for an error. All of them are collected in one pass
+/// over the channels, because the error needs the names that were not chosen.
 struct Chosen {
   std::vector<const DeviceChannel*> channels;  // in the order of definition
   std::optional<RawChannel> first;             // the first channel of payloads
@@ -64,6 +67,8 @@ struct Chosen {
   }
 };
 
+/// Tests one channel and fills the open fields of the choice: the first node or host decides. A
+/// selected node is compared by id and by place.
 bool is_wanted(const RawChannel& raw, Chosen& chosen) {
   remember(chosen.streams, shown(raw.stream));
   DeviceChoice& choice = chosen.choice;
@@ -93,10 +98,12 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
     chosen.channels.push_back(one);
     if (!chosen.first && one->raw.protocol != exchange_encoding) chosen.first = one->raw;
   }
+  // A stream of several nodes has no default node.
   if (choice.node.empty() && chosen.nodes.size() > 1) {
     return Failure(Error{file, 0, fmt::format("one node of stream {}: select.node", choice.stream),
                          fmt::format("{}", fmt::join(chosen.nodes, ", "))});
   }
+  // Two nodes may have had one place during the recording.
   if (chosen.meant.size() > 1) {
     return Failure(Error{
         file, 0,
@@ -113,6 +120,7 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
         chosen.streams.empty() ? "a recording in which nothing was heard"
                                : "'" + shown(choice.stream) + "'"});
   }
+  // The stream exists, but not this node or sender: the error lists those that there are.
   const bool node = !chosen.nodes.empty();
   const auto roll = state.senders.find(choice.stream);
   const auto hosts =
@@ -156,12 +164,14 @@ Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, con
   const DeviceKey key{first.stream, first.node, first.node.empty() ? host_of(first.sender) : "",
                       variant};
   const auto found = state.listening.find(key);
+  // A listener is used once, since finish() takes its data.
   const bool is_same = found != state.listening.end() && !found->second.is_released() &&
                        found->second.channels() == chosen.ids();
   if (is_same) return found->second.release();
   return listen_again(state, chosen, variant, progress);
 }
 
+/// A device whose clock was learnt, ready for its rows.
 struct Heard {
   std::shared_ptr<const HeardDevice> device;
   std::unique_ptr<DeviceListener> listener;
@@ -176,6 +186,7 @@ Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWi
   heard.channel = *chosen.first;
   const auto attached = state.attachments.find(wish.choice.stream + ".bvh");
   if (attached != state.attachments.end()) heard.skeleton = attached->second;
+  // The manifest's skeleton comes before the recording's own.
   if (!wish.skeleton.empty()) heard.skeleton = wish.skeleton;
   heard.utc_minus_host = state.utc_minus_host();
   auto listener = KA_TRY(listener_of(state, chosen, {wish.trackers, wish.body}, progress));
@@ -203,6 +214,7 @@ Findings judge_order(const std::string& file, const DeviceStream& stream) {
     on_axis.add({&at, 1});
   }
   const std::uint64_t rising = on_axis.result().kept();
+  // The survey of the device's own stamps kept more: some times fall only on the take's axis.
   if (rising >= stream.survey.kept()) return {};
   return {{Severity::warning,
            Error{file, 0, "samples whose times rise",
@@ -230,6 +242,7 @@ Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>
 Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chosen,
                                const DeviceWish& wish, Heard heard, const Progress& progress) {
   DeviceStream out;
+  // The stamps are those of the rows in their order, without making a row.
   auto stamps = std::make_shared<std::vector<Time>>();
   heard.listener->stamp_rows(*heard.device, [&](Time stamp) { stamps->push_back(stamp); });
   heard.listener.reset();
@@ -243,10 +256,12 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
   append(out.findings, heard.device->findings);
   out.skeleton_path = wish.skeleton.empty() ? "" : wish.options.skeleton;
 
+  // The channels are shared by all passes and outlive this function.
   std::map<std::uint16_t, RawChannel> channels;
   for (const DeviceChannel* one : chosen.channels) channels[one->id] = one->raw;
   const auto shared =
       std::make_shared<const std::map<std::uint16_t, RawChannel>>(std::move(channels));
+  // This first object only tells which kind of frames the protocol makes; each pass makes its own.
   AnyDeviceRows any = heard.protocol.rows(wish, heard.device);
   KA_TRY(std::visit(
       [&]<class Frames>(std::unique_ptr<DeviceRows<Frames>>&) -> Result<void> {
@@ -315,6 +330,7 @@ MessagePass RecordingSource::messages_of(std::vector<std::uint16_t> channels) co
 Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const StreamFile& file,
                                              const Progress& progress) {
   DeviceWish wish = KA_TRY(wish_of(options, file));
+  // The file of the skeleton is read now, so that each pass has the same one.
   if (!options.skeleton.empty()) {
     wish.skeleton = KA_TRY(read_bvh_head(*state_->files, options.skeleton));
   }
@@ -324,6 +340,7 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
   }
   const bool any_sender = wish.choice.sender.empty();
   const SenderTable& senders = state_->senders[wish.choice.stream];
+  // The sender with the most messages is chosen before the channels are.
   senders.complete(wish.choice);
   const Chosen chosen = KA_TRY(choose(*state_, wish).map_error([&](Error error) {
     return with_nodes(wish, survey(), std::move(error));
@@ -332,6 +349,7 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
     return with_senders(std::move(error), wish.choice.sender, senders);
   }));
   DeviceStream out = KA_TRY(stream_of(*state_, chosen, wish, std::move(heard), progress));
+  // The senders are judged last, when rows could be made of the chosen one.
   append(out.findings, judge_senders(wish, any_sender, senders));
   return out;
 }

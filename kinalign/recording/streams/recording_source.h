@@ -26,7 +26,8 @@ namespace kinalign {
 
 struct ScannedRecording;
 
-/// The rows of one device, in blocks.
+/// The rows of one device, in blocks. Each pass has its own place and decoder; chunks are shared
+/// with other passes.
 template <class FramesType>
 class DevicePass {
  public:
@@ -74,6 +75,8 @@ struct DeviceStream {
   std::string skeleton_path;  // path of the BVH that the options name; empty: none
 };
 
+/// An opened recording and the answers about its devices. The first pass happens in open();
+/// stream() reads a device's chunks again only if the first pass did not listen to it.
 class RecordingSource {
  public:
   /// Whether streams will be read. If so, the first pass learns the devices' clocks too.

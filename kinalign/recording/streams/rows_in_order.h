@@ -12,6 +12,9 @@
 
 namespace kinalign {
 
+/// A queue that releases a row only when `most_overtaking` later ones wait behind it. Rows leave in
+/// the order of their stamps; equal stamps keep the order of arrival. Memory is limited by the
+/// number of waiting rows.
 template <class Row>
 class RowsInOrder {
  public:

@@ -19,6 +19,7 @@ constexpr Duration longest_reconnect = std::chrono::seconds(1);
 
 constexpr std::size_t most_named = 8;  // senders named in one message
 
+/// The names in a list of limited length: any program can add senders.
 std::string some_of(std::vector<std::string> names) {
   const std::size_t all = names.size();
   names.resize(std::min(all, most_named));
@@ -28,6 +29,7 @@ std::string some_of(std::vector<std::string> names) {
 
 }  // namespace
 
+/// The port follows the last colon; an IPv6 address contains colons itself.
 std::string host_of(std::string_view sender) {
   return std::string(sender.substr(0, sender.rfind(':')));
 }
@@ -49,6 +51,7 @@ void SenderTable::count(std::size_t number, HostTime at) {
 }
 
 std::vector<std::string> SenderTable::hosts() const {
+  // Ports of one host are added up: a device that reconnects has several.
   std::map<std::string, std::uint64_t> messages;
   for (const Sender& sender : senders_) messages[host_of(sender.name)] += sender.messages;
   std::vector<std::string> hosts;
@@ -61,6 +64,8 @@ std::vector<std::string> SenderTable::hosts() const {
   return hosts;
 }
 
+/// Two senders are the same device in turn unless they sent at the same time. A short overlap
+/// happens when a device reconnects.
 bool SenderTable::overlap(const Sender& a, const Sender& b) {
   const bool is_within = a.first <= b.first && b.last <= a.last;
   return is_within || std::min(a.last, b.last) - std::max(a.first, b.first) > longest_reconnect;
@@ -69,6 +74,7 @@ bool SenderTable::overlap(const Sender& a, const Sender& b) {
 void SenderTable::complete(DeviceChoice& choice) const {
   const auto all = hosts();
   if (choice.sender.empty() && !all.empty()) choice.sender = all.front();
+  // The busiest sender is taken first, so that a less busy one is compared with it and left out.
   std::vector<Sender> busiest_first = senders_, taken;
   std::stable_sort(busiest_first.begin(), busiest_first.end(),
                    [](const Sender& a, const Sender& b) { return a.messages > b.messages; });
@@ -83,6 +89,7 @@ void SenderTable::complete(DeviceChoice& choice) const {
   }
 }
 
+/// Only an error about missing rows can be helped by another sender.
 Error with_senders(Error error, const std::string& chosen, const SenderTable& senders) {
   if (error.kind != ErrorKind::no_rows_in_recording || senders.hosts().size() < 2) return error;
   error.found +=
@@ -93,6 +100,7 @@ Error with_senders(Error error, const std::string& chosen, const SenderTable& se
 Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderTable& senders) {
   const DeviceChoice& choice = wish.choice;
   std::vector<std::string> others(choice.left_out.begin(), choice.left_out.end());
+  // If the user selected a sender, other hosts are left out on purpose and not reported.
   for (const std::string& host : any_sender ? senders.hosts() : std::vector<std::string>()) {
     if (host != choice.sender) others.push_back(host);
   }
@@ -103,6 +111,7 @@ Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderTabl
            "sender = \"...\" in select chooses another, an address or an address with its port"}};
 }
 
+/// The lines are those that a manifest of this recording would have, so the user can copy them.
 Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error) {
   if (!wish.choice.node.empty()) return error;
   std::string path = wish.file.path;

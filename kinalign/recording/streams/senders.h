@@ -18,7 +18,8 @@ namespace kinalign {
 /// The host of a sender: "192.168.7.20" for "192.168.7.20:51234".
 std::string host_of(std::string_view sender);
 
-/// Counts the messages of one stream's senders.
+/// Counts the messages of one stream's senders. The first and the last arrival of each show whether
+/// two ports sent at the same time.
 class SenderTable {
  public:
   /// Returns the number of a sender, given by address and port. A new sender gets a new number.

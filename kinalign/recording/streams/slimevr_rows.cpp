@@ -20,6 +20,7 @@ namespace {
 /// An acceleration belongs to the next rotation if it is at most this old.
 constexpr Duration goes_with = std::chrono::milliseconds(50);
 
+/// One rotation, with the acceleration that belongs to it, if any.
 struct SlimeSample {
   std::array<double, 4> orientation{};
   std::optional<std::array<double, 3>> acceleration;
@@ -35,12 +36,14 @@ class SlimeSamples {
     SlimeDatagram datagram;
     if (!decode_slime(octets(message.payload), datagram)) return;
     Tracker& tracker = trackers_[message.channel_id];
+    // The handshake is looked for first: it may come with other packets in one datagram.
     for (const SlimePacket& packet : datagram.packets) {
       if (const auto* handshake = std::get_if<SlimeHandshake>(&packet)) {
         tracker = {};
         tracker.protocol = handshake->protocol.value_or(0);
       }
     }
+    // A datagram of number 0 is not counted, so its order is not known.
     if (datagram.number != 0 && is_old(tracker.numbers.push(datagram.number))) {
       ++overtaken;
       return;
@@ -61,6 +64,7 @@ class SlimeSamples {
  private:
   static constexpr std::size_t most_sensors = 32;
 
+  // The state of one sender. Its protocol version decides the meaning of accelerations.
   struct Tracker {
     SequenceCount numbers{64};
     std::int32_t protocol = 0;
@@ -76,6 +80,7 @@ class SlimeSamples {
       if (!motion.rotation) return;
       const auto q = slime_orientation(*motion.rotation);
       if (!q) return;
+      // An older acceleration would belong to another moment than the rotation.
       const bool fresh = acceleration && arrival - felt <= goes_with;
       out.push_back({*q, fresh ? acceleration : std::nullopt});
       acceleration.reset();
@@ -91,6 +96,7 @@ Time stamp_at(HostTime arrival, const HeardDevice& heard) {
   return Time{arrival.time_since_epoch() + heard.utc_minus_host};
 }
 
+/// Counts samples and keeps their arrivals, which are the stamps.
 class SlimeListener final : public DeviceListener {
  public:
   explicit SlimeListener(std::optional<std::uint64_t> sensor)
@@ -139,6 +145,7 @@ class SlimeListener final : public DeviceListener {
   std::uint64_t rotations_ = 0, accelerations_ = 0;
 };
 
+/// Makes a row for each sample. It uses the same SlimeSamples as the listener, so both agree.
 class SlimeRows final : public DeviceRows<ImuSamples> {
  public:
   SlimeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)

@@ -11,6 +11,7 @@ namespace kinalign {
 
 namespace {
 
+/// The error for a file whose bytes no longer fit the index.
 Error altered(const std::string& path) {
   return {path, 0, "a file that stays as it is while it is read", "one that changed"};
 }
@@ -22,6 +23,7 @@ Result<std::string> records_of(const StoredChunk& chunk, const std::string& path
   if (static_cast<McapOp>(bytes.front()) == McapOp::message) return bytes;
   const auto view = decode_mcap_chunk(std::string_view(bytes).substr(mcap_record_head));
   if (!view) return Failure(altered(path));
+  // The end of such a chunk is missing, so as much as possible is unpacked.
   if (chunk.is_torn) return unpack_torn(*view, McapReader::most_record);
   return unpack(*view, McapReader::most_record).map_error([&](const Error&) {
     return altered(path);
@@ -34,6 +36,7 @@ std::vector<ChunkMessage> messages_in(std::string_view records, const StoredChun
   std::uint32_t place = 0;
   auto skipped = chunk.left_out.begin();
   while (const auto head = decode_mcap_head(records)) {
+    // Messages after `end` are of no use; in a truncated chunk they may be damaged.
     if (place == chunk.end) break;
     if (head->op == McapOp{} || head->length > records.size() - mcap_record_head) break;
     const std::string_view content = records.substr(mcap_record_head, head->length);
@@ -41,6 +44,7 @@ std::vector<ChunkMessage> messages_in(std::string_view records, const StoredChun
     if (head->op != McapOp::message) continue;
     const auto record = decode_mcap_record(head->op, content);
     if (!record) continue;
+    // The index counts all messages of the chunk, including those that are left out.
     const std::uint32_t here = place++;
     if (skipped != chunk.left_out.end() && *skipped == here) {
       ++skipped;
@@ -65,6 +69,7 @@ StoredChunks::StoredChunks(FileSystem& files, std::vector<File> parts,
 
 // The chunk used least recently is removed first.
 Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) const {
+  // The lock is held while reading, so that two passes never read the same chunk twice.
   const std::lock_guard lock(mutex_);
   if (const auto known = places_.find(k); known != places_.end()) {
     cache_.splice(cache_.begin(), cache_, known->second);
@@ -74,6 +79,7 @@ Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) con
   cache_.push_front({k, opened});
   places_[k] = cache_.begin();
   cached_bytes_ += opened->memory();
+  // The chunk just opened is kept, even if it alone is above the limit.
   while (cached_bytes_ > most_cached && cache_.size() > 1) {
     cached_bytes_ -= cache_.back().opened->memory();
     places_.erase(cache_.back().chunk);
@@ -86,6 +92,7 @@ Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) con
 Result<std::shared_ptr<const OpenedChunk>> StoredChunks::read(const StoredChunk& chunk) const {
   const File& part = parts_[chunk.part];
   auto& file = open_files_[chunk.part];
+  // A file is opened when its first chunk is needed.
   if (!file) file.emplace(KA_TRY(InputFile::open(*files_, part.path)));
   std::string bytes(chunk.size, '\0');
   const std::size_t got = KA_TRY(file->read_at(chunk.at, bytes));
@@ -100,6 +107,7 @@ Result<std::shared_ptr<const OpenedChunk>> StoredChunks::read(const StoredChunk&
 MessagePass::MessagePass(std::shared_ptr<const StoredChunks> chunks,
                          std::vector<std::uint16_t> channels)
     : chunks_(std::move(chunks)), channels_(std::move(channels)) {
+  // Sorted, because each chunk's channels are searched for in this list.
   std::sort(channels_.begin(), channels_.end());
 }
 
@@ -113,6 +121,7 @@ Result<bool> MessagePass::next_chunk(const Take& take) {
     done_ += (*chunks_)[k].size;
     const auto& there = (*chunks_)[k].channels;
     if (std::none_of(there.begin(), there.end(), is_mine)) continue;
+    // The chunk is held by this pointer while its messages are used, whatever the cache removes.
     const auto chunk = KA_TRY(chunks_->open(k));
     for (const ChunkMessage& message : chunk->messages) {
       if (is_mine(message.channel)) KA_TRY(take(message));

@@ -33,12 +33,14 @@ struct StoredChunk {
   std::vector<std::uint32_t> left_out;
 };
 
+/// A message of an opened chunk. `data` points into the chunk's bytes.
 struct ChunkMessage {
   std::uint16_t channel = 0;
   std::uint64_t log_time = 0;  // ns
   std::string_view data;
 };
 
+/// A chunk that was read and unpacked. Passes share it and keep it alive while they use it.
 struct OpenedChunk {
   std::string bytes;                   // holds the data of `messages`
   std::vector<ChunkMessage> messages;  // without those left out, in their order
@@ -48,7 +50,9 @@ struct OpenedChunk {
   }
 };
 
-/// Safe to use from several threads at once.
+/// Safe to use from several threads at once. One lock covers files and cache. An InputFile of each
+/// part stays open. The cache holds the chunks used most recently, at most `most_cached` bytes but
+/// always one chunk.
 class StoredChunks {
  public:
   /// Limit on the memory of the cache, bytes. A lab of seven devices fills it in about 280 s. align
@@ -93,7 +97,8 @@ struct JsonChannel {
   McapSchema schema;
 };
 
-/// One pass over the messages of some channels, in the order of the files.
+/// One pass over the messages of some channels, in the order of the files. A chunk is opened when
+/// the pass needs it and is not kept.
 class MessagePass {
  public:
   MessagePass(std::shared_ptr<const StoredChunks> chunks, std::vector<std::uint16_t> channels);

@@ -39,6 +39,8 @@ constexpr std::array<std::string_view, xsens_segments> names{"Pelvis",
 constexpr std::array<int, xsens_segments> parents{-1, 0,  1,  2, 3,  4,  5,  4, 7,  8,  9, 4,
                                                   11, 12, 13, 0, 15, 16, 17, 0, 19, 20, 21};
 
+/// Larger values are no lengths or accelerations; comparisons with NaN are false, so NaN is
+/// refused, too.
 template <std::size_t n>
 bool sound(const std::array<float, n>& values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::abs(x) < 1e15F; });
@@ -52,13 +54,16 @@ std::optional<Quat> unit_quaternion(const std::array<float, 4>& q) {
   return turn.normalized();
 }
 
+/// The values as a vector, in the axes of Xsens.
 Vec3 vector_of(const std::array<float, 3>& values) { return {values[0], values[1], values[2]}; }
 
+/// The vector in kinalign's axes: y up.
 Vec3 ours(const std::array<float, 3>& values) {
   const Vec3 file = vector_of(values);
   return turned(z_up, file.data());
 }
 
+/// The global pose of one sample, indexed by segment id - 1.
 struct Global {
   std::array<Vec3, xsens_segments> places;  // in the stream's unit, y up
   // rotated so that space and segments are y up in the rest pose
@@ -91,6 +96,7 @@ Result<Global> global_of(const XsensPose& pose, const std::string& name) {
     }
     here[at] = true;
     global.places[at] = ours(s.position);
+    // A rotation between z-up axes becomes one between y-up axes: both sides are turned.
     global.turns[at] = up * *turn * up.conjugate();
   }
   return global;
@@ -118,6 +124,7 @@ Result<std::vector<std::int32_t>> ids_of(const XsensTrackers& trackers, const st
 
 }  // namespace
 
+/// A pose fits if its global pose can be made; the text of an error is not needed.
 std::uint32_t xsens_shape(const XsensPose& pose) { return global_of(pose, "") ? 1 : 0; }
 
 std::uint32_t xsens_shape(const XsensTrackers& trackers) {
@@ -131,6 +138,7 @@ std::uint32_t xsens_shape(const XsensTrackers& trackers) {
 }
 
 bool XsensFits<XsensTrackers>::operator()(std::uint32_t shape) {
+  // A sample can begin the stream only if its segments are known and differ.
   if (!raw_ && (shape & can_begin) == 0) return false;
   if (!raw_) raw_ = (shape & begins_raw) != 0;
   return (shape & (*raw_ ? all_raw : none_raw)) != 0;
@@ -177,6 +185,7 @@ Result<void> XsensPoser::append(const XsensPose& pose, Time stamp, ClipFrames& o
     if (parents[k] >= 0) {
       const auto p = static_cast<std::size_t>(parents[k]);
       const Quat parent = global.turns[p].conjugate();
+      // A local rotation is parent^-1 * child; the local place is in the parent's space.
       place = parent * (place - global.places[p] * metres_per_unit_);
       turn = parent * turn;
     }
@@ -211,11 +220,13 @@ void put(const XsensTracker& t, std::size_t at, ImuSamples& out) {
   const bool raw = t.raw.has_value();
   if (!turn || !sound(t.free_acceleration)) return;
   if (raw && !(sound(t.raw->acceleration) && sound(t.raw->angular_velocity))) return;
+  // Only the space is turned to y up: a tracker keeps its own axes, so its vectors are not turned.
   put_quat(out.orientation, at, rotation_of(z_up) * *turn);
   if (raw) {
     vec3(out.acceleration, at) = vector_of(t.raw->acceleration);
     vec3(out.angular_velocity, at) = vector_of(t.raw->angular_velocity);
   } else {
+    // The free acceleration is in Xsens' space and is turned back into the sensor's.
     vec3(out.acceleration, at) = turn->conjugate() * vector_of(t.free_acceleration);
   }
   out.valid[at] = 1;

@@ -41,7 +41,8 @@ class XsensFits<XsensTrackers> {
   std::optional<bool> raw_;  // the kind of items of the first sample
 };
 
-/// Poses of one character.
+/// Poses of one character. The first pose fixes the skeleton and the unit of length, and both stay
+/// for the whole stream.
 class XsensPoser {
  public:
   explicit XsensPoser(std::string name) : name_(std::move(name)) {}
@@ -67,7 +68,8 @@ class XsensPoser {
   std::optional<Skeleton> skeleton_;
 };
 
-/// Inertial samples of one character.
+/// Inertial samples of one character. The first sample fixes the trackers, their order and what
+/// they measure.
 class XsensNodes {
  public:
   explicit XsensNodes(std::string name) : name_(std::move(name)) {}

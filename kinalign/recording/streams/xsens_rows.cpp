@@ -15,6 +15,8 @@ constexpr std::string_view meaning = "poses (type 02) of Xsens MVN";
 template <>
 constexpr std::string_view meaning<XsensTrackers> = "trackers (type 23) of Xsens MVN";
 
+/// The parts of NumberedFrames and NumberedRows that differ between sources, for Xsens. `Items`:
+/// XsensPose or XsensTrackers, which come in the same stream.
 template <class Items>
 struct XsensSource {
   static constexpr std::string_view what = meaning<Items>;
@@ -29,6 +31,8 @@ struct XsensSource {
 template <class Items>
 using XsensFrames = NumberedFrames<XsensSource<Items>>;
 
+/// Learns the clock from the sample counter. The shape of each sample tells later whether it makes
+/// a row.
 template <class Items>
 class XsensListener final : public DeviceListener {
  public:
@@ -59,6 +63,7 @@ class XsensListener final : public DeviceListener {
   FrameKeys keys_;
 };
 
+/// Rows of poses: the poser finds skeleton and unit in the first pose.
 class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFrames> {
  public:
   XsensPoseRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
@@ -74,6 +79,7 @@ class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFram
   XsensPoser poser_;
 };
 
+/// Rows of trackers. The header is known with the first sample.
 class XsensTrackerRows final : public NumberedRows<XsensSource<XsensTrackers>, ImuSamples> {
  public:
   XsensTrackerRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
