@@ -10,6 +10,8 @@
 
 namespace kinalign {
 
+/// Kinds of layers. The order is that of `kind_rows` (layer_kinds.h). Files store the name of a
+/// kind, so a kind may be added anywhere, but never renamed.
 enum class LayerKind : std::uint8_t {
   linear,      // y = W x + b, frame by frame
   conv,        // over time, stride 1, as many frames out as in, zeros beyond both ends
@@ -61,6 +63,7 @@ struct Layer {
   bool operator==(const Layer&) const = default;
 };
 
+/// A network without its weights. `validate` (shapes.h) says whether it is a possible one.
 struct Architecture {
   std::size_t inputs = 0;  // input channels
   std::vector<Layer> layers;

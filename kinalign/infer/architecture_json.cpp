@@ -17,6 +17,7 @@ using Json = nlohmann::json;
 
 // ---- to JSON
 
+// Keys keep the order of struct Layer, so the same network gives the same text.
 nlohmann::ordered_json layers_to_json(const std::vector<Layer>& layers);
 
 /// A layer as JSON, with only the members that its kind uses.
@@ -62,6 +63,7 @@ struct Named {
   LayerMember member;
   Value Layer::*value;
 };
+// Members of one type are read by one piece of code; only their names differ.
 constexpr Named<std::size_t> count_members[] = {{"out", member_out, &Layer::out},
                                                 {"kernel", member_kernel, &Layer::kernel},
                                                 {"dilation", member_dilation, &Layer::dilation},
@@ -83,12 +85,15 @@ const Named<Value>* used(const Named<Value> (&rows)[n], const Layer& layer,
   return nullptr;
 }
 
+// Negative numbers and fractions are refused: the JSON library marks only whole numbers from 0 on
+// as unsigned.
 Result<std::size_t> count_of(const Json& json, const std::string& key, const std::string& at) {
   if (json.is_number_unsigned()) return json.get<std::size_t>();
   return wrong_type(at, "a whole number as " + key, json);
 }
 
 /// Reads layers and counts them, so that a hostile text is refused early.
+/// The recursion needs no limit of its own: strict_json.h limits the depth of the text.
 class Reader {
  public:
   /// Reads a list of layers. `path` names the layer that holds the list in messages.
@@ -121,6 +126,7 @@ class Reader {
     for (const auto& [key, value] : json.items()) {
       if (key != "kind") KA_TRY(member(out, key, value, path));
     }
+    // These members have no sensible default.
     if (uses(out.kind, member_out) && !json.contains("out")) return wrong(at, "out", "none");
     if (uses(out.kind, member_window) && !json.contains("window"))
       return wrong(at, "window", "none");
@@ -130,6 +136,8 @@ class Reader {
     return out;
   }
 
+  /// Reads one member of a layer. A member that the kind does not use is refused, so that a
+  /// spelling mistake does not become a default.
   Result<void> member(Layer& layer, const std::string& key, const Json& json,
                       const std::string& path) {
     const std::string at = "layer " + path;
@@ -154,6 +162,7 @@ class Reader {
   Result<std::vector<std::vector<Layer>>> branches(const Json& json, const std::string& path) {
     const std::string at = "layer " + path;
     if (!json.is_array()) return wrong_type(at, "an array of branches", json);
+    // An empty branch has no layer, so branches are limited separately.
     if (json.size() > most_layers) {
       return wrong(at, "at most " + std::to_string(most_layers) + " branches",
                    std::to_string(json.size()));
@@ -165,6 +174,7 @@ class Reader {
     return out;
   }
 
+  /// Number of layers read so far, in all branches.
   std::size_t count_ = 0;
 };
 

@@ -13,6 +13,7 @@ namespace {
 using std::size_t;
 
 #ifdef __AVX2__
+// The tile sizes go by the number of vector registers: 16, of 8 floats with AVX2 and of 4 without.
 constexpr size_t lanes = 8;
 constexpr size_t tile_rows = 6;    // 6 x 2 sums fit into 12 of 16 registers
 constexpr size_t tile_panels = 4;  // for a single frame: 4 x 2 sums
@@ -23,11 +24,13 @@ constexpr size_t tile_panels = 2;
 #endif
 constexpr size_t row_block = 96;  // frames that stay in the cache while all panels are processed
 
+// Vectors that hold the outputs of one panel.
 constexpr size_t panel_vectors = panel_width / lanes;
 
 // A vector type of GCC and Clang.
 using Vector [[gnu::vector_size(lanes * sizeof(float))]] = float;
 
+// Inlining is forced, because the sums of a tile stay in registers only within one function.
 #define KA_INLINE inline __attribute__((always_inline))
 
 /// Loads and stores at any address, aligned or not.
@@ -100,8 +103,11 @@ void tile(const Product& p, size_t t, size_t first) {
   const size_t left = p.outputs - begin;
   const size_t n = left < width ? left : width;
   float* out = p.out + t * p.out_stride + begin;
+  // Padded outputs of the last panel are summed too, with weights of 0, and are not copied out.
   float sums[Rows * width] = {};
   for (size_t r = 0; r < Rows; ++r) {
+    // Without a bias the sums begin with the values of `out`, so a second product can be added to a
+    // first.
     const float* start = p.bias != nullptr ? p.bias + begin : out + r * p.out_stride;
     for (size_t i = 0; i < n; ++i) sums[r * width + i] = start[i];
   }
@@ -123,6 +129,8 @@ void last_rows(const Product& p, size_t t, size_t panel, size_t rows) {
   }
 }
 
+// Panel by panel over one block of frames: the weights of a panel are read from memory once for all
+// frames of the block.
 void multiply_block(const Product& p, size_t from, size_t until) {
   for (size_t panel = 0; panel * panel_width < p.outputs; ++panel) {
     size_t t = from;
@@ -131,6 +139,8 @@ void multiply_block(const Product& p, size_t from, size_t until) {
   }
 }
 
+// With one frame there are no rows to share the weights. Several panels at once keep the registers
+// busy instead.
 void multiply_frame(const Product& p) {
   const size_t panels = (p.outputs + panel_width - 1) / panel_width;
   size_t panel = 0;
@@ -138,6 +148,8 @@ void multiply_frame(const Product& p) {
   for (; panel < panels; ++panel) tile<1, 1>(p, 0, panel);
 }
 
+// Each output is summed in the order of taps and channels, whichever tile computes it. So a frame's
+// result does not depend on the number of frames.
 void multiply(const Product& p) {
   if (p.frames == 1) return multiply_frame(p);
   for (size_t from = 0; from < p.frames; from += row_block) {
@@ -155,6 +167,7 @@ KA_INLINE float exp_of(float x) {
   // Adding 1.5 * 2^23 puts the nearest whole number into the lowest bits.
   const float shifted = x * 1.44269504F + 12582912.0F;
   const float whole = shifted - 12582912.0F;
+  // The constant ln 2 is split into two parts, so that the difference keeps its digits.
   const float r = (x - whole * 0.693359375F) + whole * 2.12194440e-4F;
   float p = 1.9875691500e-4F;
   p = p * r + 1.3981999507e-3F;
@@ -163,6 +176,7 @@ KA_INLINE float exp_of(float x) {
   p = p * r + 1.6666665459e-1F;
   p = p * r + 5.0000001201e-1F;
   p = p * r * r + r + 1.0F;
+  // 2^whole is made from its bits: the exponent of a float begins at bit 23, with 127 for 2^0.
   const unsigned bits = __builtin_bit_cast(unsigned, shifted) + 127U;
   return p * __builtin_bit_cast(float, bits << 23U);
 }
@@ -180,11 +194,13 @@ KA_INLINE float tanh_of(float x) {
   p = p * z + 1.33314422036e-1F;
   p = p * z - 3.33332819422e-1F;
   const float near = p * z * x + x;
+  // Both forms are computed and one is chosen, because a branch would prevent vectors.
   const float far = 1.0F - 2.0F / (exp_of(2.0F * x) + 1.0F);
   return magnitude(x) < 0.625F ? near : far;
 }
 
 /// x/2 (1 + erf(x/sqrt 2)). Abramowitz and Stegun 7.1.26 gives erfc with an error of 1.5e-7.
+/// The same series serves both signs, because erfc(-z) = 2 - erfc(z).
 KA_INLINE float gelu_of(float x) {
   const float z = magnitude(x) * 0.70710678F;
   const float t = 1.0F / (1.0F + 0.3275911F * z);
@@ -197,6 +213,7 @@ KA_INLINE float gelu_of(float x) {
   return 0.5F * x * (x < 0.0F ? erfc : 2.0F - erfc);
 }
 
+// NaN compares as false, so relu and leaky_relu pass it on.
 void relu(float* values, size_t n) {
   for (size_t i = 0; i < n; ++i) values[i] = values[i] < 0.0F ? 0.0F : values[i];
 }
@@ -241,6 +258,7 @@ KA_INLINE float sum_of(const float* values, size_t n, float mean) {
     const float x = values[i] - mean;
     sum += Power == 1 ? x : x * x;
   }
+  // The remainder comes before the partial sums; this order is part of the result.
   for (size_t j = 0; j < lanes; ++j) sum += sums[j];
   return sum;
 }
@@ -248,6 +266,8 @@ KA_INLINE float sum_of(const float* values, size_t n, float mean) {
 void layer_norm(const float* in, float* out, const float* weight, const float* bias,
                 size_t channels) {
   const float n = static_cast<float>(channels);
+  // The variance is computed from the differences to the mean: the difference of two large sums
+  // would lose digits.
   const float mean = sum_of<1>(in, channels, 0.0F) / n;
   const float variance = sum_of<2>(in, channels, mean) / n;
   const float scale = 1.0F / __builtin_sqrtf(variance + 1e-5F);
@@ -256,6 +276,7 @@ void layer_norm(const float* in, float* out, const float* weight, const float* b
 
 // ---- gates
 
+// PyTorch's equations: c = f c + i g, out = o tanh(c).
 void lstm_gates(const float* __restrict gates, float* __restrict cell, float* __restrict out,
                 size_t units) {
   for (size_t u = 0; u < units; ++u) {
@@ -274,11 +295,13 @@ void gru_gates(const float* from_input, const float* from_state, const float* pr
   for (size_t u = 0; u < units; ++u) {
     const float r = sigmoid_of(from_input[u] + from_state[u]);
     const float z = sigmoid_of(from_input[units + u] + from_state[units + u]);
+    // The reset gate acts after the product with the state, as in PyTorch.
     const float n = tanh_of(from_input[2 * units + u] + r * from_state[2 * units + u]);
     out[u] = (1.0F - z) * n + z * previous[u];
   }
 }
 
+// Two macros, because # does not expand its argument.
 #define KA_TEXT(name) #name
 #define KA_NAME(name) KA_TEXT(name)
 

@@ -15,6 +15,9 @@ inline constexpr std::size_t panel_width = 16;
 
 /// The sum out[t,n] = bias[n] + sum over taps k and channels c of in[t,k,c] weights[k,c,n]. Frame
 /// t, tap k begins at in + t in_stride + k tap_stride.
+/// The same structure describes a linear layer (one tap), a convolution (taps that lie `dilation`
+/// frames apart) and the gates of recurrent layers. `in` must hold the frames that the outermost
+/// taps read; the caller pads them.
 struct Product {
   const float* in = nullptr;
   std::size_t in_stride = 0, tap_stride = 0;
@@ -47,6 +50,7 @@ struct Kernels {
                     float* out, std::size_t units);
 };
 
+/// The build for every processor. Tests compare it with the fastest one.
 const Kernels& baseline_kernels();
 /// The fastest build that this processor can run.
 const Kernels& best_kernels();

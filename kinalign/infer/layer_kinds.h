@@ -11,6 +11,7 @@
 namespace kinalign {
 
 /// Members of Layer, as bits of KindRow::members.
+/// Reading, writing and checking of a layer's members go by these bits.
 enum LayerMember : unsigned {
   member_out = 1U,
   member_kernel = 2U,
@@ -30,6 +31,7 @@ struct KindRow {
   unsigned members;
 };
 
+/// The names are those in a model's file: docs/formats/model.md, "Architecture".
 inline constexpr std::array<KindRow, 18> kind_rows{{
     {LayerKind::linear, "linear", member_out},
     {LayerKind::conv, "conv", member_out | member_kernel | member_dilation | member_causal},
@@ -63,6 +65,8 @@ constexpr const KindRow& row_of(LayerKind kind) {
   return kind_rows[static_cast<std::size_t>(kind)];
 }
 
+/// True if layers of this kind have the member. Members that a kind does not use must keep their
+/// defaults.
 constexpr bool uses(LayerKind kind, LayerMember member) {
   return (row_of(kind).members & member) != 0;
 }

@@ -13,6 +13,8 @@ namespace kinalign {
 namespace {
 
 /// Values between two layers [T,C]: a block of the workspace, or the caller's input.
+/// A sequence with a block owns it until `drop`. One without a block is the caller's input and must
+/// not be changed.
 struct Sequence {
   const float* data = nullptr;
   std::size_t frames = 0, channels = 0;
@@ -25,6 +27,7 @@ constexpr std::size_t window_block = 256;  // rows of along_time that are proces
 
 /// One run. Each layer's function owns its input: it returns the block to the workspace or passes
 /// it on.
+/// Blocks are returned as early as possible, so that later layers of the run use them again.
 class Run {
  public:
   Run(const Kernels& kernels, Workspace& workspace) : kernels_(kernels), workspace_(workspace) {}
@@ -46,6 +49,7 @@ class Run {
         return recurrent(layer, in);
       case LayerKind::layer_norm:
         return layer_norm(layer, in);
+      // Acts in training only.
       case LayerKind::dropout:
         return in;
       case LayerKind::slice:
@@ -100,6 +104,7 @@ class Run {
   }
 
   /// Runs a linear layer or a convolution as one product over all frames.
+  /// The padded input makes every frame alike: tap k of frame t is row t + k dilation.
   Sequence conv(const PreparedLayer& layer, Sequence in) {
     const Sequence out = fresh(in.frames, layer.outputs);
     in = padded(layer.layer, in);
@@ -115,6 +120,8 @@ class Run {
     return out;
   }
 
+  /// Runs both directions of a bidirectional layer. The reverse one writes its outputs after those
+  /// of the forward one in each frame.
   Sequence recurrent(const PreparedLayer& layer, Sequence in) {
     const Sequence out = fresh(in.frames, layer.outputs);
     direction(layer, layer.directions[0], in, writable(out), false);
@@ -141,16 +148,21 @@ class Run {
     const Sequence state = fresh(1, 2 * units);  // output before the first frame; cell
     float* const cell = writable(state) + units;
     std::fill_n(writable(state), 2 * units, 0.0F);
+    // A gru needs the sums of the state apart from those of the input. An lstm adds them to the
+    // gates.
     const Sequence scratch = fresh(1, gates.channels);
+    // Each step reads the previous output where it was written, so nothing is copied.
     const float* previous = state.data;
     for (std::size_t i = 0; i < in.frames; ++i) {
       const std::size_t t = reverse ? in.frames - 1 - i : i;
+      // Gates of frame t, with the input's part in them already.
       float* const gate = writable(gates) + t * gates.channels;
       Product recurrent = weights.from_state.product();
       recurrent.in = previous;
       recurrent.frames = 1;
       float* const next = out + t * layer.outputs;
       if (layer.layer.kind == LayerKind::lstm) {
+        // The product has no bias, so it is added to the sums of the input.
         recurrent.out = gate;
         kernels_.multiply(recurrent);
         kernels_.lstm_gates(gate, cell, next, units);
@@ -166,6 +178,7 @@ class Run {
     drop(gates);
   }
 
+  /// Works in place if the values are in a block.
   Sequence layer_norm(const PreparedLayer& layer, Sequence in) {
     const Sequence out = in.block ? in : fresh(in.frames, in.channels);
     for (std::size_t t = 0; t < in.frames; ++t) {
@@ -207,6 +220,7 @@ class Run {
     return out;
   }
 
+  /// Repeats each frame at half its value, up to the length before the matching max_pool.
   Sequence unpool(Sequence in) {
     const Sequence out = fresh(workspace_.frames_before_pools.back(), in.channels);
     workspace_.frames_before_pools.pop_back();
@@ -222,6 +236,7 @@ class Run {
   /// Runs all branches on the same input, and joins, adds or multiplies their outputs.
   Sequence branches(const PreparedLayer& layer, Sequence in) {
     const Sequence out = fresh(in.frames, layer.outputs);
+    // Without a block, so that no branch changes or returns the values that the next branch reads.
     const Sequence shared{in.data, in.frames, in.channels, std::nullopt};
     std::size_t column = 0;
     for (std::size_t b = 0; b < layer.branches.size(); ++b) {
@@ -255,6 +270,8 @@ class Run {
 
   /// Each window of a channel is one row of the branch's input. The branch runs on `window_block`
   /// rows at a time.
+  /// The branch's results are added up at their frames, and divided by the number of windows at the
+  /// end.
   Sequence along_time(const PreparedLayer& layer, Sequence in) {
     const std::size_t frames = in.frames, channels = in.channels, window = layer.layer.window;
     if (frames == 0) return in;
@@ -267,6 +284,7 @@ class Run {
         const std::size_t at = begin * channels + c;
         Sequence rows = fresh(std::min(windows - begin, window_block), window);
         for (std::size_t i = 0; i < rows.size(); ++i) {
+          // Row i / window, column i % window: the frame `begin` + row + column of this channel.
           writable(rows)[i] = in.data[at + (i / window + i % window) * channels];
         }
         rows = list(layer.branches.front(), rows);
@@ -277,16 +295,19 @@ class Run {
       }
     }
     for (std::size_t t = 0; t < out.frames; ++t) {
+      // Number of windows that contain frame t: fewer near both ends.
       const std::size_t count = std::min({t + 1, out.frames - t, window, windows});
       for (std::size_t c = 0; c < channels; ++c) {
         writable(out)[t * channels + c] /= static_cast<float>(count);
       }
     }
     drop(in);
+    // Frames that were added to fill one window are cut off.
     out.frames = frames;
     return out;
   }
 
+  /// Copies a branch's channels into their columns of the result.
   void write_columns(const Sequence& from, const Sequence& out, std::size_t column) {
     for (std::size_t t = 0; t < from.frames; ++t) {
       std::copy_n(from.data + t * from.channels, from.channels,
@@ -320,6 +341,7 @@ void apply_activation(const Kernels& kernels, const Layer& layer, float* values,
 
 std::size_t Workspace::take(std::size_t values) {
   std::size_t free = 0;
+  // The number of blocks is small: at most as many as sequences exist at the same time.
   while (free < blocks_.size() && blocks_[free].taken) ++free;
   if (free == blocks_.size()) blocks_.emplace_back();
   blocks_[free].taken = true;
@@ -354,6 +376,7 @@ void Network::run(std::span<const float> in, std::size_t frames, Workspace& work
                   std::vector<float>& out) const {
   assert(in.size() == frames * inputs());
   const FlushToZero flush;
+  // The block with the result of the previous run is still taken.
   workspace.give_all_back();
   const Sequence found = Run(*prepared_->kernels, workspace)
                              .list(prepared_->layers, {in.data(), frames, inputs(), std::nullopt});

@@ -29,9 +29,11 @@ class Workspace {
   void give_all_back();
 
   /// Lengths before max_pools whose unpool has not run yet.
+  /// Filled by max_pool, emptied by unpool.
   std::vector<std::size_t> frames_before_pools;
 
  private:
+  /// Blocks keep their memory when they are given back, so later runs need none.
   struct Block {
     std::vector<float> values;
     bool taken = false;
@@ -39,6 +41,8 @@ class Workspace {
   std::vector<Block> blocks_;
 };
 
+/// Weights that are ready to run. A run changes nothing in the network, so threads may share it,
+/// each with its own workspace.
 class Network {
  public:
   /// Fails if the architecture is not valid (shapes.h), or if a tensor `prefix` + name is missing,
@@ -65,6 +69,7 @@ class Network {
            std::vector<float>& out) const;
 
  private:
+  // These two run the same prepared layers in other ways.
   friend class OnlineNetwork;
   friend class WindowNetwork;
   explicit Network(std::unique_ptr<const PreparedNetwork> prepared);

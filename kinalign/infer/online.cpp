@@ -13,6 +13,7 @@ namespace kinalign {
 namespace {
 
 /// The values that one layer keeps between frames, and its result.
+/// All vectors get their size when the state is made. A step allocates nothing.
 struct LayerState {
   const PreparedLayer* layer = nullptr;
   Values out;           // [outputs]
@@ -73,6 +74,8 @@ Result<std::vector<LayerState>> states_of(const std::vector<PreparedLayer>& laye
 }
 
 /// Passes one frame through the layers. Each result is stored in the state of its layer.
+/// Functions return the place of a result: the state of the layer, or the input itself for layers
+/// that change nothing.
 class Step {
  public:
   explicit Step(const Kernels& kernels) : kernels_(kernels) {}
@@ -102,6 +105,7 @@ class Step {
         return out;
       case LayerKind::dropout:
         return in;
+      // No copy: the result is part of the input. So it is valid only as long as the input.
       case LayerKind::slice:
         return in + layer.layer.begin;
       case LayerKind::sum:
@@ -115,6 +119,7 @@ class Step {
     }
   }
 
+  /// One product with a single frame.
   void multiply(const PackedWeights& weights, const float* in, std::size_t tap_stride,
                 float* out) const {
     Product product = weights.product();
@@ -126,12 +131,15 @@ class Step {
   }
 
   /// Each frame is written twice, so that the last `rows` frames are always contiguous.
+  /// `row` is the place of the next frame in the first copy.
   const float* conv(LayerState& state, const float* in) const {
     const PreparedLayer& layer = *state.layer;
     float* const first = state.ring.data() + state.row * layer.inputs;
     std::copy_n(in, layer.inputs, first);
     std::copy_n(in, layer.inputs, first + state.rows * layer.inputs);
     state.row = state.row + 1 == state.rows ? 0 : state.row + 1;
+    // The oldest frame is at the place of the next one. In the second copy all later frames follow
+    // it.
     const float* const oldest =
         state.ring.data() + (state.row == 0 ? state.rows : state.row) * layer.inputs;
     multiply(layer.weights, oldest, layer.layer.dilation * layer.inputs, state.out.data());
@@ -151,6 +159,7 @@ class Step {
       kernels_.lstm_gates(gates, memory + units, memory, units);
     } else {
       multiply(weights.from_state, memory, 0, state.from_state.data());
+      // The output replaces the previous one in place, which gru_gates allows.
       kernels_.gru_gates(gates, state.from_state.data(), memory, memory, units);
     }
     return memory;
@@ -162,6 +171,7 @@ class Step {
     float* out = state.out.data();
     for (std::size_t b = 0; b < state.branches.size(); ++b) {
       const float* const found = list(state.branches[b], in);
+      // An empty branch is the identity.
       const std::size_t channels =
           layer.branches[b].empty() ? layer.inputs : layer.branches[b].back().outputs;
       if (layer.layer.kind == LayerKind::concat) {
@@ -190,6 +200,7 @@ void for_each_memory(States& layers, const Visit& visit) {
   }
 }
 
+// Frames before the first one are zeros, as in Network::run.
 void clear(std::vector<LayerState>& layers) {
   for (LayerState& layer : layers) {
     std::fill(layer.ring.begin(), layer.ring.end(), 0.0F);
@@ -206,6 +217,7 @@ struct OnlineNetwork::State {
   std::vector<LayerState> layers;
 };
 
+// The pointer to the prepared layers stays valid if the network is moved.
 Result<OnlineNetwork> OnlineNetwork::make(const Network& network) {
   auto state = std::make_unique<State>();
   state->network = network.prepared_.get();

@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// Runs a network on frames as they arrive, for one sequence. Several of them may share a network,
+/// for example one for each person.
 class OnlineNetwork {
  public:
   /// Allocates all memory. The weights stay in `network`, which must live longer and may be moved.
@@ -41,6 +43,7 @@ class OnlineNetwork {
   void set_state(std::span<const float> state);
 
  private:
+  // State is defined in the .cpp, so this header needs no layers.
   struct State;
   explicit OnlineNetwork(std::unique_ptr<State> state);
 

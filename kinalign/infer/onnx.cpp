@@ -19,6 +19,7 @@ using Tensors = std::map<std::string, Tensor>;
 using Names = std::vector<std::string>;
 using Numbers = std::vector<std::int64_t>;
 
+// ONNX 1.8 has IR version 7 and opset 13.
 constexpr std::int64_t ir_version = 7, opset = 13;
 constexpr std::int64_t type_float = 1, type_int64 = 7;  // TensorProto.DataType
 
@@ -26,6 +27,7 @@ Numbers signed_shape(const std::vector<std::size_t>& shape) { return {shape.begi
 
 // ---- AttributeProto: name 1, f 2, i 3, ints 8, s 4, type 20
 
+// Field 20 states which of the value fields is used: 1 float, 2 int, 3 string, 7 ints.
 ProtobufMessage float_attribute(std::string_view name, float value) {
   return ProtobufMessage().add(1, name).add(2, value).add(20, std::int64_t{1});
 }
@@ -71,6 +73,8 @@ ProtobufMessage value_info(const std::string& name, const std::string& frames,
 
 /// Builds the nodes and constants of a GraphProto. Each layer's function adds its nodes and returns
 /// the name of the result [1,T,C].
+/// Names of values begin with the path of their layer and end with a running number, so they are
+/// unique.
 class Graph {
  public:
   Graph(const Tensors& tensors, const std::string& prefix) : tensors_(tensors), prefix_(prefix) {}
@@ -105,6 +109,8 @@ class Graph {
   }
 
   /// GraphProto: node 1, name 2, initializer 5 (in `constants_`), input 11, output 12.
+  /// Nodes and constants were collected in two messages; fields of a message may be joined in any
+  /// order.
   std::string finish(const ProtobufMessage& input, const ProtobufMessage& output) {
     graph_.add(2, "kinalign");
     std::string out = graph_.bytes() + constants_.bytes();
@@ -112,6 +118,7 @@ class Graph {
   }
 
  private:
+  /// Adds one layer. Most kinds have an operator of the same meaning.
   std::string one(const Layer& layer, const std::string& in, std::size_t channels) {
     switch (layer.kind) {
       case LayerKind::linear:
@@ -157,6 +164,7 @@ class Graph {
     return tensors_.at(prefix_ + path_ + "." + what);
   }
 
+  /// Adds an initializer: a tensor that is stored in the file.
   std::string constant(const std::string& what, const Numbers& shape,
                        const std::vector<float>& values) {
     std::string name = path_ + "." + what;
@@ -168,10 +176,12 @@ class Graph {
     return constant(what, signed_shape(tensor(what).shape), tensor(what).values);
   }
 
+  /// Numbers are constants too; a counter makes their names unique.
   std::string number(float value) {
     return constant("number_" + std::to_string(++values_), {}, {value});
   }
 
+  /// Since opset 13 many operators take their sizes as inputs, so integers are constants.
   std::string integers(const Numbers& values) {
     std::string name = path_ + ".integers_" + std::to_string(++values_);
     constants_.add(5, tensor_message(name, type_int64, {static_cast<std::int64_t>(values.size())},
@@ -186,6 +196,7 @@ class Graph {
     return node("Transpose", {in}, {list_attribute("perm", order)});
   }
 
+  /// `begin` and `end` are names of values, because the end may depend on the number of frames.
   std::string slice(const std::string& in, const std::string& begin, const std::string& end,
                     std::int64_t axis) {
     return node("Slice", {in, begin, end, integer(axis)});
@@ -206,6 +217,7 @@ class Graph {
     return node("Add", {product, stored("bias")});
   }
 
+  /// ONNX has channels before frames, [1,C,T], so the values are transposed before and after.
   std::string conv(const Layer& layer, const std::string& in) {
     const auto reach = static_cast<std::int64_t>((layer.kernel - 1) * layer.dilation);
     const std::int64_t before = layer.causal ? reach : reach / 2;
@@ -240,11 +252,14 @@ class Graph {
     std::vector<ProtobufMessage> attributes{
         text_attribute("direction", layer.bidirectional ? "bidirectional" : "forward"),
         attribute("hidden_size", static_cast<std::int64_t>(layer.out))};
+    // The reset gate acts after the product with the state, as in PyTorch. ONNX's default is before
+    // it.
     if (!lstm) attributes.push_back(attribute("linear_before_reset", std::int64_t{1}));
     const auto out = node(lstm ? "LSTM" : "GRU", inputs, attributes);  // [T,directions,1,out]
     return node("Reshape", {transposed(out, {2, 0, 1, 3}), integers({0, 0, -1})});
   }
 
+  /// Appends the gates of a tensor in another order. Each gate is a block of rows.
   static void append_gates(std::vector<float>& out, const Tensor& tensor,
                            const std::vector<std::size_t>& order) {
     const std::size_t size = tensor.values.size() / order.size();
@@ -254,10 +269,12 @@ class Graph {
     }
   }
 
+  /// The mean over the channels.
   std::string mean(const std::string& in) {
     return node("ReduceMean", {in}, {list_attribute("axes", {2})});
   }
 
+  /// Written out as mean, variance and scale, with the epsilon of PyTorch.
   std::string layer_norm(const std::string& in) {
     const auto centred = node("Sub", {in, mean(in)});
     const auto variance = mean(node("Mul", {centred, centred}));
@@ -266,12 +283,14 @@ class Graph {
     return node("Add", {scaled, stored("bias")});
   }
 
+  /// x/2 (1 + erf(x/sqrt 2)), the exact form.
   std::string gelu(const std::string& in) {
     const auto erf = node("Erf", {node("Mul", {in, number(std::sqrt(0.5F))})});
     const auto twice = node("Mul", {in, node("Add", {erf, number(1.0F)})});
     return node("Mul", {twice, number(0.5F)});
   }
 
+  /// ceil_mode keeps an odd last frame.
   std::string max_pool(const std::string& in) {
     const auto out = node("MaxPool", {transposed(in, {0, 2, 1})},
                           {attribute("ceil_mode", std::int64_t{1}),
@@ -326,6 +345,7 @@ class Graph {
                            path_below(path, 0));
     path_ = path;
     const auto results = transposed(rows, {0, 2, 1});
+    // The same transposed convolution over ones counts the windows of each frame.
     const auto ones = node("Add", {node("Mul", {windows, number(0.0F)}), number(1.0F)});
     const auto mean =
         node("Div", {node("ConvTranspose", {results, cut}), node("ConvTranspose", {ones, cut})});
@@ -357,6 +377,8 @@ Result<std::string> onnx_of(const Architecture& architecture, const Tensors& ten
   KA_TRY(check_tensors(architecture, tensors, options.prefix));
   Graph graph(tensors, options.prefix);
   const auto result = graph.list(architecture.layers, options.input, architecture.inputs, "");
+  // A last node gives the result the name that the caller wants; without layers there is no other
+  // node.
   graph.node("Identity", {result}, {}, options.output);
   const auto bytes =
       graph.finish(value_info(options.input, "T", architecture.inputs),

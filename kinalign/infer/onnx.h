@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// Names in the file. The batch has size 1; the number of frames is free.
 struct OnnxOptions {
   std::string input = "input";    // [1,T,inputs]
   std::string output = "output";  // [1,T,outputs]; T is a free dimension of the file

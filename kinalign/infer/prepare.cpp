@@ -12,12 +12,14 @@ namespace {
 
 using Tensors = std::map<std::string, Tensor>;
 
+// A shape for messages: "[64,75]".
 std::string text_of(const std::vector<std::size_t>& shape) {
   std::string out = "[";
   for (const std::size_t n : shape) out += (out.size() > 1 ? "," : "") + std::to_string(n);
   return out + "]";
 }
 
+// The number of outputs, rounded up to whole panels.
 std::size_t padded(std::size_t outputs) {
   return (outputs + panel_width - 1) / panel_width * panel_width;
 }
@@ -31,6 +33,7 @@ PackedWeights pack(const Tensor& tensor, const Tensor* bias) {
   const std::size_t depth = out.taps * out.channels;
   out.weights.assign(padded(out.outputs) * depth, 0.0F);
   for (std::size_t n = 0; n < out.outputs; ++n) {
+    // The 16 outputs of a panel lie side by side, so the kernel loads them as vectors.
     const std::size_t panel = n / panel_width * depth * panel_width + n % panel_width;
     for (std::size_t c = 0; c < out.channels; ++c) {
       for (std::size_t k = 0; k < out.taps; ++k) {
@@ -96,6 +99,8 @@ class Packer {
     return out;
   }
 
+  /// The two biases of an lstm are always added, so they are added here once. In a gru the reset
+  /// gate acts on the second one, so both are kept.
   DirectionWeights direction(const Layer& layer, const std::string& path,
                              const std::string& ending) const {
     const Tensor& bias_hh = tensor(path, "bias_hh" + ending);
@@ -109,6 +114,7 @@ class Packer {
     return out;
   }
 
+  /// A tensor by the layer's path; check_tensors() has made sure that it exists.
   const Tensor& tensor(const std::string& path, const std::string& what) const {
     return tensors_.at(prefix_ + path + "." + what);
   }
@@ -119,6 +125,8 @@ class Packer {
 
 }  // namespace
 
+// A value that is not finite would spread to all later results, so it is refused here and the
+// kernels need no check.
 Result<void> check_tensors(const Architecture& architecture, const Tensors& tensors,
                            const std::string& prefix) {
   for (const Parameter& needed : parameters(architecture)) {
@@ -150,6 +158,8 @@ Product PackedWeights::product() const {
   return out;
 }
 
+// The order matters: the list of tensors needs a valid architecture, and packing needs tensors of
+// the right shape.
 Result<PreparedNetwork> prepare(const Architecture& architecture, const Tensors& tensors,
                                 const std::string& prefix) {
   KA_TRY(validate(architecture));

@@ -17,6 +17,7 @@ Result<void> check_tensors(const Architecture& architecture,
                            const std::map<std::string, Tensor>& tensors, const std::string& prefix);
 
 /// Checks the tensors and packs them. Fails in the cases in which Network::make fails.
+/// Called once for each network. The tensors are copied, so the file may go.
 Result<PreparedNetwork> prepare(const Architecture& architecture,
                                 const std::map<std::string, Tensor>& tensors,
                                 const std::string& prefix);

@@ -27,6 +27,7 @@ struct CacheAligned {
   bool operator==(const CacheAligned&) const = default;
 };
 
+/// Weights and states. A vector with this allocator is used like any other.
 using Values = std::vector<float, CacheAligned<float>>;
 
 /// One matrix, or one for each tap, with its bias.
@@ -39,11 +40,14 @@ struct PackedWeights {
   Product product() const;
 };
 
+/// Weights of one direction of a recurrent layer. The gates' sums of the input and of the state are
+/// separate products, because those of the input are computed for all frames at once.
 struct DirectionWeights {
   PackedWeights from_input;  // lstm: the bias is the sum of both biases
   PackedWeights from_state;  // gru: has its own bias; lstm: none
 };
 
+/// A layer as it is run. Only the members of its kind are filled.
 struct PreparedLayer {
   Layer layer;       // without branches
   std::string path;  // "3.1.0"
@@ -57,6 +61,8 @@ struct PreparedLayer {
 /// Applies relu, leaky_relu, gelu, tanh or sigmoid to values in place.
 void apply_activation(const Kernels& kernels, const Layer& layer, float* values, std::size_t n);
 
+/// Everything that does not change between runs. Several threads may run one network at the same
+/// time; what changes is in the workspace or the state.
 struct PreparedNetwork {
   Architecture architecture;
   std::size_t outputs = 0;

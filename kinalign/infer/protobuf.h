@@ -10,6 +10,7 @@
 namespace kinalign {
 
 /// A message. Fields are written in the order of the calls.
+/// Wire types: 0 varint, 2 bytes with their length, 5 four bytes. A message in a message is bytes.
 class ProtobufMessage {
  public:
   ProtobufMessage& add(unsigned field, std::int64_t value) {
@@ -37,6 +38,7 @@ class ProtobufMessage {
 
  private:
   void tag(unsigned field, unsigned type) { varint(std::uint64_t{field} << 3U | type); }
+  /// Seven bits a byte, lowest first; the high bit says that more follow.
   void varint(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7U) bytes_ += static_cast<char>(value | 0x80U);
     bytes_ += static_cast<char>(value);

@@ -23,6 +23,7 @@ static_assert(std::endian::native == std::endian::little, "values are copied as 
 constexpr const char* metadata_key = "__metadata__";
 
 /// A tensor as the header describes it. Offsets count from the end of the header.
+/// Nothing in it is trusted before `check_places`.
 struct Entry {
   std::string name;
   std::string type;
@@ -43,6 +44,7 @@ std::size_t value_bytes(const std::string& type) {
   return 0;
 }
 
+// An array of whole numbers; empty for anything else.
 std::optional<std::vector<std::size_t>> counts(const Json& json) {
   if (!json.is_array()) return std::nullopt;
   std::vector<std::size_t> out;
@@ -118,6 +120,7 @@ Result<void> check_places(std::vector<Entry>& entries, std::size_t bytes, const 
                std::to_string(bytes));
 }
 
+// Converts a binary16 number (IEEE 754) to binary32, exactly.
 float from_half(std::uint16_t half) {
   const std::uint32_t sign = (half & 0x8000U) << 16U;
   const std::uint32_t exponent = (half >> 10U) & 0x1fU, fraction = half & 0x3ffU;
@@ -125,6 +128,8 @@ float from_half(std::uint16_t half) {
     const float value = static_cast<float>(fraction) * 0x1p-24F;
     return sign != 0 ? -value : value;
   }
+  // Binary16 has an exponent of 5 bits, with 15 for 2^0; binary32 has 127. Infinity and NaN keep
+  // all bits set.
   const std::uint32_t wide = exponent == 0x1fU ? 0xffU : exponent + 112U;
   return std::bit_cast<float>(sign | wide << 23U | fraction << 13U);
 }
@@ -140,11 +145,13 @@ std::vector<float> read_values(std::string_view bytes, const std::string& type) 
   for (std::size_t i = 0; i < out.size(); ++i) {
     std::uint16_t value = 0;
     std::memcpy(&value, &bytes[2 * i], 2);
+    // BF16 is the upper half of a binary32.
     out[i] = type == "F16" ? from_half(value) : std::bit_cast<float>(std::uint32_t{value} << 16U);
   }
   return out;
 }
 
+// The format allows only texts as metadata. Ours holds one text, which is JSON.
 Result<std::map<std::string, std::string>> read_metadata(const Json& json,
                                                          const std::string& file) {
   const std::string expected = std::string("texts in ") + metadata_key;
@@ -161,6 +168,7 @@ Result<std::map<std::string, std::string>> read_metadata(const Json& json,
 }
 
 /// The JSON header, which follows its length of 8 bytes.
+/// The length is compared with what the file has before anything of that size is used.
 Result<std::string_view> header_of(std::string_view bytes, const std::string& file) {
   std::uint64_t length = 0;
   if (bytes.size() < sizeof length) {
@@ -195,6 +203,7 @@ Result<TensorFile> read_safetensors(std::string_view bytes, const std::string& n
       entries.push_back(KA_TRY(read_entry(key, value, name)));
     }
   }
+  // All places are checked before values are read, so no tensor reads beyond the file.
   KA_TRY(check_places(entries, data.size(), name));
   for (const Entry& entry : entries) {
     const auto values = data.substr(entry.begin, entry.end - entry.begin);
@@ -214,6 +223,7 @@ std::string write_safetensors(const TensorFile& file) {
     at += bytes;
   }
   std::string text = header.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  // Blanks after the object let the values begin at a multiple of 8 bytes.
   text.resize((text.size() + 7) / 8 * 8, ' ');
   const std::uint64_t length = text.size();
   std::string out(sizeof length, '\0');

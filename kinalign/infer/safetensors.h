@@ -13,6 +13,7 @@
 
 namespace kinalign {
 
+/// One array of numbers, as it is used in memory: float, whatever the type in the file was.
 struct Tensor {
   std::vector<std::size_t> shape;  // empty: a single number
   std::vector<float> values;       // row-major
@@ -20,11 +21,13 @@ struct Tensor {
   bool operator==(const Tensor&) const = default;
 };
 
+/// The content of a file. Maps keep the names sorted, so writing has one order.
 struct TensorFile {
   std::map<std::string, std::string> metadata;
   std::map<std::string, Tensor> tensors;  // by name
 };
 
+/// Limit of the JSON header; a longer one is refused before it is parsed.
 inline constexpr std::size_t most_header_bytes = std::size_t{16} << 20U;
 
 /// Reads a whole file. F16 and BF16 are converted to float; other types are refused. `name` appears

@@ -14,6 +14,7 @@ Failure wrong(const std::string& path, const std::string& expected, const std::s
   return Failure(Error{"", 0, expected + " in layer " + path, found});
 }
 
+// "3 taps", for messages.
 std::string counted(std::size_t number, std::string_view noun) {
   return std::to_string(number) + " " + std::string(noun);
 }
@@ -79,6 +80,7 @@ bool is_row_by_row(const Layer& layer) {
 }
 
 /// Visits all layers, counts them and checks the limits.
+/// Recursion is limited by `most_depth`, so a hostile file can't exhaust the stack.
 class Check {
  public:
   /// Checks `layers`; returns the output channels of the last one.
@@ -89,11 +91,15 @@ class Check {
     for (std::size_t i = 0; i < layers.size(); ++i) {
       const std::string place = path_below(path, i);
       channels = KA_TRY(one(layers[i], channels, place, depth));
+      // Pools and unpools are nested like brackets: each unpool ends the last open pool of the same
+      // list.
       if (layers[i].kind == LayerKind::max_pool) ++pools;
       if (layers[i].kind != LayerKind::unpool) continue;
       if (pools == 0) return wrong(place, "a max_pool before the unpool", "none");
       --pools;
     }
+    // A branch must return as many frames as it gets, because its result is joined with that of
+    // other branches. Outside of branches an open pool shortens the result of the network.
     if (depth > 0 && pools > 0) {
       return wrong(path, "an unpool for each max_pool of a branch", counted(pools, "without one"));
     }
@@ -101,6 +107,8 @@ class Check {
   }
 
  private:
+  /// Checks one layer; returns its output channels. The counts of layers, parameters and kept
+  /// values include all branches.
   Result<std::size_t> one(const Layer& layer, std::size_t inputs, const std::string& path,
                           std::size_t depth) {
     if (static_cast<std::size_t>(layer.kind) >= kind_rows.size()) {
@@ -109,15 +117,19 @@ class Check {
     if (++layers_ > most_layers) {
       return wrong(path, "at most " + counted(most_layers, "layers up to and"), "more");
     }
+    // A member that the kind does not use would be lost when the network is written. Such a layer
+    // is an error.
     if (!(only_used_members(layer) == layer)) {
       return wrong(path, "only members of " + std::string(row_of(layer.kind).name), "others");
     }
     KA_TRY(members(layer, inputs, path));
+    // The sum can't overflow: it is checked after each layer.
     parameters_ += own_parameters(layer, inputs);
     if (parameters_ > most_parameters) {
       return wrong(path, "at most " + counted(most_parameters, "parameters up to and"),
                    std::to_string(parameters_));
     }
+    // Frames that a convolution keeps when the network runs frame by frame.
     kept_ += (layer.kernel - 1) * layer.dilation * inputs;
     if (kept_ > most_kept) {
       return wrong(path, "at most " + counted(most_kept, "values kept of other frames up to and"),
@@ -136,6 +148,7 @@ class Check {
     }
     KA_TRY(within(path, layer.kernel, most_kernel, "taps"));
     KA_TRY(within(path, layer.dilation, most_dilation, "frames of dilation"));
+    // A centred convolution has as many taps before its frame as after it.
     if (!layer.causal && layer.kernel % 2 == 0) {
       return wrong(path, "an odd number of taps, as the convolution is centred",
                    std::to_string(layer.kernel));
@@ -145,6 +158,7 @@ class Check {
     if (!(layer.rate >= 0.0 && layer.rate < 1.0)) {
       return wrong(path, "a rate from 0 to below 1", std::to_string(layer.rate));
     }
+    // Written as a difference, because a sum of two numbers from a file could wrap.
     if (layer.kind == LayerKind::slice &&
         (layer.begin > inputs || layer.out > inputs - layer.begin)) {
       return wrong(path, "a slice of " + counted(inputs, "channels"),
@@ -154,6 +168,8 @@ class Check {
     return {};
   }
 
+  /// Checks all branches; returns the channels of their joined result. Branches of a sum or a
+  /// product must have equal channels.
   Result<std::size_t> branches(const Layer& layer, std::size_t inputs, const std::string& path,
                                std::size_t depth) {
     if (depth == most_depth) {
@@ -176,6 +192,7 @@ class Check {
     return channels;
   }
 
+  /// Checks the branch, whose frames are windows of one channel. Its layers must not mix windows.
   Result<std::size_t> along_time(const Layer& layer, std::size_t inputs, const std::string& path,
                                  std::size_t depth) {
     const auto& all = layer.branches;
@@ -188,6 +205,7 @@ class Check {
     return wrong(path, counted(layer.window, "channels after the branch"), std::to_string(found));
   }
 
+  /// Totals of the layers visited so far.
   std::size_t layers_ = 0, parameters_ = 0, kept_ = 0;
 };
 
@@ -196,6 +214,7 @@ class Check {
 void list_tensors(const std::vector<Layer>& layers, std::size_t inputs, const std::string& path,
                   std::vector<Parameter>& out);
 
+// Names of PyTorch's modules: "_l0" is the only layer, "_reverse" the second direction.
 void list_recurrent(const Layer& layer, std::size_t inputs, const std::string& path,
                     std::vector<Parameter>& out) {
   const std::size_t rows = (layer.kind == LayerKind::lstm ? 4 : 3) * layer.out;
@@ -257,6 +276,7 @@ std::optional<std::size_t> reach(const Layer& layer, Side side) {
   std::size_t most = 0;
   switch (layer.kind) {
     case LayerKind::conv:
+      // A causal convolution has all its taps at and before the frame.
       if (layer.causal) return side == Side::before ? taps : 0;
       return taps / 2;
     case LayerKind::lstm:
@@ -267,6 +287,7 @@ std::optional<std::size_t> reach(const Layer& layer, Side side) {
     case LayerKind::unpool:
       return std::nullopt;
     case LayerKind::along_time:
+      // A frame's result is a mean over all windows that contain it.
       return layer.window - 1;
     default:
       for (const auto& branch : layer.branches) {
@@ -278,6 +299,7 @@ std::optional<std::size_t> reach(const Layer& layer, Side side) {
   }
 }
 
+// Layers in a row: their distances add up.
 std::optional<std::size_t> reach(const std::vector<Layer>& layers, Side side) {
   std::size_t all = 0;
   for (const Layer& layer : layers) {
@@ -335,6 +357,7 @@ std::size_t outputs(const std::vector<Layer>& layers, std::size_t inputs) {
   return inputs;
 }
 
+// The branch of an along_time gets the frames of a window as its channels.
 std::size_t branch_inputs(const Layer& layer, std::size_t inputs) {
   return layer.kind == LayerKind::along_time ? layer.window : inputs;
 }

@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// Limits of an architecture. A model's file may come from anywhere. The limits bound the memory
+/// and the depth of recursion that it can cause.
 inline constexpr std::size_t most_layers = 1000;  // in all branches together
 inline constexpr std::size_t most_depth = 8;      // depth of nested branches
 inline constexpr std::size_t most_channels = 16384;
@@ -36,9 +38,11 @@ struct Parameter {
 /// a branch every max_pool needs an unpool. Layers within an along_time must process each row alone
 /// (linear, layer_norm, slice, or a function of single values). The functions below need a valid
 /// architecture.
+/// Called for each architecture that is read, made or exported.
 Result<void> validate(const Architecture& architecture);
 
 /// All tensors, in the order of the layers.
+/// `prepare` (infer) and `learn` both go by this list, so both have the same tensors.
 std::vector<Parameter> parameters(const Architecture& architecture);
 
 /// Output channels of the last layer, of one layer, or of a list of layers with `inputs` channels.

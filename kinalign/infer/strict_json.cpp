@@ -15,6 +15,7 @@ using Json = nlohmann::json;
 /// Observes the parser and records the first fault that the parser itself accepts.
 class Watch {
  public:
+  // Called by the parser for each event. Returning false drops the value.
   bool see(int depth, Json::parse_event_t event, const Json& parsed) {
     if (event == Json::parse_event_t::object_start) keys_.emplace_back();
     if (event == Json::parse_event_t::object_end) keys_.pop_back();
@@ -42,6 +43,7 @@ Result<Json> parse_strict_json(std::string_view text, const std::string& name) {
     return watch.see(depth, event, parsed);
   };
   Json json;
+  // The library throws; the exceptions end here, and callers get an error as a value.
   try {
     json = Json::parse(text, see);
   } catch (const Json::parse_error& error) {

@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// Deeper texts are refused, because readers recurse once per level.
 inline constexpr int most_json_depth = 64;
 
 /// Fails if `text` is not JSON, nests too deeply or contains a key of an object twice. `name`

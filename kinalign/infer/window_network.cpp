@@ -22,6 +22,8 @@ struct Rows {
 };
 
 /// One layer's results for the window.
+/// Rows before `computed` are valid for the window as it is now; `forget_rows` shifts them with the
+/// window.
 struct LayerWindow {
   const PreparedLayer* layer = nullptr;
   std::size_t before = 0, after = 0;  // number of frames before and after that a result depends on
@@ -32,6 +34,7 @@ struct LayerWindow {
   std::vector<Rows> found;  // the branches' results in the current run
 };
 
+// Later frames that a list of layers needs: those of its layers, added up.
 std::size_t after_all(const std::vector<LayerWindow>& layers) {
   std::size_t out = 0;
   for (const LayerWindow& layer : layers) out += layer.after;
@@ -59,6 +62,7 @@ std::vector<LayerWindow> windows_of(const std::vector<PreparedLayer>& layers) {
   return out;
 }
 
+// Results that used forgotten frames stay valid, since the frames before a row do not change.
 void forget_rows(std::vector<LayerWindow>& layers, std::size_t count) {
   for (LayerWindow& layer : layers) {
     const std::size_t gone = std::min(count, layer.computed);
@@ -71,6 +75,8 @@ void forget_rows(std::vector<LayerWindow>& layers, std::size_t count) {
 }
 
 /// One run over a window of `frames` rows.
+/// Layers are visited in order. Each one computes its rows from the first that may have changed,
+/// and tells the next layer which rows those are.
 class WindowRun {
  public:
   WindowRun(const Kernels& kernels, std::size_t frames, Values& scratch)
@@ -95,6 +101,7 @@ class WindowRun {
     if (kind == LayerKind::slice) {
       return {in.data + layer.layer->layer.begin, in.stride, in.changed};
     }
+    // A changed input row changes the results up to `after` rows before it.
     std::size_t from = std::min(layer.computed, in.changed - std::min(in.changed, layer.after));
     for (std::size_t b = 0; b < layer.branches.size(); ++b) {
       layer.found[b] = list(layer.branches[b], in, end);
@@ -102,6 +109,7 @@ class WindowRun {
     }
     if (layer.out.size() < end * layer.channels) layer.out.resize(end * layer.channels);
     if (from < end) compute(layer, in, from, end);
+    // Rows after `end` are not computed now, so they must not count as valid.
     layer.computed = std::max(from, end);
     return {layer.out.data(), layer.channels, from};
   }
@@ -134,6 +142,8 @@ class WindowRun {
 
   /// Computes rows `from` ... `end` - 1 of a linear or conv layer. Frames outside the window are
   /// zeros.
+  /// The input rows are copied into one array with zeros around them, so the kernel gets the same
+  /// numbers as in Network::run.
   void multiply(LayerWindow& layer, const Rows& in, std::size_t from, std::size_t end) {
     const std::size_t channels = layer.layer->inputs;
     const std::size_t rows = end - from + layer.before + layer.after;
@@ -199,6 +209,7 @@ bool are_bounded(const std::vector<Layer>& layers) {
 
 }  // namespace
 
+/// The window before and after a run: `frames` counts its rows, `layers` hold their results.
 struct WindowNetwork::State {
   const Network* network = nullptr;
   std::size_t frames = 0;           // of the previous run that are still in the window
@@ -227,10 +238,12 @@ std::span<const float> WindowNetwork::run(std::span<const float> in, std::size_t
                                           std::size_t changed, std::size_t end) {
   const Network& network = *state_->network;
   assert(in.size() == frames * network.inputs() && end > 0 && end <= frames);
+  // Also true for a network without layers, which costs nothing to run.
   if (state_->layers.empty()) {
     network.run(in, frames, state_->workspace, state_->all);
     return std::span<const float>(state_->all).first(end * network.outputs());
   }
+  // Rows that the previous run did not have are new, whatever the caller says.
   changed = std::min(changed, state_->frames);
   state_->frames = frames;
   const FlushToZero flush;

@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// Use: `forget` the frames that left the window, then `run` on the window that remains, with the
+/// new frames after it.
 class WindowNetwork {
  public:
   /// The weights stay in `network`, which must live longer and must not be moved.
@@ -33,6 +35,8 @@ class WindowNetwork {
   /// window reaches as far back, the results equal those of Network::run over all frames since the
   /// start, bit by bit. Otherwise they equal those of Network::run over the window. Valid until the
   /// next call.
+  /// Frames near the end of the window lack the later ones that a centred convolution reads; zeros
+  /// stand for these. Their results change when more frames arrive.
   std::span<const float> run(std::span<const float> in, std::size_t frames, std::size_t changed,
                              std::size_t end);
 

@@ -87,6 +87,8 @@ constexpr std::array<ProtocolRow, 5> table{{
      .is_named_by_address = true},
 }};
 
+// A row in the wrong place would give its protocol the properties of another one, so the compiler
+// checks the order.
 constexpr bool is_in_order() {
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (static_cast<std::size_t>(table[i].protocol) != i) return false;

@@ -86,6 +86,8 @@ std::vector<std::string> transport_names();
 /// anywhere, and for an unknown transport.
 bool is_datagrams(std::string_view transport);
 
+/// True if a device with this protocol may use the transport. Checked when lab.toml and --device
+/// are read.
 bool may_come_over(const ProtocolRow& row, Transport transport);
 
 }  // namespace kinalign

@@ -19,6 +19,9 @@ constexpr std::uint64_t near_first = 8;
 SequenceCount::SequenceCount(unsigned bits)
     : mask_(bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1) {}
 
+// Numbers near the newest one are judged against the window of seen numbers; all others go to
+// `leap`. The first block undoes a leap: the packet after it continues the old count, so the leap
+// was a single stray number, not a restart.
 Order SequenceCount::push(std::uint64_t number, bool may_restart) {
   number &= mask_;
   if (leapt_ && near(before_, number) && !near(now_, number)) {
@@ -48,6 +51,8 @@ bool SequenceCount::here(std::uint64_t number) const {
   return (now_.seen[number % window / 64] >> (number % 64) & 1) != 0;
 }
 
+// The window is a ring of bits, so the bit of a number also stands for all numbers 1024 apart.
+// `advance` therefore clears the bits of the numbers that it passes.
 void SequenceCount::mark(std::uint64_t number, bool here) {
   std::uint64_t& word = now_.seen[number % window / 64];
   const std::uint64_t bit = std::uint64_t{1} << (number % 64);
@@ -72,6 +77,9 @@ void SequenceCount::advance(std::uint64_t number) {
   now_.old_run = 0;
 }
 
+// Judges a number 1024 or more away. The old state is kept in `before_` until the next packet,
+// which decides whether the leap is real. It does not count this packet: `push` adds it again if
+// the leap is undone.
 Order SequenceCount::leap(std::uint64_t number, bool may_restart) {
   const std::uint64_t forward = ahead(now_.newest, number);
   if (!may_restart && forward > mask_ / 2) return old_number(number, may_restart);
@@ -95,6 +103,8 @@ Order SequenceCount::leap(std::uint64_t number, bool may_restart) {
 Order SequenceCount::look_back(std::uint64_t number, bool may_restart) {
   const std::uint64_t back = ahead(number, now_.newest);
   if (here(number) || back >= now_.known + near_first) return old_number(number, may_restart);
+  // The packet is older than the first one that arrived, but close to it. The count then begins at
+  // this packet, and the numbers between the two are missing.
   if (back >= now_.known) {
     now_.counts.lost += back - now_.known + 1;  // numbers from this one on now count as missing
     now_.known = back + 1;
@@ -109,6 +119,8 @@ Order SequenceCount::look_back(std::uint64_t number, bool may_restart) {
 
 // Handles a number that was not missing: it arrived before, or lies well below the first one.
 Order SequenceCount::old_number(std::uint64_t number, bool may_restart) {
+  // A sender that restarts close behind its old number looks like a run of duplicates that rise by
+  // one. After `restart_run` of them the count begins again.
   const bool rises = may_restart && number == ((now_.previous + 1) & mask_);
   now_.old_run = rises ? now_.old_run + 1 : 1;
   now_.previous = number;

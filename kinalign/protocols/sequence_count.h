@@ -73,7 +73,9 @@ class SequenceCount {
   std::uint64_t ahead(std::uint64_t of, std::uint64_t number) const {
     return (number - of) & mask_;
   }
+  /// True if the number lies less than a window before or after the newest one.
   bool near(const State& state, std::uint64_t number) const;
+  /// True if a packet with this number arrived. Valid only for numbers within the window.
   bool here(std::uint64_t number) const;
   void mark(std::uint64_t number, bool here);
   void begin(std::uint64_t number);
@@ -84,6 +86,8 @@ class SequenceCount {
   Order look_back(std::uint64_t number, bool may_restart);
   Order old_number(std::uint64_t number, bool may_restart);
 
+  // All numbers are kept modulo 2^bits. Differences are taken with `ahead`, never with < or >, so a
+  // wrap needs no case of its own.
   std::uint64_t mask_;
   State now_, before_;
   bool leapt_ = false;  // the last packet began a new count; `before_` is the old one

@@ -64,6 +64,8 @@ void LivePort::accept() {
 void LivePort::add(const McapSchema* schema, const McapChannel& channel,
                    const McapMessage& message) {
   for (Client& client : clients_) {
+    // The message is dropped for this client only. Its number is then missing in the client's
+    // stream.
     if (client.waiting.size() - client.sent + message.data.size() > most_waiting) {
       ++counts_.lost;
       ++client.lost;
@@ -104,6 +106,7 @@ bool LivePort::send(Client& client) {
   return true;
 }
 
+// Called once in each turn of the recording, so a client waits at most that long.
 void LivePort::turn() {
   accept();
   std::erase_if(clients_, [this](Client& client) { return !is_silent(client) || !send(client); });

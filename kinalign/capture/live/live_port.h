@@ -15,6 +15,7 @@
 
 namespace kinalign {
 
+/// Counts since the port was opened.
 struct LivePortCounts {
   std::uint64_t clients = 0;  // clients that were accepted
   // connections refused or closed: too many clients, or the client sent data
@@ -50,6 +51,8 @@ class LivePort {
   const LivePortCounts& counts() const { return counts_; }
 
  private:
+  /// A client that connects in the middle of a recording gets the head and then all messages from
+  /// that time on.
   struct Client {
     Handle socket;
     std::string waiting;   // whole records, except that a part of the first one may be sent already

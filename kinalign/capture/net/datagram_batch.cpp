@@ -19,6 +19,7 @@ T read_as(const cmsghdr& control) {
   return value;
 }
 
+// The system's addresses and ours have the same bytes in the same order.
 HostAddress bytes_of(const in6_addr& address) {
   HostAddress bytes{};
   std::memcpy(bytes.data(), &address, bytes.size());
@@ -39,6 +40,8 @@ void read_control(const cmsghdr& control, Datagram& datagram) {
   } else if (control.cmsg_level == IPPROTO_IP && control.cmsg_type == IP_PKTINFO) {
     const auto info = read_as<in_pktinfo>(control);
     datagram.to = bytes_of(info.ipi_addr);
+    // For a datagram to a broadcast address, the kernel gives the local address of the interface
+    // beside it.
     datagram.unicast = info.ipi_addr.s_addr == info.ipi_spec_dst.s_addr;
   } else if (control.cmsg_level == IPPROTO_IPV6 && control.cmsg_type == IPV6_PKTINFO) {
     const auto info = read_as<in6_pktinfo>(control);
@@ -102,6 +105,7 @@ bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> byte
   head.msg_namelen = put_peer(asked, peer);
   head.msg_iov = &out;
   head.msg_iovlen = 1;
+  // Without a source address the system chooses one of this host's.
   if (asked.unicast) {
     head.msg_control = control.data();
     head.msg_controllen = put_source(asked, asked.from_scope, control);

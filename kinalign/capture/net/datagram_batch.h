@@ -39,6 +39,8 @@ struct Datagram {
 /// host's addresses. Returns false if the system did not accept the datagram.
 bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> bytes);
 
+/// The order of calls: receive, then at and queue for each datagram, then send. A batch is made
+/// once, because its buffers are large.
 class DatagramBatch {
  public:
   static constexpr std::size_t most = 32;    // datagrams in one batch
@@ -68,6 +70,8 @@ class DatagramBatch {
 
  private:
   static constexpr std::size_t control_room = 128;
+  // Everything about one datagram and its answer. Messages of the system point into a slot, so
+  // slots never move.
   struct Slot {
     sockaddr_in6 from{};  // large enough for a sockaddr_in too
     iovec in{}, out{};

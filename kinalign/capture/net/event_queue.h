@@ -9,6 +9,7 @@
 
 namespace kinalign {
 
+/// A caller that does not take its events must not make the program grow.
 template <class Event>
 class EventQueue {
  public:

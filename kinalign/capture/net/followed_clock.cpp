@@ -22,6 +22,8 @@ FollowedClock& FollowedClock::operator=(FollowedClock&&) noexcept = default;
 FollowedClock::~FollowedClock() = default;
 
 void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
+  // In a new epoch of the host's axis the same boot counts as another one, so no earlier bound is
+  // used.
   exchange.boot = life_of(exchange.boot, epoch);
   // Rounding may put an arrival microseconds before the previous one. The order of arrival is kept;
   // a later arrival is still a correct bound.

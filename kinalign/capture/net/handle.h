@@ -8,6 +8,8 @@
 
 namespace kinalign {
 
+/// One object owns a descriptor at a time. Assignment swaps, so the other object closes the old
+/// one.
 class Handle {
  public:
   Handle() = default;

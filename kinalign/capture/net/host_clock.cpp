@@ -40,6 +40,7 @@ std::pair<Duration, Duration> offsets(const ClockBracket& b) {
 HostTime SystemClocks::raw() { return HostTime{read_clock(CLOCK_MONOTONIC_RAW)}; }
 Time SystemClocks::utc() { return Time{read_clock(CLOCK_REALTIME)}; }
 
+// CLOCK_BOOTTIME counts during a suspension, CLOCK_MONOTONIC does not.
 Duration SystemClocks::asleep() {
   Duration least = Duration::max();
   for (int i = 0; i < 3; ++i) {  // an interruption between two readings looks like a suspension
@@ -68,6 +69,8 @@ bool WallWatch::must_ask(const Look& look) {
   return true;
 }
 
+// The kernel cancels a timer of this kind when the clock is set: reading it then gives ECANCELED,
+// once.
 bool SystemClocks::wall_was_set() {
   if (!timer_) {
     timer_ = ::timerfd_create(CLOCK_REALTIME, TFD_NONBLOCK | TFD_CLOEXEC);
@@ -91,6 +94,8 @@ bool runs_on(const ClockBracket& earlier, const ClockBracket& later, double slew
   return least - slack <= greatest_then && least_then <= greatest + slack;
 }
 
+// The time since the stamp is counted back from the end of the bracket, shortened by the greatest
+// slew. So the result may be late, but never early.
 HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady) {
   if (!stamp || *stamp < steady || *stamp > behind.utc) return behind.after;
   const Duration since = behind.utc - *stamp;
@@ -103,6 +108,7 @@ HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep
   steady_ = bracket_.utc;
 }
 
+// If the raw clock goes back, the axis stands still and is shifted from then on.
 HostTime HostAxis::now() {
   const HostTime read = reader_.raw() + shift_;
   if (read < last_) {
@@ -135,6 +141,7 @@ void HostAxis::look() {
   // asked after the bracket was read, so that it covers the bracket
   const bool set = reader_.wall_was_set();
   was_set_ = was_set_ || set;
+  // Stamps from before this moment can't be converted any more.
   if (set || !runs_on(before, bracket_, most_slew)) steady_ = bracket_.utc;
 }
 

@@ -101,6 +101,8 @@ struct HostClockEvent {
 };
 
 /// The host's time axis. It converts arrival stamps, and it detects suspension and clock steps.
+/// The ports of a recording and the nodes' port each have an axis, with a clock reader of its own.
+/// Stamps are converted with the bracket of the last look(), so look() must follow each receive.
 class HostAxis {
  public:
   explicit HostAxis(ClockReader& reader);

@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+// Link-local addresses need the name of an interface, which another machine does not know.
 bool reaches_others(const ifaddrs& one) {
   if (one.ifa_addr == nullptr || (one.ifa_flags & IFF_UP) == 0) return false;
   if ((one.ifa_flags & IFF_LOOPBACK) != 0) return false;

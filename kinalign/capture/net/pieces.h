@@ -70,6 +70,8 @@ class Senders {
 
  private:
   void note_arrival(std::size_t number, HostTime now);
+  /// Gives a new sender a number: `place_for` chooses it, `own_past` finds an earlier sender of the
+  /// host.
   std::optional<std::size_t> add(const HostAddress& host, std::uint16_t port, HostTime now);
   std::optional<std::size_t> place_for(const HostAddress& host, HostTime now);
   std::optional<std::size_t> own_past(const HostAddress& host) const;
@@ -125,6 +127,7 @@ class TcpPieces {
   std::uint64_t heard() const { return counts_.pieces + counts_.refused; }
 
  private:
+  /// One connection. While `connected` is false, it is still being made.
   struct Link {
     Handle socket;
     HostTime last_arrival{};  // last arrival, or the time when the connection was made

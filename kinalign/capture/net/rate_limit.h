@@ -20,6 +20,7 @@ class RateLimit {
   static constexpr std::size_t ways = 4, entries = 65'536;
   static constexpr std::uint64_t drops_per_kiss = 16;
 
+  /// `kiss`: refused, but answered with the advice to ask less often. One of 16 refusals gets it.
   enum class Verdict : std::uint8_t { answer, drop, kiss };
 
   RateLimit() : sets_(entries / ways) {}
@@ -29,6 +30,7 @@ class RateLimit {
   Verdict ask(std::uint64_t hash, HostTime now);
 
  private:
+  /// An entry that was never used is a full bucket, so the table needs no flags.
   struct Entry {
     std::uint64_t hash = 0;
     // the time when the bucket is full again; it is full if that is past

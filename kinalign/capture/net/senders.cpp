@@ -36,6 +36,7 @@ void Senders::note_arrival(std::size_t number, HostTime now) {
 std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t port, HostTime now) {
   if (lives_ >= most_lives) {
     if (const auto past = own_past(host)) {
+      // The host's oldest sender continues under a new port, with its number and its channel.
       senders_[*past].port = port;
       return past;
     }

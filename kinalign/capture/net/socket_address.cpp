@@ -6,6 +6,7 @@
 
 namespace kinalign {
 
+// AI_NUMERICHOST prevents a name lookup, which could block.
 FoundAddress find_address(const std::string& address, std::uint16_t port, int type) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_PASSIVE;

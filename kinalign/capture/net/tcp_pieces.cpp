@@ -176,6 +176,7 @@ void TcpPieces::try_to_connect(HostTime now) {
   links_.push_back({std::move(socket), now});
 }
 
+// A listening port may have several connections; a connecting one has at most one.
 void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
   if (listener_.fd() >= 0) {
     accept(axis.now());
@@ -188,6 +189,7 @@ void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
 void TcpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
   for (const Link& link : links_) {
     if (!link.sender || link.sender->number != sender) continue;
+    // The number belongs to another sender now, so the bytes are not for this connection.
     if (link.sender->life != senders_.at(sender).life) continue;
     const ssize_t sent =
         ::send(link.socket.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -220,6 +222,7 @@ bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (got == 0) return false;
+    // Each read has its own bracket, because reading a whole turn may take long.
     axis.look();
     const HostTime arrival = link.last_arrival = axis.arrival(stamp);
     const auto sender = senders_.number(link.sender, link.host, link.port, arrival);

@@ -24,6 +24,7 @@ bool set(int fd, int level, int name, int value) {
   return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
 }
 
+// IPV6_V6ONLY keeps IPv4 off the IPv6 socket, since IPv4 has a socket of its own on the same port.
 bool set_options(int fd, int family) {
   if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer)) {  // needs CAP_NET_ADMIN
     set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);            // limited by net.core.rmem_max
@@ -137,6 +138,7 @@ UdpSocket::~UdpSocket() {
   if (fd_ >= 0) ::close(fd_);
 }
 
+// Any other error, such as too many open files, says nothing about IPv6.
 bool system_knows_ipv6() {
   const int fd = ::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (fd >= 0) ::close(fd);
@@ -151,11 +153,13 @@ Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& 
   std::vector<UdpSocket> sockets;
   for (const std::string& address : all) {
     sockets.push_back(KA_TRY(UdpSocket::open(address, port)));
+    // With port 0 the first socket gets a free port, and the others use the same one.
     port = sockets.front().port();
   }
   return sockets;
 }
 
+// The kernel counts since the socket was opened.
 std::uint64_t dropped_by_kernel(const UdpSocket& socket) {
   std::array<std::uint32_t, SK_MEMINFO_VARS> found{};
   socklen_t size = sizeof found;

@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// One for each session. It counts seconds from the first frame.
 class AnswerPace {
  public:
   static constexpr std::int64_t most_per_s = 30;

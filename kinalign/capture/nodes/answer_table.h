@@ -22,6 +22,7 @@ struct GivenAnswer {
   bool given = false, used = false;
 };
 
+/// A ring: an answer takes the place of the one 256 numbers before it.
 class AnswerTable {
  public:
   static constexpr std::size_t remembered = 256;

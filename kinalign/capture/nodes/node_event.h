@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// Members that a kind does not mention keep their defaults.
 struct NodeEvent {
   enum class Kind : std::uint8_t {
     joined,         // a new stream begins

@@ -20,6 +20,7 @@ namespace {
 constexpr std::uint32_t header = 8;
 constexpr std::uint32_t least = node_datagram_size(0, false);
 
+// One instruction. `if_true` and `if_false` count the instructions that a jump skips.
 constexpr sock_filter step(int code, std::uint32_t k, int if_true = 0, int if_false = 0) {
   return {static_cast<std::uint16_t>(code), static_cast<std::uint8_t>(if_true),
           static_cast<std::uint8_t>(if_false), k};
@@ -29,6 +30,8 @@ constexpr sock_filter step(int code, std::uint32_t k, int if_true = 0, int if_fa
 
 bool attach_node_filter(const UdpSocket& socket) {
   // All protocol versions pass, since unknown versions are counted.
+  // Length within the limits, length field equal to the length, magic: accept. Everything else is
+  // dropped.
   std::array program{
       step(BPF_LD | BPF_W | BPF_LEN, 0),
       step(BPF_JMP | BPF_JGE | BPF_K, header + least, 0, 8),

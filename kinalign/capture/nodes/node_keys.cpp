@@ -21,6 +21,7 @@ namespace kinalign {
 
 namespace {
 
+// Closes a file of the FileSystem, which tests replace.
 class OpenFile {
  public:
   OpenFile(FileSystem& files, int fd) : files_(files), fd_(fd) {}
@@ -49,6 +50,7 @@ std::string octal(unsigned mode) {
 }
 
 /// Checks that only the owner may read the file.
+/// The open file is checked, not the path, so nobody can exchange it in between.
 Result<void> check_mode(int fd, const std::string& path) {
   struct stat found {};
   if (::fstat(fd, &found) != 0) return no_key(path, "a key file", std::strerror(errno));
@@ -94,6 +96,7 @@ Result<Key> drawn() {
 
 }  // namespace
 
+// Each node gets only its own key, so a lost node reveals no key of another one.
 MacKey node_key(const LabKey& lab, std::uint32_t node_id) {
   const std::string name = "kinalign node key " + std::to_string(node_id);
   std::array<std::uint8_t, 32> whole{};
@@ -123,6 +126,7 @@ Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   const OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0));
   if (file.fd() < 0) return no_lab_key(path, errno);
   KA_TRY(check_mode(file.fd(), path));
+  // More than a key needs: a longer file is no key file.
   std::array<char, 128> text{};
   const ssize_t got = files.read(file.fd(), text.data(), text.size());
   std::string_view digits(text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
@@ -157,6 +161,7 @@ Result<void> write_key(FileSystem& files, const std::string& path,
 const MacKey* KeyRing::Derived::key_of(std::uint32_t node_id) {
   if (!lab) return nullptr;
   Key& place = kept[node_id % most];
+  // Two nodes with the same place displace each other, which costs time only.
   if (place.node_id != node_id) place = {node_id, node_key(*lab, node_id)};
   return &place.key;
 }

@@ -42,6 +42,7 @@ Result<void> write_key(FileSystem& files, const std::string& path,
                        std::span<const std::uint8_t> key);
 
 /// The keys of all nodes. After a change the previous keys stay valid for a minute.
+/// Nodes are changed one after another, so for a while some still have the old key.
 class KeyRing {
  public:
   static constexpr Duration old_key_lasts = std::chrono::seconds(60);

@@ -25,6 +25,7 @@ bool is_link_local(const HostAddress& host) {
 
 }  // namespace
 
+// Numbers of open sockets begin after those of the lines.
 NodeLines::NodeLines(std::span<const UdpSocket> open, std::size_t most)
     : open_(open), lines_(most), poll_(::epoll_create1(EPOLL_CLOEXEC)) {
   for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -78,6 +79,7 @@ std::span<const UdpSocket* const> NodeLines::ready() {
   for (const epoll_event& event : std::span(events).first(count)) {
     const auto number = static_cast<std::size_t>(event.data.u64);
     const bool is_line = number < lines_.size();
+    // A line without a socket has nothing to read.
     if (is_line && !lines_[number].socket) continue;
     ready_.push_back(is_line ? &*lines_[number].socket : &open_[number - lines_.size()]);
   }

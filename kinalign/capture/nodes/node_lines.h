@@ -46,6 +46,7 @@ class NodeLines {
   std::uint64_t dropped() const;
 
  private:
+  /// One for each stream of the receiver, by its number.
   struct Line {
     Way way;
     std::optional<UdpSocket> socket;

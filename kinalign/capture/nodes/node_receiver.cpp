@@ -16,6 +16,8 @@ constexpr int batches_in_turn = 16;  // batches of one socket before other socke
 
 }  // namespace
 
+// A stream's place may be given to another node, and the host's axis may begin a new epoch. The
+// clock is then replaced.
 struct NodeReceiver::StreamClock {
   // number of the stream, and epoch of the host axis, for which the clock is valid
   std::uint32_t number = 0, epoch = 0;
@@ -68,6 +70,7 @@ void NodeReceiver::drain() {
   follow();
 }
 
+// Datagrams that must not be answered are only counted.
 bool NodeReceiver::may_answer(const Datagram& datagram) {
   if (!datagram.unicast) ++not_unicast_;
   if (datagram.unicast && datagram.from_port == 0) ++from_port_0_;
@@ -86,6 +89,7 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
     const NodeArrival arrival{
         datagram.bytes, {datagram.from, datagram.from_port}, axis_.arrival(datagram.received)};
     const NodeMessage message = responder_->receive(arrival);
+    // The clock is read last, just before the answer is made.
     const auto answer = responder_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
     if (message.verdict == NodeVerdict::refused) continue;
@@ -100,6 +104,7 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
   }
 }
 
+// Readings are copied, because the next datagram overwrites those of the responder.
 void NodeReceiver::keep(const NodeArrival& arrival, const NodeMessage& message) {
   Kept& kept = kept_[kept_length_++];
   kept.arrival = arrival;  // the bytes stay valid until the next batch
@@ -149,6 +154,7 @@ LiveClock& NodeReceiver::follow_clock(Kept& kept) {
     clock.counts = true;
     clock.n = message.exchange->n_tx;
     clock.stamp = clock.clock.host_from_node(message.exchange->boot, clock.n);
+    // The next reply tells the node that its clock is certified.
     responder_->set_locked(message.stream,
                            clock.stamp && clock.stamp->certainty == Certainty::certified);
   } else if (const auto d = message.clockless ? one_way_delay(*message.clockless) : std::nullopt) {
@@ -159,6 +165,7 @@ LiveClock& NodeReceiver::follow_clock(Kept& kept) {
   return clock.clock;
 }
 
+// Silent nodes are looked for at each call, the host's clocks once a second.
 void NodeReceiver::tick() {
   axis_.look();
   const HostTime now = axis_.now();

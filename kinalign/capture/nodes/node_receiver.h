@@ -104,6 +104,7 @@ class NodeReceiver {
   bool is_current(const StreamClock& clock, std::size_t stream) const;
   std::vector<StreamEvent> take_events_of(std::size_t stream);
 
+  /// The sockets stay at one place in memory, because `lines_` refers to them.
   std::unique_ptr<std::vector<UdpSocket>> sockets_;
   NodeLines lines_;
   HostAxis axis_;

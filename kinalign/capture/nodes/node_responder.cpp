@@ -21,6 +21,8 @@ NodeSign sign_of(const NodeArrival& arrival, const DatagramOrigin& origin) {
           arrival.h_rx,   origin.sequence, std::nullopt};
 }
 
+// Answers go also to datagrams that are not accepted: a node that has just started, or whose frames
+// were delayed, needs an answer that it can echo.
 bool is_answered(NodeVerdict verdict) {
   return verdict == NodeVerdict::accepted || verdict == NodeVerdict::held ||
          verdict == NodeVerdict::replayed || verdict == NodeVerdict::earlier_life;
@@ -37,12 +39,14 @@ NodeMessage NodeResponder::receive(const NodeArrival& arrival) {
   message.verdict = judge(arrival, message);
   ++counts_.verdicts[message.verdict];
   if (!is_answered(message.verdict)) asked_.by = nullptr;
+  // The pace is asked last, so that frames which get no answer anyway do not use it up.
   if (asked_.by != nullptr && !asked_.by->pace.ask(arrival.h_rx)) asked_.by = nullptr;
   return message;
 }
 
 NodeVerdict NodeResponder::judge(const NodeArrival& arrival, NodeMessage& message) {
   Envelope envelope;
+  // Everything that can be checked without a key comes first.
   const NodeRefusal refusal = open_envelope(arrival.bytes, envelope);
   message.node_id = envelope.origin.node_id;
   if (refusal != NodeRefusal::none) {
@@ -127,6 +131,7 @@ NodeVerdict NodeResponder::judge_frame(const NodeArrival& arrival, const Envelop
   }
   const std::int64_t n_tx = session->counter.widened(frame_.n_tx_us, sign.at);
   const auto echo = take_echo(*session, n_tx);
+  // Only the newest frame may change the node's address.
   const bool newest = session->counter.behind_us(n_tx) <= 0;
   session->counter.take(n_tx, sign.at);
   if (const auto taken =
@@ -189,9 +194,11 @@ NodeVerdict NodeResponder::judge_confirm(const NodeArrival& arrival, const Envel
   return NodeVerdict::accepted;
 }
 
+// The session that the datagram continues, or a new one that is held.
 NodeVerdict NodeResponder::find_session(const NodeSign& sign, NodeSession*& session) {
   session = table_.session_of(sign);
   if (session != nullptr) return NodeVerdict::accepted;
+  // A known address may begin new sessions freely; the limit is for strangers.
   if (!table_.knows_address(sign.from.host, sign.at)) {
     const std::uint64_t hash = siphash_2_4(secret_, stranger(sign.from.host));
     if (strangers_.ask(hash, sign.at) != RateLimit::Verdict::answer) return NodeVerdict::limited;
@@ -224,6 +231,8 @@ NodeVerdict NodeResponder::take_session(NodeSession& session, const NodeSign& si
     if (!echoed || *echoed <= session.replaced) return NodeVerdict::earlier_life;
     return table_.part(session, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
   }
+  // Without a key and with new ids there is nothing to prove, so the first datagram admits the
+  // session.
   const bool again = table_.knows_boot(session.node_id, session.boot_id);
   if (!echoed && (keys_.keyed() || again)) {
     return again ? NodeVerdict::replayed : NodeVerdict::held;
@@ -260,6 +269,7 @@ void NodeResponder::keep(std::span<const NodeSample> samples, std::optional<std:
   message.readings = std::span(readings_).first(samples.size());
 }
 
+// Counts an accepted datagram, and notices that its node has returned or moved.
 void NodeResponder::accept(NodeSession& session, const NodeSign& sign, bool newest,
                            NodeMessage& message) {
   NodeStream& stream = table_.stream(session.stream);
@@ -279,6 +289,7 @@ std::span<const std::uint8_t> NodeResponder::answer(HostTime h_tx, std::span<std
   asked_.by = nullptr;
   std::array<std::uint8_t, sizeof nonces_> number{};
   std::memcpy(number.data(), &++nonces_, number.size());
+  // A counter hashed with the secret: no nonce repeats soon, and nobody can guess the next one.
   const auto nonce = static_cast<std::uint32_t>(siphash_2_4(secret_, number));
   const bool clockless = asked_.type == DatagramType::request;
   const std::uint32_t sequence = clockless ? asked_.origin.sequence : session.next_reply++;

@@ -53,6 +53,7 @@ struct NodeResponderOptions {
   SipHashKey secret{};
 };
 
+/// Use: receive(), then answer() for the same datagram, before the next one.
 class NodeResponder {
  public:
   explicit NodeResponder(const NodeResponderOptions& options);
@@ -82,6 +83,8 @@ class NodeResponder {
   std::uint64_t missed_events() const { return table_.missed_events(); }
 
  private:
+  /// `judge` passes a datagram on to the function of its type. These find and admit its session and
+  /// fill `message`.
   NodeVerdict judge(const NodeArrival& arrival, NodeMessage& message);
   NodeVerdict judge_frame(const NodeArrival& arrival, const Envelope& envelope,
                           NodeMessage& message);

@@ -15,6 +15,8 @@
 
 namespace kinalign {
 
+/// A free session has no meaning in its other members. A session is made anew when its place is
+/// used again.
 struct NodeSession {
   enum class State : std::uint8_t {
     free,

@@ -13,6 +13,7 @@
 namespace kinalign {
 
 /// The state of one node at one instant.
+/// A copy for display and for counts; it does not change with the node.
 struct NodeStatus {
   std::size_t stream = 0;
   std::uint32_t node_id = 0, boot_id = 0;

@@ -22,6 +22,7 @@ constexpr Duration left_after = std::chrono::seconds(10);
 constexpr Duration held_for = std::chrono::seconds(1);  // a held session is kept at least this long
 constexpr std::size_t most_held = 4;                    // held sessions of one node id
 
+// True for sessions in use that have both ids.
 bool has_ids(const NodeSession& session, std::uint32_t node_id, std::uint32_t boot_id) {
   return session.state != State::free && session.node_id == node_id && session.boot_id == boot_id;
 }
@@ -170,6 +171,7 @@ NodeStream* NodeTable::new_stream(const NodeSession& session, HostTime now) {
   return &stream;
 }
 
+// Makes the session the present one of the stream.
 void NodeTable::enter(NodeSession& session, NodeStream& stream, HostTime now) {
   session.state = State::live;
   session.stream = static_cast<std::size_t>(&stream - streams_.data());
@@ -186,10 +188,12 @@ bool NodeTable::admit(NodeSession& session, HostTime now) {
   const bool joins = stream == nullptr;
   if (joins) stream = new_stream(session, now);
   if (stream == nullptr) return false;
+  // The stream's session so far is over. Its late datagrams are still recognised.
   if (!joins) {
     sessions_[stream->session].state = State::earlier;
     sessions_[stream->session].replaced = now;
   }
+  // The same boot id again: another key keeps the clocks of the two lives apart.
   session.key = session.boot_id | (again ? ++restarts_ << 32 : 0);
   enter(session, *stream, now);
   report(joins ? Kind::joined : again ? Kind::restarted : Kind::started, session, now);

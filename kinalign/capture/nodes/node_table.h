@@ -36,6 +36,8 @@ struct NodeSign {
   std::optional<std::uint64_t> counter_us;  // absent: the node has none
 };
 
+/// Sessions are kept after their node has started again, as long as there is room: their datagrams
+/// must not be taken for new ones.
 class NodeTable {
  public:
   static constexpr std::size_t most_streams = 64, most_sessions = 256;

@@ -43,6 +43,7 @@ const char* name_of(EchoVerdict verdict);
 /// The verdict on an echo, from the search for the answer that it names.
 EchoVerdict echo_verdict(AnswerTable::Found found);
 
+/// Counts since the port was opened.
 struct NodeCounts {
   CountsBy<NodeVerdict, node_verdicts> verdicts;  // each datagram is counted once
   CountsBy<NodeRefusal, node_refusals> refusals;  // refused datagrams

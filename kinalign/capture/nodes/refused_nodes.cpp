@@ -28,6 +28,7 @@ RefusedNodes::Claim& RefusedNodes::claim_of(NodeRefusal refusal, std::uint32_t n
   return rest_;
 }
 
+// A report that the limit suppresses is made later, with another datagram of the same node.
 bool RefusedNodes::take(NodeRefusal refusal, std::uint32_t node_id, HostTime now) {
   Claim& claim = claim_of(refusal, node_id);
   if (claim.reported && now - *claim.reported < each_every) return false;

@@ -25,6 +25,7 @@ std::uint64_t SequenceWindow::take(std::uint32_t sequence) {
     begun_ = true;
   }
   const std::int64_t steps = steps_to(sequence);
+  // Numbers that are skipped are not received yet; their bits belonged to numbers 1024 before.
   for (std::int64_t i = 1; i <= std::min<std::int64_t>(steps, size); ++i) {
     seen_[(newest_ + static_cast<std::uint64_t>(i)) % size] = false;
   }

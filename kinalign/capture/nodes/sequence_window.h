@@ -9,6 +9,8 @@
 
 namespace kinalign {
 
+/// `place_of` changes nothing, so sessions can be compared by it before one of them takes the
+/// number.
 class SequenceWindow {
  public:
   static constexpr std::size_t size = 1024;

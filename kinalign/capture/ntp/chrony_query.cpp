@@ -46,6 +46,7 @@ std::optional<ChronyTracking> ChronyQuery::latest(HostTime now) {
   receive(now);
   if (!asked_at_ || now - *asked_at_ >= again) {
     asked_at_ = now;
+    // Each request has its own number. A late answer to an earlier request is not accepted.
     const auto request = chrony_tracking_request(++sequence_);
     // an error means that no chronyd is running
     (void)::send(fd_, request.data(), request.size(), MSG_NOSIGNAL);
@@ -54,12 +55,14 @@ std::optional<ChronyTracking> ChronyQuery::latest(HostTime now) {
   return answer_;
 }
 
+// Used once, when the server starts; later answers are collected without waiting.
 void ChronyQuery::wait() const {
   constexpr int most_ms = 100;
   pollfd waiting{fd_, POLLIN, 0};
   (void)::poll(&waiting, 1, most_ms);
 }
 
+// Only the answer to the newest request counts; the others are discarded.
 void ChronyQuery::receive(HostTime now) {
   constexpr int most = 4;  // limit on answers read in one call
   std::array<std::uint8_t, 256> bytes{};

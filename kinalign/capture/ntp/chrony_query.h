@@ -9,6 +9,7 @@
 
 namespace kinalign {
 
+/// The socket is open all the time. A chronyd that starts later is found by the next request.
 class ChronyQuery {
  public:
   /// `port`: chronyd's cmdport on 127.0.0.1. Without a chronyd there is never an answer.

@@ -28,6 +28,8 @@ Duration take_seconds(ByteReader& reader) {
   return std::chrono::ceil<Duration>(std::chrono::duration<double>(std::clamp(s, 0.0, most_s)));
 }
 
+// Seconds since 1970 as two halves of 64 bits. Values beyond the year 2255 are clamped, because
+// they would overflow in ns.
 Time take_time(ByteReader& reader) {
   const auto high = reader.take<std::uint32_t>();
   const auto low = reader.take<std::uint32_t>();
@@ -38,6 +40,7 @@ Time take_time(ByteReader& reader) {
 
 }  // namespace
 
+// The request is padded with zeros to the size of its answer.
 std::array<std::uint8_t, chrony_tracking_size> chrony_tracking_request(std::uint32_t sequence) {
   std::array<std::uint8_t, chrony_tracking_size> bytes{};
   ByteWriter writer(bytes);
@@ -53,6 +56,7 @@ std::array<std::uint8_t, chrony_tracking_size> chrony_tracking_request(std::uint
 std::optional<ChronyTracking> decode_chrony_tracking(std::span<const std::uint8_t> datagram,
                                                      std::uint32_t sequence) {
   ByteReader reader(datagram);
+  // Fields in the order of the protocol: version, kind, two reserved bytes, command, reply, status.
   const bool ours = reader.take<std::uint8_t>() == protocol &&
                     reader.take<std::uint8_t>() == answer && reader.take<std::uint16_t>() == 0 &&
                     reader.take<std::uint16_t>() == tracking_request &&

@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// chronyd's own words for the fields of an NTP packet, in our units.
 struct ChronyTracking {
   NtpLeap leap = NtpLeap::unsynchronised;
   std::uint16_t stratum = ntp_stratum_unsynchronised;

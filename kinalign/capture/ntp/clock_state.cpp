@@ -20,6 +20,7 @@ NtpLeap leap_of(const KernelClock& kernel) {
   return (kernel.status & STA_DEL) != 0 ? NtpLeap::remove : NtpLeap::none;
 }
 
+// A report with stratum 0 is not usable. One more than chronyd's stratum must still be a valid one.
 bool knows_its_distance(const std::optional<ChronyTracking>& chrony) {
   return chrony && chrony->leap != NtpLeap::unsynchronised && chrony->stratum > 0 &&
          chrony->stratum < ntp_stratum_unsynchronised - 1;
@@ -56,6 +57,7 @@ std::optional<KernelClock> read_kernel_clock() {
                      std::chrono::microseconds(asked.maxerror)};
 }
 
+// A single reading is too short to be timed, so a thousand are timed together.
 std::int8_t measured_precision() {
   constexpr int readings = 1000;
   SystemClocks clocks;
@@ -76,6 +78,8 @@ NtpServerState server_state(const std::optional<KernelClock>& kernel,
   if (is_synchronised(kernel)) {
     set_synchronised(state, *kernel, chrony);
   } else if (policy.local_stratum) {
+    // No program sets the clock, and the user has made this machine the lab's reference. Its
+    // distance from UTC is unknown; 1 ms is stated.
     state.leap = NtpLeap::none;
     state.stratum = *policy.local_stratum;
     state.reference_id = local_reference_id;

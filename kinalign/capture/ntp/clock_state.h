@@ -29,6 +29,7 @@ std::int8_t measured_precision();
 
 constexpr std::uint32_t local_reference_id = 0x7f7f0100;  // 127.127.1.0, as ntpd uses
 
+/// Choices of the user and facts about the machine that do not change while the server runs.
 struct ClockPolicy {
   /// The stratum in answers while the system's clock is not synchronised; this machine is then the
   /// lab's reference. If absent, answers say that the clock is not synchronised, and clients ignore

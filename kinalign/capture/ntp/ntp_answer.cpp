@@ -5,6 +5,7 @@
 
 namespace kinalign {
 
+// A small step back between arrival and answer must not give a negative time in the server.
 std::optional<Time> transmit_stamp(Time received, Time now) {
   constexpr Duration most = std::chrono::seconds(1);
   if (now > received + most || now < received - most) return std::nullopt;
@@ -14,6 +15,7 @@ std::optional<Time> transmit_stamp(Time received, Time now) {
 NtpPacket ntp_answer(const NtpPacket& request, Time received, Time transmit,
                      const NtpServerState& state) {
   constexpr std::int64_t seldom = 66'667;  // 1 / 15 ppm
+  // The clock's error grows while nobody corrects it.
   const Duration age = std::max(transmit - state.read, Duration{0});
   NtpPacket answer;
   answer.leap = state.leap;
@@ -37,6 +39,7 @@ NtpPacket ntp_kiss_rate(const NtpPacket& request, Time received, Time transmit,
   // log2 s: 2 s, the rate that the limit allows (rate_limit.h)
   constexpr std::int8_t least_poll = 1;
   NtpPacket kiss = ntp_answer(request, received, transmit, state);
+  // A kiss has stratum 0, and its code stands in the field of the reference.
   kiss.leap = NtpLeap::unsynchronised;
   kiss.stratum = 0;
   kiss.reference_id = ntp_code("RATE");

@@ -11,6 +11,8 @@
 namespace kinalign {
 
 /// The state of the served clock, as answers contain it (RFC 5905 section 7.3).
+/// It is read a few times a second and used for all answers until then; `read` lets an answer add
+/// the error that has grown since.
 struct NtpServerState {
   NtpLeap leap = NtpLeap::unsynchronised;
   std::uint8_t stratum = ntp_stratum_unsynchronised;

@@ -40,6 +40,7 @@ NtpOutcome outcome_of_way(const NtpAsked& asked) {
   return itself ? NtpOutcome::from_itself : NtpOutcome::answered;
 }
 
+// A node that is set to the wrong port gets an outcome of its own, so the user can see the mistake.
 bool is_from_node(std::span<const std::uint8_t> bytes) {
   Envelope envelope;
   return open_envelope(bytes, envelope) == NodeRefusal::none;
@@ -68,6 +69,7 @@ NtpOutcome NtpResponder::respond(const NtpAsked& asked, Time now, HostTime host_
   if (asked.cut) return NtpOutcome::wrong_trailer;
   const RateLimit::Verdict verdict = limit(asked.from, host_now);
   if (verdict == RateLimit::Verdict::drop) return NtpOutcome::limited;
+  // After the rate limit: a step of the clock is no reason to answer more often.
   const auto transmit = transmit_stamp(asked.received, now);
   if (!transmit) return NtpOutcome::clock_stepped;
   const bool kiss = verdict == RateLimit::Verdict::kiss;

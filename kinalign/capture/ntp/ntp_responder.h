@@ -41,6 +41,8 @@ std::string_view name_of(NtpOutcome outcome);
 using NtpCounts = CountsBy<NtpOutcome, ntp_outcomes>;
 
 /// A received datagram.
+/// Everything that the decision depends on. `to` and `to_port` are the server's own address and
+/// port.
 struct NtpAsked {
   std::span<const std::uint8_t> bytes;
   bool cut = false;  // the datagram was longer than `bytes`
@@ -52,6 +54,7 @@ struct NtpAsked {
   Time received{};
 };
 
+/// The rate limit is the only state that requests can change; it has a fixed size.
 class NtpResponder {
  public:
   /// `key`: secret, random in each run. `exempt`: networks whose requests are not limited.

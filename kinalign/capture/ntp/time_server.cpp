@@ -17,6 +17,7 @@ constexpr int batches_in_turn = 16;  // batches of one socket before other socke
 Time now_utc() { return SystemClocks{}.utc(); }
 HostTime now_host() { return SystemClocks{}.raw(); }
 
+// Without a stamp of the kernel, the moment of reading stands for the arrival.
 NtpAsked asked_of(const Datagram& datagram, std::uint16_t port, Time now) {
   return {.bytes = datagram.bytes,
           .cut = datagram.cut,
@@ -40,6 +41,8 @@ TimeServer::TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> 
       sockets_(std::move(sockets)),
       responder_(options.key, options.exempt),
       batch_(std::make_unique<DatagramBatch>()) {
+  // The first answers should state chronyd's distance too, so the server waits a little for its
+  // report.
   if (is_synchronised(read_kernel_clock())) {
     chrony_.latest(now_host());
     chrony_.wait();
@@ -49,6 +52,7 @@ TimeServer::TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> 
 
 void TimeServer::look_at_clock() {
   const auto kernel = read_kernel_clock();
+  // An unsynchronised clock has no distance that chronyd could state.
   const auto chrony = is_synchronised(kernel) ? chrony_.latest(now_host()) : std::nullopt;
   responder_.set_state(server_state(kernel, chrony, policy_, now_utc()));
 }
@@ -64,6 +68,7 @@ void TimeServer::serve(const std::function<bool()>& go_on, NodeReceiver* nodes) 
   nodes_ = nullptr;
 }
 
+// Every ready socket is read before the next poll; the nodes' port comes first.
 void TimeServer::serve_until(HostTime end) {
   std::vector<pollfd> waiting;
   if (nodes_ != nullptr) {
@@ -93,6 +98,7 @@ void TimeServer::drain(const UdpSocket& socket) {
 
 // The outcome of a datagram is counted after sending, since the system may not accept its answer.
 void TimeServer::answer(const UdpSocket& socket, std::size_t datagrams) {
+  // One reading for the rate limit of the whole batch is enough.
   const HostTime host_now = now_host();
   std::array<NtpOutcome, DatagramBatch::most> outcomes{};
   for (std::size_t i = 0; i < datagrams; ++i) {

@@ -19,6 +19,7 @@
 
 namespace kinalign {
 
+/// Choices of the user, except `key`, which the program draws.
 struct TimeServerOptions {
   std::vector<std::string> addresses;         // addresses to serve on; empty: all of IPv4 and IPv6
   std::uint16_t port = 123;                   // 0: any free port, the same for all addresses
@@ -28,6 +29,7 @@ struct TimeServerOptions {
   std::uint16_t chrony_port = 323;            // command port of this host's chronyd
 };
 
+/// It answers, and never sets a clock.
 class TimeServer {
  public:
   static Result<TimeServer> open(const TimeServerOptions& options);

@@ -14,6 +14,7 @@ namespace kinalign {
 
 namespace {
 
+// Free space for this user: f_bavail leaves out what is reserved for root.
 std::optional<std::uint64_t> free_bytes(const std::string& path) {
   struct statvfs status {};
   const std::string in = folder(path).empty() ? "." : std::string(folder(path));
@@ -39,6 +40,7 @@ DiskThread::~DiskThread() {
   if (syncer_.joinable()) syncer_.join();
 }
 
+// The standard library throws if the system has no thread. The exception ends here.
 Result<void> DiskThread::start() {
   try {
     syncer_ = std::thread([this] { sync(); });
@@ -62,6 +64,8 @@ Result<void> DiskThread::start() {
 void DiskThread::push(McapChunkContent chunk, std::uint64_t room) {
   {
     const std::lock_guard lock(mutex_);
+    // Both count: chunks in the queue, and chunks that the disk keeps until a sync has confirmed
+    // them.
     if (status_.waiting_bytes + queue_bytes_ + chunk.size() > room) {
       status_.dropped += messages_in(chunk);
       return;
@@ -80,6 +84,7 @@ void DiskThread::finish() {
   written_.notify_one();
 }
 
+// Without a writing thread nobody else would drop the chunks.
 void DiskThread::give_up() {
   {
     const std::lock_guard lock(mutex_);
@@ -136,6 +141,7 @@ bool DiskThread::begin() {
       written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
     }
   }
+  // Frees what the function owns; it is not needed any more.
   open_ = nullptr;
   asked_.notify_one();
   return disk_.has_value();
@@ -145,6 +151,7 @@ void DiskThread::write() {
   if (!begin()) return;
   std::unique_lock lock(mutex_);
   while (!done_) {
+    // Also woken by the end, so that the file is finished when nothing more comes.
     written_.wait(lock, [this] { return !queue_.empty() || synced_ || finishing_; });
     work_on(lock);
     if (!done_ && !syncing_) due_ = disk_->unsynced();
@@ -177,6 +184,7 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
     return;
   }
   lock.lock();
+  // Only now: until the disk has the chunk, its bytes count as queued.
   queue_bytes_ -= taken;
   publish(result);
 }
@@ -190,6 +198,7 @@ void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
   const Result<void> result = disk_->finish(end);
   lock.lock();
   publish(result);
+  // After the last try the recording is finished in any case.
   done_ = status_.finished = result || last;
   if (!result && last) status_.dropped += disk_->unwritten();
   if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });

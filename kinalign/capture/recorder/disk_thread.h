@@ -18,6 +18,7 @@
 
 namespace kinalign {
 
+/// A copy of what the writing thread published last, with the queue's bytes added.
 struct DiskStatus {
   std::vector<std::string> paths;           // the recording's files; empty: no file is open yet
   std::uint64_t bytes = 0;                  // in these files
@@ -30,6 +31,8 @@ struct DiskStatus {
   bool finished = false;
 };
 
+/// Three threads use it. The caller's thread only queues chunks and reads the status. The writing
+/// thread owns the disk. The syncing thread gets the file for each sync through `due_`.
 class DiskThread {
  public:
   /// Limit on the bytes that wait for the disk: 19 minutes of the paper's devices.
@@ -62,6 +65,7 @@ class DiskThread {
   std::vector<PartFailure> take_failures();
 
  private:
+  /// `write` and `sync` are the bodies of the two threads; the others are steps of them.
   void write();
   bool begin();
   void drop_all();
@@ -79,6 +83,8 @@ class DiskThread {
   std::condition_variable written_, asked_;
   std::deque<McapChunkContent> queue_;
   std::uint64_t queue_bytes_ = 0;
+  /// One sync at a time: the writing thread sets `due_`, the syncing thread sets `synced_`, and the
+  /// writing thread takes both.
   std::optional<RecordingDisk::Sync> due_;  // the next sync, for the syncing thread
   std::optional<Result<void>> synced_;      // the result of the sync
   bool syncing_ = false, finishing_ = false, giving_up_ = false, done_ = false;

@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// The port is part of no key: a host that reconnects from another port is not reported again.
 class FindingsOnce {
  public:
   // findings; the number of unknown senders' addresses has no limit

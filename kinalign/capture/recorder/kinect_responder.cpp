@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+// A full table gives the place of a session that was silent this long.
 constexpr Duration replaced_after = std::chrono::minutes(1);
 
 }  // namespace
@@ -20,6 +21,7 @@ std::optional<Exchange> KinectResponder::receive(const KinectPing& ping, const H
   Session* session = session_of(ping, from, h_rx);
   if (session == nullptr) return std::nullopt;
   session->last_ping = h_rx;
+  // A ping above the pace is still a valid exchange; it only gets no pong.
   if (session->pace.ask(h_rx)) asked_by_ = session;
   asked_ = ping.origin;
   asked_at_ = h_rx;
@@ -64,6 +66,7 @@ std::optional<KinectPong> KinectResponder::answer(HostTime h_tx) {
   if (session == nullptr) return std::nullopt;
   std::array<std::uint8_t, sizeof nonces_> number{};
   std::memcpy(number.data(), &++nonces_, number.size());
+  // A counter hashed with the secret, so that nobody can guess a nonce.
   const auto nonce = static_cast<std::uint32_t>(siphash_2_4(secret_, number));
   const std::uint32_t sequence = session->next_pong++;
   session->answers.add({sequence, nonce, asked_at_, h_tx});

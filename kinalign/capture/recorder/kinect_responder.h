@@ -32,6 +32,8 @@ class KinectResponder {
   std::optional<KinectPong> answer(HostTime h_tx);
 
  private:
+  /// One run of one sensor's sender. Its table of pongs makes old pings useless: an echo counts
+  /// only once and only of this run.
   struct Session {
     std::uint32_t sensor = 0, session = 0;
     HostTime last_ping{};

@@ -42,6 +42,7 @@ MarkPort::MarkPort(Form form, UdpPieces pieces)
       pieces_(std::move(pieces)),
       repeats_(form == Form::call ? call_repeats : trigger_repeats) {}
 
+// A mark is stamped by its arrival at this port.
 void MarkPort::drain(HostAxis& axis, const TakeMark& take) {
   pieces_.drain(axis, [&](const Piece& piece) { take_piece(piece, take); });
 }

@@ -23,6 +23,7 @@ struct MarkPortCounts {
   std::map<std::string, std::uint64_t> refused;  // by cause, such as "bad_json"
 };
 
+/// Each form has its own port, because a broadcast of Vicon's is recognised only by its text.
 class MarkPort {
  public:
   enum class Form : std::uint8_t {
@@ -46,6 +47,7 @@ class MarkPort {
 
  private:
   MarkPort(Form form, UdpPieces pieces);
+  /// For each datagram: decode or refuse, answer, and pass on what is new.
   bool decode(const Piece& piece, Mark& mark);
   void refuse(const Piece& piece, Severity severity, const std::string& cause,
               const char* expected);

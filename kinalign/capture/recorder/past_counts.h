@@ -10,6 +10,7 @@
 
 namespace kinalign {
 
+/// It keeps one value for each chunk with which a take may begin.
 template <class Counts>
 class PastCounts {
  public:

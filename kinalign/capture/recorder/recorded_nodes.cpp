@@ -61,6 +61,7 @@ void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& news) {
     return;
   }
   Node& node = node_of(news.node_id, arrival.from);
+  // The exchange comes before the raw datagram. Both have the same arrival.
   std::optional<std::uint64_t> device_ns;
   if (news.exchange) {
     device_ns = static_cast<std::uint64_t>(news.exchange->n_tx.time_since_epoch().count());
@@ -79,6 +80,7 @@ void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& news) {
 RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress& from) {
   const auto found = nodes_.find(id);
   if (found != nodes_.end()) return found->second;
+  // The topic has the node's id. Its place on the body may be absent in lab.toml.
   const std::string number = std::to_string(id);
   const auto place = device_.nodes.find(number);
   const RawChannel raw{device_.name,
@@ -119,6 +121,7 @@ void RecordedNodes::judge(Node& node, const NodeMessage& news) {
   node.raw.status.samples += news.readings.size();
   if (!news.exchange) return;
   const BootKey before = std::exchange(node.boot, news.exchange->boot);
+  // The first frame is no restart, although the boot differs from the initial 0.
   const bool same_life = before == node.boot && counts.frames > 1;
   if (!same_life && counts.frames > 1) ++counts.order.restarts;
   if (same_life && news.frame < node.newest) ++counts.order.late;
@@ -160,6 +163,8 @@ void RecordedNodes::count_lost() {
     const auto found = nodes_.find(status.node_id);
     if (found == nodes_.end()) continue;
     Lost& lost = found->second.lost[status.stream];
+    // The receiver counts losses of the present life only, so the sum so far is kept when a new
+    // life begins.
     if (std::exchange(lost.lives, status.sessions) != status.sessions) lost.before += lost.present;
     lost.present = status.lost;
     StreamStatus& stream = found->second.raw.status;
@@ -167,6 +172,7 @@ void RecordedNodes::count_lost() {
   }
   for (auto& [id, node] : nodes_) {
     std::uint64_t& lost = node.raw.status.counts.order.lost;
+    // Added up anew each time: losses may shrink when late frames arrive.
     lost = 0;
     for (const auto& [stream, of_one] : node.lost) lost += of_one.before + of_one.present;
   }
@@ -180,6 +186,8 @@ void RecordedNodes::record_counts(std::uint16_t counts, HostTime now) const {
   for (const auto& [id, node] : nodes_) node.raw.record_counts(recorder_, counts, now);
 }
 
+// Datagrams that the filter in the kernel drops do not arrive where the system has such a filter.
+// They count as dropped, with and without it.
 PortCounts RecordedNodes::counts() const {
   const NodeCounts& counts = receiver_.counts();
   PortCounts out;

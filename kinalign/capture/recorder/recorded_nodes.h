@@ -18,6 +18,7 @@
 
 namespace kinalign {
 
+/// Not movable: the receiver calls back into it.
 class RecordedNodes {
  public:
   /// `clocks` and `recorder` must outlive the object.
@@ -53,6 +54,7 @@ class RecordedNodes {
   struct Lost {
     std::uint64_t lives = 0, present = 0, before = 0;
   };
+  /// One node id. Two nodes with the same id share its two channels.
   struct Node {
     RecordedSource raw;
     std::uint16_t exchanges = 0;  // channel of the clock exchanges
@@ -63,8 +65,11 @@ class RecordedNodes {
   };
 
   RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver, Recorder& recorder);
+  /// Called by the receiver for each datagram that passed the checks of port and key.
   void take(const NodeArrival& arrival, const NodeMessage& news);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
+  /// `judge` counts by verdict, at once. `count_lost` reads losses from the receiver, when counts
+  /// are looked at.
   static void judge(Node& node, const NodeMessage& news);
   void count_lost();
 

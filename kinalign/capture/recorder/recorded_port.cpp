@@ -41,6 +41,7 @@ Result<RecordedPort::Pieces> RecordedPort::open_pieces(const DeviceOptions& devi
   return Pieces(KA_TRY(TcpPieces::listen(device.address, port)));
 }
 
+// The answering part exists only for the protocol that needs it.
 RecordedPort::RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pieces pieces,
                            const SipHashKey& secret)
     : device_(std::move(device)), protocol_(&protocol), pieces_(std::move(pieces)) {
@@ -88,6 +89,7 @@ RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std
                                               Recorder& recorder) {
   const bool is_shared = sender.life > Senders::most_lives;
   if (sources_.size() <= number) sources_.resize(number + 1);
+  // The number now stands for several senders, so it has no source of its own.
   if (is_shared) sources_[number].reset();
   std::optional<Source>& source = is_shared ? others_ : sources_[number];
   const NodeAddress address{sender.host, sender.port};
@@ -101,6 +103,7 @@ RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std
                        is_shared ? "" : endpoint_text(to_string(sender.host), sender.port),
                        "",
                        ""};
+  // The old source of this number ends here. Its channel stays in the recording.
   source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw), raw,
                         StreamWatch(protocol_->protocol, has_datagrams(), raw.sender), sender.life,
                         address});
@@ -132,6 +135,7 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
         std::visit([&](auto& pieces) { pieces.send(piece.sender, octets(bytes)); }, pieces_);
       }
     }
+    // The channel is added with the first ping, because a sender may send none.
     if (!source.exchanges) {
       source.clock = std::make_unique<FollowedClock>();
       McapChannel channel = to_channel(topic("exchange", source.life), source.raw);
@@ -157,6 +161,8 @@ void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
   send_answers();
 }
 
+// Answers may go to another address than the last datagram's: heartbeats and pings are due without
+// a request.
 void RecordedPort::send_answers() {
   auto* udp = std::get_if<UdpPieces>(&pieces_);  // trackers use UDP only
   if (udp == nullptr) return;
@@ -165,6 +171,7 @@ void RecordedPort::send_answers() {
   }
 }
 
+// Only trackers expect messages that they did not ask for.
 void RecordedPort::tick(HostTime now) {
   if (!slimes_) return;
   slimes_->tick(now);
@@ -207,6 +214,7 @@ void RecordedPort::record_counts(Recorder& recorder, std::uint16_t counts, HostT
 void RecordedPort::look_at(Source& source) const {
   SenderCounts& counts = source.recorded.status.counts;
   const SenderCounts watched = source.watch.counts();
+  // Trackers are decoded by SlimeDesk, all others by the watch; the other number is 0.
   counts.frames = watched.frames + source.spoken;
   if (!slimes_) counts.order = watched.order;
   counts.refused = watched.refused + refused(source.verdicts) + source.pings_refused;
@@ -223,6 +231,7 @@ void RecordedPort::look_at(Source& source) const {
 /// them during the take. A host that reconnects is not reported again.
 void RecordedPort::find_faults(const Source& source) {
   const SenderCounts& counts = source.recorded.status.counts;
+  // A sender that sends only pings speaks the right protocol.
   const bool none = !source.exchanges && speaks_another_protocol(protocol_->recorded_name, counts);
   if (counts.refused == 0 && !none && !source.watch.has_overlap()) return;
   const std::string host = to_string(source.address.host);

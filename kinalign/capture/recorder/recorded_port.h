@@ -23,6 +23,8 @@
 
 namespace kinalign {
 
+/// The order for each piece: count, answer, record. Every piece of a sender with a number is
+/// recorded, whatever the watch says of it.
 class RecordedPort {
  public:
   /// `secret`: random in each run and different for each port.
@@ -51,6 +53,8 @@ class RecordedPort {
 
  private:
   using Pieces = std::variant<UdpPieces, TcpPieces>;
+  /// Everything about one sender that has a channel. It is made with the sender's first piece and
+  /// replaced when the sender's number gets another life.
   struct Source {
     RecordedSource recorded;
     RawChannel raw;
@@ -73,11 +77,13 @@ class RecordedPort {
   const Senders::Sender& sender_of(const Piece& piece) const;
   Source& source_of(const Senders::Sender& sender, std::size_t number, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t life) const;
+  /// Each answering function is used for one protocol only. Both send through the port itself.
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
   void answer_trackers(Source& source, const Piece& piece);
   void send_answers();
   template <class Port, class Visit>
   static void for_each_source(Port& port, Visit visit);
+  /// `look_at` brings the counts up to date; `find_faults` makes findings of them.
   void look_at(Source& source) const;
   void find_faults(const Source& source);
 

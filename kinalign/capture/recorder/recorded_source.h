@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// `status` is public, because the port and the nodes update their own fields of it.
 class RecordedSource {
  public:
   /// Adds a channel to the recorder.
@@ -39,6 +40,7 @@ class RecordedSource {
   std::uint16_t channel_ = 0;
   std::optional<HostTime> rated_;  // time of the last rate, or of the first message
   std::uint64_t came_ = 0;         // samples, frames or messages up to that time
+  /// `past_` knows the counts at each chunk that a take may begin with.
   PastCounts<SenderCounts> past_;
   SenderCounts before_;  // counts before the take
 };

@@ -6,6 +6,7 @@
 
 namespace kinalign {
 
+// Numbers have 16 bits. The last one is the channel that all further senders share.
 std::uint16_t Recorder::add_channel(McapChannel channel, const McapSchema* schema) {
   constexpr std::uint16_t last = 0xffff;
   if (channels_.size() > last) return last;
@@ -50,6 +51,8 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
     channel.in_chunk = true;
   }
   const std::uint64_t log = log_time(arrival);
+  // The sequence counts all messages of a channel, also before takes, so gaps between takes show in
+  // it.
   const McapMessage message{number, static_cast<std::uint32_t>(channel.messages++), log,
                             device_ns.value_or(log), data};
   chunk_.add(message);
@@ -57,6 +60,7 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
   if (chunk_.size() >= options_.chunk_bytes) close();
 }
 
+// A chunk is closed by time even if nothing more arrives, so that a kill loses little.
 void Recorder::tick(HostTime now) {
   if (opened_ && now - *opened_ >= options_.chunk) close();
   if (!started()) forget_before(now - options_.pre_roll);
@@ -78,6 +82,7 @@ void Recorder::close() {
   if (closed_) closed_(number_, first_number());
 }
 
+// During a take the pre-roll is empty: a take that began now would begin with the open chunk.
 std::uint64_t Recorder::first_number() const {
   return pre_roll_.empty() ? number_ : pre_roll_.front().number;
 }
@@ -92,6 +97,7 @@ void Recorder::forget_before(HostTime first) {
   }
 }
 
+// The open chunk is not closed; it goes to the take as a whole.
 std::uint64_t Recorder::start(HostTime now, Take take) {
   forget_before(now - options_.pre_roll);
   const std::uint64_t first = first_number();

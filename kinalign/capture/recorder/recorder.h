@@ -17,6 +17,7 @@
 
 namespace kinalign {
 
+/// The limits bound the memory that a recorder uses before a take.
 struct RecorderOptions {
   // length of a chunk; a kill loses little more than this
   Duration chunk = std::chrono::milliseconds(250);
@@ -30,6 +31,8 @@ struct RecorderOptions {
   Duration utc_minus_host{};
 };
 
+/// Chunks are numbered over the whole run. A closed chunk goes to the take in progress, or else
+/// into the pre-roll, with which the next take begins.
 class Recorder {
  public:
   using Take = std::function<void(McapChunkContent)>;
@@ -69,11 +72,13 @@ class Recorder {
   std::uint64_t log_time(HostTime t) const;
 
  private:
+  /// [i] of `channels_` has the number i.
   struct Channel {
     McapChannel channel;
     std::uint64_t messages = 0;
     bool in_chunk = false;  // the open chunk contains the channel's definition
   };
+  /// `close` ends the open chunk; `forget_before` shortens the pre-roll.
   std::uint16_t schema_id(const McapSchema& schema);
   void close();
   void forget_before(HostTime now);

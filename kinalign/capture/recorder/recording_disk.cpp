@@ -30,6 +30,7 @@ Result<std::string> free_path(const std::string& path, int part) {
   return Failure(Error{path, 0, "at most 1000 files of one recording", "more"});
 }
 
+// The writer shares the file with a sync that may be in progress.
 McapStore store_of(const std::shared_ptr<GrowingFile>& file) {
   return {[file](std::string_view bytes) { return file->append(bytes); },
           [file](std::uint64_t at, std::span<char> to) { return file->read_at(at, to); }};
@@ -47,6 +48,7 @@ Result<RecordingDisk> RecordingDisk::open(FileSystem& files, std::string path, M
 /// Creates the next file and writes its head. If that fails halfway, the file is removed, since it
 /// contains no sample.
 Result<void> RecordingDisk::open_part() {
+  // The number is that of the part; the name may have a higher one if names are taken.
   const int part = static_cast<int>(paths_.size()) + 1;
   const std::string path = KA_TRY(free_path(path_, part));
   auto file = std::make_shared<GrowingFile>(KA_TRY(GrowingFile::create(*files_, path)));
@@ -92,6 +94,7 @@ Result<void> RecordingDisk::put_kept() {
     kept.end = file_->size();
     kept.written = true;
   }
+  // The new file now has all chunks of the repeated one.
   if (repeated_) files_->remove(std::exchange(repeated_, std::nullopt)->path.c_str());
   if (given_up_) failures_.push_back({*std::exchange(given_up_, std::nullopt), paths_.back()});
   return {};
@@ -109,7 +112,9 @@ void RecordingDisk::remove_part() {
 /// collect a thousand files. Of two such files the one with more chunks is kept.
 void RecordingDisk::give_up_part() {
   if (!std::exchange(stands_, false)) return;
+  // Bytes of all other files. If this file is finished already, bytes_before_ includes it.
   const std::uint64_t of_others = bytes_before_ - (open_ ? 0 : file_->size());
+  // The result does not matter: the next file repeats what this one may lack.
   (void)finish_part();
   const auto chunks = static_cast<std::size_t>(
       std::count_if(kept_.begin(), kept_.end(), [](const Kept& kept) { return kept.end != 0; }));
@@ -132,6 +137,7 @@ Result<void> RecordingDisk::next_part(const Error& why) {
   return result;
 }
 
+// A chunk that was written to a file and never synced may be readable, so it does not count.
 std::uint64_t RecordingDisk::unwritten() const {
   std::uint64_t messages = 0;
   for (const Kept& kept : kept_) {
@@ -153,6 +159,7 @@ Result<void> RecordingDisk::synced(const Sync& sync, const Result<void>& result)
   return {};
 }
 
+// Only bytes that a sync has confirmed are forgotten; chunks are in the order of the file.
 void RecordingDisk::forget_synced(std::uint64_t size) {
   synced_ = size;
   while (!kept_.empty() && kept_.front().end != 0 && kept_.front().end <= size) {
@@ -172,6 +179,7 @@ Result<void> RecordingDisk::finish_part() {
   return finished;
 }
 
+// The order matters: all chunks, the counts of the end, the index, and then one sync for all.
 Result<void> RecordingDisk::finish_once(const McapMetadata& end) {
   KA_TRY(put_kept());
   KA_TRY(writer_->write(end));
@@ -187,6 +195,7 @@ Result<void> RecordingDisk::finish_once(const McapMetadata& end) {
 Result<void> RecordingDisk::finish(const McapMetadata& end) {
   Result<void> result = finish_once(end);
   if (result) return result;
+  // A caller may call finish() every second; the failure is reported by the first call only.
   const auto told = static_cast<std::ptrdiff_t>(failures_.size());
   result = next_part(result.error());
   if (result) result = finish_once(end);

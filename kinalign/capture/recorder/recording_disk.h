@@ -32,6 +32,8 @@ struct PartFailure {
   std::string next;
 };
 
+/// The invariant: a chunk is in `kept_` until a sync of the present file has confirmed it. So
+/// whenever a file is given up, everything that may be missing from it is still in memory.
 class RecordingDisk {
  public:
   /// Creates the file `path`, which ends in .mcap, and syncs nothing. Further files end in
@@ -68,6 +70,8 @@ class RecordingDisk {
  private:
   RecordingDisk(FileSystem& files, std::string path, MakeHead head)
       : files_(&files), path_(std::move(path)), head_(std::move(head)) {}
+  /// A file is open, then finished or given up. `put_kept` opens a file if none is open and writes
+  /// what is missing from it; `next_part` gives the present one up first.
   Result<void> open_part();
   Result<void> put_kept();
   Result<void> next_part(const Error& why);
@@ -86,6 +90,7 @@ class RecordingDisk {
   bool open_ = false;         // the file accepts chunks
   bool stands_ = false;       // the newest file of paths_ has not been given up
   std::uint64_t synced_ = 0;  // bytes of the file that are certainly on the disk
+  /// In the order of writing. Those with an `end` come first.
   struct Kept {
     McapStoredChunk chunk;
     std::uint64_t end = 0;  // end of the chunk in the present file; 0: not in it
@@ -95,6 +100,7 @@ class RecordingDisk {
   // bytes_before_: bytes of earlier files.
   std::uint64_t kept_bytes_ = 0, bytes_before_ = 0;
   // A file whose chunks the next file repeats.
+  // A file that no sync has confirmed. It is kept only until another file has all its chunks.
   struct Repeated {
     std::string path;
     std::size_t chunks = 0;

@@ -54,12 +54,15 @@ SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   return key;
 }
 
+// Options are in seconds, durations in ns.
 Duration pre_roll_of(const Lab& lab) {
   return Duration{static_cast<std::int64_t>(lab.record.pre_roll_s * 1e9)};
 }
 
 }  // namespace
 
+// A session whose ports can't all be opened does not begin: a missing device would show only in the
+// take.
 Result<std::unique_ptr<RecordingSession>> RecordingSession::open(Options options, Machine machine) {
   KA_TRY(validate(options.lab));
   std::unique_ptr<RecordingSession> session(new RecordingSession(std::move(options), machine));
@@ -71,6 +74,7 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::open(Options options
 RecordingSession::RecordingSession(Options options, Machine machine)
     : options_(std::move(options)), machine_(machine), axis_(machine.ports_clock) {
   facts_.host = options_.host;
+  // The pair of clocks that gives UTC to all takes of this session.
   facts_.anchor = axis_.watch();
   RecorderOptions recorder;
   recorder.pre_roll = pre_roll_of(options_.lab);
@@ -124,6 +128,7 @@ void RecordingSession::end_live() {
   if (live_) live_->end();
 }
 
+// Pieces of all devices, refused ones included. Marks do not count: they are few.
 std::uint64_t RecordingSession::received() const {
   std::uint64_t all = nodes_ ? nodes_->receiver().heard() : 0;
   for (const RecordedPort& port : ports_) all += port.heard();
@@ -156,6 +161,7 @@ void RecordingSession::turn(Duration patience, std::optional<int> also) {
   drain_marks();
   if (now >= next_look_) {
     next_look_ = now + between_looks;
+    // Silent nodes, heartbeats and pings are due several times a second.
     if (nodes_) nodes_->receiver().tick();
     for (RecordedPort& port : ports_) port.tick(now);
   }
@@ -166,6 +172,7 @@ void RecordingSession::turn(Duration patience, std::optional<int> also) {
   start_disks();
 }
 
+// The list of descriptors is made anew in each turn, because connections and nodes come and go.
 void RecordingSession::wait(Duration patience, std::optional<int> also) {
   std::vector<int> fds;
   if (nodes_) fds.push_back(nodes_->receiver().fd());
@@ -214,6 +221,7 @@ void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
   const Kind kind = mark.mark.kind;
   if (kind == Kind::start && may_start()) {
     if (by_marks_->starts == Starts::next) by_marks_->starts = Starts::none;
+    // A start during a take begins no second one.
     if (!recording()) start(by_marks_->plan, at);
     if (std::exchange(stop_is_due_, false)) {
       findings_.push_back(
@@ -224,12 +232,14 @@ void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
     }
   }
   recorder_->record(mark_channel_, at, to_json(mark));
+  // Marks beyond the limit are recorded, but not shown.
   if (marks_.size() < most_untaken) marks_.emplace_back(mark, at);
   if (kind != Kind::stop || !by_marks_) return;
   stop_is_due_ = recording();
   end_take_if_due();
 }
 
+// Stop marks still work, because by_marks_ stays.
 void RecordingSession::obey_no_start() {
   if (by_marks_) by_marks_->starts = Starts::none;
 }
@@ -255,6 +265,8 @@ void RecordingSession::record_counts(HostTime now) {
   }
 }
 
+// Called by the recorder whenever it closes a chunk: a take may begin with any of the chunks that
+// it keeps.
 void RecordingSession::remember_counts(std::uint64_t chunk, std::uint64_t first) {
   for (RecordedPort& port : ports_) port.remember(chunk, first);
   if (nodes_) nodes_->remember(chunk, first);
@@ -263,6 +275,7 @@ void RecordingSession::remember_counts(std::uint64_t chunk, std::uint64_t first)
   }
 }
 
+// From now on all counts are those of the take that begins with this chunk.
 void RecordingSession::begin_counts(std::uint64_t chunk) {
   for (RecordedPort& port : ports_) port.begin(chunk);
   if (nodes_) nodes_->begin(chunk);
@@ -279,6 +292,8 @@ void RecordingSession::start(const TakePlan& plan, HostTime at) {
   takes_.push_back(take);
   stop_is_due_ = false;
   begin_counts(recorder_->start(at, [this, take](McapChunkContent chunk) {
+    // All takes together share the limit, because a take may begin while another is still being
+    // written.
     const std::uint64_t others = waiting_bytes() - take->disk.status().waiting_bytes;
     take->disk.push(std::move(chunk),
                     DiskThread::most_waiting - std::min(others, DiskThread::most_waiting));
@@ -293,6 +308,7 @@ void RecordingSession::start_disks() {
     const DiskStatus disk = take->disk.status();
     if (disk.finished) continue;
     if (!take->disk_started) take->disk_started = take->disk.start().has_value();
+    // Later takes wait until this one has its file and so its number.
     if (disk.paths.empty()) return;
   }
 }
@@ -308,6 +324,8 @@ void RecordingSession::stop() {
 }
 
 void RecordingSession::end_take_if_due() {
+  // With two takes unreleased and starts still to come, the end is postponed: a third take would
+  // have no place.
   if (!stop_is_due_ || (takes_.size() > 1 && may_start())) return;
   stop_is_due_ = false;
   drain_until_empty();
@@ -360,6 +378,7 @@ std::vector<std::pair<std::string, PortCounts>> RecordingSession::port_counts() 
   return all;
 }
 
+// Counts since the session was opened.
 std::vector<std::pair<std::string, PortCounts>> RecordingSession::running_port_counts() const {
   std::vector<std::pair<std::string, PortCounts>> all;
   for (const RecordedPort& port : ports_) all.emplace_back(port.device().name, port.counts());

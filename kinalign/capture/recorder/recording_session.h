@@ -24,6 +24,7 @@
 
 namespace kinalign {
 
+/// One thread calls all functions. Everything that may wait is on the threads of the takes' disks.
 class RecordingSession {
  public:
   struct Options {
@@ -102,6 +103,8 @@ class RecordingSession {
   RecordingSession(Options options, Machine machine);
   Result<void> open_ports();
   Result<void> open_live_port(std::uint16_t port);
+  /// The steps of a turn, in this order: rest, wait, marks, devices, tick, live clients, the end of
+  /// a take, files.
   void rest(Duration patience);
   void wait(Duration patience, std::optional<int> also);
   std::uint64_t received() const;
@@ -118,16 +121,20 @@ class RecordingSession {
   void start(const TakePlan& plan, HostTime at);
   std::vector<std::pair<std::string, PortCounts>> running_port_counts() const;
 
+  /// Counts of one port, so that a take has its own.
   struct PortPast {
     PastCounts<PortCounts> past;
     PortCounts before{};  // counts before the take
   };
 
+  /// The takes that marks begin all follow one plan.
   struct ByMarks {
     TakePlan plan;
     Starts starts = Starts::none;
   };
 
+  /// The nodes' port calls back into the recorder, and the recorder calls back into the session and
+  /// the live port. So the session stays at one place in memory.
   Options options_;
   Machine machine_;
   HostAxis axis_;
@@ -145,6 +152,7 @@ class RecordingSession {
   // No rest before this time, because of a flood.
   HostTime awake_until_ = HostTime::min();
   std::optional<ByMarks> by_marks_;
+  /// At most two: the take in progress, or the last one, and the one before it.
   std::deque<std::shared_ptr<SessionTake>> takes_;
   bool stop_is_due_ = false;  // the take in progress ends as soon as it may
   Findings findings_;

@@ -15,6 +15,7 @@ struct TakeFiles {
   std::function<std::string()> free_path;
   TakeHead head;
 
+  // If the same path is still free, the failure has another cause than a taken name.
   Result<RecordingDisk> operator()() {
     std::string path = free_path();
     for (int tries = 1;; ++tries) {

@@ -35,6 +35,8 @@ struct TakeEnd {
   std::vector<NodeStatus> nodes;
 };
 
+/// The session keeps it until release_take(), and the recorder while the take is in progress. Its
+/// destructor waits for the disk's threads.
 struct SessionTake {
   HostTime begun{};
   std::optional<TakeEnd> end;  // absent: the take is in progress
@@ -46,6 +48,7 @@ struct SessionTake {
 McapHeader recording_header();
 
 /// The records at the beginning of each file of a take.
+/// It is copied for each file, because each file must be readable alone.
 struct TakeHead {
   RecordingFacts facts;
   ExpectedDevices expected;

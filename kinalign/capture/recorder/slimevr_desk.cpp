@@ -13,6 +13,7 @@ using std::chrono::seconds;
 constexpr Duration left_after = seconds(1);  // SlimeVR's own server does the same
 constexpr Duration tracker_replaced_after = seconds(60);
 constexpr Duration heartbeat_every = milliseconds(500), ping_every = seconds(1);
+// Limit on the bytes that may be sent to a device without new data from it.
 constexpr std::uint64_t most_credit = 4096;
 constexpr std::size_t most_sendings = 1024;  // limit on messages that wait in sendings_
 constexpr std::uint32_t handshake_type = 3, ping_type = 10;
@@ -70,6 +71,7 @@ SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, SlimeNews& news) {
   if (device == nullptr) return SlimeVerdict::stranger;
   news.device = index(*device);
   hear(*device, arrival);
+  // Returned pings have the host's number, so they say nothing about the order.
   if (datagram_.type != ping_type) {
     const Order order = device->numbers.push(datagram_.number);
     if (order == Order::duplicate) return SlimeVerdict::duplicate;
@@ -100,6 +102,7 @@ SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const Slime
   device->mac = handshake.mac;
   device->address = arrival.from;
   device->numbers = SequenceCount(64);
+  // The credit begins again: bytes from another address must not be answered here.
   device->credit = 0;
   device->next_heartbeat = arrival.h_rx + heartbeat_every;
   device->next_ping = arrival.h_rx;
@@ -121,6 +124,7 @@ SlimeDevice* SlimeDesk::find_device(const NodeAddress& address) {
   return found == nullptr ? nullptr : &devices_[index(*found)];
 }
 
+// By MAC; a handshake without a MAC matches only a device without one at the same address.
 SlimeDevice* SlimeDesk::device_named(const SlimeHandshake& handshake, const NodeAddress& address) {
   for (SlimeDevice& device : devices_) {
     if (!device.used || device.mac != handshake.mac) continue;
@@ -145,6 +149,7 @@ void SlimeDesk::hear(SlimeDevice& device, const SlimeArrival& arrival) {
   device.credit = std::min(device.credit + arrival.bytes.size(), most_credit);
 }
 
+// Only packets that need an answer or are shown to the user. Measurements are recorded as they are.
 void SlimeDesk::take(SlimeDevice& device, const SlimePacket& packet) {
   if (const auto* info = std::get_if<SlimeSensorInfo>(&packet)) {
     send(device, slime_sensor_info_acknowledged(info->sensor, info->status));
@@ -162,6 +167,7 @@ void SlimeDesk::send(SlimeDevice& device, const SlimeAnswer& answer) {
   sendings_.push_back({device.address, answer});
 }
 
+// Ids are hashed, so that a forger can't guess them.
 void SlimeDesk::ping(SlimeDevice& device, HostTime now) {
   device.next_ping = now + ping_every;
   std::array<std::uint8_t, 8> count{};
@@ -185,6 +191,7 @@ void SlimeDesk::tick(HostTime now) {
 
 std::span<const SlimeSending> SlimeDesk::take_sendings() {
   taken_.clear();
+  // Both buffers keep their memory.
   std::swap(taken_, sendings_);
   return taken_;
 }

@@ -43,6 +43,7 @@ std::uint64_t refused(const SlimeVerdicts& verdicts);
 /// Findings about an address with these verdicts. `name` appears in the messages.
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name);
 
+/// The result of one datagram, for the counts of its address.
 struct SlimeNews {
   SlimeVerdict verdict = SlimeVerdict::too_short;
   std::size_t device = 0;    // only if accepted
@@ -67,6 +68,7 @@ struct SlimeDevice {
   HostTime next_heartbeat{}, next_ping{};
 };
 
+/// One for each port. Its decisions depend on arguments only, so tests need no tracker.
 class SlimeDesk {
  public:
   static constexpr std::size_t most_devices = 64;
@@ -88,6 +90,7 @@ class SlimeDesk {
 
  private:
   SlimeVerdict judge(const SlimeArrival& arrival, SlimeNews& news);
+  /// Admits a device, or moves it to the address of its newest handshake.
   SlimeVerdict shake_hands(const SlimeHandshake& handshake, const SlimeArrival& arrival);
   SlimeDevice* find_device(const NodeAddress& address);
   SlimeDevice* device_named(const SlimeHandshake& handshake, const NodeAddress& address);
@@ -102,6 +105,8 @@ class SlimeDesk {
   std::vector<SlimeDevice> devices_;
   RateLimit strangers_;
   std::uint64_t pings_ = 0;
+  /// Answers wait in `sendings_` until the port takes them; `taken_` holds those that it is
+  /// sending.
   std::vector<SlimeSending> sendings_, taken_;
   SlimeDatagram datagram_;
 };

@@ -13,6 +13,7 @@
 namespace kinalign {
 
 /// The state of one sender's or one node's stream.
+/// Made for display and for the counts in a recording.
 struct StreamStatus {
   std::string topic, stream, sender;
   std::string node, place;  // nodes only: the id, and the place on the body from lab.toml

@@ -71,6 +71,7 @@ void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& n
   kinect.messages.clear();
   kinect.pings.clear();
   kinect.decoder.feed(piece.bytes, kinect.messages);
+  // A datagram holds whole messages, so its end ends the last one.
   if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
   for (KinectMessage& message : kinect.messages) {
     if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
@@ -108,6 +109,7 @@ void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& n
                     [](const JoinedKinectFrame& one) { return one.whole; }));
 }
 
+// A piece counts as refused once, however many faults it has.
 void StreamWatch::feed(std::string_view piece, HostTime arrival, NewestKinectFrames& newest) {
   std::visit(
       [&](auto& decoder) {
@@ -135,6 +137,7 @@ bool StreamWatch::has_overlap() const {
   return kinect != nullptr && !kinect->overlaps.empty();
 }
 
+// Each avatar has its own numbers; losses of all of them are added.
 SenderCounts StreamWatch::counts(const Noitom& noitom) {
   const NoitomCounts& counts = noitom.decoder.counts();
   // The last frame is complete too, although no frame has followed it.
@@ -152,6 +155,8 @@ SenderCounts StreamWatch::counts(const Xsens& xsens) {
   return out;
 }
 
+// Frames of ended sessions and stale messages count as late; parts that contradict each other as
+// refused.
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
   SenderCounts out{0, 0, kinect.whole, {}, kinect.further_sensors};
   out.order.late = kinect.late;

@@ -23,6 +23,7 @@ namespace kinalign {
 /// The sessions of a port's Kinects, by sensor id, whichever sender brought them.
 using NewestKinectFrames = std::map<std::uint32_t, KinectSessions>;
 
+/// Decodes only as much as counting needs. What it says never changes what is recorded.
 class StreamWatch {
  public:
   /// Protocols that are decoded elsewhere are not counted. `datagrams`: each piece is a datagram
@@ -44,6 +45,8 @@ class StreamWatch {
   Findings findings(const std::string& name) const;
 
  private:
+  /// One of these per sender, by protocol. The vectors are members to keep their memory from piece
+  /// to piece.
   struct Noitom {
     NoitomReceiver decoder{NoitomParts::heads};
     std::vector<NoitomArrival> frames{};
@@ -70,6 +73,7 @@ class StreamWatch {
     std::span<const std::uint8_t> bytes;
     HostTime arrival;
   };
+  /// One function for each protocol. Only a Kinect's uses `newest`.
   static void feed(Noitom& noitom, const Piece& piece, NewestKinectFrames& newest);
   static void feed(Xsens& xsens, const Piece& piece, NewestKinectFrames& newest);
   static void feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& newest);

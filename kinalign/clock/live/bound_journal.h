@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// A ring of fixed size: a node's clock must not grow with the length of a recording.
 class BoundJournal {
  public:
   void add(const Bound& bound);
@@ -23,6 +24,8 @@ class BoundJournal {
     double s, x;
   };
   std::array<Place, capacity> places_{};
+  /// The side of each bound is kept apart, because a bool beside two doubles would take eight
+  /// bytes.
   std::bitset<capacity> below_;
   std::size_t next_ = 0, size_ = 0;
 };

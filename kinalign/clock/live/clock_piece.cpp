@@ -59,6 +59,8 @@ double ClockPiece::violation(const Bound& e) {
   return e.side == Side::above ? low - e.x : e.x - high;
 }
 
+// The floors need the slope as it was before this bound, and must know of a change of route before
+// they take the bound.
 void ClockPiece::add(const Bound& b) {
   const SlopeBelief slope = estimate_.slope();
   const std::uint32_t changes = estimate_.changes();
@@ -69,6 +71,9 @@ void ClockPiece::add(const Bound& b) {
   journal_.add(b);
 }
 
+// Order of the checks: a bound outside the certificate waits among the violators. Then a
+// contradiction or a violator that nothing excluded ends the piece. Any other bound is taken and
+// may show a small step.
 ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   const Bound e = bound(crossing);
   newest_arrival_ = crossing.arrival;
@@ -262,6 +267,7 @@ ClockPiece ClockPiece::next_piece() const {
   Assumptions assumed = assumptions();
   if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
   ClockPiece next = next_behind(assumed, estimate_.slope().after_a_break());
+  // Readings that the counter showed before it stepped back must not be certified in the new piece.
   next.certified_from_ = std::max(certified_from_, newest_arrival_ + greatest_step_back());
   return next;
 }
@@ -276,6 +282,8 @@ std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
   double x = middle->value;
   ask(s);
   if (const auto& range = range_) {
+    // The likeliest offset may lie outside of what is possible, for example after a wrong guess
+    // about a route.
     x = std::clamp(x, range->low, range->high);
     stamp.earliest = origin_.host + rounded_down(s + range->low);
     stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);

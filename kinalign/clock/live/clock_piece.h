@@ -17,6 +17,8 @@ namespace kinalign {
 
 class ClockPiece {
  public:
+  /// All seconds of the piece count from `origin`, so doubles keep their precision however long the
+  /// node has run. `prior` and `shortest` come from the node's earlier pieces.
   ClockPiece(const ClockOrigin& origin, const Assumptions& assumptions, SlopeBelief prior = {},
              const ShortestRoundTrips& shortest = {})
       : origin_(origin),
@@ -33,6 +35,8 @@ class ClockPiece {
     slipped,   // taken; the floors show a step of the counter that is too small for the certificate
     uneasy     // taken; the same, but so small that the certificate still holds
   };
+  /// Judges a crossing, and takes it unless it contradicts the certificate. Call it in the order of
+  /// arrival.
   Verdict push(const Crossing& crossing);
 
   /// The host's time for reading n. Absent before there is a crossing of each kind, and more than
@@ -75,12 +79,15 @@ class ClockPiece {
     slip_with_route,
     slip_between_windows
   };
+  /// Between readings and seconds from the origin.
   Bound bound(const Crossing& crossing) const;
   HostTime host_time(const Bound& e) const;
+  /// Computes the certificate's range at s and keeps it in `range_`.
   void ask(double s);
   double violation(const Bound& e);
   void add(const Bound& e);
   Verdict broken(End why);
+  /// The three signs of a step that is too small for the certificate; each returns its size, s.
   std::optional<double> stepped_between_windows();
   std::optional<double> stepped_with_route();
   std::optional<double> narrowed();
@@ -95,6 +102,8 @@ class ClockPiece {
   ClockOrigin origin_;
   HostTime begin_, newest_arrival_;  // arrivals of the first and the newest frame
   HostTime certified_from_ = HostTime::min();
+  /// The next four hold the same bounds: what is possible, what is likely, their order, and their
+  /// least delays. Violators are in none of them.
   Certificate certificate_;
   OffsetEstimate estimate_;
   BoundJournal journal_;

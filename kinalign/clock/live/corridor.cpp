@@ -17,6 +17,7 @@ struct Gap {
   double rise = 0.0;
 };
 
+// The lower bounds are stored mirrored, so their slope and their bound change sign.
 Gap gap_at(const Corridor& corridor, double t, double slope) {
   const auto up = corridor.above.at(t, slope);
   const auto down = corridor.below.at(t, -slope);
@@ -38,6 +39,8 @@ double edge_from(const Corridor& corridor, double t, double outside) {
 
 }  // namespace
 
+// If g falls from the left end on, or still rises at the right end, its peak is that end. Otherwise
+// the peak lies between, and the tangents at both sides close in on it.
 CorridorLine widest_line(const Corridor& corridor, double t, double beta) {
   assert(!corridor.above.empty() && !corridor.below.empty());
   Gap left = gap_at(corridor, t, -beta);

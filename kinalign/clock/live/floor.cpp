@@ -14,6 +14,7 @@ constexpr std::size_t nearest = 6;  // number of gaps between points that a dens
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double resolution_s = 1e-6;
 
+// Class 0: below 1 us; class i: from 2^(i-1) us on. The last class has no upper limit.
 std::size_t class_of(double excess) {
   if (excess < resolution_s) return 0;
   return std::min<std::size_t>(23, 1 + static_cast<std::size_t>(std::ilogb(excess / resolution_s)));
@@ -21,6 +22,8 @@ std::size_t class_of(double excess) {
 
 }  // namespace
 
+// k points within a distance d from the lowest ones have a density of k / d. Only the nearest few
+// count, because the density falls with the distance.
 double density_above(std::span<double> excess) {
   if (excess.size() < 2) return 0.0;
   const std::size_t k = std::min(nearest, excess.size() - 1);

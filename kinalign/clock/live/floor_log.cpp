@@ -43,6 +43,7 @@ double silence(double apart_s, double slope_deviation) {
 
 }  // namespace
 
+// Inserts into a sorted array of fixed size; the longest falls out.
 void ShortestRoundTrips::add(const FloorWindow& window) {
   if (window.round_trip <= 0.0) return;
   const auto end = shortest_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -60,6 +61,8 @@ void ShortestRoundTrips::leave(const FloorWindow& route) {
   left_ = std::min(left_.value_or(known), known);
 }
 
+// The shortest three that agree. Up to two shorter ones are skipped: a counter may have stepped in
+// their windows.
 double ShortestRoundTrips::least_width() const {
   for (std::size_t i = 0; i <= most_too_short && i + alike <= count_; ++i) {
     double gap = 0.0;

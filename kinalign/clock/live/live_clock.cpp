@@ -42,6 +42,8 @@ void LiveClock::cut_short() {
   settles_.reset();
 }
 
+// A new boot has another counter but the same crystal, so the slope and the shortest round trips
+// are still valid.
 void LiveClock::begin(BootKey boot, const Crossing& first) {
   SlopeBelief prior;
   if (piece_) {  // the crystal is the same
@@ -74,6 +76,8 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
     return;
   }
   if (!piece_ || boot != boot_) begin(boot, crossing);
+  // The host's clock must never go back (H1). If it does, a new piece begins, because old bounds
+  // don't fit new ones.
   if (h_rx < newest_) {
     cut_short();
     take_piece({ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope(),

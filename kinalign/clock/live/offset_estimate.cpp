@@ -84,6 +84,8 @@ Middle OffsetEstimate::joined(const Middle& middle) const {
   const double carried = joint_->x - there.value;
   const double carried_variance = joint_->variance + there.deviation * there.deviation;
   const double longer = std::max(0.0, middle.round_trip - least_round_trip_);
+  // The variance of a value that is equally likely everywhere in a range is the range squared by
+  // 12.
   const double own_variance = (longer * longer + std::pow(middle.floor_deviation(), 2)) / 12.0;
   const double share = own_variance / (own_variance + carried_variance);
   Middle moved = middle;

@@ -121,6 +121,8 @@ Middle Route::middle_elsewhere(double t, const Middle& now) const {
   return average(t, now, around);
 }
 
+// The grid of slopes is moved and scaled until the likely slopes lie within it and several of its
+// points are among them.
 Middle Route::average(double t, const Middle& known, SlopeBelief& around) const {
   const bool sharp = known.sharp();
   const double above_gap = sharp ? 1.0 / known.above_density : 0.0;

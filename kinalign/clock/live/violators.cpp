@@ -13,6 +13,7 @@ constexpr double latest_s = 1.0;  // a crossing that is so late may come from be
 
 }  // namespace
 
+// Between two bounds the offset can move by the greatest rate times their distance, and no further.
 bool contradict(const Bound& a, const Bound& b, double rate) {
   if (a.side == b.side) return false;
   const Bound& above = a.side == Side::above ? a : b;

@@ -29,6 +29,8 @@ std::optional<Duration> one_way_delay(const ClocklessExchange& exchange);
 std::optional<Duration> least_one_way_delay(std::span<const ClocklessExchange> exchanges);
 
 /// T2 - d with each frame's own d; absent for a frame without one.
+/// The three functions below are the paper's two methods and ours, for the comparison in
+/// docs/clock.md.
 std::vector<std::optional<HostTime>> stamps_by_each_delay(
     std::span<const ClocklessExchange> exchanges);
 

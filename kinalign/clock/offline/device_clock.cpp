@@ -41,6 +41,7 @@ HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchange
   out.doubtful = std::move(model.doubtful);
   std::unordered_map<BootKey, std::vector<std::size_t>> exchanges_of;  // boots without replies
   for (const ClockPieceModel& piece : model.pieces) {
+    // Creates an empty entry, so that only exchanges of these boots are collected below.
     if (piece.knots.empty()) exchanges_of[piece.boot];
   }
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
@@ -73,6 +74,7 @@ HostTime host_at(const ClockKnot& knot) {
 bool is_doubtful(const HostFromNode& model, const ClockPieceModel& piece, const ClockKnot& a,
                  const ClockKnot& b) {
   constexpr Duration around = std::chrono::seconds(1);
+  // A second is added on each side, because a stretch concerns arrivals and knots concern readings.
   const HostTime begin = host_at(a) - around, end = host_at(b) + around;
   if (!is_behind_step(host_at(a) - (a.offset - a.least), piece.certified_from, piece.last))
     return true;
@@ -139,12 +141,15 @@ void keep_rising(TimeModel& time, std::size_t first) {
 Duration move_of(const ClockPieceModel& piece, const ClockPieceModel& before, Duration moved) {
   const ClockKnot &end = before.knots.back(), &begin = piece.knots.front();
   if (piece.boot == before.boot && begin.node > end.node) return moved;
+  // At least twice the greatest age of a sample, so that old samples of the new piece stay after
+  // those of the piece before.
   const Duration between = std::max(host_at(begin) - host_at(end), 2 * oldest_sample);
   return end.node.time_since_epoch() + moved + between - begin.node.time_since_epoch();
 }
 
 }  // namespace
 
+// Pieces without knots keep their place in `moved`, so that an index means the same in both lists.
 DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus_host) {
   DeviceClock out;
   out.model = with_one_way(fit_offline_clock(exchanges).model, exchanges);
@@ -159,6 +164,7 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
       const std::size_t first = out.time.pieces.size();
       append_lines(out.model, piece, moved, utc_minus_host, out.time);
       reach_back(out.time, first, last_stamp);
+      // The stamps continue, so UTC must continue to rise with them.
       if (before != nullptr && moved == last_moved) keep_rising(out.time, first);
       last_stamp = stamp_at(piece.knots.back().node, moved);
       before = &piece;

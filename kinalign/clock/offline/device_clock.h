@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// `moved` and `pieces_of` index the pieces of `model`.
 struct DeviceClock {
   HostFromNode model;  // pieces without knots: nothing is known of them
   /// For each piece: the duration added to its counter. It is 0 up to the first restart or step

@@ -39,6 +39,7 @@ Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumpt
   return certificate;
 }
 
+// The model of a piece before anything is said about its certainty.
 struct Knots {
   std::vector<ClockKnot> knots;
   bool sound = true;  // the bounds agree everywhere and leave at least the least width
@@ -54,6 +55,7 @@ Knots knots_of(const PieceBounds& piece, const Certificate& certificate, Offline
     end = std::max(end, b.s);
   }
   const double widened = certificate.assumptions().curvature * knot_s * knot_s / 8.0;
+  // The offset between the origins is added in whole nanoseconds, which a double may not keep.
   const Duration base = piece.origin.host.time_since_epoch() - piece.origin.node.time_since_epoch();
   const auto count = static_cast<std::size_t>(std::ceil((end - begin) / knot_s)) + 1;
   Knots out;
@@ -61,6 +63,8 @@ Knots knots_of(const PieceBounds& piece, const Certificate& certificate, Offline
     const Duration since = nanoseconds(std::round((begin + knot_s * static_cast<double>(i)) * 1e9));
     const double t = seconds(since), likeliest = estimate.at(t);
     const auto range = certificate.at(t);
+    // One knot at which the bounds contradict each other, or leave less room than packets take,
+    // refutes the assumptions for the whole piece.
     out.sound = out.sound && range && range->high - range->low >= least_width;
     const double low = range ? range->low : likeliest, high = range ? range->high : likeliest;
     out.knots.push_back({piece.origin.node + since,
@@ -130,6 +134,8 @@ PieceBounds collect(const OfflineWalk& walk, std::size_t p,
 
 }  // namespace
 
+// Bounds of doubtful stretches are left out first. If nothing else remains, they still give the
+// likeliest offset, without a certificate.
 OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
                                const Assumptions& assumptions) {
   OfflineWalk walk = walk_offline(exchanges, assumptions);

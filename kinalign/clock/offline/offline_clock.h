@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// Withdrawals become doubtful stretches of the model.
 struct OfflineClock {
   HostFromNode model;
   std::vector<ClockEvent> events;  // events of the live clock, without the withdrawals

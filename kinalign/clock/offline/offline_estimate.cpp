@@ -88,6 +88,8 @@ void keep_low(std::vector<OffsetBound>& lows, OffsetBound bound, double slope) {
 
 }  // namespace
 
+// Routes first, then all bounds into their route, then the shifts that join the routes. Bounds
+// between two routes belong to none.
 OfflineEstimate::OfflineEstimate(const std::vector<Bound>& bounds) {
   const Changes changes = find_changes(bounds);
   const std::vector<Span> spans = routes_between(bounds, changes);
@@ -182,7 +184,9 @@ double OfflineEstimate::least_round_trip() const {
 double OfflineEstimate::at(double t) {
   auto stretch = std::find_if(stretches_.begin(), stretches_.end() - 1,
                               [t](const Stretch& s) { return t < s.end; });
+  // A time between two routes goes to the nearer one.
   if (stretch != stretches_.begin() && stretch->begin - t > t - (stretch - 1)->end) --stretch;
+  // Kept as the line from which the next call starts; neighbouring times have nearly the same line.
   stretch->last = middle(*stretch, t);
   return stretch->last.value + stretch->moved;
 }

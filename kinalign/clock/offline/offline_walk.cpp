@@ -8,6 +8,7 @@ namespace kinalign {
 
 namespace {
 
+// Events after which the live clock has a new piece.
 bool begins_piece(ClockEvent::Kind kind) {
   using Kind = ClockEvent::Kind;
   return kind == Kind::new_boot || kind == Kind::step || kind == Kind::slip ||
@@ -49,6 +50,8 @@ void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
     if (event.kind == ClockEvent::Kind::host_backwards) return k == i;
     return e.h_rx >= event.begin && (walk.late[k] || e.boot == event.boot);
   };
+  // A step is noticed some crossings after it happened. The exchanges in between move to the new
+  // piece.
   for (std::size_t k = i + 1; k-- > 0 && is_of_it(k);) walk.piece[k] = next;
 }
 
@@ -83,6 +86,7 @@ void observe(OfflineWalk& walk, std::size_t i, LiveClock& clock, Side of) {
   for (const ClockEvent& event : clock.take_events()) note(walk, i, event, of, *clock.piece());
 }
 
+// Events that end a piece, even if a step of it is not confirmed yet.
 bool cuts_short(ClockEvent::Kind kind) {
   return kind == ClockEvent::Kind::new_boot || kind == ClockEvent::Kind::host_backwards;
 }
@@ -105,6 +109,7 @@ OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions&
   LiveClock clock(assumptions);
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
     const Exchange& e = exchanges[i];
+    // The newest piece so far. `note` changes it if a piece begins with this exchange.
     walk.piece[i] = walk.pieces.empty() ? 0 : walk.pieces.size() - 1;
     const auto late = clock.late_crossings();
     const auto unsettled = clock.unsettled_since();

@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// Everything that the second step (offline_clock.cpp) needs; it never asks the live clock again.
 struct OfflineWalk {
   /// State of the live clock at the beginning of a piece.
   struct Piece {

@@ -58,6 +58,8 @@ const Low& level_at(const std::vector<Low>& lows, std::size_t from) {
 
 /// True if the three seconds from k on all lie on another level than those before, on the same
 /// side. The rate in between is that of the half minute before.
+/// A late arrival raises a bound, and none comes early. A leap moves the least bound of each of
+/// three seconds, which delays do not.
 bool leaps(const std::vector<Low>& lows, std::size_t first, std::size_t k) {
   if (k < first + leap_seconds || k + leap_seconds > lows.size()) return false;
   const Low& before = level_at(lows, k - leap_seconds);
@@ -134,6 +136,8 @@ std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOri
   return knots;
 }
 
+// Only upper bounds exist, so the offset is the upper envelope that the curvature allows. All
+// packets may be late by the same least delay, which nothing here can show.
 ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double curvature) {
   const Exchange& front = exchanges[stretch.begin];
   const ClockOrigin origin{front.n_tx, front.h_rx};
@@ -151,6 +155,7 @@ ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double
     model.first = std::min(model.first, exchanges[i].h_rx);
     model.last = std::max(model.last, exchanges[i].h_rx);
   }
+  // No lower bounds: `certified` stays false.
   model.up = stretch.end - stretch.begin;
   // The edge of the hull under the middle gives the rate. Near the ends of the piece, a corner is
   // merely some packet that arrived there. The offset may deviate from that rate only by as much as

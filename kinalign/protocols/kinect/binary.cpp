@@ -13,6 +13,8 @@ namespace {
 
 using Refusal = KinectRefusal;
 
+// Numbers in the head: docs/formats/kinect_stream.md. A bit that version 1 does not use must be 0,
+// so that a later version can give it a meaning.
 constexpr std::uint8_t version = 1, kinect_v2 = 1;
 constexpr std::uint8_t hello_type = 1, frame_type = 2, ping_type = 3, pong_type = 4;
 constexpr std::uint8_t utc_flag = 1, floor_flag = 2, orientations_flag = 4, hands_flag = 8,
@@ -27,6 +29,7 @@ struct Head {
 
 // ---- reading
 
+// The caller has checked magic, version and length, so these are skipped.
 Head take_head(LittleEndianReader& reader) {
   Head head;
   reader.take_bytes(kinect_magic.size() + 1);  // the magic and the version
@@ -47,6 +50,7 @@ void take_floats(LittleEndianReader& reader, std::array<float, n>& to) {
   for (float& number : to) number = reader.take_float();
 }
 
+// A length of one byte, then the text without an end.
 std::string take_short_text(LittleEndianReader& reader) {
   const auto bytes = reader.take_bytes(reader.take<std::uint8_t>());
   return {bytes.begin(), bytes.end()};
@@ -103,6 +107,8 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
                          [](float x) { return std::bit_cast<std::uint32_t>(x) != 0; })) {
     return Refusal::stray_bits;
   }
+  // The loop ends early if the message is shorter than its bodies; the caller then refuses it by
+  // its length.
   for (std::uint8_t i = 0; i < head.bodies && reader.complete(); ++i) {
     frame.bodies.push_back(take_body(reader, frame.has_orientations));
   }
@@ -129,6 +135,7 @@ Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& m
   return Refusal::none;
 }
 
+// The host only sends pongs. They are decoded for tests and for the sender of the rehearsal.
 Refusal take_pong(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags != 0 || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
     return Refusal::stray_bits;
@@ -166,6 +173,7 @@ Refusal open(std::span<const std::uint8_t> bytes) {
   if (bytes[4] != version) return Refusal::unknown_version;
   if (bytes.size() > most_kinect_bytes) return Refusal::too_long;
   if (stated_kinect_length(bytes) != bytes.size()) return Refusal::wrong_length;
+  // The CRC is checked last: its position follows from the length.
   LittleEndianReader crc(bytes.last(kinect_crc_size));
   const auto checked = bytes.first(bytes.size() - kinect_crc_size);
   return crc.take<std::uint32_t>() == crc32(checked) ? Refusal::none : Refusal::bad_crc;
@@ -208,6 +216,7 @@ void put_body(std::vector<std::uint8_t>& out, const KinectBody& body, bool has_o
   if (has_orientations) put_floats(out, body.orientations);
 }
 
+// The flags state which optional fields hold values. Absent fields are written as zeros.
 std::uint8_t flags_of(const KinectFrame& frame) {
   return static_cast<std::uint8_t>((frame.utc_us ? utc_flag : 0) | (frame.floor ? floor_flag : 0) |
                                    (frame.has_orientations ? orientations_flag : 0) |
@@ -256,6 +265,9 @@ std::size_t stated_kinect_length(std::span<const std::uint8_t> head) {
   return head[6] | static_cast<std::size_t>(head[7]) << 8;
 }
 
+// Used on connections, before the whole message has arrived. An impossible head shows that the
+// magic stood in other data, so the search continues at once instead of waiting for up to 4498
+// bytes.
 KinectRefusal check_kinect_head(std::span<const std::uint8_t> head) {
   if (head[4] != version) return Refusal::unknown_version;
   const std::size_t length = stated_kinect_length(head);
@@ -264,6 +276,8 @@ KinectRefusal check_kinect_head(std::span<const std::uint8_t> head) {
   if (length > most_kinect_bytes) return Refusal::too_long;
   const std::uint8_t type = head[5], bodies = head[22];
   const bool oriented = (head[20] & orientations_flag) != 0;
+  // A hello has two texts of at most 64 bytes, each with its length. All other types have a fixed
+  // size for their flags and bodies.
   const bool fits = (type == hello_type && fields >= 2 + kinect_crc_size &&
                      fields <= 2 * (1 + 64) + kinect_crc_size) ||
                     (type == frame_type && length == kinect_frame_size(bodies, oriented)) ||
@@ -279,6 +293,7 @@ KinectRefusal decode_kinect_binary(std::span<const std::uint8_t> bytes, KinectMe
   LittleEndianReader reader(bytes.first(bytes.size() - kinect_crc_size));
   const Head head = take_head(reader);
   Refusal refusal = take_fields(head, reader, message);
+  // All bytes of the message must be used, no more and no fewer.
   if (refusal == Refusal::none && (!reader.complete() || reader.left() != 0)) {
     refusal = Refusal::wrong_length;
   }
@@ -291,6 +306,7 @@ std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message) {
   assert(check(message) == Refusal::none);
   std::vector<std::uint8_t> out;
   std::visit(Put{out}, message);
+  // The length is written before the CRC is computed, because the CRC covers it.
   const std::size_t length = out.size() + kinect_crc_size;
   out[6] = static_cast<std::uint8_t>(length & 0xff);
   out[7] = static_cast<std::uint8_t>(length >> 8);
@@ -298,6 +314,8 @@ std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message) {
   return out;
 }
 
+// Each part repeats the frame's own fields, so the receiver can use the parts that arrive if one is
+// lost. A frame without bodies is one part.
 std::vector<KinectFrame> kinect_parts(const KinectFrame& frame) {
   std::size_t most = 1;  // bodies of a part
   while (kinect_frame_size(most + 1, frame.has_orientations) <= most_kinect_datagram) ++most;

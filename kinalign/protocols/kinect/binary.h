@@ -8,6 +8,7 @@
 
 namespace kinalign {
 
+// Positions and types of the fields: docs/formats/kinect_stream.md, "Binary: head and end".
 inline constexpr std::size_t kinect_head_size = 24, kinect_crc_size = 4;
 inline constexpr std::size_t most_kinect_bytes = 4498;  // 6 bodies with orientations
 /// Most bytes of a datagram that fit into an Ethernet frame, over IPv6 and IPv4.
@@ -29,6 +30,8 @@ KinectRefusal decode_kinect_binary(std::span<const std::uint8_t> bytes, KinectMe
 std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message);
 
 /// Bytes of a message with a frame of `bodies` bodies.
+/// 48 bytes are the frame's own fields. A body has 12 bytes, and each joint 1 state, 12 bytes of
+/// position and 16 of orientation.
 constexpr std::size_t kinect_frame_size(std::size_t bodies, bool orientations) {
   return kinect_head_size + 48 + kinect_crc_size +
          bodies * (12 + std::size_t{25} * (1 + 12 + (orientations ? 16 : 0)));

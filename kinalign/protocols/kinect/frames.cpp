@@ -30,10 +30,14 @@ std::size_t append_body(const KinectBody& body, PointFrames& out) {
   return wild;
 }
 
+// The sensor's ticks count from its start, so this stamp is no UTC. Alignment fits the sensor's
+// clock later.
 Time device_stamp(const KinectFrame& frame) { return Time{duration_of(frame.device_ticks)}; }
 
 }  // namespace
 
+// Numbers begin again with each session, so the counts of the ended session are added up and a new
+// count begins.
 void KinectFrameJoiner::begin_session(std::uint32_t session) {
   counts_.frames += sequence_.counts();
   sequence_ = SequenceCount(32);
@@ -42,6 +46,7 @@ void KinectFrameJoiner::begin_session(std::uint32_t session) {
   ++counts_.sessions;
 }
 
+// The frame itself was joined on the other connection. Only its number and its ticks matter here.
 void KinectFrameJoiner::follow(const KinectMoment& last) {
   begin_session(last.origin.session);
   sessions_.take(last);
@@ -49,6 +54,8 @@ void KinectFrameJoiner::follow(const KinectMoment& last) {
   sequence_.push(last.origin.sequence);
 }
 
+// A message of an ended session is dropped. A message of the newest one joins the open frame or
+// begins a new one. A frame is passed on as soon as all its parts are there.
 void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>& out,
                              std::string_view sender) {
   const KinectOrigin origin = message.origin;
@@ -65,10 +72,13 @@ void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>
   } else {
     begin(std::move(message), out);
   }
+  // One bit for each part up to the last: (2 << last) - 1.
   const bool whole = open_ && last_ && have_ == (2U << *last_) - 1;
   if (whole) close(out);
 }
 
+// If both ticks are older than those of the newest frame, the sender did not restart; its number is
+// then no restart either.
 bool KinectFrameJoiner::is_newer(const KinectFrame& message) const {
   return newest_ && has_newer_ticks(moment_of(message), *newest_);
 }
@@ -85,6 +95,7 @@ void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame
     ++counts_.stale;
     return;
   }
+  // A late frame is passed on, but the newest one stays the measure for ticks.
   if (order != Order::late) newest_ = moment_of(message);
   close(out);
   have_ = 1U << message.part;
@@ -100,6 +111,8 @@ void KinectFrameJoiner::join(KinectFrame message) {
     ++counts_.parts_doubled;
     return;
   }
+  // Parts of one frame have equal device ticks and at most six bodies together. The last part has
+  // the highest number of all.
   const bool fits = message.device_ticks == frame.device_ticks &&
                     frame.bodies.size() + message.bodies.size() <= most_kinect_bodies &&
                     (message.more_parts || std::bit_width(have_) <= message.part) &&
@@ -110,12 +123,14 @@ void KinectFrameJoiner::join(KinectFrame message) {
   }
   have_ |= 1U << message.part;
   if (!message.more_parts) last_ = message.part;
+  // The time of sending is that of the first part, whichever part arrived first.
   frame.sent_ticks = std::min(frame.sent_ticks, message.sent_ticks);
   frame.has_hands |= message.has_hands;
   frame.has_orientations |= message.has_orientations;
   frame.bodies.insert(frame.bodies.end(), message.bodies.begin(), message.bodies.end());
 }
 
+// Passes the open frame on, whole or not.
 void KinectFrameJoiner::close(std::vector<JoinedKinectFrame>& out) {
   if (!open_) return;
   const bool whole = last_ && have_ == (2U << *last_) - 1;
@@ -131,10 +146,13 @@ void KinectFrameJoiner::finish(std::vector<JoinedKinectFrame>& out) { close(out)
 KinectFrameCounts KinectFrameJoiner::counts() const {
   KinectFrameCounts counts = counts_;
   counts.frames += sequence_.counts();
+  // Each session after the first is a restart, which no count of numbers has seen.
   if (counts.sessions > 1) counts.frames.restarts += counts.sessions - 1;
   return counts;
 }
 
+// An absent body has only missing joints: KinectBody{} has state 0 everywhere. So each frame gives
+// one row.
 std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, PointFrames& out) {
   out.stamps.push_back(device_stamp(frame));
   const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
@@ -144,6 +162,8 @@ std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, Poin
 
 NodeTime kinect_sender_time(std::int64_t ticks) { return NodeTime{duration_of(ticks)}; }
 
+// NTP's names: T1 is the ping's sending, T2 its arrival `h_rx`, T3 the pong's departure `h_tx`, T4
+// the pong's arrival at the sender. The echo holds T3 and T4 of an earlier pong.
 Exchange exchange_of(const KinectPing& ping, HostTime h_rx, std::optional<HostTime> h_tx) {
   Exchange exchange{ping.origin.session, kinect_sender_time(ping.sent_ticks), h_rx, std::nullopt};
   if (ping.echo && h_tx) {

@@ -13,11 +13,13 @@
 
 namespace kinalign {
 
+/// A frame as it is passed on. A lost part takes its bodies with it, but not the frame.
 struct JoinedKinectFrame {
   KinectFrame frame;   // with all its parts; `sent_ticks` is that of the first part
   bool whole = false;  // no part is missing
 };
 
+/// Counts of one sensor. A frame that lost a part is not lost; it counts in `parts_lost`.
 struct KinectFrameCounts {
   SequenceCounts frames;  // all sessions; each session but the first counts as a restart
   std::uint64_t sessions = 0;
@@ -50,12 +52,16 @@ class KinectFrameJoiner {
   const std::optional<KinectOverlap>& overlap() const { return sessions_.overlap(); }
 
  private:
+  /// Ends the counts of the previous session and starts new ones.
   void begin_session(std::uint32_t session);
   /// True if the message's ticks are newer than those of all joined frames.
+  /// Such a message may be the first after a restart of the sender.
   bool is_newer(const KinectFrame& message) const;
   void begin(KinectFrame message, std::vector<JoinedKinectFrame>& out);
   void join(KinectFrame message);
   void close(std::vector<JoinedKinectFrame>& out);
+  /// The joiner holds one open frame at a time, because parts of one frame follow each other. A
+  /// part of another frame ends it.
   std::optional<KinectFrame> open_;
   std::uint32_t have_ = 0;            // received parts of the open frame, one bit each
   std::optional<std::uint8_t> last_;  // number of its last part, once that has arrived

@@ -23,6 +23,7 @@ constexpr std::string_view schema = "kinalign.kinect/1";
 
 bool take(const Json& json, std::int64_t& to) {
   if (!json.is_number_integer()) return false;
+  // The JSON library keeps numbers above the largest int64 as unsigned; converting them would wrap.
   if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return false;
   to = json.get<std::int64_t>();
   return true;
@@ -50,6 +51,7 @@ bool take(const Json& json, std::string& to) {
 
 bool take(const Json& json, float& to) {
   constexpr double most = std::numeric_limits<float>::max();
+  // JSON has no NaN and no infinity, so a value that is not finite is sent as null.
   if (json.is_null()) to = std::numeric_limits<float>::quiet_NaN();
   if (json.is_null()) return true;
   if (!json.is_number()) return false;
@@ -97,6 +99,8 @@ bool take_if_any(const Json& object, const char* key, std::optional<T>& to) {
   return !object.contains(key) || take(object, key, to.emplace());
 }
 
+// Tracking ids are above 2^53, and many JSON readers store numbers as doubles. So an id is a text
+// of digits.
 bool take_id(const Json& object, std::uint64_t& to) {
   std::string digits;
   if (!take(object, "id", digits)) return false;
@@ -106,6 +110,7 @@ bool take_id(const Json& object, std::uint64_t& to) {
 }
 
 /// Reads a body into the frame. All bodies must agree on having hands and orientations.
+/// Unknown keys are ignored, so a sender may add keys.
 bool take_body(const Json& object, KinectFrame& frame) {
   KinectBody& body = frame.bodies.emplace_back();
   const bool whole = object.is_object() && take_id(object, body.id) &&
@@ -114,6 +119,7 @@ bool take_body(const Json& object, KinectFrame& frame) {
                      take_rows(object["positions"], body.positions);
   if (!whole) return false;
   const bool hands = object.contains("hands"), orientations = object.contains("orientations");
+  // The first body decides for the frame, because the frame has one flag for all its bodies.
   if (frame.bodies.size() == 1) {
     frame.has_hands = hands;
     frame.has_orientations = orientations;
@@ -181,6 +187,7 @@ Refusal take_ping(const Json& json, const KinectOrigin& origin, KinectMessage& m
   return Refusal::none;
 }
 
+// The host only sends pongs; tests and senders decode them.
 Refusal take_pong(const Json& json, const KinectOrigin& origin, KinectMessage& message) {
   KinectPong pong{origin, 0, 0};
   const bool whole =
@@ -210,6 +217,8 @@ Refusal take_message(const Json& json, std::size_t room, KinectMessage& message)
 
 // ---- writing
 
+// The texts are printable ASCII, which `check` ensures. So only quotes and backslashes need an
+// escape.
 std::string json_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -257,6 +266,7 @@ std::string text_of(const KinectBody& body, const KinectFrame& frame) {
   return out + '}';
 }
 
+// Fields that all messages have. The object stays open.
 std::string begun(const char* type, const KinectOrigin& origin) {
   return "{\"schema\":" + json_text(schema) + ",\"type\":\"" + type +
          "\",\"sensor\":" + number(origin.sensor) + ",\"session\":" + number(origin.session) +
@@ -264,6 +274,8 @@ std::string begun(const char* type, const KinectOrigin& origin) {
 }
 
 /// Encodes the message of each type as one line, without its end.
+/// The text is written by hand, so that floats have the shortest digits and the keys have a fixed
+/// order.
 struct Write {
   std::string operator()(const KinectHello& hello) const {
     return begun("hello", hello.origin) +
@@ -294,6 +306,7 @@ struct Write {
              ",\"received_ticks\":" + number(ping.echo->received_ticks) + '}';
     }
     out += '}';
+    // Blanks after the object are valid JSON. One byte remains for the line end.
     out.resize(std::max(out.size(), least_kinect_ping_line - 1), ' ');
     return out;
   }
@@ -310,6 +323,7 @@ KinectRefusal decode_kinect_line(std::string_view line, KinectMessage& message) 
   if (line.size() > most_kinect_line) return Refusal::too_long;
   const Json json = Json::parse(line.begin(), line.end(), nullptr, false);
   if (json.is_discarded()) return Refusal::bad_json;
+  // The line end counts as one byte, whether it is \n, \r\n or absent: a datagram may leave it out.
   const std::size_t room = line.substr(0, line.find_last_not_of("\r\n") + 1).size() + 1;
   Refusal refusal = take_message(json, room, message);
   if (refusal == Refusal::none) refusal = check(message);

@@ -8,6 +8,8 @@
 
 namespace kinalign {
 
+/// Limits in bytes. The least length of a ping includes the line end. It ensures that no pong is
+/// longer than its ping, so pongs can't be used for amplification.
 inline constexpr std::size_t most_kinect_line = 65'536, least_kinect_ping_line = 160;
 
 /// Decodes one line, with or without its line end. After a refusal `message` is empty.

@@ -19,6 +19,7 @@ inline constexpr std::size_t most_kinect_bodies = 6, most_kinect_parts = 6;
 /// Limit of ticks and of UTC, of either sign: integers up to it are exact in a double.
 inline constexpr std::int64_t most_kinect_ticks = (std::int64_t{1} << 53) - 1;
 
+/// Identifies a message: the sensor, the run of its sender, and the number within that run.
 struct KinectOrigin {
   std::uint32_t sensor = 0;    // number of the sensor in the lab
   std::uint32_t session = 0;   // random number of a run of the sender
@@ -27,11 +28,14 @@ struct KinectOrigin {
   bool operator==(const KinectOrigin&) const = default;
 };
 
+/// Sent when the sender begins and once a second, so a receiver that starts later learns the sensor
+/// too.
 struct KinectHello {
   KinectOrigin origin;
   std::string serial, sdk;  // printable ASCII, 64 at most
 };
 
+/// One person. The values are the SDK's own and are not checked: a joint may be NaN.
 struct KinectBody {
   std::uint64_t id = 0;
   std::uint8_t clipped_edges = 0;              // 1 right, 2 left, 4 top, 8 bottom
@@ -43,6 +47,7 @@ struct KinectBody {
 };
 
 /// A frame, or a part of it. Ticks are 100 ns.
+/// The three times are explained in docs/formats/kinect_stream.md, "Three clocks".
 struct KinectFrame {
   KinectOrigin origin;
   std::uint8_t part = 0;
@@ -64,12 +69,15 @@ struct KinectEcho {
   bool operator==(const KinectEcho&) const = default;
 };
 
+/// A request for a time exchange. It also echoes the newest pong, so that the host gets all four
+/// times of an exchange.
 struct KinectPing {
   KinectOrigin origin;
   std::int64_t sent_ticks = 0;
   std::optional<KinectEcho> echo;
 };
 
+/// The host's answer. The nonce is random: only a sender that received the pong can echo it.
 struct KinectPong {
   KinectOrigin origin;  // the ping's
   std::uint32_t pong_sequence = 0, nonce = 0;

@@ -9,6 +9,8 @@ namespace kinalign {
 
 namespace {
 
+// The newest session and 16 ended ones. A frame of an ended session is dropped instead of starting
+// the session again.
 constexpr std::size_t most_sessions = 17;
 // Half a second of frames; fewer may be delayed while a sender is started again.
 constexpr std::uint32_t overlapping_frames = 16;
@@ -45,6 +47,8 @@ Finding overlap_finding(const std::string& place, const KinectOverlap& overlap,
           meaning, "give each sensor an id of its own: --sensor of its sender"};
 }
 
+// An unknown session is a sender that was started, so it becomes the newest. An older session that
+// keeps sending new frames shows that a second sender uses the same id.
 bool KinectSessions::take(const KinectMoment& moment, std::string_view sender) {
   const std::uint32_t session = moment.origin.session;
   const auto known =
@@ -57,6 +61,7 @@ bool KinectSessions::take(const KinectMoment& moment, std::string_view sender) {
   }
   Session& newest = sessions_.back();
   const bool is_newest = &*known == &newest;
+  // Repeated and late frames say nothing about which sender is running now.
   if (!is_after(moment, known->latest)) return is_newest;
   known->latest = moment;
   if (!is_newest && ++known->frames_after_end == overlapping_frames && !overlap_) {

@@ -51,6 +51,7 @@ class KinectSessions {
   const std::optional<KinectOverlap>& overlap() const { return overlap_; }
 
  private:
+  /// Addresses are kept for the warning only.
   struct Session {
     KinectMoment latest;
     std::string sender;

@@ -25,6 +25,7 @@ bool may_be_magic(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
+// Each datagram may have its own encoding: the first byte tells a line from a binary message.
 KinectRefusal decode_kinect_datagram(std::span<const std::uint8_t> datagram,
                                      KinectMessage& message) {
   message = {};
@@ -50,6 +51,7 @@ std::size_t KinectStreamDecoder::skip_to_start(std::span<const std::uint8_t> byt
   while (at < bytes.size() && !may_be_magic(bytes.subspan(at))) {
     const bool blank = is_blank(bytes[at]);
     if (mode_ == Mode::unknown && bytes[at] == '{' && (!lost_ || skipped_ == '\n')) break;
+    // A stretch of invalid bytes counts as one refusal. Blanks between lines are no fault.
     if (mode_ == Mode::binary || !blank) {
       if (!lost_) ++counts_.refused[static_cast<std::size_t>(Refusal::no_message)];
       lost_ = true;
@@ -67,6 +69,7 @@ std::size_t KinectStreamDecoder::step_binary(std::span<const std::uint8_t> bytes
                                              std::vector<KinectMessage>& out) {
   if (const std::size_t skipped = skip_to_start(bytes); skipped > 0) return skipped;
   if (bytes.size() < kinect_head_size) return 0;
+  // An impossible head: the magic stood in other data. The search continues directly after it.
   if (const Refusal refusal = check_kinect_head(bytes); refusal != Refusal::none) {
     ++counts_.refused[static_cast<std::size_t>(refusal)];
     counts_.skipped_bytes += kinect_magic.size();
@@ -89,6 +92,8 @@ std::size_t KinectStreamDecoder::step_line(std::span<const std::uint8_t> bytes,
   const auto end =
       std::find(bytes.begin() + static_cast<std::ptrdiff_t>(searched_), bytes.end(), '\n');
   const auto length = static_cast<std::size_t>(end - bytes.begin());
+  // No line end yet. A line beyond the limit is dropped piece by piece, so memory stays bounded,
+  // and it counts once.
   if (end == bytes.end()) {
     searched_ = length;
     if (length <= most_kinect_line) return 0;
@@ -139,6 +144,7 @@ void KinectStreamDecoder::feed(std::span<const std::uint8_t> piece,
 }
 
 void KinectStreamDecoder::finish(std::vector<KinectMessage>& out) {
+  // The last line may lack its end; an empty line is ignored anyway.
   if (mode_ == Mode::lines) {
     const std::uint8_t end = '\n';
     feed({&end, 1}, out);

@@ -8,6 +8,7 @@
 
 namespace kinalign {
 
+/// Refused messages are counted by reason. They get no answer.
 struct KinectStreamCounts {
   std::uint64_t messages = 0;
   std::array<std::uint64_t, kinect_refusals> refused{};  // indexed by KinectRefusal
@@ -35,6 +36,7 @@ class KinectStreamDecoder {
   bool speaks_lines() const { return mode_ == Mode::lines; }
 
  private:
+  /// A connection has one encoding. The first message decides it, and it never changes.
   enum class Mode : std::uint8_t { unknown, lines, binary };
 
   std::size_t step(std::span<const std::uint8_t> bytes, std::vector<KinectMessage>& out);

@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// The meaning is the same whichever program sent it. It has no stamp: the caller uses the arrival
+/// of the datagram.
 struct Mark {
   enum class Kind : std::uint8_t { start, stop, t_pose, text };
   Kind kind = Kind::text;
@@ -24,6 +26,7 @@ struct Mark {
   bool operator==(const Mark&) const = default;
 };
 inline constexpr std::size_t mark_kinds = 4;
+/// Limits of what is accepted from outside.
 inline constexpr double most_latency_ms = 60'000.0;
 inline constexpr std::size_t most_marks = 10'000;  // in a recording; more are not read
 
@@ -43,9 +46,11 @@ class MarkRepeats {
   explicit MarkRepeats(Duration for_so_long) : for_so_long_(for_so_long) {}
 
   /// True if a mark with this id arrived before; remembers the id. Always false without an id.
+  /// `now` is the arrival of the datagram.
   bool is_repeat(const Mark& mark, HostTime now);
 
  private:
+  /// `seen_` and `ids_` hold the same ids. `seen_` knows their age, `ids_` finds one quickly.
   struct Seen {
     std::string id;
     HostTime at{};

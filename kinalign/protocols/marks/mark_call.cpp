@@ -17,6 +17,7 @@ using Refusal = MarkCallRefusal;
 
 constexpr const char* schema = "kinalign.mark/1";
 
+// Absent if the key is missing or its value is no text; both are refused for the same reason.
 std::optional<std::string> text_at(const Json& call, const char* key) {
   const auto found = call.find(key);
   if (found == call.end() || !found->is_string()) return std::nullopt;
@@ -28,6 +29,8 @@ bool is_id(std::string_view id) {
          std::all_of(id.begin(), id.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
+// Only a start or a stop has an effect, so only these have a latency. The negated comparison also
+// refuses NaN.
 Refusal take_latency(const Json& call, Mark& mark) {
   const auto found = call.find("latency_ms");
   if (found == call.end()) return Refusal::none;
@@ -39,6 +42,7 @@ Refusal take_latency(const Json& call, Mark& mark) {
   return Refusal::none;
 }
 
+// Only a mark of kind `text` needs a text: the text is its whole content.
 Refusal take_text(const Json& call, Mark& mark) {
   if (!call.contains("text")) {
     return mark.kind == Mark::Kind::text ? Refusal::wrong_text : Refusal::none;
@@ -50,6 +54,8 @@ Refusal take_text(const Json& call, Mark& mark) {
   return Refusal::none;
 }
 
+// The schema comes first: without it the datagram may be of any other program. The id is taken
+// before the other checks, so that a refusal can name the call.
 Refusal take(const Json& call, Mark& mark) {
   if (!call.is_object()) return Refusal::bad_json;
   if (text_at(call, "schema") != schema) return Refusal::wrong_schema;
@@ -96,10 +102,12 @@ MarkCallRefusal decode_mark_call(std::string_view datagram, Mark& mark) {
   if (datagram.size() > most_mark_call) return Refusal::too_long;
   const Json call = Json::parse(datagram.begin(), datagram.end(), nullptr, false);
   const Refusal refusal = call.is_discarded() ? Refusal::bad_json : take(call, mark);
+  // Only the id remains; the answer to a refused call names it.
   if (refusal != Refusal::none) mark = {Mark::Kind::text, "", std::nullopt, std::move(mark.id)};
   return refusal;
 }
 
+// Used by simulated clicks and by tests; other programs send the same object.
 std::string encode_mark_call(const Mark& mark) {
   Json call = {{"schema", schema}, {"kind", name_of(mark.kind)}, {"id", mark.id}};
   if (mark.latency) call["latency_ms"] = static_cast<double>(mark.latency->count()) / 1e6;
@@ -107,6 +115,7 @@ std::string encode_mark_call(const Mark& mark) {
   return call.dump();
 }
 
+// A repeat is answered like the first call, because the first answer may be lost.
 std::string answer_to_mark_call(const Mark& mark, MarkAnswer answer, std::size_t call_size) {
   const char* is = answer == MarkAnswer::fresh ? "new" : "repeat";
   return fitting({{"mark", mark.id}, {"is", is}}, call_size);

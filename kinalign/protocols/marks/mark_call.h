@@ -8,10 +8,14 @@
 
 namespace kinalign {
 
+/// Bytes of a call. Longer datagrams are refused unread.
 inline constexpr std::size_t most_mark_call = 1200;
 
+/// Reasons to refuse a call. The order matters: from `wrong_kind` on, the datagram has our schema
+/// and its sender gets an answer.
 enum class [[nodiscard]] MarkCallRefusal : std::uint8_t{
     none, too_long, bad_json, wrong_schema, wrong_kind, wrong_id, wrong_latency, wrong_text};
+/// Number of values of the enum, for arrays of counts.
 inline constexpr std::size_t mark_call_refusals = 8;
 
 /// The refusal's name in --json: "wrong_id".
@@ -27,6 +31,8 @@ MarkCallRefusal decode_mark_call(std::string_view datagram, Mark& mark);
 /// Encodes a call.
 std::string encode_mark_call(const Mark& mark);
 
+/// Callers send a call two or three times, because a datagram may be lost. A repeat is answered
+/// too, but makes no second mark.
 enum class MarkAnswer : std::uint8_t { fresh, repeat };
 /// The answer to a call of `call_size` bytes; empty if it would be longer than the call.
 std::string answer_to_mark_call(const Mark& mark, MarkAnswer answer, std::size_t call_size);

@@ -14,10 +14,16 @@ using Refusal = ViconRefusal;
 
 constexpr std::string_view blanks = " \t\r\n";
 
+// ASCII characters of XML names; Vicon's elements and attributes need no others.
 bool is_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
          c == '-' || c == '.' || c == ':';
 }
+
+// The XML reader below accepts only the form that Vicon's manuals show: an optional declaration,
+// one outermost element, and elements in it that have attributes and no content. Everything else is
+// refused: document types, comments, nested elements. So no entity can expand into more text than
+// arrived.
 
 /// Takes parts from the front of a text.
 class Xml {
@@ -81,6 +87,8 @@ bool append_entity(std::string_view name, std::string& out) {
     if (name == said) out += meant;
     if (name == said) return true;
   }
+  // A numeric entity is the number of a character. Control characters and surrogates are refused
+  // later, with the text.
   const bool hex = name.starts_with("#x");
   if (!name.starts_with('#')) return false;
   name.remove_prefix(hex ? 2 : 1);
@@ -97,6 +105,7 @@ std::optional<std::string> unescaped(std::string_view text) {
   if (text.find('<') != std::string_view::npos) return std::nullopt;
   std::string out;
   Xml rest(text);
+  // The entities are replaced from left to right. The text after the last one remains in `rest`.
   while (const auto plain = rest.take_until("&")) {
     out += *plain;
     const auto entity = rest.take_until(";");
@@ -120,6 +129,7 @@ std::optional<std::string> take_attribute(Xml& xml, std::string_view& name) {
 }
 
 /// The value of one element, or of an attribute of the outermost element.
+/// Names are views of the datagram; values are copies, because their entities are resolved.
 struct Said {
   std::string_view name;
   std::string value;
@@ -133,6 +143,7 @@ struct Document {
 };
 
 /// Takes an element such as <Name VALUE="dance"/>, after its '<'.
+/// Two endings occur: "/>" and, for an element written with a separate end, "></Name>".
 bool take_element(Xml& xml, Document& document) {
   Said said{xml.take_name(), {}};
   if (said.name.empty()) return false;
@@ -155,6 +166,7 @@ bool take_element(Xml& xml, Document& document) {
 }
 
 /// Takes the whole document: an outermost element with elements that have no content.
+/// The outermost element's attributes are read first. Only RESULT is kept.
 bool take_document(Xml& xml, Document& document) {
   xml.skip_blanks();
   if (xml.take("<?xml") && !xml.take_until("?>")) return false;
@@ -179,6 +191,7 @@ bool take_document(Xml& xml, Document& document) {
   return xml.rest().empty();
 }
 
+// A number from 0 to `most`; the whole text must be the number.
 std::optional<std::int64_t> whole_number(std::string_view text, std::int64_t most) {
   std::int64_t value = 0;
   const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -187,6 +200,7 @@ std::optional<std::int64_t> whole_number(std::string_view text, std::int64_t mos
 }
 
 /// Takes the delay or the packet id.
+/// The limit of the delay is that of a mark's latency, 60 s.
 Refusal take_numbers(const Said& said, ViconTrigger& trigger) {
   constexpr std::int64_t most_delay_ms = 60'000;
   const bool is_delay = said.name == "Delay";
@@ -216,6 +230,7 @@ Refusal take(const Document& document, ViconTrigger& trigger) {
     const bool number = said.name == "Delay" || said.name == "PacketID";
     std::string* text = text_named(said.name, trigger);
     if (!number && text == nullptr) continue;
+    // An element that occurs twice is refused, because the sender's intention is unknown.
     const auto times =
         std::count_if(document.said.begin(), document.said.end(),
                       [&said](const Said& other) { return other.name == said.name; });
@@ -232,6 +247,7 @@ Refusal take(const Document& document, ViconTrigger& trigger) {
   return Refusal::none;
 }
 
+// Escapes the characters that XML does not allow in an attribute.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -283,6 +299,7 @@ const char* expected_of(ViconRefusal refusal) {
 ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigger) {
   trigger = {};
   if (datagram.size() > most_vicon_trigger) return Refusal::too_long;
+  // A zero byte after the text is optional.
   while (datagram.ends_with('\0')) datagram.remove_suffix(1);
   Xml xml(datagram);
   Document document;
@@ -291,6 +308,7 @@ ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigg
   return refusal;
 }
 
+// The elements are in the order of Vicon's manuals. A start always has Notes and Description.
 std::string encode_vicon_trigger(const ViconTrigger& trigger) {
   const std::string name = trigger.start ? "CaptureStart" : "CaptureStop";
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"no\"?><" + name;

@@ -7,8 +7,11 @@
 
 namespace kinalign {
 
+/// Bytes of a broadcast. Longer datagrams are refused unread.
 inline constexpr std::size_t most_vicon_trigger = 1500;
 
+/// The content of one broadcast. Texts are empty if their elements are absent. The path belongs to
+/// the sender's machine; it is recorded and never opened.
 struct ViconTrigger {
   bool start = false;  // false: a stop
   std::string name, notes, description, database_path, result;
@@ -34,6 +37,8 @@ ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigg
 /// Encodes a broadcast as Vicon does, but without the zero at its end.
 std::string encode_vicon_trigger(const ViconTrigger& trigger);
 
+/// The mark of a broadcast. Several network cards send the same broadcast, so its packet id, kind
+/// and name make the id by which repeats are recognised.
 Mark mark_of(const ViconTrigger& trigger);
 
 }  // namespace kinalign

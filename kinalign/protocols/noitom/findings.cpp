@@ -8,6 +8,7 @@ namespace kinalign {
 
 namespace {
 
+// Text for one kind of refusal. `repair` is empty if the user can't change anything.
 struct Advice {
   NoitomRefusal refusal;
   std::string_view expected, meaning, repair;

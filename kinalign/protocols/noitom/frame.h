@@ -14,8 +14,12 @@
 
 namespace kinalign {
 
+/// The form of a frame. The header's version, or its count and flags, tell the two binary forms
+/// apart.
 enum class NoitomForm : std::uint8_t { old_header, new_header, text };
 
+/// The values of one BVH row. Names, offsets and the order of rotations are not in the stream; they
+/// come from a BVH file of the same program.
 struct NoitomFrame {
   NoitomForm form = NoitomForm::new_header;
   std::uint32_t avatar = 0;  // counted from 0

@@ -9,9 +9,12 @@ namespace kinalign {
 
 namespace {
 
+// Positions within the header: docs/formats/noitom_stream.md, "Binary".
 constexpr std::size_t old_flags_end = 18, new_flags_end = 10;
 constexpr std::size_t minor_at = 4, major_at = 5;
 
+// Number of values and flags of a header. Both layouts state them redundantly: the count follows
+// from the flags. `fits` uses this to tell the layouts from each other and from random bytes.
 struct Shape {
   std::uint64_t count = 0, displacement = 0, reference = 0;
 
@@ -40,6 +43,7 @@ std::optional<NoitomForm> form_of(std::span<const std::uint8_t> b) {
   return std::nullopt;
 }
 
+// The name's field is padded with zeros; a name of 32 bytes has no zero at its end.
 std::string name_of(std::span<const std::uint8_t> field) {
   const auto end = std::find(field.begin(), field.end(), std::uint8_t{0});
   return {field.begin(), end};

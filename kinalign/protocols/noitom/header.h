@@ -8,6 +8,7 @@ namespace kinalign {
 
 constexpr std::size_t noitom_header_size = 64;
 
+/// Content of a header whose count and flags agree with each other.
 struct NoitomHeader {
   NoitomFrame frame;        // without its values
   std::size_t values = 0;   // number of values (f32) after the header

@@ -18,6 +18,9 @@ std::optional<NoitomHeader> header_of(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
+// A cut frame goes through three states: its head waits in the decoder, then its last piece waits
+// in `cut_`, then the next datagram decides. A datagram that is longer than the missing rest
+// belongs to another frame, so the cut frame is dropped.
 void NoitomReceiver::feed_datagram(std::span<const std::uint8_t> datagram, HostTime arrival,
                                    std::vector<NoitomArrival>& out) {
   if (datagram.empty()) return;
@@ -31,6 +34,7 @@ void NoitomReceiver::feed_datagram(std::span<const std::uint8_t> datagram, HostT
       return;
     }
   }
+  // Only a header that continues the numbers shows that the cut frame is whole.
   if (cut_) settle(!cut_->last_piece.empty() && header && comes_before(header->frame), out);
   decoder_.feed(datagram, out);
   // No sender splits a frame within its header.

@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// Use one receiver for each sender. A connection uses `feed` only; datagrams use `feed_datagram`
+/// and, at the end, `finish`.
 class NoitomReceiver {
  public:
   explicit NoitomReceiver(NoitomParts parts = NoitomParts::all) : decoder_(parts) {}
@@ -38,13 +40,17 @@ class NoitomReceiver {
  private:
   /// A frame in several datagrams. Its last piece stays out of the decoder until the frame is
   /// accepted.
+  /// `began` and `ended` are the arrivals of its first and its last piece.
   struct CutFrame {
     NoitomBeginning head;
     HostTime began{}, ended{};
     std::vector<std::uint8_t> last_piece{};  // empty: it has not arrived
   };
+  /// True if all pieces have arrived within 4 ms, so that they are of one frame even without a
+  /// number.
   bool arrived_together() const;
   bool comes_before(const NoitomFrame& next) const;
+  /// Ends the cut frame: outputs it or counts it as incomplete.
   void settle(bool is_whole, std::vector<NoitomArrival>& out);
 
   NoitomDecoder decoder_;

@@ -12,6 +12,8 @@ namespace kinalign {
 
 namespace {
 
+// Bytes taken at once. The buffer holds at most one incomplete frame and one slice, however long
+// the piece is that was fed.
 constexpr std::size_t slice = 4096;
 // A longer text than 360 values of 40 characters and a name is no frame.
 constexpr std::size_t longest_text = 16'384;
@@ -41,6 +43,7 @@ std::size_t header_within(std::span<const std::uint8_t> bytes, std::size_t from,
   return end;
 }
 
+// The values of a whole frame, f32 in little-endian order.
 std::vector<float> values_of(std::span<const std::uint8_t> frame) {
   std::vector<float> values;
   values.reserve((frame.size() - noitom_header_size) / 4);
@@ -68,6 +71,8 @@ void NoitomDecoder::take_all(std::vector<NoitomArrival>& out) {
   }
 }
 
+// The bytes at the front can't be completed. They are skipped up to the next header; a frame that
+// begins there may still be whole.
 void NoitomDecoder::give_up(std::vector<NoitomArrival>& out) {
   while (waiting() > 0) {
     if (begins_noitom_header(ahead())) count_incomplete();
@@ -91,6 +96,7 @@ bool NoitomDecoder::waits_within_header() const {
   return waiting() > 0 && waiting() < noitom_header_size && ahead()[0] == 0xff;
 }
 
+// Every move of the front resets what was learnt about the bytes behind it.
 void NoitomDecoder::take(std::size_t bytes) {
   at_ += bytes;
   searched_ = 0;
@@ -144,6 +150,8 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   }
   const std::size_t size = noitom_header_size + 4 * header->values;
   if (bytes.size() < size) return Step::wait;
+  // If a header begins among the values, a piece of this frame was lost. The values before that
+  // header can't be trusted.
   const std::size_t next =
       header_within(bytes.first(size), noitom_header_size, size, begins_noitom_header);
   if (next < size) {
@@ -249,6 +257,7 @@ NoitomDecoder::Step NoitomDecoder::text(std::vector<NoitomArrival>& out) {
 }
 
 void NoitomDecoder::text_frame(std::size_t size, std::vector<NoitomArrival>& out) {
+  // The text ends with "||", which is no part of the frame.
   auto frame = parse_noitom_text({reinterpret_cast<const char*>(&held_[at_]), size - 2});
   if (frame) {
     take(size);

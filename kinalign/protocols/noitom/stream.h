@@ -45,6 +45,8 @@ struct NoitomArrival {
   std::optional<HostTime> arrival{};
 };
 
+/// One person of the broadcast. Numbers are counted for each avatar, because the avatars of a
+/// sender usually share the frame numbers.
 struct NoitomAvatar {
   std::uint32_t index = 0;
   std::string name;  // in its latest frame
@@ -111,6 +113,8 @@ class NoitomDecoder {
   void skip(std::size_t bytes);
   void take(std::size_t bytes);
 
+  /// `held_` begins with the first byte that is not decided yet, at `at_`. `feed` drops the decided
+  /// bytes at the end of each slice.
   NoitomParts parts_;
   std::vector<std::uint8_t> held_;
   std::size_t at_ = 0;        // position in `held_`; the bytes before it are done

@@ -23,6 +23,8 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
+// Reads a whole word as a number, with an optional plus sign. Infinity and NaN are refused: their
+// difference from themselves is not 0.
 template <class Number>
 bool read(std::string_view word, Number& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
@@ -48,6 +50,8 @@ std::optional<NoitomFrame> frame_of(std::span<const std::string_view> words) {
 
 }  // namespace
 
+// The number of values shows whether displacement and reference are included. The frame is at the
+// end of the text: words in front of it belong to a frame that has lost its end.
 std::optional<NoitomFrame> parse_noitom_text(std::string_view text) {
   const auto words = words_of(text);
   for (const bool displacement : {true, false}) {
@@ -68,6 +72,8 @@ std::optional<NoitomFrame> parse_noitom_text(std::string_view text) {
   return std::nullopt;
 }
 
+// Counts the numbers at the end of the text. The word before them should be an avatar's name, and
+// the word before that its index.
 NoitomNoFrame judge_noitom_text(std::string_view text) {
   const auto words = words_of(text);
   float number = 0.0F;

@@ -55,6 +55,8 @@ void append_text(const NoitomFrame& f, std::vector<std::uint8_t>& out) {
   out.insert(out.end(), text.begin(), text.end());
 }
 
+// A name with a blank would be read as two words, and `|` could be read as the frame's end. 0x7F
+// and 0xFF end a text for the decoder.
 bool can_stand_in_text(const NoitomFrame& f) {
   const auto fits = [](char c) {
     return static_cast<unsigned char>(c) > ' ' && c != '|' && c != '\x7f' && c != '\xff';
@@ -68,6 +70,7 @@ Failure refused(const std::string& expected, const std::string& found) {
   return Failure(Error{"", 0, expected, found});
 }
 
+// Refuses a frame that the decoder would not read back as the same frame.
 Result<void> judge(const NoitomFrame& f) {
   const std::size_t values = noitom_values(f.displacement, f.reference);
   if (f.values.size() != values) {

@@ -13,7 +13,10 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
+// Head of a datagram: u32 type, u64 number, in network byte order.
+// Numbers of types and layouts of bodies: docs/formats/slimevr.md, "A datagram of a tracker".
 constexpr std::size_t head_size = 12;
+// Types of datagrams that hold several packets.
 constexpr std::uint32_t bundle = 100, compact_bundle = 101;
 
 /// A byte reader that can also skip bytes and take text.
@@ -40,6 +43,7 @@ class Body {
   /// Takes `length` bytes and returns those before the first zero.
   std::string text(std::size_t length) {
     const std::size_t at = bytes_.size() - left();
+    // A length beyond the end makes the body incomplete. Only bytes of the packet are taken.
     const bool whole = length <= left();
     for (std::size_t n = std::min(length, left()); n > 0; --n) byte();
     if (!whole) byte();  // makes the body incomplete
@@ -62,6 +66,7 @@ SlimeHandshake take_handshake(Body body) {
     *field = static_cast<std::int32_t>(body.number());
   }
   if (body.left() < 16) return hands;
+  // 12 bytes that the protocol leaves unused.
   for (int unused = 0; unused < 3; ++unused) body.number();
   hands.protocol = static_cast<std::int32_t>(body.number());
   if (body.left() == 0) return hands;
@@ -96,6 +101,7 @@ SlimeSensorInfo take_sensor_info(Body& body) {
   return info;
 }
 
+// The body has volts and level, or the level alone. Its length shows which.
 SlimeBattery take_battery(Body& body) {
   SlimeBattery battery;
   battery.level = body.real();
@@ -105,6 +111,7 @@ SlimeBattery take_battery(Body& body) {
   return battery;
 }
 
+// Types 1 and 16 name their sensor by the type, not by a field.
 SlimeMotion take_old_rotation(Body& body, std::uint8_t sensor) {
   SlimeMotion motion;
   motion.sensor = sensor;
@@ -112,6 +119,8 @@ SlimeMotion take_old_rotation(Body& body, std::uint8_t sensor) {
   return motion;
 }
 
+// Corrections (data type 2) are no samples. They are decoded, so that the caller can leave them
+// out.
 SlimeMotion take_rotation_data(Body& body) {
   SlimeMotion motion;
   motion.sensor = body.byte();
@@ -121,6 +130,7 @@ SlimeMotion take_rotation_data(Body& body) {
   return motion;
 }
 
+// The number of the sensor may be absent; the reading is then of sensor 0.
 SlimeMotion take_acceleration(Body& body) {
   SlimeMotion motion;
   motion.acceleration = body.vector();
@@ -128,6 +138,8 @@ SlimeMotion take_acceleration(Body& body) {
   return motion;
 }
 
+// Fixed-point numbers: a component of the quaternion is the number by 32768, an acceleration in
+// m/s2 is the number by 128.
 SlimeMotion take_both(Body& body) {
   SlimeMotion motion;
   motion.sensor = body.byte();
@@ -210,6 +222,8 @@ std::optional<SlimePacket> take_body(std::uint32_t type, Body& body) {
   }
 }
 
+// Readers of required fields do not check lengths: reading beyond the end makes the body
+// incomplete, which is tested once at the end.
 void take_packet(std::uint32_t type, Bytes bytes, SlimeDatagram& out) {
   Body body(bytes);
   auto packet = take_body(type, body);
@@ -230,6 +244,8 @@ void take_bundle(Bytes bytes, std::size_t width, SlimeDatagram& out) {
     ByteReader reader(bytes);
     std::size_t length = width == 1 ? reader.take<std::uint8_t>() : reader.take<std::uint16_t>();
     bytes = bytes.subspan(width);
+    // A length beyond the end is cut to the end, and a length of 0 is skipped, as the SlimeVR
+    // server does.
     length = std::min(length, bytes.size());
     if (length == 0) continue;
     const Bytes inner = bytes.first(length);
@@ -240,6 +256,7 @@ void take_bundle(Bytes bytes, std::size_t width, SlimeDatagram& out) {
     }
     ByteReader head(inner);
     const std::uint32_t type = width == 1 ? head.take<std::uint8_t>() : head.take<std::uint32_t>();
+    // A bundle within a bundle is refused, so decoding needs no recursion.
     if (type == bundle || type == compact_bundle) {
       ++out.nested;
     } else {
@@ -278,6 +295,7 @@ bool decode_slime(std::span<const std::uint8_t> datagram, SlimeDatagram& out) {
   return true;
 }
 
+// Normalizes the quaternion. A norm near 0 has no direction, so it is refused.
 std::optional<std::array<double, 4>> slime_orientation(const std::array<float, 4>& rotation) {
   const double x = rotation[0], y = rotation[1], z = rotation[2], w = rotation[3];
   const double norm = std::sqrt(w * w + x * x + y * y + z * z);
@@ -299,7 +317,10 @@ std::optional<std::array<double, 3>> slime_acceleration(const std::array<float, 
 
 SlimeAnswer slime_handshake_answer(std::size_t handshake_size) {
   SlimeAnswer answer;
+  // This answer has no head: the firmware compares the bytes from the first one on.
   put(answer, {3, 'H', 'e', 'y', ' ', 'O', 'V', 'R', ' ', '=', 'D', ' ', '5'});
+  // The rest of the answer is zeros. An answer that is longer than its handshake could be used for
+  // amplification.
   answer.size = std::clamp(handshake_size, least_slime_handshake_answer, answer.bytes.size());
   return answer;
 }
@@ -315,12 +336,14 @@ SlimeAnswer slime_ping(std::uint32_t id) {
 
 SlimeAnswer slime_sensor_info_acknowledged(std::uint8_t sensor, std::uint8_t status) {
   SlimeAnswer answer;
+  // This answer has a type and no number.
   put(answer, {0, 0, 0, 15, sensor, status});
   return answer;
 }
 
 SlimeAnswer slime_features() {
   SlimeAnswer answer = begun(22);
+  // Bit 0: bundles, bit 1: compact bundles.
   put(answer, {3});
   return answer;
 }

@@ -41,11 +41,13 @@ struct SlimeMotion {
   std::optional<std::array<float, 3>> acceleration;  // m/s2
 };
 
+/// The host's own ping, which the tracker returns byte for byte. Its number is the host's 0.
 struct SlimePing {
   std::uint32_t id = 0;
   bool operator==(const SlimePing&) const = default;
 };
 
+/// State of one sensor. The host acknowledges it with the same status.
 struct SlimeSensorInfo {
   std::uint8_t sensor = 0, status = 0;
   std::optional<std::uint8_t> imu, rest_calibrated, position, data_type;
@@ -54,6 +56,7 @@ struct SlimeSensorInfo {
   bool operator==(const SlimeSensorInfo&) const = default;
 };
 
+/// State of the tracker's battery. Some trackers send only the level.
 struct SlimeBattery {
   std::optional<float> volts;
   float level = 0.0F;  // charge, 0 to 1
@@ -64,6 +67,7 @@ struct SlimeSerial {
   bool operator==(const SlimeSerial&) const = default;
 };
 
+/// Features that the tracker's firmware has, one bit each.
 struct SlimeFeatures {
   std::vector<std::uint8_t> flags;
   bool operator==(const SlimeFeatures&) const = default;
@@ -79,6 +83,8 @@ using SlimePacket =
     std::variant<SlimeHeartbeat, SlimeHandshake, SlimeMotion, SlimePing, SlimeSensorInfo,
                  SlimeBattery, SlimeSerial, SlimeFeatures, SlimeReading>;
 
+/// A decoded datagram. Packets that can't be read are counted; they do not invalidate the other
+/// packets of a bundle.
 struct SlimeDatagram {
   std::uint32_t type = 0;
   std::uint64_t number = 0;
@@ -108,12 +114,17 @@ struct SlimeAnswer {
   std::span<const std::uint8_t> datagram() const { return std::span(bytes).first(size); }
 };
 
+/// The firmware compares this many bytes of the answer; a shorter one is no answer.
 inline constexpr std::size_t least_slime_handshake_answer = 13;
 
 /// The answer to a handshake; it is as long as the handshake, but at least 13 and at most 64 bytes.
 SlimeAnswer slime_handshake_answer(std::size_t handshake_size);
+/// Sent without being asked: a tracker that receives nothing for three seconds drops the
+/// connection.
 SlimeAnswer slime_heartbeat();
+/// The tracker returns it with the same id.
 SlimeAnswer slime_ping(std::uint32_t id);
+/// The answer to a sensor info; it repeats the status that the tracker sent.
 SlimeAnswer slime_sensor_info_acknowledged(std::uint8_t sensor, std::uint8_t status);
 /// Tells the tracker that bundles and compact bundles are understood.
 SlimeAnswer slime_features();

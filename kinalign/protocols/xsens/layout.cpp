@@ -10,6 +10,8 @@ namespace kinalign {
 
 namespace {
 
+// Bytes of an item: docs/formats/xsens_mvn_stream.md. The specification describes tracker items of
+// 44 bytes; MVN also sends 68.
 constexpr std::size_t pose_item = 32, tracker_item = 44, raw_tracker_item = 68, time_code = 12;
 
 bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
@@ -19,6 +21,7 @@ void take(ByteReader& bytes, std::array<float, n>& values) {
   for (float& value : values) value = bytes.take_float();
 }
 
+// The readers of items expect a payload whose size was checked: `items` times the size of one.
 XsensPose pose_of(ByteReader bytes, std::size_t items) {
   XsensPose pose;
   for (std::size_t k = 0; k < items; ++k) {
@@ -80,6 +83,8 @@ bool begins_xsens_header(std::span<const std::uint8_t> b) {
          is_digit(b[4]) && is_digit(b[5]);
 }
 
+// Needed for types that are not read, too: a sender before 2019 states no payload size, so these
+// datagrams can be skipped only by the size of their items.
 std::size_t xsens_item_size(unsigned type) {
   switch (type) {
     case 1:
@@ -109,9 +114,11 @@ std::size_t xsens_item_size(unsigned type) {
 
 XsensHeader parse_xsens_header(std::span<const std::uint8_t> bytes) {
   XsensHeader h;
+  // The magic "MXTP" was checked by the caller; two digits of the type follow it.
   h.type = static_cast<unsigned>((bytes[4] - '0') * 10 + (bytes[5] - '0'));
   ByteReader fields(bytes.subspan(6));
   h.counter = fields.take<std::uint32_t>();
+  // Bit 7 marks the sample's last datagram, the lower bits number the datagrams.
   const auto datagram = fields.take<std::uint8_t>();
   h.index = datagram & 0x7f;
   h.last = (datagram & 0x80) != 0;
@@ -121,12 +128,15 @@ XsensHeader parse_xsens_header(std::span<const std::uint8_t> bytes) {
   h.body_segments = fields.take<std::uint8_t>();
   h.props = fields.take<std::uint8_t>();
   h.finger_segments = fields.take<std::uint8_t>();
+  // Two reserved bytes.
   fields.take<std::uint16_t>();
   h.payload = fields.take<std::uint16_t>();
   if (h.payload == 0) h.payload = xsens_item_size(h.type) * h.items;
   return h;
 }
 
+// Two forms of type 23 differ only in the size of the payload. Type 25 does not use the number of
+// items.
 std::optional<XsensItems> parse_xsens_items(const XsensHeader& header,
                                             std::span<const std::uint8_t> payload) {
   const std::size_t items = header.items;

@@ -8,10 +8,13 @@
 
 namespace kinalign {
 
+/// Positions and meanings of the header's fields: docs/formats/xsens_mvn_stream.md.
 constexpr std::size_t xsens_header_size = 24;
 /// Most items of a sample; a body with props and hands has 67.
 constexpr std::size_t most_xsens_items = 256;
 
+/// The header of one datagram. A sample is divided into several datagrams if it does not fit into
+/// one; these share character, type and counter.
 struct XsensHeader {
   unsigned type = 0;          // 0 to 99
   std::uint32_t counter = 0;  // number of the sample

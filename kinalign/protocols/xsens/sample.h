@@ -15,6 +15,7 @@
 namespace kinalign {
 
 /// A segment, a prop or a finger of a character.
+/// Values are as sent: z up. `recording/streams` converts them to y up.
 struct XsensSegment {
   std::int32_t id = 0;              // 1 Pelvis to 23 LeftToe; higher numbers are props and fingers
   std::array<float, 3> position{};  // metres or centimetres: XsensPoser decides
@@ -37,6 +38,7 @@ struct XsensRaw {
   bool operator==(const XsensRaw&) const = default;
 };
 
+/// An inertial sensor on a segment: fused values, and raw ones if the sender adds them.
 struct XsensTracker {
   std::int32_t id = 0;                       // number of the segment to which it is fixed
   std::array<float, 4> rotation{};           // world_from_sensor
@@ -53,6 +55,7 @@ struct XsensTrackers {  // type 23
   bool operator==(const XsensTrackers&) const = default;
 };
 
+/// The sender's time of day. It has no date.
 struct XsensTimeCode {     // type 25
   Duration time_of_day{};  // since midnight, in whole milliseconds
 
@@ -61,6 +64,7 @@ struct XsensTimeCode {     // type 25
 
 using XsensItems = std::variant<XsensPose, XsensTrackers, XsensTimeCode>;
 
+/// All items of one type at one instant, joined from one or more datagrams.
 struct XsensSample {
   std::uint32_t counter = 0;       // number of the sample
   std::uint32_t time_code_ms = 0;  // since the start of the recording
@@ -74,6 +78,7 @@ struct XsensSample {
 };
 
 /// Options for the form of the datagrams.
+/// Programs of different age send different forms, and tests must produce them all.
 struct XsensSending {
   std::size_t items_per_datagram = 255;
   bool payload_size = true;     // false: send 0, as programs before 2019 do

@@ -10,13 +10,19 @@ namespace kinalign {
 
 namespace {
 
+// Bytes taken at once. The buffer holds at most one incomplete datagram and one slice, however long
+// the piece is that was fed.
 constexpr std::size_t slice = 4096;
 constexpr std::size_t marker = 6;          // "MXTP02"
 constexpr std::size_t most_channels = 48;  // 16 characters of three types
+// Incomplete samples that a channel keeps. If one more begins, the oldest is dropped.
 constexpr std::size_t most_parts = 4;
 
+// Pose, trackers and time code. Other types are counted and skipped.
 bool is_read(unsigned type) { return type == 2 || type == 23 || type == 25; }
 
+// True for trackers of the long form. All trackers of a datagram have one form, so the first shows
+// it.
 bool is_raw(const XsensSample& sample) {
   const auto* trackers = std::get_if<XsensTrackers>(&sample.body);
   return trackers != nullptr && trackers->trackers[0].raw.has_value();
@@ -50,6 +56,8 @@ std::string_view to_string(XsensRefusal refusal) {
   return names[static_cast<std::size_t>(refusal)];
 }
 
+// Connections and datagrams take the same way. Each slice is decoded as far as possible before the
+// next one is copied.
 void XsensDecoder::feed(std::span<const std::uint8_t> bytes, std::vector<XsensArrival>& out) {
   while (!bytes.empty()) {
     const auto piece = bytes.first(std::min(slice, bytes.size()));
@@ -76,6 +84,8 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
     take(1);
     return true;
   }
+  // A header that is cut by another datagram states no valid size, so this is checked before the
+  // size is read.
   if (torn(xsens_header_size)) return true;
   if (bytes.size() < xsens_header_size) return false;
   const XsensHeader header = parse_xsens_header(bytes);
@@ -115,6 +125,7 @@ bool XsensDecoder::torn(std::size_t size) {
   return false;
 }
 
+// Most samples have one datagram, which needs no joining.
 void XsensDecoder::datagram(const XsensHeader& header, XsensItems items,
                             std::vector<XsensArrival>& out) {
   Channel* channel = channel_of(header);
@@ -125,6 +136,8 @@ void XsensDecoder::datagram(const XsensHeader& header, XsensItems items,
   join(*channel, header, std::move(sample), out);
 }
 
+// The channels of a sender are limited, because a damaged or hostile datagram may state any
+// character.
 XsensDecoder::Channel* XsensDecoder::channel_of(const XsensHeader& header) {
   const XsensChannel key{header.character, header.type};
   if (channels_.size() == most_channels && !channels_.contains(key)) return nullptr;
@@ -134,10 +147,13 @@ XsensDecoder::Channel* XsensDecoder::channel_of(const XsensHeader& header) {
 /// Adds a datagram to its sample and outputs the sample once it is complete.
 void XsensDecoder::join(Channel& channel, const XsensHeader& header, XsensSample piece,
                         std::vector<XsensArrival>& out) {
+  // A sample that was output is no longer among the incomplete ones. Without this check a repeated
+  // datagram would begin it again.
   if (channel.joined == header.counter) return refuse(XsensRefusal::repeated);
   Part& part = part_of(channel, header.counter);
   if (part.pieces.contains(header.index)) return refuse(XsensRefusal::repeated);
   if (part.items + header.items > most_xsens_items) return refuse(XsensRefusal::too_many_items);
+  // Trackers with and without raw values can't stand in one sample.
   if (!part.pieces.empty() && is_raw(part.pieces.begin()->second) != is_raw(piece)) {
     return refuse(XsensRefusal::wrong_size);
   }
@@ -170,6 +186,8 @@ XsensDecoder::Part& XsensDecoder::part_of(Channel& channel, std::uint32_t counte
   return channel.parts.emplace_back(counter, Part{}).second;
 }
 
+// Samples are output in the order in which they became complete. `order` tells the caller which of
+// them are late.
 void XsensDecoder::give(Channel& channel, XsensSample sample, std::vector<XsensArrival>& out) {
   const Order order = channel.by_counter.push(sample.counter);
   ++counts_.samples;
@@ -182,6 +200,7 @@ std::map<XsensChannel, SequenceCounts> XsensDecoder::channels() const {
   return all;
 }
 
+// One warning per kind of refusal, one note per type that was skipped.
 Findings XsensDecoder::findings(const std::string& name) const {
   Findings findings;
   for (std::size_t k = 0; k < names.size(); ++k) {

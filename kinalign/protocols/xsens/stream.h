@@ -36,6 +36,7 @@ struct XsensCounts {
   bool operator==(const XsensCounts&) const = default;
 };
 
+/// A complete sample. Duplicates and late samples are included; the caller decides about them.
 struct XsensArrival {
   XsensSample sample;
   Order order = Order::newest;  // among the samples of its character and type
@@ -50,6 +51,8 @@ struct XsensChannel {
 };
 
 /// Decodes the bytes of one sender.
+/// Connections and datagrams are decoded in the same way, because the size of each datagram follows
+/// from its header.
 class XsensDecoder {
  public:
   /// Takes bytes cut anywhere and appends the samples that they complete, including duplicates and
@@ -68,6 +71,7 @@ class XsensDecoder {
 
  private:
   /// A sample of several datagrams that is not complete yet.
+  /// The sample is complete when all datagrams from 0 to `last` are there.
   struct Part {
     std::size_t items = 0;
     std::map<unsigned, XsensSample> pieces;  // by the datagram's number within the sample
@@ -81,7 +85,10 @@ class XsensDecoder {
   };
 
   std::span<const std::uint8_t> ahead() const { return std::span(held_).subspan(at_); }
+  /// Handles what is at the front: a datagram, or a byte that is skipped. False: more bytes are
+  /// needed.
   bool step(std::vector<XsensArrival>& out);
+  /// True if another datagram began within this one, which was then skipped.
   bool torn(std::size_t size);
   /// Handles a complete datagram: outputs its sample, or joins it with others.
   void datagram(const XsensHeader& header, XsensItems items, std::vector<XsensArrival>& out);
@@ -93,6 +100,8 @@ class XsensDecoder {
   void refuse(XsensRefusal refusal) { ++counts_.refused[static_cast<std::size_t>(refusal)]; }
   void take(std::size_t bytes);
 
+  /// Bytes before `at_` are decided and are dropped at the end of each slice. Everything about
+  /// samples of several datagrams is in `channels_`.
   std::vector<std::uint8_t> held_;
   std::size_t at_ = 0;        // position in `held_`; the bytes before it are done
   std::size_t searched_ = 0;  // bytes of the datagram in which no other datagram begins

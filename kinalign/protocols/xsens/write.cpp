@@ -15,11 +15,13 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 /// The items of a sample, one by one.
+/// Items are encoded one by one, so that a sample can be divided at any item.
 struct Items {
   unsigned type = 0;
   std::vector<Bytes> items;
 };
 
+// Appends fields one after another, in big-endian order.
 class Item {
  public:
   template <std::unsigned_integral T>
@@ -86,6 +88,8 @@ Result<Items> items_of(const XsensTimeCode& code) {
                     .bytes()}};
 }
 
+// The reserved field and the payload's size follow as zeros; `put_payload_size` sets the size
+// later.
 Bytes header_of(const XsensSample& s, unsigned type, std::size_t items, unsigned datagram) {
   return Item()
       .put(fmt::format("MXTP{:02}", type))
@@ -112,10 +116,12 @@ void put_payload_size(Bytes& datagram) {
 Result<std::vector<Bytes>> xsens_datagrams(const XsensSample& sample, const XsensSending& sending) {
   Items all = KA_TRY(std::visit([](const auto& body) { return items_of(body); }, sample.body));
   const std::size_t count = all.items.size();
+  // The number of items is a byte. The index of a datagram has 7 bits.
   const std::size_t each = std::clamp<std::size_t>(sending.items_per_datagram, 1, 255);
   if (count == 0 || count > most_xsens_items || (count - 1) / each > 127) {
     return refused("1 to 256 items in at most 128 datagrams", std::to_string(count));
   }
+  // Without its size a payload is read as items of the short form, so raw values would be misread.
   if (all.type == 23 && all.items[0].size() != xsens_item_size(23) && !sending.payload_size) {
     return refused("a payload size beside raw values", "none");
   }

@@ -46,6 +46,7 @@ Offsets standing_offsets(const KinectIds& ids) {
     offsets[j] = noise.offset + (noise.person * person[j] + left_of_take * noise.take * of_take) /
                                     std::numbers::sqrt3;
   }
+  // The neck lies between its neighbours, as in kinect_coloured.cpp.
   offsets[neck] = 0.5 * (offsets[spine_shoulder] + offsets[head]);
   return offsets;
 }

@@ -74,6 +74,7 @@ Lengths held_lengths(const Lengths& now, const Lengths& truth, const Lengths& ex
 }
 
 /// Gives the bones of one frame [25,3] the lengths `held`, from the trunk outwards.
+/// The hips' width is set first, because the legs begin at the hips.
 void hold_frame(const Lengths& held, std::span<double> joints) {
   std::array<Vec3, kinect_joint_count> before;
   for (std::size_t j = 0; j < kinect_joint_count; ++j) before[j] = vec3(joints, j);

@@ -38,6 +38,7 @@ std::vector<Unseen> unseen_joints(const KinectScene& scene, const KinectOptions&
   return unseen;
 }
 
+// Without its trunk there is no body. One unseen joint of the three does not matter.
 bool body_is_there(std::span<const Unseen> unseen) {
   int out = 0;
   for (const KinectJoint j : {spine_base, spine_mid, spine_shoulder}) {
@@ -63,6 +64,9 @@ void leave_out(std::span<const Unseen> unseen, PointFrames& frames) {
 
 PointFrames simulate_kinect(const KinectJointsAt& joints_at, std::span<const KinectTick> ticks,
                             const KinectOptions& options, const KinectIds& ids) {
+  // The order matters: bones keep their length before white noise is added, and hidden joints are
+  // guessed from positions that have all other errors. Exchanged sides come last, because the
+  // labels are wrong, not the positions.
   const KinectScene scene = kinect_scene(joints_at, ticks, options);
   const KinectParts& parts = options.parts;
   PointFrames frames{{}, scene.truth, std::vector<Tracking>(scene.known.size(), Tracking::tracked)};

@@ -44,6 +44,8 @@ double along(double way, double length_squared) {
 
 }  // namespace
 
+// First the nearest points of the two lines, then each parameter is clamped to its segment.
+// For parallel segments the search begins at a0.
 NearestOnSegments nearest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0,
                                       const Vec3& b1) {
   const Vec3 a = a1 - a0, b = b1 - b0, r = a0 - b0;
@@ -64,6 +66,8 @@ std::optional<Vec3> hidden_behind(std::span<const double> joints, KinectJoint jo
   const double distance = place.norm();
   const double flesh = is_shoulder(joint) ? shoulder_flesh : own_flesh;
   if (distance <= flesh) return std::nullopt;
+  // The ray ends a little before the joint, so that the joint's own part of the body does not hide
+  // it.
   const Vec3 before = place * (1.0 - flesh / distance);
   for (const KinectCapsule& capsule : kinect_capsules) {
     if (belongs(joint, capsule)) continue;

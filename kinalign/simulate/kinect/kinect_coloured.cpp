@@ -49,6 +49,7 @@ class WanderingBody {
   void step(std::int64_t frame, std::span<const double> speeds, std::span<const double> stir) {
     const auto k = static_cast<std::uint64_t>(frame + warm_up) * channels;
     for (const KinectJoint j : kinect_tree_order) {
+      // The neck is the mean of its neighbours, below.
       if (j == neck) continue;
       const KinectJointNoise& noise = kinect_joint_noise()[j];
       const double x = SmoothNoise::per_tau * kinect_frame_s * rate(speeds[j], stir[j]);

@@ -8,6 +8,8 @@
 
 namespace kinalign {
 
+/// The numbers are part of the streams' seeds: a new quantity goes to the end, or those after it
+/// change.
 enum class KinectDraw : std::uint8_t {
   stamps,
   person_bias,

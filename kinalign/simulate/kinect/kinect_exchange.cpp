@@ -91,6 +91,7 @@ class Spells {
     *lasted_ += (likeness - *lasted_) * step_s / labels_hold_s;
     if (tick.seconds < until_) return true;
     const std::uint64_t k = shared_key(tick.seconds, kinect_frame_s);
+    // The rate at which periods must begin so that they cover this share of the frames.
     const double now = share * *lasted_;
     const double rate = now / ((1.0 - now) * mean_s);
     if (!random_.chance(k, lane_, rate * step_s)) return false;
@@ -115,6 +116,7 @@ void exchange_sides(const KinectScene& scene, const KinectIds& ids, PointFrames&
   for (std::size_t t = 0; t < scene.frames(); ++t) {
     const KinectTick& tick = scene.ticks[t];
     const double yaw = scene.headings[t].yaw;
+    // A gap in the frames must not begin a period for certain.
     const double step_s = std::min(tick.seconds - before, 0.1);
     before = tick.seconds;
     const double moved =

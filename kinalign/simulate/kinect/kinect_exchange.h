@@ -8,6 +8,7 @@
 namespace kinalign {
 
 /// Exchanges joints and states of both sides in `frames`.
+/// Call it last: it moves positions and states together, with all their errors.
 void exchange_sides(const KinectScene& scene, const KinectIds& ids, PointFrames& frames);
 
 }  // namespace kinalign

@@ -36,12 +36,14 @@ KinectJointNoise joint(KinectJoint source, double kinship, const Bias& bias, con
           .twitch = 0.5};
 }
 
+// Sizes of the white noise: at rest, mm, and for each m/s of speed, mm.
 KinectJointNoise with_white(KinectJointNoise noise, double rest_mm, double speed_mm) {
   noise.white = rest_mm * mm;
   noise.white_speed = speed_mm * mm;
   return noise;
 }
 
+// Feet and ankles: their errors are quicker, have heavier tails and differ more between takes.
 KinectJointNoise on_the_ground(KinectJointNoise noise) {
   noise.tau = quick_feet;
   noise.tail = feet_tail;
@@ -64,6 +66,7 @@ KinectJointNoise of_hand(const KinectJointNoise& wrist, KinectJoint source, doub
   return noise;
 }
 
+// Offsets and sizes in cm. A joint is filled before the joints that are correlated with it.
 void put_trunk(Table& t) {
   t[spine_base] = joint(spine_base, 0.0, {{0.0, -1.9, -2.8}, 2.4, 2.8}, {1.2, 1.5, 1.4});
   t[spine_mid] = joint(spine_base, 0.6, {{0.0, -3.6, -4.1}, 1.8, 2.5}, {0.9, 1.2, 1.4});

@@ -14,6 +14,8 @@ namespace kinalign {
 
 /// Error of one joint. Heading space: x to the person's left, y up, z in the direction that the
 /// body faces.
+/// The errors of a joint add up: offset, slow error of the pose, slow error of time, white noise,
+/// twitches.
 struct KinectJointNoise {
   KinectJoint source;   // draws are correlated with those of this joint
   double kinship;       // correlation with the source

@@ -29,6 +29,7 @@ constexpr double of_parent = 0.7;     // share of a guessed parent's error; fitt
 constexpr double longest_bone = 1.0;  // m; nothing longer is a bone
 constexpr double still_limb_share = 0.3;  // a still limb is guessed better
 
+// A guess of the trunk has no slow part of the error.
 GuessNoise guess_noise(KinectPart part) {
   switch (part) {
     case KinectPart::arm:
@@ -57,6 +58,8 @@ struct Memory {
   Vec3 wander() const { return {wandering[0].value(), wandering[1].value(), wandering[2].value()}; }
 };
 
+/// Goes through the joints from the trunk outwards, because a guess begins at the guess of its
+/// parent.
 class Tracker {
  public:
   Tracker(const KinectScene& scene, const KinectOptions& options, const KinectIds& ids,
@@ -71,6 +74,8 @@ class Tracker {
     }
   }
 
+  /// Whether a joint is hidden is decided by the true body; the positions that are moved have all
+  /// earlier errors.
   void frame(std::size_t t, std::span<const Unseen> unseen) {
     const std::span<const double> truth(&scene_.truth[3 * kinect_joint_count * t],
                                         3 * kinect_joint_count);
@@ -83,6 +88,7 @@ class Tracker {
   }
 
  private:
+  /// Draws go by the frame's number, so a dropped frame does not shift later draws.
   std::uint64_t counter(std::size_t t, KinectJoint j) const {
     return static_cast<std::uint64_t>(scene_.ticks[t].number) * kinect_joint_count + j;
   }
@@ -97,6 +103,7 @@ class Tracker {
     if (hider || below) {
       if (++memory.hidden == patience + 1) enter(memory, j, k, below);
     } else {
+      // Back within one, two or three frames.
       if (memory.hidden > patience)
         memory.back = 1.0 / (1.0 + std::floor(3.0 * random_.uniform(k, 1)));
       memory.hidden = 0;

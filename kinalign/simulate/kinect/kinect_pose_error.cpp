@@ -21,6 +21,8 @@ Vec3 normals(const RandomStream& random, std::uint64_t k, std::uint64_t lane) {
 
 }  // namespace
 
+// Frequencies and phases are those of the take, so two cameras see the same function of the pose.
+// Only the sizes of the waves differ in part between cameras.
 KinectPoseError::KinectPoseError(const KinectIds& ids, double shared) {
   const RandomStream of_body = kinect_take_stream(KinectDraw::pose_noise, ids);
   const RandomStream of_camera = kinect_stream(KinectDraw::pose_noise, ids);

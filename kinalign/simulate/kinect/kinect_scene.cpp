@@ -13,6 +13,7 @@ constexpr double bustle_s = 0.5;
 // Number of frames over which a difference still counts as a motion.
 constexpr std::int64_t longest_gap = 10;
 
+// Brings the true joints into the camera's space.
 void take_truth(const KinectJointsAt& joints_at, const RigidTransform& world_from_kinect,
                 KinectScene& scene) {
   const Quat turn = world_from_kinect.rotation.conjugate();
@@ -76,6 +77,7 @@ std::vector<double> speeds(const KinectScene& scene, const std::vector<double>& 
   const std::size_t frames = scene.frames();
   std::vector<double> found(scene.known.size(), 0.0);
   for (std::size_t t = 0; t < frames; ++t) {
+    // A central difference; at an end or a gap it is one-sided.
     const std::size_t a = t > 0 && follows(scene.ticks[t - 1], scene.ticks[t]) ? t - 1 : t;
     const std::size_t b = t + 1 < frames && follows(scene.ticks[t], scene.ticks[t + 1]) ? t + 1 : t;
     const double dt = scene.ticks[b].seconds - scene.ticks[a].seconds;
@@ -110,6 +112,7 @@ std::vector<double> smoothed(const KinectScene& scene, const std::vector<double>
   return found;
 }
 
+// Means over the 25 joints of each frame.
 std::vector<double> over_joints(const std::vector<double>& values) {
   std::vector<double> means(values.size() / kinect_joint_count, 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -17,6 +17,7 @@ struct BodyHeading {
 /// body has its full size.
 inline constexpr double full_stir = 0.25;  // m/s
 
+/// It holds the truth and what follows from it, and is never changed by the steps of the model.
 struct KinectScene {
   std::span<const KinectTick> ticks;  // [T]
   std::vector<double> truth;          // [T,25,3] m, camera space

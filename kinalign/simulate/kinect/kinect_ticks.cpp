@@ -32,6 +32,8 @@ std::vector<KinectTick> kinect_ticks(const KinectOptions& options, const KinectI
                                      double begin_s, double end_s) {
   const RandomStream random = kinect_stream(KinectDraw::stamps, ids);
   const double share = std::clamp(options.drop_rate, 0.0, 0.9);
+  // The probability that a dropped frame follows a kept one, so that `share` of all frames are
+  // dropped.
   const double run_begins = share * (1.0 - goes_on) / (1.0 - share);
   const double rate = 1.0 + options.drift_ppm * 1e-6;
   std::vector<KinectTick> ticks;

@@ -8,6 +8,7 @@
 namespace kinalign {
 
 /// Adds white noise to `joints` [T,25,3] m.
+/// Call after hold_bones(), which would take part of this noise away.
 void add_white_noise(const KinectScene& scene, const KinectIds& ids, std::span<double> joints);
 
 /// Adds twitches: the tracker reports a joint elsewhere for some frames.

@@ -12,10 +12,12 @@ namespace kinalign {
 
 namespace {
 
+// Times of sending and of the node's answers vary by up to this.
 constexpr double dither_s = 1e-3;
 constexpr double turnaround_s = 30e-6;  // mean, on the host
 
 /// The node's counter with all steps, reboots and changes of rate.
+/// The crystal counts on through everything; a boot only begins a new count from it.
 class Counter {
  public:
   Counter(std::uint64_t seed, const ExchangeOptions& options)
@@ -26,11 +28,13 @@ class Counter {
     double seconds;
   };
 
+  /// False between a loss of power and the start after it.
   bool powered(double t) const {
     return std::none_of(options_.reboots.begin(), options_.reboots.end(),
                         [&](const Reboot& r) { return t >= r.at && t < r.at + r.gap; });
   }
 
+  /// The reading at true time t. Steps and stretches before the current boot do not count.
   Reading at(double t) const {
     std::uint64_t id = 0;
     double begin = -1.0;  // start of the current boot
@@ -58,6 +62,7 @@ class Counter {
   RandomStream ids_;
 };
 
+// A counter shows whole microseconds that have passed.
 std::int64_t microseconds(double seconds) {
   return static_cast<std::int64_t>(std::floor(seconds * 1e6));
 }
@@ -73,16 +78,21 @@ void send_frames(const Counter& counter, std::uint64_t seed, SimulatedExchanges&
     SimulatedFrame frame;
     frame.sent = (static_cast<double>(k) + 0.5) / o.rate_hz + dither_s * random.uniform(k, 0);
     const Counter::Reading reading = counter.at(frame.sent);
+    // Also a restart without a new boot id, which shows only by a counter that fell by more than a
+    // second.
     const bool restarted =
         !run.frames.empty() &&
         (was_off || run.frames.back().boot_id != reading.boot_id ||
          reading.seconds * 1e6 + 1e6 < static_cast<double>(run.frames.back().n_tx_us));
+    // A node without power sends nothing.
     was_off = !counter.powered(frame.sent);
     if (was_off) continue;
     if (restarted) sequence = 0;
     frame.boot_id = reading.boot_id;
     frame.sequence = sequence++;
     frame.n_tx_us = microseconds(reading.seconds);
+    // The counter is truncated to microseconds. The truth is the time in the middle of the
+    // microsecond that was read.
     frame.truth = frame.sent + static_cast<double>(frame.n_tx_us) * 1e-6 + 0.5e-6 - reading.seconds;
     run.frames.push_back(frame);
   }
@@ -106,12 +116,14 @@ std::vector<std::size_t> carry_up(std::uint64_t seed, SimulatedExchanges& run) {
 }
 
 /// Sends a reply to each frame that arrived. The node reads its counter when a reply reaches it.
+/// Replies that arrive while the node is off, or after a reboot, have no effect.
 void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<std::size_t>& arrival,
                 SimulatedExchanges& run) {
   const RandomStream random(seed, 4);
   std::vector<double> sent(arrival.size());
   double last = 0.0;
   for (std::size_t j = 0; j < arrival.size(); ++j) {
+    // The host answers frames one after the other.
     last = std::max(last, *run.frames[arrival[j]].arrival + random.exponential(j, 1, turnaround_s));
     sent[j] = run.frames[arrival[j]].replied = last;
   }
@@ -158,6 +170,8 @@ void confirm(std::uint64_t seed, SimulatedExchanges& run) {
 
 }  // namespace
 
+// The steps are those of the packets: up, down, then the echo in a later frame. The last step
+// simulates the paper's third packet over the same exchanges.
 SimulatedExchanges simulate_exchanges(const ExchangeOptions& options, std::uint64_t seed) {
   SimulatedExchanges run{options, floors(options.link.link, seed), {}};
   const Counter counter(seed, run.options);

@@ -29,6 +29,7 @@ struct RateStretch {
   double rate = 0.0;  // 500e-6: 500 ppm fast
 };
 
+/// The conditions of one run. Faults are explicit, so a test can state when each of them happens.
 struct ExchangeOptions {
   double length_s = 60.0;
   double rate_hz = 15.0;
@@ -61,6 +62,7 @@ struct SimulatedExchanges {
   std::vector<SimulatedFrame> frames;  // in the order of sending
 };
 
+/// The same seed and options give the same run.
 SimulatedExchanges simulate_exchanges(const ExchangeOptions& options, std::uint64_t seed);
 
 /// An arrival at the host. in_order_of_arrival() lists them in that order.

@@ -24,6 +24,7 @@ class NodeTimer {
         // In whole microseconds, like the firmware's timer.
         period_us_(1'000'000 / options.rate_hz) {
     const double phase = static_cast<double>(period_us_) * random_.uniform(0, 0);
+    // The first tick comes within one period after the beginning.
     next_us_ = static_cast<std::uint64_t>(clock_.reading(0.0) * 1e6 + phase) + 1;
     plan();
   }
@@ -32,6 +33,7 @@ class NodeTimer {
   std::uint64_t counter_us() const {
     return static_cast<std::uint64_t>(clock_.reading(served_s_) * 1e6);
   }
+  /// The true time at which the counter stood at this value.
   double true_s(std::uint64_t counter_us) const {
     return clock_.host(static_cast<double>(counter_us) * 1e-6);
   }
@@ -42,6 +44,7 @@ class NodeTimer {
   }
 
  private:
+  /// A tick is served by a task a little later; the sample has the counter of that moment.
   void plan() { served_s_ = true_s(next_us_) + random_.exponential(tick_, 1, service_s); }
 
   SimulatedClock clock_;
@@ -60,6 +63,8 @@ Vec3 mean_rate_at_rest(SimulatedSensor& sensor, const Vec3& gravity, double rest
   return steps == 0 ? sum : Vec3(sum / static_cast<double>(steps));
 }
 
+// The node lies still, z up, before it is worn. The filter learns the bias then; afterwards the
+// zeros walk on.
 MahonyOptions calibrated(const InertialNodeOptions& options, SimulatedSensor& sensor) {
   MahonyOptions filter = options.filter;
   if (!(options.rest_s > 0.0)) return filter;
@@ -69,6 +74,7 @@ MahonyOptions calibrated(const InertialNodeOptions& options, SimulatedSensor& se
 }
 
 /// One node during the pass: chip, filter and timer, and the samples so far.
+/// All nodes advance together, so that the motion is asked only once for each chip step.
 class NodeAtWork {
  public:
   NodeAtWork(const Mounting& mounting, const InertialNodeOptions& options, std::uint64_t seed,
@@ -82,6 +88,7 @@ class NodeAtWork {
   }
 
   /// Runs the chip for one step; its reading belongs to the middle of the last five poses.
+  /// Call for each chip step in turn.
   void chip_step(const std::array<const GlobalPose*, 5>& poses) {
     std::array<SensorPlace, 5> places;
     for (std::size_t k = 0; k < 5; ++k) places[k] = place_of(node_.mounting, *poses[k]);
@@ -99,6 +106,7 @@ class NodeAtWork {
         taken.sample.orientation = {static_cast<float>(q.w()), static_cast<float>(q.x()),
                                     static_cast<float>(q.y()), static_cast<float>(q.z())};
       }
+      // The truth belongs to the counter's microsecond, not to the moment of the reading within it.
       const double true_s = timer_.true_s(taken.counter_us);
       motion.pose_at(true_s, pose_);
       forward_kinematics(motion.skeleton, pose_, global_);
@@ -107,6 +115,7 @@ class NodeAtWork {
       node_.truth.places.push_back(place_of(node_.mounting, global_));
     }
   }
+  /// Passes over ticks for which there are no registers yet.
   void skip(double t) {
     while (timer_.served_s() < t) timer_.advance();
   }
@@ -159,11 +168,13 @@ Result<std::vector<SimulatedNode>> simulate_nodes(const Motion& motion,
   for (std::size_t i = 0; i <= steps; ++i) {
     motion.pose_at(static_cast<double>(i) * chip_step_s, pose);
     forward_kinematics(motion.skeleton, pose, poses[i % 5]);
+    // Five poses are needed for the first reading.
     if (i < 4) continue;
     std::array<const GlobalPose*, 5> last{};
     for (std::size_t k = 0; k < 5; ++k) last[k] = &poses[(i + 1 + k) % 5];
     for (const auto& node : nodes) {
       node->chip_step(last);
+      // The reading belongs to pose i - 2. Its registers hold until the time of pose i - 1.
       node->serve(static_cast<double>(i - 1) * chip_step_s, motion);
     }
   }
@@ -173,6 +184,7 @@ Result<std::vector<SimulatedNode>> simulate_nodes(const Motion& motion,
   return done;
 }
 
+// All samples are valid here. A link that loses some is applied later (rehearsal.h).
 ImuStream imu_stream(const SimulatedNode& node, Time start) {
   ImuStream stream;
   stream.node_names = {node.mounting.node_name};

@@ -45,11 +45,13 @@ struct SimulatedNodeSample {
 };
 
 /// The truth at the instants of the samples, which the counter gives to the microsecond.
+/// One entry for each sample.
 struct NodeTruth {
   std::vector<double> times;        // [N] s of the motion
   std::vector<SensorPlace> places;  // [N]
 };
 
+/// Everything about one node: how it is worn, what it would send, and what is true.
 struct SimulatedNode {
   Mounting mounting;
   std::uint64_t seed = 0;  // for its SimulatedClock and its link (simulate_exchanges)

@@ -12,6 +12,7 @@ namespace kinalign {
 
 namespace {
 
+// A number from -most to most, all equally likely.
 double evenly(const RandomStream& random, std::uint64_t number, std::uint64_t lane, double most) {
   return most * (2.0 * random.uniform(number, lane) - 1.0);
 }
@@ -20,6 +21,7 @@ Vec3 normal(const RandomStream& random, std::uint64_t k, std::uint64_t lane) {
   return {random.normal(k, lane), random.normal(k, lane + 2), random.normal(k, lane + 4)};
 }
 
+// Diagonal: errors of scale. The others: misalignment of an axis towards another one.
 Eigen::Matrix3d drawn_scale(const RandomStream& random, std::uint64_t number, double scale,
                             double misalignment) {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
@@ -88,6 +90,7 @@ void SimulatedSensor::wait(double seconds) {
   accelerometer_ = ChipLowPass(model_.accelerometer_bandwidth_hz);
 }
 
+// A random walk grows with the root of the time, so one draw serves any duration.
 void SimulatedSensor::walk(double seconds) {
   const double root = std::sqrt(seconds);
   errors_.gyroscope_zero += model_.gyroscope_walk * root * normal(walks_, walked_, 0);
@@ -108,6 +111,7 @@ RawReading SimulatedSensor::step(const InertialReading& truth) {
           quantised(gyroscope_.push(rate), model_.gyroscope_range)};
 }
 
+// Computed in float, in the order of the firmware, so that the values are the same to the last bit.
 NodeSample SimulatedSensor::sample_of(const RawReading& reading) const {
   const auto acceleration_step = static_cast<float>(model_.accelerometer_range / 32768.0);
   const auto angular_velocity_step = static_cast<float>(model_.gyroscope_range / 32768.0);

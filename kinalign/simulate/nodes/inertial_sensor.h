@@ -69,6 +69,7 @@ struct RawReading {
   bool operator==(const RawReading&) const = default;
 };
 
+/// One chip. Its errors are drawn when it is made; noise and walks go by the number of steps.
 class SimulatedSensor {
  public:
   SimulatedSensor(const InertialSensorModel& model, std::uint64_t seed);

@@ -26,6 +26,7 @@ struct Mounting {
   Quat bone_from_sensor = Quat::Identity();
 };
 
+/// The sensor's place for a pose of the whole body.
 SensorPlace place_of(const Mounting& mounting, const GlobalPose& pose);
 
 /// Rate, rad/s, and specific force, m/s2, in sensor space, in the middle of five places that are

@@ -42,6 +42,7 @@ Shares shares(Link link) {
 }
 
 /// Two alternating states with exponential durations; the good one comes first.
+/// Used for the congested link, and for bursts of loss.
 class Dwells {
  public:
   Dwells(RandomStream random, double good_s, double bad_s)
@@ -91,6 +92,7 @@ class Roams {
   double last_ = 0.0, next_ = 0.0;
 };
 
+// Every packet has a short delay; 8 % wait some milliseconds more, 0.5 % up to 20 ms.
 double quiet_delay(const RandomStream& s, std::uint64_t k) {
   double d = s.exponential(k, 0, 0.25 * ms);
   if (s.chance(k, 1, 0.08)) d += s.exponential(k, 2, 2.0 * ms);
@@ -107,6 +109,7 @@ double beacon_wait(const RandomStream& s, std::uint64_t seed, std::uint64_t k, d
   return (ahead < 0.0 ? ahead + period : ahead) + (s.chance(k, 3, 0.02) ? period : 0.0);
 }
 
+// In the bad state delays are log-normal, at most 2 s.
 double congested_delay(const RandomStream& s, std::uint64_t k, bool down, bool bad) {
   if (!bad) return s.exponential(k, 2, down ? 6.0 * ms : 3.0 * ms);
   return std::min((down ? 60.0 : 25.0) * ms * std::exp(s.normal(k, 0)), 2.0);
@@ -145,6 +148,7 @@ double above_floor(Link link, const RandomStream& s, std::uint64_t seed, const P
   return 0.0;
 }
 
+// Faults have their own random numbers, so adding one changes nothing else about the link.
 void add_faults(const LinkOptions& options, std::uint64_t seed, Way way,
                 std::span<const double> sent, std::vector<Transit>& transits) {
   const RandomStream losses(seed, 60 + number(way));
@@ -160,6 +164,8 @@ void add_faults(const LinkOptions& options, std::uint64_t seed, Way way,
 
 }  // namespace
 
+// The two directions differ by a drawn asymmetry (that of the congested link is fixed). No exchange
+// can show it.
 Floors floors(Link link, std::uint64_t seed) {
   const double asymmetry = 2.0 * RandomStream(seed, 3).uniform(0, 0) - 1.0;
   const auto around = [&](double floor, double spread) {
@@ -183,11 +189,14 @@ Floors floors(Link link, std::uint64_t seed) {
   return {};
 }
 
+// Draws go by the packet's number in its direction, so a fault or a later packet changes no draw of
+// others.
 std::vector<Transit> transits(const LinkOptions& options, std::uint64_t seed, Way way,
                               std::span<const double> sent) {
   const RandomStream random(seed, 10 + number(way));
   const Floors least = floors(options.link, seed);
   const double floor = way == Way::down ? least.down : least.up;
+  // Packets that confirm go up, so they share the states of that direction.
   Dwells states(RandomStream(seed, 20 + number(way) % 2), 5.0, 3.0);
   Roams roams(RandomStream(seed, 30), way);
   std::vector<Transit> out(sent.size());
@@ -205,6 +214,7 @@ std::vector<Transit> transits(const LinkOptions& options, std::uint64_t seed, Wa
   return out;
 }
 
+// Packets of a direction queue: none overtakes another, except those that are reordered.
 std::vector<Arrival> transmit(const LinkOptions& options, std::uint64_t seed, Way way,
                               std::span<const double> sent) {
   const RandomStream random(seed, 40 + number(way));
@@ -220,6 +230,7 @@ std::vector<Arrival> transmit(const LinkOptions& options, std::uint64_t seed, Wa
     } else {
       last = arrival = std::max(arrival, last + queue_gap_s);  // a lost packet was in the queue too
     }
+    // A burst loses everything, in addition to the link's own losses.
     const bool lost = way_through[k].lost || (options.bursts && bursts.bad(sent[k]));
     if (lost) continue;
     out[k].first = arrival;

@@ -33,6 +33,7 @@ struct LinkFault {
   double extra_up = 0.0, extra_down = 0.0;  // s, as on a longer route
 };
 
+/// The members below `link` add to the link's own behaviour.
 struct LinkOptions {
   Link link = Link::quiet;
   bool bursts = false;      // alternately 2 s of total loss and 2 s without loss, on average

@@ -22,6 +22,8 @@ struct NodeClockOptions {
 /// The reading is n(t) = 5 s + t + X(t), on a grid of 0.1 s and linear in between. X' is the sum of
 /// the constant error, a random walk (1e-9 per root second), white noise (Allan deviation 1e-9 at 1
 /// s) and the effect of temperature.
+/// The whole curve is drawn when the clock is made. Times outside of it are clamped to its ends in
+/// reading().
 class SimulatedClock {
  public:
   SimulatedClock(std::uint64_t seed, double length_s, const NodeClockOptions& options = {});

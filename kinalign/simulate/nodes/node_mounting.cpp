@@ -15,6 +15,7 @@ namespace kinalign {
 
 namespace {
 
+// A place on the body; `mounted` draws how far a node is off that place.
 struct Worn {
   std::string_view node, joint, end;  // the bone goes from `joint` to `end`; `end` empty: upwards
   double from_cm, to_cm;              // along the bone from its beginning, for a shank of 41.87 cm
@@ -40,6 +41,7 @@ std::optional<std::size_t> find_joint(const Skeleton& skeleton, std::string_view
   return static_cast<std::size_t>(found - names.begin());
 }
 
+// The message names the joint that the skeleton lacks.
 Result<std::size_t> needed_joint(const Skeleton& skeleton, std::string_view name) {
   if (const auto joint = find_joint(skeleton, name)) return *joint;
   return Failure(Error{"", 0, "a skeleton with a joint " + std::string(name) + " to wear a node on",
@@ -64,6 +66,7 @@ Mounting mounted(const Worn& where, const Bone& bone, const RandomStream& random
   if (where.from_end) at = bone.way - at;
   at += m * (where.beside_cm * where.outward + Vec3(near(1), near(2), near(3)));
   Eigen::Matrix3d axes;
+  // x along the bone, z away from the body.
   axes << along, where.outward.cross(along), where.outward;
   const Vec3 axis = Vec3(near(4), near(5), near(6)).normalized();
   const double angle = std::numbers::pi / 12.0 * random.uniform(number, 8);

@@ -34,6 +34,7 @@ class PacketFates {
       fates_.push_back({after(arrivals[k].first), after(arrivals[k].duplicate)});
     }
   }
+  /// The fate of the next packet. Call it once for each packet that is sent.
   const Fate& next() { return fates_[next_++ % fates_.size()]; }
 
  private:

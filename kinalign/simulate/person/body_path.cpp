@@ -21,17 +21,22 @@ constexpr double tick_s = 0.05;  // four ticks for each control
 // rad/s, estimated: a quarter turn takes 1.3 s and two steps.
 constexpr double most_turn_rate = 1.2;
 constexpr double most_acceleration = 1.0;  // m/s2
+// A goal counts as reached from this distance on.
 constexpr double arrival_m = 0.2;
 
+// The same angle from -pi to pi.
 double wrapped(double angle) { return std::remainder(angle, 2.0 * pi); }
 
 /// Moves the point in ticks, act by act.
+/// The plan is made by small steps of time, because the body must be home at the end of each act.
+/// Only the controls are kept; the path itself is smooth.
 class Walker {
  public:
   Walker(std::uint64_t seed, double scale) : random_(seed, 103), scale_(scale) {}
 
   const FloorPlace& place() const { return place_; }
 
+  /// Call when an act begins, before its first tick.
   void begin(const Act& act) {
     const StepTimes steps = step_times(act);
     act_ = &act;
@@ -78,6 +83,7 @@ class Walker {
     hold_s_ = 0.5;
   }
 
+  /// Changes the speed towards `speed`, within the greatest acceleration.
   void approach(double speed) {
     speed_ += std::clamp(speed - speed_, -most_acceleration * tick_s, most_acceleration * tick_s);
   }
@@ -87,11 +93,13 @@ class Walker {
     place_.yaw += std::clamp(4.0 * off, -most_turn_rate, most_turn_rate) * tick_s;
     return std::abs(off);
   }
+  /// The nearest yaw that faces +z: whole turns are kept, so that the path does not turn back.
   double home_yaw() const { return 2.0 * pi * std::round(place_.yaw / (2.0 * pi)); }
 
   /// Turns in place to goal after goal, and back to the front in time.
   void turn(double t) {
     approach(0.0);
+    // Time to turn to the front, with a second to spare.
     const double needed = std::abs(home_yaw() - place_.yaw) / most_turn_rate + 1.0;
     if (rest_from_ - t < needed) going_home_ = true;
     if (going_home_) {
@@ -105,6 +113,7 @@ class Walker {
   /// Walks to goal after goal, and home in time to turn to the front.
   void walk(double t) {
     const double away = std::hypot(place_.x, place_.z);
+    // Time for the way home at 0.7 of the speed, for turning towards it and to the front again.
     const double needed = away / (0.7 * top_speed()) + (away > 0.15 ? pi / most_turn_rate : 0.0) +
                           std::abs(wrapped(place_.yaw)) / most_turn_rate + 1.5;
     if (rest_from_ - t < needed) going_home_ = true;
@@ -120,6 +129,7 @@ class Walker {
     if (!going_home_ && distance < arrival_m) choose();
     const double off = wrapped(std::atan2(dx, dz) - place_.yaw);
     steer(place_.yaw + off);
+    // The body slows down before a sharp turn and before the goal.
     const double ahead = std::max(0.0, std::cos(off));
     approach(std::min(top_speed() * ahead * ahead, std::sqrt(most_acceleration * distance)));
   }
@@ -144,6 +154,7 @@ Controls walked(const std::vector<Act>& acts, std::uint64_t seed, double scale) 
   Walker walker(seed, scale);
   std::optional<std::uint64_t> current;
   const auto count = static_cast<std::size_t>(acts.back().end_s / control_s) + 2;
+  // Positions are read before the ticks of their interval.
   const auto ticks = static_cast<std::size_t>(std::lround(control_s / tick_s));
   for (std::size_t k = 0; k < count; ++k) {
     controls.x.push_back(walker.place().x);
@@ -162,6 +173,8 @@ Controls walked(const std::vector<Act>& acts, std::uint64_t seed, double scale) 
 
 }  // namespace
 
+// The first foot leaves 0.4 s after the act begins; the last one lands at least 0.3 s before its
+// end. An act without room for two steps has none.
 StepTimes step_times(const Act& act) {
   StepTimes steps;
   if (!act.has_steps()) return steps;

@@ -14,6 +14,7 @@ struct FloorPlace {
 
 /// The steps of an act. Foot k (alternating, the act's side first) leaves the floor at first_s + k
 /// stride_s / 2 and is in the air for swing_s.
+/// Both feet and the body go by these times, so they agree without asking each other.
 struct StepTimes {
   double first_s = 0.0, stride_s = 1.0, swing_s = 0.4;
   std::size_t count = 0;
@@ -28,6 +29,7 @@ StepTimes step_times(const Act& act);
 /// The path of the body, four times continuously differentiable. The body rests outside of the
 /// steps. It then stands at home if there was time to go there: at 0, 0, facing +z (yaw a multiple
 /// of a turn).
+/// Made once for a whole programme; asking does not change it.
 class BodyPath {
  public:
   /// `scale`: the person's size; 1: 1.75 m.

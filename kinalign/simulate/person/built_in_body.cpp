@@ -27,6 +27,7 @@ Quat about_y(double angle) { return rotation(Vec3(0, angle, 0)); }
 Quat about_z(double angle) { return rotation(Vec3(0, 0, angle)); }
 
 /// The repetitions of an act: bumps that fit between its ends.
+/// As many whole repetitions as fit, each as long as the others.
 double repeated(const Act& act, double t) {
   const double room = act.end_s - act.begin_s;
   const auto times = std::max(1.0, std::floor(room / act.tempo_s));
@@ -82,6 +83,7 @@ void do_slowly(const Act& act, double t, Doing& doing) {
   }
 }
 
+// Measures from the skeleton's end site at the toes. Feet stand as far apart as the hips.
 FootShape foot_shape(const Skeleton& skeleton, const RandomStream& random) {
   const Vec3& toes = skeleton.end_sites.front().offset;
   return {-toes.y(), toes.z(), skeleton.rest_offsets[index(NeuronJoint::left_up_leg)].x(),
@@ -98,12 +100,14 @@ SlowNoise::SlowNoise(const RandomStream& random, std::uint64_t number, double le
   }
 }
 
+// Four sines have a mean square of 2 together; the factor makes the rms 1.
 double SlowNoise::at(double t) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < rate_.size(); ++i) sum += std::sin(rate_[i] * t + phase_[i]);
   return std::numbers::sqrt2 / 2.0 * sum;
 }
 
+// All draws of the person come from `person`, all others from `seed`.
 BuiltInBody::BuiltInBody(double height_m, std::uint64_t person, std::uint64_t seed,
                          std::vector<Act> acts)
     : skeleton_(perception_neuron(height_m, person)),
@@ -124,6 +128,7 @@ BuiltInBody::BuiltInBody(double height_m, std::uint64_t person, std::uint64_t se
       elbow_(0.2 + 0.15 * RandomStream(person, 104).uniform(10, 2)) {}
 
 /// Amount of each movement at t, by the act.
+/// A movement fades to nothing where one act meets the next, so there is no jump.
 Doing BuiltInBody::doing_at(double t) const {
   const Act& act = act_at(acts_, t);
   Doing doing;
@@ -168,9 +173,11 @@ Doing BuiltInBody::doing_at(double t) const {
 }
 
 /// The height of the pelvis at which the more stretched leg reaches its longest length.
+/// The smaller of both heights counts; a smooth minimum keeps the motion differentiable.
 double BuiltInBody::hip_height(const Pelvis& level, const FootState& left, const FootState& right,
                                double width) const {
   const double reach = longest_leg * (bones_.thigh + bones_.shank);
+  // The height above one foot. Feet that are too far apart leave at least half of the leg's length.
   const auto allowed = [&](NeuronJoint up_leg, const FootState& foot) {
     const Vec3 hip = level.rotation * skeleton_.rest_offsets[index(up_leg)];
     const double x = level.position.x() + hip.x() - foot.ankle.x();
@@ -200,11 +207,14 @@ BuiltInBody::Pelvis BuiltInBody::pelvis_at(double t, const Doing& doing, const F
       scale_ * (0.005 * sway_x_.at(t) - 0.022 * doing.gait * over - 0.05 * doing.lean);
   const double back = scale_ * (0.005 * sway_z_.at(t) - 0.11 * doing.bend - 0.13 * doing.squat);
   pelvis.position = Vec3(body.x, 0, body.z) + about_y(body.yaw) * Vec3(aside, 0, back);
+  // In walking the minimum is wider, so that the height changes smoothly from leg to leg.
   const double width = scale_ * (0.003 + 0.05 * doing.gait);
   pelvis.position.y() = hip_height(pelvis, left, right, width) - scale_ * squat_depth * doing.squat;
   return pelvis;
 }
 
+// The knee points between the directions of pelvis and foot. The three rotations are those that
+// bring the ankle to its place and the foot to its own rotation.
 void BuiltInBody::put_leg(const Pelvis& pelvis, const FootState& foot, NeuronJoint up_leg,
                           Pose& pose) const {
   const std::size_t up = index(up_leg);
@@ -216,6 +226,8 @@ void BuiltInBody::put_leg(const Pelvis& pelvis, const FootState& foot, NeuronJoi
   pose.local_rotations[up + 2] = leg.shank.conjugate() * foot.rotation;
 }
 
+// The four segments of the spine share each movement. Breath bends the upper two against the lower
+// two.
 void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
   const double front = doing.gait * doing.reach * std::cos(doing.gait_phase - 0.85 * pi);
   const double over = doing.gait * std::cos(doing.gait_phase - 0.4 * pi);
@@ -229,6 +241,7 @@ void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
         about_x(pitch + chest * breath + 0.004 * nod_.at(t)) *
         about_z(0.012 * over - 0.11 * doing.lean);
   }
+  // The head compensates part of the trunk's bend, so that the eyes look ahead.
   const double bent = bend_depth * doing.bend + 0.35 * doing.squat + 4.0 * pitch;
   const double free = 1.0 - 0.7 * (1.0 - doing.down);  // in T-pose the person looks ahead
   for (const auto joint : {NeuronJoint::neck, NeuronJoint::head}) {
@@ -271,6 +284,8 @@ void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose)
   put_fingers(0.3 * doing.down * (1.0 - 0.8 * wave), side, pose);
 }
 
+// Fingers are three joints each; a joint of the palm stands before each finger, not before the
+// thumb.
 void BuiltInBody::put_fingers(double curl, double side, Pose& pose) const {
   const std::size_t thumb = index(side > 0 ? NeuronJoint::left_thumb1 : NeuronJoint::right_thumb1);
   for (std::size_t k = 0; k < 3; ++k) pose.local_rotations[thumb + k] = about_y(-side * 0.4 * curl);
@@ -282,6 +297,8 @@ void BuiltInBody::put_fingers(double curl, double side, Pose& pose) const {
   }
 }
 
+// Feet come first, because the pelvis may be only as high as the legs reach. Legs then follow from
+// both.
 void BuiltInBody::pose_at(double t, Pose& pose) const {
   pose.local_positions = skeleton_.rest_offsets;
   pose.local_rotations.assign(neuron_joints, Quat::Identity());

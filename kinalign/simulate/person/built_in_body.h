@@ -31,6 +31,7 @@ struct ArmDoing {
 };
 
 /// Amount of each movement at a moment.
+/// It is computed from the act and turned into rotations by the put_ functions.
 struct Doing {
   double down = 1.0;  // arms hang down; 0 in T-pose
   double wave = 0.0, wave_phase = 0.0;
@@ -41,6 +42,8 @@ struct Doing {
   ArmDoing left, right;
 };
 
+/// A person with a programme: everything random is drawn when it is made, and `pose_at` only
+/// computes.
 class BuiltInBody {
  public:
   /// `person` determines proportions and personal style; `seed` everything that differs from time

@@ -53,6 +53,7 @@ constexpr std::array<CarriedJoint, 21> carried_joints{
 /// The source's joint for each row of carried_joints.
 using SourceJoints = std::array<std::size_t, carried_joints.size()>;
 
+// Absent if one of the names of that kind is missing.
 std::optional<SourceJoints> joints_of_kind(const Skeleton& skeleton, std::size_t kind) {
   SourceJoints out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -64,6 +65,7 @@ std::optional<SourceJoints> joints_of_kind(const Skeleton& skeleton, std::size_t
   return out;
 }
 
+// Positions of all joints in the rest pose.
 std::vector<Vec3> rest_places(const Skeleton& skeleton) {
   std::vector<Vec3> out;
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
@@ -86,8 +88,12 @@ Vec3 tip_of(const Skeleton& skeleton, std::size_t joint) {
 }
 
 /// Poses a body like the source.
+/// A joint of the body takes a global rotation, so differences between the two hierarchies do not
+/// add up.
 class Carrier {
  public:
+  /// Compares the two rest poses once: how each bone of the body must be turned to point like the
+  /// source's, and the ratio of the legs' lengths.
   Carrier(Motion source, const SourceJoints& joints, Skeleton body)
       : source_(std::move(source)), joints_(joints), body_(std::move(body)) {
     const auto from = rest_places(source_.skeleton), to = rest_places(body_);
@@ -126,6 +132,8 @@ class Carrier {
       turned[j] = above;
       if (row_of_[j] < 0) continue;  // fingers stay in their rest pose
       const auto row = static_cast<std::size_t>(row_of_[j]);
+      // The global rotation of the source's joint, applied to a bone that points like the source's
+      // in the rest pose.
       turned[j] = (global.rotations[joints_[row]] * aligned_[row]).normalized();
       pose.local_rotations[j] = above.conjugate() * turned[j];
     }
@@ -174,6 +182,7 @@ double way(double t, double length_s, double ramp_s) {
 
 }  // namespace
 
+// The kinds of names are tried one after another.
 Result<Motion> carried_over(Motion source, Skeleton body) {
   for (std::size_t kind = 0; kind < 3; ++kind) {
     const auto joints = joints_of_kind(source.skeleton, kind);
@@ -200,6 +209,7 @@ Result<Motion> there_and_back(Motion motion, double begin_s, double end_s, doubl
   Skeleton skeleton = motion.skeleton;
   return Motion{std::move(skeleton), length_s,
                 [motion = std::move(motion), begin_s, own_s, ramp_s](double t, Pose& pose) {
+                  // One round: forth and back, each with its slowing down.
                   const double round = 2.0 * (own_s + ramp_s);
                   const double at = t - round * std::floor(t / round);
                   const bool back = at > 0.5 * round;

@@ -16,6 +16,7 @@ Result<Motion> carried_over(Motion source, Skeleton body);
 
 /// Plays the motion from `begin_s` to `end_s`, slows down, plays it backwards, and so on until
 /// `length_s`. It is never faster than the motion itself. Fails if that part is shorter than 1 s.
+/// A short motion thus lasts as long as it is needed, without a jump.
 Result<Motion> there_and_back(Motion motion, double begin_s, double end_s, double length_s);
 
 }  // namespace kinalign

@@ -34,6 +34,8 @@ Gait gait_of(const Act& act, double far, double scale) {
 
 }  // namespace
 
+// Each step of this foot begins where the last one ended, so a foot never slides. Its goal is the
+// place under the body in the middle of the next stance.
 FootTrack::FootTrack(const std::vector<Act>& acts, const BodyPath& path, const FootShape& shape,
                      double side, double scale)
     : shape_(shape), start_(print_under(path.at(0.0), shape, side, 1.0)) {
@@ -77,6 +79,7 @@ FootState FootTrack::at(double t) const {
   foot.yaw = place.yaw;
   foot.rotation = rotation(Vec3(0, place.yaw, 0)) * rotation(Vec3(heel, 0, 0));
   foot.toes = Vec3(place.x, lift, place.z);
+  // The toes are placed first; the ankle follows from the rotation of the foot.
   foot.ankle = foot.toes - foot.rotation * Vec3(0.0, -shape_.height, shape_.length);
   return foot;
 }

@@ -26,6 +26,7 @@ struct FootState {
 /// The movement of one foot; three times continuously differentiable.
 class FootTrack {
  public:
+  /// One step through the air. Between two swings the foot stands.
   struct Swing {
     double leaves_s = 0.0, lands_s = 0.0;
     FloorPlace from, to;    // positions of the toes

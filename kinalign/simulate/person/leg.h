@@ -10,6 +10,7 @@ struct LegBones {
   double thigh = 0.0, shank = 0.0;  // m
 };
 
+/// The rotations that bring a straight leg to the ankle.
 struct BentLeg {
   Quat thigh = Quat::Identity(), shank = Quat::Identity();  // global; at rest along -y, facing +z
   double knee = 0.0;  // rad; 0: straight, positive: bent backwards

@@ -22,6 +22,7 @@ struct Proportions {
   double leg = 1.0, trunk = 1.0, arm = 1.0, width = 1.0, foot = 1.0;
 };
 
+// Deviations are clamped at two sd, so that no body is unnatural. The trunk makes up for the legs.
 Proportions proportions(double height_m, std::uint64_t person) {
   const double scale = height_m / file_height_m;
   if (person == 0) return {scale, scale, scale, scale, scale};
@@ -44,6 +45,7 @@ class Builder {
  public:
   explicit Builder(const Proportions& of) : of_(of) {}
 
+  /// Returns the index of the new joint. Parents must be added before their children.
   int add(std::string name, int parent, const Vec3& offset_cm) {
     skeleton_.joint_names.push_back(std::move(name));
     skeleton_.parents.push_back(parent);

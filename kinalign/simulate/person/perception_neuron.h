@@ -42,6 +42,7 @@ constexpr std::size_t index(NeuronJoint joint) { return static_cast<std::size_t>
 /// The rest pose is a T-pose: y up, facing +z, left is +x, palms down, soles at y = 0. `height_m`
 /// scales all lengths alike. A `person` other than 0 has individual legs, arms, trunk and widths,
 /// which deviate by some percent (sd) from those of the file, with the same height.
+/// `person` 0 is the person of the file, scaled.
 Skeleton perception_neuron(double height_m, std::uint64_t person);
 
 }  // namespace kinalign

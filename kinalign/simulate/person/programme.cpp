@@ -98,6 +98,7 @@ Programme default_programme(double length_s, std::uint64_t seed) {
   for (std::uint64_t round = 0; end < length_s; ++round) {
     std::array<Piece, 8> order{Piece::stand, Piece::step, Piece::walk, Piece::walk_turn,
                                Piece::wave,  Piece::bend, Piece::turn, Piece::squat};
+    // Fisher and Yates' shuffle.
     for (std::uint64_t i = order.size() - 1; i > 0; --i) {
       const auto other =
           static_cast<std::size_t>(random.uniform(round, i) * static_cast<double>(i + 1));
@@ -115,6 +116,7 @@ double Act::within(double t, double ramp_s) const {
   return (first ? 1.0 : rise((t - begin_s) / ramp)) * (last ? 1.0 : rise((end_s - t) / ramp));
 }
 
+// A programme without any length still gives one act, so that there is always an act to ask.
 std::vector<Act> acts_of(const Programme& programme, std::uint64_t seed) {
   const RandomStream random(seed, 101);
   std::vector<Act> acts;

@@ -55,6 +55,8 @@ Programme default_programme(double length_s, std::uint64_t seed);
 
 /// A piece with its random details. The ranges of tempo are estimates: strides of 1.05 to 1.35 s
 /// are slow indoor walking.
+/// All random details are drawn when the programme begins, so an act can be asked for any time in
+/// any order.
 struct Act {
   Piece piece = Piece::stand;
   double begin_s = 0.0, end_s = 0.0;

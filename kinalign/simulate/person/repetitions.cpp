@@ -16,6 +16,7 @@ double Repetition::size(double t) const {
   return amplitude * rise(x / forth) * rise((1.0 - x) / back);
 }
 
+// Lengths are drawn first and then scaled together, so that they fill the period exactly.
 std::vector<Repetition> drawn_repetitions(const RepetitionPlan& plan, std::uint64_t seed) {
   const RandomStream random(seed, 105);
   const double room = plan.end_s - plan.begin_s;

@@ -11,9 +11,11 @@ namespace kinalign {
 
 namespace {
 
+// True time of a stamp; absent if the truth does not cover it.
 using TrueTimes = std::function<std::optional<Time>(Time stamp)>;
 
 /// Calls `use` with each block of a stream of type `Input`.
+// Reads a stream from the front; only one block is in memory.
 template <class Frames, class Input, class Use>
 Result<void> each_block(const Input& input, const Use& use) {
   Pass<Frames> pass = KA_TRY(input.passes());
@@ -54,6 +56,8 @@ const TrueNode* true_node(const TrueRecording& truth, const std::string& stream,
 }
 
 /// Frames are evenly spaced. In a live recording, a stamp is the frame's number times the step.
+/// A suit's stamps are no times of a clock. Each stamp leads to a frame's number, and the truth
+/// knows the time of that frame.
 TrueTimes mocap_times(const TrueRecording& truth, Time first) {
   const TrueMocap& mocap = truth.mocap;
   const Time zero = truth.host ? Time{} : first;
@@ -88,12 +92,14 @@ Result<TrueTimes> true_times(const RecordedStream& stream, const TrueRecording& 
   return TrueTimes([clock](Time stamp) { return true_time(*clock, stamp); });
 }
 
+// The sorted value at this share of the list, 0 to 1.
 double quantile(const std::vector<double>& sorted, double share) {
   if (sorted.empty()) return 0.0;
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
 /// Computes the root of a mean square.
+/// Adding up squares keeps no list of errors.
 struct Rms {
   double sum = 0.0;
   std::uint64_t count = 0;
@@ -106,6 +112,7 @@ struct Rms {
 };
 
 /// The true pose at any time on the axis of the stamps.
+/// Asking for a pose overwrites the one before, so a caller must use it first.
 class TruthAt {
  public:
   explicit TruthAt(const JudgedTake& judged)
@@ -127,6 +134,7 @@ class TruthAt {
     }
     return rates;
   }
+  /// The number of joints if the motion has no joint of that name.
   std::size_t joint(const std::string& name) const {
     const auto& names = motion_.skeleton.joint_names;
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -139,6 +147,7 @@ class TruthAt {
   GlobalPose global_;
 };
 
+// Nodes of one stream are separate streams of a recording with the same name.
 const RecordedStream* stream_of(const JudgedTake& judged, const std::string& name,
                                 const std::string& node = "") {
   for (const RecordedStream& stream : judged.recording.streams) {
@@ -148,6 +157,7 @@ const RecordedStream* stream_of(const JudgedTake& judged, const std::string& nam
 }
 
 /// Function from stamps to true times, both on the axis of the stamps.
+/// The recording's UTC may differ from that of the truth by `shift`.
 Result<TrueTimes> moved_times(const RecordedStream& stream, const JudgedTake& judged) {
   const std::vector<Time> stamps = KA_TRY(stamps_of(stream));
   const Time first = stamps.empty() ? Time{} : stamps.front();
@@ -170,6 +180,7 @@ ValueJudgement judge_clip(const JudgedTake& judged, std::size_t g, const ClipGro
     if (!rows.valid.empty() && rows.valid[t] == 0) continue;
     const GlobalPose& pose = truth.pose(judged.take.all.stamps[t]);
     for (std::size_t j = 0; j < joints; ++j) {
+      // A joint that the motion does not have can't be judged.
       if (places[j] >= pose.positions.size()) continue;
       error.add((pose.positions[places[j]] - vec3(rows.positions, t * joints + j)).squaredNorm());
     }
@@ -220,6 +231,7 @@ Result<ValueJudgement> judge_points(const JudgedTake& judged, std::size_t g) {
       if (!at || block.state[i] == Tracking::missing) continue;
       const Vec3 seen = vec3(block.positions, i), real = vec3(known, j);
       before.add((real - seen).squaredNorm());
+      // With the true time and the true camera, only the sensor's own error remains.
       alone.add((real - camera * seen).squaredNorm());
     }
   };
@@ -239,6 +251,7 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
   if (joint == judged.motion.skeleton.joints()) {
     return Failure(Error{"", 0, "a joint of the motion that " + name + " is worn on", node.joint});
   }
+  // The chip's filter delays the rate, so a value belongs to the truth that long before.
   const Duration delay{std::llround(node.sensor_delay_ms * 1e6)};
   const auto off = [&](Time t, const Vec3& rate) {
     const double by = rate.norm() - truth.rates(t - delay).at(joint);
@@ -250,6 +263,7 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
     if (rows.valid[i] != 0)
       after.add(off(judged.take.all.stamps[t], vec3(rows.angular_velocity, i)));
   }
+  // The same comparison on the stream itself, without alignment.
   const RecordedStream* stream = stream_of(judged, group.name, name);
   if (stream == nullptr) return Failure(Error{"", 0, "the recording's node " + name, "none"});
   const TrueTimes times = KA_TRY(moved_times(*stream, judged));
@@ -262,6 +276,7 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
   return ValueJudgement{group.name, name, after.count, std::nullopt, after.value(), alone.value()};
 }
 
+// Without rates of rotation there is nothing to compare, so such a group gives no judgement.
 Result<std::vector<ValueJudgement>> judge_nodes(const JudgedTake& judged, std::size_t g) {
   const TakeGroup& group = judged.take.header.groups[g];
   const auto& imu = std::get<ImuGroup>(group.kind);
@@ -276,6 +291,7 @@ Result<std::vector<ValueJudgement>> judge_nodes(const JudgedTake& judged, std::s
 
 }  // namespace
 
+// Stamps without a true time are left out of the count.
 Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecording& truth,
                                  Duration shift) {
   const std::vector<Time> stamps = KA_TRY(stamps_of(stream));
@@ -289,6 +305,7 @@ Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecordi
     const auto at = times(stamp);
     if (!at) continue;
     errors.push_back(std::abs(seconds(take_time(stream.clock, stamp) - (*at + shift))));
+    // An interval is checked only where the clock states one.
     const auto width = half_width(stream.clock, stamp);
     if (!width) continue;
     ++judgement.certified;
@@ -303,6 +320,7 @@ Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecordi
   return judgement;
 }
 
+// Mean squares add up with the number of rows; means of roots would not.
 ValueJudgement together(std::span<const ValueJudgement> nodes) {
   ValueJudgement all{nodes.front().stream, "all nodes", 0, std::nullopt, 0.0, 0.0};
   for (const ValueJudgement& node : nodes) {
@@ -317,6 +335,7 @@ ValueJudgement together(std::span<const ValueJudgement> nodes) {
   return all;
 }
 
+// Groups of devices that the truth does not know are left out.
 Result<std::vector<ValueJudgement>> judge_values(const JudgedTake& judged) {
   std::vector<ValueJudgement> out;
   const auto& groups = judged.take.header.groups;

@@ -33,6 +33,7 @@ Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecordi
                                  Duration shift);
 
 /// Errors of a stream's values, rms: m for points and skeletons, rad/s for the rotation of nodes.
+/// `after` may be compared with `alone`: what alignment adds to the device's own error.
 struct ValueJudgement {
   std::string stream, node;
   std::uint64_t count = 0;
@@ -42,6 +43,7 @@ struct ValueJudgement {
   std::optional<double> alone;
 };
 
+/// References only: all four must outlive the judging.
 struct JudgedTake {
   const Take& take;
   const Recording& recording;

@@ -18,9 +18,11 @@ namespace {
 constexpr double before_click_s = 0.5, behind_click_s = 0.5;
 constexpr double degree = std::numbers::pi / 180.0;
 
+// All numbers of this file come from one stream; cameras, nodes and persons have their own.
 RandomStream draws(std::uint64_t seed) { return {seed, 120}; }
 
 /// The joints that a camera reports, at any time.
+/// Keeps its poses between calls, so that later calls use the same memory.
 class JointsOf {
  public:
   JointsOf(const Motion& motion, const KinectMap& map) : motion_(motion), map_(map) {}
@@ -59,8 +61,10 @@ MocapRun mocap_run(double length_s, std::uint64_t seed) {
   };
   run.start_click_s = before_click_s;
   run.stop_click_s = length_s - behind_click_s;
+  // The phase is random, because a suit's frames have nothing to do with the clicks.
   const double step = 1.0 / run.rate_hz, phase = step * random.uniform(1, 4);
   const double from = run.start_click_s + latency(0), to = run.stop_click_s + latency(2);
+  // The suit's frames run on; the recording begins with the first one after the click took effect.
   run.first_frame_s = phase + step * std::ceil((from - phase) / step);
   run.frames = static_cast<std::size_t>((to - run.first_frame_s) / step) + 1;
   return run;
@@ -68,6 +72,7 @@ MocapRun mocap_run(double length_s, std::uint64_t seed) {
 
 /// Keeps the first pair, the last one, and one for each second: a crystal is steady enough in
 /// between.
+/// The truth of a long rehearsal would otherwise hold a pair for each sample.
 TrueClock thinned(const TrueClock& all) {
   TrueClock clock;
   const std::size_t count = all.stamps_ns.size();
@@ -114,9 +119,11 @@ TrueNode true_node(const SimulatedNode& node, const Motion& motion, Time zero) {
   truth.joint = motion.skeleton.joint_names[node.mounting.joint];
   truth.offset = node.mounting.offset;
   truth.bone_from_sensor = node.mounting.bone_from_sensor;
+  // The delay of ChipLowPass, 0.205 / bandwidth, in ms.
   truth.sensor_delay_ms = 205.0 / InertialSensorModel{}.gyroscope_bandwidth_hz;
   truth.gyroscope_zero = node.errors.gyroscope_zero;
   truth.accelerometer_zero = node.errors.accelerometer_zero;
+  // The truth is stated for the stamps that a file of this node has.
   const ImuStream file = node_file(node, zero);
   for (std::size_t i = 0; i < node.samples.size(); ++i) {
     truth.clock.stamps_ns.push_back(to_ns(file.samples.stamps[i]));
@@ -140,6 +147,7 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   }
   joints_of(0.0, joints);
   const double floor = lowest_of(motion.skeleton, joints_of.global());
+  // The middle of the path, so that the person stays in view.
   const Vec3 middle = sum / count;
   Vec3 facing = (vec3(joints, hip_left) - vec3(joints, hip_right)).cross(Vec3::UnitY());
   if (facing.norm() < 1e-3) facing = Vec3::UnitZ();  // hips above each other show no front
@@ -151,6 +159,7 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   RigidTransform camera;
   camera.translation = Vec3(middle.x() + away * std::sin(yaw), floor + 1.05 + 0.15 * near(2),
                             middle.z() + away * std::cos(yaw));
+  // The camera looks back at the person: half a turn and some degrees off.
   camera.rotation =
       Quat(Eigen::AngleAxisd(yaw + std::numbers::pi + 3.0 * degree * near(3), Vec3::UnitY()) *
            Eigen::AngleAxisd(3.0 * degree * near(4), Vec3::UnitX()) *
@@ -158,6 +167,8 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   return camera;
 }
 
+// The devices are simulated one after another, each with its own draws from the seed. So a change
+// of one device leaves the others as they were.
 Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options) {
   if (!(motion.length_s >= least_rehearsal_s)) {
     return Failure(
@@ -169,6 +180,7 @@ Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options
 
   const KinectMap map = KA_TRY(kinect_map(motion.skeleton));
   done.camera.world_from_kinect = KA_TRY(camera_before(motion, seed));
+  // The sensor's crystal is at most 20 ppm off, like a node's.
   done.camera.drift_ppm = 40.0 * draws(seed).uniform(0, 6) - 20.0;
   const KinectIds ids{.seed = seed, .person = options.person.value_or(seed)};
   done.ticks = kinect_ticks(done.camera, ids, 0.0, motion.length_s);
@@ -182,6 +194,7 @@ Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options
   return done;
 }
 
+// A block of the run; a long motion needs no memory for all of its frames.
 ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t begin,
                         std::size_t end, Time zero) {
   const std::size_t joints = motion.skeleton.joints();
@@ -200,6 +213,7 @@ ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t b
   return frames;
 }
 
+// Only the first stamp is true. The others count the sensor's ticks from there, with its drift.
 PointStream kinect_file(const Rehearsal& rehearsal, Time zero) {
   PointStream stream{{kinect_joints.begin(), kinect_joints.end()}, rehearsal.kinect};
   if (rehearsal.ticks.empty()) return stream;
@@ -212,10 +226,13 @@ PointStream kinect_file(const Rehearsal& rehearsal, Time zero) {
   return stream;
 }
 
+// The counter's reading at time 0 is subtracted, so the stamp at time 0 is true and the drift shows
+// later.
 ImuStream node_file(const SimulatedNode& node, Time zero) {
   return imu_stream(node, time_at(zero, -SimulatedClock(node.seed, 1.0).reading(0.0)));
 }
 
+// The link decides only which samples are lost. Stamps are the node's own.
 ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
   const ImuStream all = node_file(node, zero);
@@ -226,6 +243,7 @@ ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
   return out;
 }
 
+// Samples are sorted by arrival, as a host that stamps them would write them.
 ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
   std::vector<std::pair<double, std::size_t>> arrived;  // arrival and index
@@ -243,6 +261,7 @@ ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   return out;
 }
 
+// Names of streams are those that the simulated files have.
 TrueRecording truth_of(const Rehearsal& rehearsal, const Motion& motion, Time zero) {
   TrueRecording truth;
   truth.length_s = motion.length_s;

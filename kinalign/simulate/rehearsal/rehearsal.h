@@ -32,12 +32,15 @@ inline constexpr double click_latency_s = 0.045 + 0.5 / 60.0;
 /// Greater than the drift of any crystal in node_clock.h and of the camera's.
 inline constexpr double most_drift = 25e-6;
 
+/// The same options give the same rehearsal, on any machine.
 struct RehearsalOptions {
   std::uint64_t seed = 1;
   std::uint32_t node_rate_hz = 100;
   std::optional<std::uint64_t> person{};  // person whose body the camera sees; absent: the seed's
 };
 
+/// Everything that the devices would have recorded. Their files and their live streams are made
+/// from it.
 struct Rehearsal {
   MocapRun mocap;
   KinectOptions camera;
