@@ -20,11 +20,14 @@ Failure wrong(std::string place, std::string expected, std::string found) {
   return Failure(Error{std::move(place), 0, std::move(expected), std::move(found)});
 }
 
+/// A minus before a digit or a point begins a number: `--yaw -12.5` has a value and no flag.
 bool looks_like_a_flag(std::string_view word) {
   return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
 }
 
 /// Parses the words of one call in one pass.
+/// `at_` is the word at hand; set_bare() moves it on if it takes the next word as a value. `plain_`
+/// collects the words that are no flags; they are placed at the end, when their number is known.
 class Walk {
  public:
   Walk(const std::vector<std::string>& words, const Usage& usage, const Fields& common)
@@ -66,6 +69,7 @@ class Walk {
     if (field != nullptr) {
       return has_value ? set(*field, flag, word.substr(equals + 1)) : set_bare(*field, flag);
     }
+    // Switches can be set by a file or a variable, so a flag must be able to unset them.
     field = flag.starts_with("--no-") ? find("--" + flag.substr(5)) : nullptr;
     if (field != nullptr && is_switch(*field) && !has_value) return set(*field, flag, "false");
     return unknown(flag);
@@ -101,6 +105,7 @@ class Walk {
   // once.
   Result<void> set(const Field& field, const std::string& flag, const std::string& text) {
     const bool many = std::holds_alternative<std::vector<std::string>*>(field.value);
+    // A flag given twice is mostly a mistake in a long command; lists are meant to be repeated.
     const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
     if (!first && !many) return wrong(flag, "this flag once", "it twice");
     if (first && many) std::get<std::vector<std::string>*>(field.value)->clear();
@@ -120,6 +125,7 @@ class Walk {
       needed = 0;  // too few words: then the last ones are missing, not
                    // the first
     for (const Positional& place : usage_.positionals) {
+      // The words that this one needs are no longer kept for others.
       needed -= std::min(needed, place.least);
       for (std::size_t n = 0; n < place.most && next + needed < plain_.size(); ++n, ++next) {
         KA_TRY(place_word(place, plain_[next]));
@@ -134,6 +140,7 @@ class Walk {
     if (!usage_.positionals.empty()) {
       advice = usage_.positionals.back().if_more;
     } else if (further.ends_with(".toml")) {
+      // People often name a lab file as they name a manifest.
       advice = "did you mean --config " + shown(further) + "?";
     }
     return wrong("", "no more words" + (advice.empty() ? "" : " (" + advice + ")"), shown(further));
@@ -199,6 +206,7 @@ Fields common_fields(Common& common, const Page& page) {
     const auto& names = page.common;
     if (std::find(names.begin(), names.end(), field.name) != names.end()) fields.push_back(field);
   }
+  // These exist for every verb.
   fields.push_back(
       {"config", "settings to use instead of the project's kinalign.toml", &common.config});
   fields.push_back({"quiet", "print errors only", &common.quiet});

@@ -27,6 +27,7 @@ struct Parsed {
 /// Fails with an Error whose `file` is the flag or word at fault: "--gap-ms". Accepts `--flag
 /// value`, `--flag=value`, switches as `--flag` or `--no-flag`, and -o, -q, -v, -h. Words after
 /// `--` are not flags.
+/// The values go straight into the options to which the fields point.
 Result<Parsed> parse_words(const std::vector<std::string>& words, const Usage& usage,
                            const Fields& common);
 

@@ -40,6 +40,7 @@ void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
 
 /// The words that a flag accepts; empty: any text, or a file.
 std::vector<std::string> values_of(const Field& field) {
+  // Layouts are known only to the registry of formats.
   if (field.name != "layout" && !field.name.ends_with("_layout")) return field.choices;
   const auto names = format_names();
   return {names.begin(), names.end()};
@@ -65,6 +66,7 @@ std::string names_in(const std::string& group, const std::vector<Verb>& verbs) {
 }
 
 /// Text for single quotes of a shell, without characters that have a meaning in zsh's _arguments.
+/// Texts lose a few characters; escaping them for three shells would be harder to get right.
 std::string quotable(std::string text) {
   std::erase_if(text, [](char c) { return c == '\'' || c == '[' || c == ']'; });
   std::replace(text.begin(), text.end(), ':', ',');
@@ -72,6 +74,7 @@ std::string quotable(std::string text) {
 }
 
 /// A bash script with one case for each flag that takes a value, and one for each verb.
+/// Each case looks at the verb and at the word before the cursor, so a case is a verb with a flag.
 std::string bash_script(const std::vector<Verb>& verbs) {
   std::string cases;
   for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
@@ -79,6 +82,7 @@ std::string bash_script(const std::vector<Verb>& verbs) {
     for (const Field& field : fields) {
       words.push_back(flag_of(field.name));
       if (is_switch(field)) continue;
+      // -o is completed like --out.
       const std::string letter = field.name == "out" ? fmt::format("|'{} -o'", page.name) : "";
       cases += fmt::format("    '{} {}'{}) words='{}' ;;\n", page.name, flag_of(field.name), letter,
                            joined(values_of(field)));
@@ -172,6 +176,7 @@ std::string fish_options(const std::string& within, const Usage& usage, const Fi
 }
 
 /// A fish script with a line for each verb and each flag.
+/// fish takes one condition for each line, which says after which verbs the line counts.
 std::string fish_script(const std::vector<Verb>& verbs) {
   std::string text = "# fish completion of kinalign\n";
   for (const std::string& group : groups_of(verbs)) {

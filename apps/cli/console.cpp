@@ -22,6 +22,8 @@ namespace {
 std::atomic<bool> ctrl_c = false;  // any thread may read it
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+// ANSI colours in the order of Colour. Streams have the colours of pages: mocap red, Kinect green,
+// nodes blue.
 constexpr std::array<std::string_view, 7> codes{"",         "\x1b[32m", "\x1b[33m", "\x1b[31m",
                                                 "\x1b[31m", "\x1b[32m", "\x1b[34m"};
 constexpr std::string_view plain = "\x1b[0m";
@@ -32,6 +34,7 @@ std::string painted(bool wanted, Colour colour, std::string_view text) {
   return fmt::format("{}{}{}", code, text, plain);
 }
 
+/// --color decides; else NO_COLOR (no-color.org), which counts if it is set and not empty.
 bool colour_wanted(const Surroundings& surroundings, const Common& common, bool terminal) {
   if (common.color != "auto") return common.color == "always";
   return terminal && surroundings.variable("NO_COLOR").empty() &&
@@ -67,6 +70,7 @@ std::string time_text(double s) {
 void note_signals(unsigned flags) {
   ctrl_c = false;
   struct sigaction action {};
+  // A handler may do little; the job sees the flag at its next call of progress.
   action.sa_handler = [](int) { ctrl_c = true; };
   action.sa_flags = static_cast<int>(flags);
   ::sigaction(SIGINT, &action, nullptr);
@@ -83,12 +87,14 @@ void note_signals(unsigned flags) {
 
 }  // namespace
 
+// Parts that are not known yet are left out: no total, no per cent.
 std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
                           double elapsed_s, std::size_t width) {
   std::string line(what);
   const auto doing = static_cast<double>(done);
   const auto all = static_cast<double>(total);
   if (total > 0) line += fmt::format("  {:.0f} %", 100 * std::min(1.0, doing / all));
+  // Rates of the first moments are too uncertain to show.
   if (done > 0 && elapsed_s > 0.5) {
     line += "  " + rate_text(what, doing / elapsed_s);
     if (total > done) line += fmt::format("  {} left", time_text(elapsed_s * (all / doing - 1)));
@@ -96,6 +102,7 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
   return line.substr(0, width);
 }
 
+// SA_RESETHAND: a second Ctrl-C finds the default handler and ends the program at once.
 void take_signals() { note_signals(SA_RESETHAND | SA_RESTART); }
 void take_every_signal() { note_signals(SA_RESTART); }
 
@@ -111,6 +118,7 @@ Console::Console(const Surroundings& surroundings, const Common& common, std::st
       out_(surroundings.out),
       err_(surroundings.err) {}
 
+// A progress line must not stay on the terminal, whatever has ended the verb.
 Console::~Console() {
   erase_shown();
   err_.flush();
@@ -124,6 +132,7 @@ void Console::never_wait() {
 
 void Console::print(std::string_view text) {
   if (common_.quiet || common_.json) return;
+  // Into a pipe or a file, lines stay whole: other programs read them.
   put(surroundings_.out_is_terminal ? broken(text, size_of(surroundings_.out).columns) : text);
 }
 
@@ -141,6 +150,7 @@ void Console::put_json(std::string_view object, int version) {
   const std::string_view members = object.substr(object.find('{') + 1);
   const bool none = members.find_first_not_of(" \n") == members.find('}');
   std::string name = json_name_.empty() ? verb_ : json_name_;
+  // A verb of a group has a blank in its name, a schema has none: "kinalign.dataset.build".
   std::replace(name.begin(), name.end(), ' ', '.');
   put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", name, version, none ? "" : ", ",
                   members.substr(std::min(members.find_first_not_of(" \n"), members.size()))));
@@ -173,6 +183,7 @@ Progress Console::progress() {
 void Console::show(std::vector<std::pair<std::string, Colour>> lines) {
   if (!progress_) return;
   table_ = std::move(lines);
+  // A terminal that takes no text would only get old tables later.
   if (err_.holds()) return;
   erase_shown();
   draw_table();
@@ -181,6 +192,7 @@ void Console::show(std::vector<std::pair<std::string, Colour>> lines) {
 
 /// Draws the part of the table for which the terminal has room now.
 void Console::draw_table() {
+  // A table higher than the terminal would scroll and could not be erased.
   const std::size_t count = std::min(table_.size(), rows());
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [text, colour] = table_[i];
@@ -228,6 +240,7 @@ std::string Console::out_trouble() const {
 
 /// Waits up to a second for a slow reader. A reader that went away (EPIPE) is no error.
 Result<void> Console::finish() {
+  // A reader that never reads must not keep the program alive.
   constexpr std::chrono::milliseconds last_words{1000};
   erase_shown();
   err_.flush();
@@ -241,6 +254,7 @@ Result<void> Console::finish() {
 /// Redraws the progress line, at most ten times a second.
 void Console::show_progress(std::string_view what, std::uint64_t done, std::uint64_t total) {
   const Clock::time_point now = Clock::now();
+  // Each part of a job has its own rate and its own time left.
   if (doing_ != what) {
     doing_ = what;
     began_ = now;

@@ -29,6 +29,9 @@ constexpr Colour colour_of(Severity severity) {
 /// Lines below an error: the work that was not done, and the next step.
 using Advice = std::function<std::vector<std::string>(const Error&)>;
 
+/// Both outlets hold text until it is flushed. On a terminal, lines that stay at the bottom
+/// (progress or table) are erased before any other line and drawn again below it; `standing_` has
+/// the widths of those that are there now.
 class Console {
  public:
   Console(const Surroundings& surroundings, const Common& common, std::string verb);
@@ -120,6 +123,7 @@ class Console {
   const Common& common_;
   std::string verb_, json_name_;
   Advice advice_;
+  // Wrong use that only the files showed; see refuse().
   bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
   Outlet out_, err_;

@@ -21,6 +21,7 @@ struct Overloaded : Kinds... {
 template <class... Kinds>
 Overloaded(Kinds...) -> Overloaded<Kinds...>;  // clang 14 needs this guide
 
+/// The shortest text that gives the same number again.
 std::string text_of(double number) {
   std::array<char, number_room> room{};
   const char* end = std::to_chars(room.data(), room.data() + room.size(), number).ptr;
@@ -49,6 +50,7 @@ Result<double> number_in(const Field& field, std::string_view text) {
 }
 
 /// A whole number within the option's range.
+/// Ranges are stored as double for all kinds of number.
 Result<std::int64_t> integer_in(const Field& field, std::string_view text) {
   std::int64_t value = 0;
   const char* end = text.data() + text.size();
@@ -60,6 +62,7 @@ Result<std::int64_t> integer_in(const Field& field, std::string_view text) {
   return value;
 }
 
+/// The words that people write in files and variables.
 Result<bool> truth_in(std::string_view text) {
   if (text == "true" || text == "1" || text == "yes") return true;
   if (text == "false" || text == "0" || text == "no") return false;
@@ -103,6 +106,7 @@ Result<void> set_field(const Field& field, std::string_view text) {
       [&](std::vector<std::string>* at) -> Result<void> {
         return string_in(field, text).map([&](std::string v) { at->push_back(std::move(v)); });
       },
+      // Tables and lists of numbers exist in files only.
       [&](auto*) -> Result<void> { return instead_of("an option that has a flag", field.name); },
   };
   return std::visit(set, field.value);
@@ -133,12 +137,15 @@ bool is_switch(const Field& field) { return std::holds_alternative<bool*>(field.
 std::string placeholder(const Field& field) {
   if (is_switch(field)) return "";
   if (!field.stands_for.empty()) return field.stands_for;
+  // An empty choice stands for the default and is not shown.
   std::string choices;
   for (const std::string& choice : field.choices) {
     if (!choice.empty()) choices += (choices.empty() ? "" : "|") + choice;
   }
   if (!choices.empty()) return choices;
   if (field.name.ends_with("layout")) return "LAYOUT";
+  // Names of options whose value says more than TEXT or NUMBER; a field may also state its own
+  // word.
   constexpr std::array<std::pair<std::string_view, std::string_view>, 27> names{
       {{"out", "FILE"},         {"config", "FILE"},       {"mocap", "FILE"},
        {"kinect", "FILE"},      {"inputs", "FOLDER"},     {"imu", "NODE=FILE"},

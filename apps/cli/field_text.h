@@ -13,6 +13,7 @@ namespace kinalign {
 
 /// Sets the option from text ("0.5", "true", "slerp"); a vector of strings gets one more element.
 /// Fails outside the range or the choices; the Error names no place.
+/// Flags, variables and files all use it, so ranges and messages are the same for all.
 Result<void> set_field(const Field& field, std::string_view text);
 
 /// The value in the form that set_field() reads. Empty for an optional without value; vectors are

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t meaning_column = 28;  // the column of the meanings
 
+/// A name and its meaning in two columns. A long name has its meaning on the next line.
 std::string line_of(const std::string& left, const std::string& meaning) {
   std::string line = "  " + left;
   if (line.size() + 2 > meaning_column) {
@@ -24,6 +25,7 @@ std::string line_of(const std::string& left, const std::string& meaning) {
   return line + wrapped(meaning, meaning_column) + "\n";
 }
 
+/// A part of a help page with its head; nothing if there are no fields.
 std::string lines_of(const Fields& fields, const std::string& head) {
   if (fields.empty()) return "";
   std::string text = "\n" + head + "\n";
@@ -46,6 +48,7 @@ std::string words_of(const std::string& group, const std::vector<Verb>& verbs) {
 
 }  // namespace
 
+// A word that is longer than a line stays whole.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
   std::string out;
   std::size_t at = indent;
@@ -70,6 +73,7 @@ std::string program_version() { return KINALIGN_VERSION; }
 /// The flag as a help page lists it; the default follows in brackets unless the meaning states it.
 FlagText flag_text(const Field& field) {
   FlagText text{flag_of(field.name), field.meaning};
+  // The letters of command_line.cpp.
   if (field.name == "out") text.flag = "-o, --out";
   if (field.name == "quiet") text.flag = "-q, --quiet";
   if (field.name == "verbose") text.flag = "-v, --verbose";
@@ -100,10 +104,12 @@ std::string group_page(const std::string& group, const std::vector<Verb>& verbs)
          line_of(fmt::format("kinalign {} VERB --help", group), "help for a verb, with examples");
 }
 
+// The first line is a command that works, before anything is explained.
 std::string overview(const std::vector<Verb>& verbs) {
   std::string text = "  kinalign align demo/recording.toml -o demo/mine.h5\n";
   const bool aligns = std::any_of(verbs.begin(), verbs.end(),
                                   [](const Verb& verb) { return verb.page.name == "align"; });
+  // A program without that verb, as tests have it, needs another example.
   if (!aligns) text = "  kinalign config\n";
   text += "\nAligns motion capture, Kinect v2 and IMU recordings.\n\nverbs\n";
   std::string listed;  // the group of the verb before
@@ -125,6 +131,7 @@ std::string overview(const std::vector<Verb>& verbs) {
 
 std::string help_page(const Page& page, const Usage& usage) {
   std::string text;
+  // Examples stand first: most people want a command to copy.
   for (const Example& example : page.examples) {
     text += fmt::format("  {}\n      {}\n", example.command, wrapped(example.meaning, 6));
   }

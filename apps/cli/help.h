@@ -27,6 +27,7 @@ std::string group_page(const std::string& group, const std::vector<Verb>& verbs)
 std::string help_page(const Page& page, const Usage& usage);
 
 /// The page kinalign(1) in roff.
+/// Help, man page and completions can't disagree, because none of them is written by hand.
 std::string man_page(const std::vector<Verb>& verbs);
 
 /// A script for `shell`: bash, zsh or fish.

@@ -13,11 +13,13 @@ namespace {
 /// The text with roff's special characters escaped.
 std::string literal(std::string_view text) {
   std::string out;
+  // A dot or an apostrophe at the beginning of a line would be a request of roff.
   if (text.starts_with('.') || text.starts_with('\'')) out += "\\&";
   for (const char c : text) {
     if (c == '\\') {
       out += "\\e";
     } else if (c == '-') {
+      // A plain hyphen may be set as another character, which can't be copied into a shell.
       out += "\\-";
     } else {
       out += c;
@@ -26,6 +28,7 @@ std::string literal(std::string_view text) {
   return out;
 }
 
+/// A flag or a code with its meaning, indented below it.
 std::string item(std::string_view head, std::string_view text) {
   return fmt::format(".TP\n.B {}\n{}\n", literal(head), literal(text));
 }
@@ -53,6 +56,7 @@ std::string verb_section(const Page& page, const Usage& usage) {
   Common common;
   const Page bare{page.name, "", "", {}, {}};
   Fields own = common_fields(common, page);
+  // common_fields() gives the verb's own choice first, then the flags of all verbs.
   own.resize(own.size() - common_fields(common, bare).size());
   return text + items(usage.flags) + items(usage.settings) + items(own);
 }

@@ -37,6 +37,7 @@ void Outlet::never_wait() {
 }
 
 void Outlet::put(std::string_view text) {
+  // Dropped whole, so that a reader never sees a part of a line.
   if (!waits_ && held_.size() + text.size() > most_waiting) {
     ++dropped_;
     return;
@@ -59,6 +60,7 @@ void Outlet::flush(std::chrono::milliseconds patience) {
   std::string_view left = held_;
   while (!left.empty() && !gave_up()) {
     const auto still = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
+    // EAGAIN below is the second guard: another program may have filled the pipe in between.
     if (!waits_ && !takes_more(std::max(still, std::chrono::milliseconds{0}))) break;
     // POSIX: a pipe that is writable takes up to PIPE_BUF bytes without blocking.
     const std::size_t piece = waits_ ? left.size() : std::min<std::size_t>(left.size(), PIPE_BUF);
@@ -69,10 +71,12 @@ void Outlet::flush(std::chrono::milliseconds patience) {
     if (put < 0) break;
     left.remove_prefix(static_cast<std::size_t>(put));
   }
+  // On a full disk the text stays: there may be room again later.
   held_.erase(0, gave_up() ? held_.size() : held_.size() - left.size());
 }
 
 std::uint64_t Outlet::take_dropped() {
+  // With less room, the report of dropped lines could itself be dropped.
   return held_.size() < most_waiting / 2 ? std::exchange(dropped_, 0) : 0;
 }
 

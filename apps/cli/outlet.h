@@ -10,6 +10,8 @@
 
 namespace kinalign {
 
+/// Text is held until 64 KiB are together or flush() is called. After a fault that is final, text
+/// is dropped in silence: fault() tells the caller.
 class Outlet {
  public:
   explicit Outlet(int fd) : fd_(fd) {}

@@ -27,6 +27,8 @@ Result<int> with_memory(const Work& work) {
 }
 
 /// One call of one verb: options, run, exit code.
+/// The verb calls back twice: take_words() sets its options, then enter() opens the console.
+/// Members below live as long as the verb's run, because Call refers to them.
 class Run {
  public:
   Run(const Verb& verb, const std::vector<Verb>& verbs, std::vector<std::string> words,
@@ -36,6 +38,7 @@ class Run {
   int operator()() {
     const auto fill = [&](Usage& usage) { return take_words(usage); };
     const auto call = [&] { return enter(); };
+    // early_ counts if the options could not be set or a help page was printed.
     const Result<int> code = with_memory([&] { return verb_.enter(fill, call); });
     if (!filled_) return early_;
     return leave(code);
@@ -45,6 +48,7 @@ class Run {
   /// Sets the options. True: go on; false: early_ is the exit code.
   bool take_words(Usage& usage) {
     const Result<bool> help = set_options(usage);
+    // A console of its own, since that of the verb is opened only when all options are known.
     Console console(surroundings_, common_, verb_.page.name);
     if (!help) {
       console.if_it_fails([&](const Error& error) { return advice(error); });
@@ -62,6 +66,7 @@ class Run {
   // The advice for an error before the verb has run.
   std::vector<std::string> advice(const Error& error) const {
     const std::string variable = surroundings_.variable("KINALIGN_CONFIG");
+    // A user who has forgotten the variable would look for the file in vain.
     const bool by_variable = common_.config.empty() && error.file == variable;
     if (unreadable_ && by_variable) return {"the variable KINALIGN_CONFIG names this file"};
     if (unreadable_) return {};
@@ -79,7 +84,10 @@ class Run {
   /// source has. True if the help page was asked for.
   Result<bool> set_options(Usage& usage) {
     const Fields common = common_fields(common_, verb_.page);
+    // Flags come first, because --config names a file of settings. apply_settings() does not
+    // override them.
     Parsed parsed = KA_TRY(parse_words(words_, usage, common));
+    // Other flags beside --help must not silence the page.
     if (parsed.help) {
       common_ = Common{};
       return true;
@@ -95,8 +103,10 @@ class Run {
   }
 
   Call enter() {
+    // Not before: while the options are set, Ctrl-C may end the program at once.
     take_signals();
     console_.emplace(surroundings_, common_, verb_.page.name);
+    // hardware_concurrency() is 0 if it is not known.
     const auto processors = std::max(1U, std::thread::hardware_concurrency());
     const auto jobs = common_.jobs > 0 ? static_cast<std::size_t>(common_.jobs) : processors;
     return Call{common_, sources_, jobs, *console_, verbs_, surroundings_};
@@ -104,6 +114,8 @@ class Run {
 
   // The exit code of a verb that has run. Text that stdout did not take is a failure, too.
   int leave(const Result<int>& code) {
+    // A verb that failed because it was stopped needs no message of its own. One that still
+    // succeeded keeps its result.
     if (interrupted() && !code) {
       console_->complain("kinalign " + verb_.page.name + ": stopped; no unfinished file is left");
       return stopped;
@@ -138,6 +150,7 @@ int say(const std::string& text, ExitCode code, const Surroundings& surroundings
     console.put(text);
     return console.finish() ? done : failed;
   }
+  // note() adds a line end of its own.
   console.note(text.substr(0, text.find_last_not_of('\n') + 1));
   return code;
 }
@@ -145,6 +158,7 @@ int say(const std::string& text, ExitCode code, const Surroundings& surroundings
 /// Reports a word that is no verb, with the most similar known one.
 int unknown_verb(const std::vector<Verb>& verbs, const std::string& word,
                  const Surroundings& surroundings) {
+  // Words that are no verbs but are accepted in the same place.
   std::vector<std::string> known{"--help", "--version", "help"};
   for (const Verb& verb : verbs) known.push_back(verb.page.name);
   const Common common;
@@ -175,6 +189,7 @@ void join_group(const std::vector<Verb>& verbs, std::vector<std::string>& words)
 int run_program(const std::vector<Verb>& verbs, const std::vector<std::string>& given,
                 const Surroundings& surroundings) {
   std::vector<std::string> words = given;
+  // Nothing was asked for, so the overview is an answer to wrong use.
   if (words.empty()) return say(overview(verbs), wrong_use, surroundings);
   if (words.front() == "--version") {
     return say("kinalign " + program_version() + "\n", done, surroundings);
@@ -186,6 +201,7 @@ int run_program(const std::vector<Verb>& verbs, const std::vector<std::string>& 
   join_group(verbs, words);
   const std::string name = words.front();
   std::vector<std::string> rest(words.begin() + 1, words.end());
+  // `kinalign help align` is the same as `kinalign align --help`.
   if (help) rest = {"--help"};
   const std::vector<std::string> groups = groups_of(verbs);
   if (std::find(groups.begin(), groups.end(), name) != groups.end()) {

@@ -9,6 +9,7 @@
 
 namespace kinalign {
 
+/// docs/commands.md states them. 130 is what shells use for a program that SIGINT has ended.
 enum ExitCode : int { done = 0, findings = 1, wrong_use = 2, failed = 3, stopped = 130 };
 
 /// `words`: the command line without the program's name.

@@ -34,6 +34,7 @@ Failure no_table(const Value& value) {
 }
 
 /// A TOML value as text, in the form that set_field() reads.
+/// All sources give text, so one function checks range and choices of all of them.
 Result<std::string> scalar_text(const Value& value) {
   using Kind = Value::Kind;
   if (value.kind == Kind::text) return text_of(value);
@@ -70,6 +71,7 @@ Result<void> add_settings(const Value& value, SettingsFile& file) {
 
 bool there(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
 
+/// By the XDG Base Directory Specification: $XDG_CONFIG_HOME, else ~/.config.
 std::string users_file(const Surroundings& surroundings) {
   const std::string config = surroundings.variable("XDG_CONFIG_HOME");
   if (!config.empty()) return config + "/kinalign/config.toml";
@@ -77,6 +79,7 @@ std::string users_file(const Surroundings& surroundings) {
   return home.empty() ? "" : home + "/.config/kinalign/config.toml";
 }
 
+/// Goes up to the root of the file system, as git looks for its repository.
 std::string projects_file(std::string folder) {
   for (;;) {
     std::string path = folder + (folder.ends_with('/') ? "" : "/") + "kinalign.toml";
@@ -95,6 +98,7 @@ const Field* named(const Fields& fields, const std::string& name) {
 
 Result<void> set_all(const Field& field, const std::vector<std::string>& values) {
   auto* const* many = std::get_if<std::vector<std::string>*>(&field.value);
+  // A list in a file replaces the list of a weaker source; it does not add to it.
   if (many != nullptr) (*many)->clear();
   if (many == nullptr && values.size() != 1) {
     return Failure(Error{"", 0, "one value for " + field.name, std::to_string(values.size())});
@@ -126,6 +130,7 @@ Result<void> check_name(const SettingsFile& file, const Setting& setting, const 
     known.emplace_back("device");
     return unknown(file, setting, known, "a verb");
   }
+  // One file serves all verbs, and only the running verb's fields are known here.
   if (setting.verb != settable.page.name || named(settable.settings, setting.name) != nullptr) {
     return {};
   }
@@ -140,6 +145,7 @@ Result<SettingsFile> parse_settings(const SettingsText& file) {
   SettingsFile out{file.path, file.source, {}};
   KA_TRY(read_toml(file.text, file.path, [&](const Value& top) -> Result<void> {
     for (const Value& value : top.items) {
+      // A lab file is a settings file that also describes devices.
       if (value.key == "device" && value.is_table()) continue;  // documents/lab_toml.h reads them
       KA_TRY(add_settings(value, out));
     }
@@ -183,6 +189,7 @@ Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
     const Field* field = named(fields, setting.name);
     if (field == nullptr) continue;  // a common setting that this verb does not take
     const auto known = sources.find(setting.name);
+    // Files are applied from the weakest on, and flags were set before them.
     if (known != sources.end() && known->second > file.source) continue;
     KA_TRY(set_all(*field, setting.values).map_error([&](Error error) {
       error.file = file.path;
@@ -200,6 +207,7 @@ Result<void> apply_environment(const Surroundings& surroundings, const Settable&
                                Sources& sources) {
   for (const Fields* fields : {&settable.settings, &settable.common}) {
     for (const Field& field : *fields) {
+      // The others, such as out and force, can be given on the command line only.
       if (fields == &settable.common && !is_common_setting(field.name)) continue;
       const auto known = sources.find(field.name);
       if (known != sources.end() && known->second == Source::flag) continue;
@@ -216,6 +224,8 @@ Result<void> apply_environment(const Surroundings& surroundings, const Settable&
 }
 
 /// Reads the files again, since options keep no line numbers.
+/// Called by verbs whose later checks find a fault in a setting, so that the message names its
+/// line.
 SettingPlace setting_place(const std::string& verb, const std::string& name, const Call& call) {
   const auto source = call.sources.find(name);
   if (source == call.sources.end() || source->second == Source::flag) return {};

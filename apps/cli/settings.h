@@ -13,6 +13,7 @@
 
 namespace kinalign {
 
+/// A key of a settings file with its line, so that an error can name both.
 struct Setting {
   std::string verb;  // the table that it stands in; empty: for every verb
   std::string name;
@@ -39,6 +40,7 @@ std::string project_settings(const Surroundings& surroundings, const std::string
 
 /// The user's file and the project's, if they exist. `config` replaces the project's file unless it
 /// is empty. Fails if a file can't be read.
+/// The user's file comes first, so that the project's wins.
 Result<std::vector<SettingsText>> find_settings(const Surroundings& surroundings,
                                                 const std::string& config);
 

@@ -10,6 +10,7 @@ namespace kinalign {
 namespace {
 
 /// The column in which a line's text begins: after "  space  " or "warning  ".
+/// A column too far right would leave no room, so those lines are indented by two.
 std::size_t text_column(std::string_view line) {
   constexpr std::size_t most = 24;
   const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
@@ -30,6 +31,7 @@ std::string broken_line(std::string_view line, std::size_t width) {
   while (!line.empty()) {
     const std::size_t blanks = std::min(line.find_first_not_of(' '), line.size());
     const std::string_view word = line.substr(blanks, line.find(' ', blanks) - blanks);
+    // A word that is wider than the room stays whole, even if it is cut by the terminal.
     const bool fits = at + blanks + places(word) <= width || at <= indent;
     out += fits ? std::string(blanks, ' ') : "\n" + std::string(indent, ' ');
     at = (fits ? at + blanks : indent) + places(word);
@@ -45,6 +47,7 @@ TerminalSize size_of(int fd) {
   winsize reported{};
   TerminalSize size;
   if (::ioctl(fd, TIOCGWINSZ, &reported) != 0) return size;
+  // Some terminals report 0 rows or columns.
   if (reported.ws_row > 1) size.rows = reported.ws_row;
   if (reported.ws_col > 1) size.columns = reported.ws_col;
   return size;
@@ -60,6 +63,7 @@ std::size_t places(std::string_view text) {
   std::size_t count = 0;
   bool colour = false;
   for (const char c : text) {
+    // Colours are the only escape sequences that a text has here; each ends with an m.
     if (c == '\x1b') colour = true;
     const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // within a character
     if (!colour && !goes_on) ++count;

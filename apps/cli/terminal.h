@@ -8,6 +8,7 @@
 
 namespace kinalign {
 
+/// The defaults are those of a classic terminal.
 struct TerminalSize {
   std::size_t rows = 24, columns = 80;
 };

@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+// Both fields are of one structure of options, so they have one type.
 void copy_value(const Field& from, const Field& onto) {
   assert(from.value.index() == onto.value.index());
   std::visit(
@@ -24,6 +25,7 @@ std::string group_of(const std::string& verb_name) {
   return blank == std::string::npos ? "" : verb_name.substr(0, blank);
 }
 
+// A group is nothing but the first word that several verbs share.
 std::vector<std::string> groups_of(const std::vector<Verb>& verbs) {
   std::vector<std::string> groups;
   for (const Verb& verb : verbs) {
@@ -34,6 +36,7 @@ std::vector<std::string> groups_of(const std::vector<Verb>& verbs) {
   return groups;
 }
 
+// `fill` returns false, so the verb is never run and `call` never called.
 void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& use) {
   const auto look = [&](const Usage& usage) {
     use(usage);
@@ -45,6 +48,7 @@ void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& us
 void copy_given(const Fields& from, const Fields& onto, const Sources& sources, Source least) {
   for (const Field& field : from) {
     const auto source = sources.find(field.name);
+    // An option that nothing has set must not overwrite what the manifest says.
     if (source == sources.end() || source->second < least) continue;
     for (const Field& other : onto) {
       if (other.name == field.name) copy_value(field, other);

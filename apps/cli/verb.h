@@ -32,6 +32,7 @@ struct Example {
 };
 
 /// Words after the verb that are not flags, in the order given.
+/// A positional that takes several words leaves enough of them for those after it (parse_words()).
 struct Positional {
   std::string name;     // in the help page: "FILE"
   std::string meaning;  // one line
@@ -86,6 +87,7 @@ struct Call {
 };
 
 /// A verb as its help page shows it.
+/// Help page, man page and completions are made from it; nothing else states a verb's flags.
 struct Page {
   std::string name;                 // "align"; in a group of verbs "dataset build"
   std::string summary;              // one line, for the list of verbs
@@ -96,6 +98,7 @@ struct Page {
   bool out_is_new = false;  // the folder must not exist yet
 };
 
+/// `enter` hides the type of the options, so that verbs of different options are in one list.
 struct Verb {
   Page page;
   /// Makes the verb's options and lets `fill` set them; if `fill` returns true, runs the verb with

@@ -32,8 +32,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// docs/training.md states this limit.
 constexpr std::size_t least_rows = 8;  // frames; shorter stretches are left out
 
+/// A whole file in memory; models, windows and checkpoints are read in this way.
 Result<std::string> bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return Failure(Error{path, 0, "a readable file", "no readable file"});
@@ -53,6 +55,7 @@ Result<void> write_file(const std::string& path, const std::string& bytes) {
   return {};
 }
 
+/// The method with that name; nullptr if there is none. Names are unique over all three lists.
 template <class Method>
 const Method* find_method(const std::vector<Method>& all, const std::string& name) {
   const auto found =
@@ -86,6 +89,7 @@ ProcessPlace place_of(const Json& json) {
           .interface = json.value("interface", "")};
 }
 
+/// Only these options can be set by a job; all others belong to the method.
 void read_options(const Json& json, TrainingOptions& out) {
   out.steps = json.value("steps", out.steps);
   out.rate = json.value("rate", out.rate);
@@ -95,6 +99,7 @@ void read_options(const Json& json, TrainingOptions& out) {
 }
 
 /// Writes the log as CSV, as a curve and as events for TensorBoard.
+/// All three files are written anew from all points, so a run that was continued has one whole log.
 Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& points) {
   if (job.log.empty()) return {};
   KA_TRY(write_file(job.log, csv_of(points)));
@@ -104,6 +109,7 @@ Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& 
 }
 
 /// Prints progress as JSON lines, at most two a second, and the last one.
+/// The returned function is called after each step, which may take milliseconds.
 Progress progress_lines() {
   using Clock = std::chrono::steady_clock;
   auto last = std::make_shared<Clock::time_point>();
@@ -112,11 +118,13 @@ Progress progress_lines() {
     if (done != total && now - *last < std::chrono::milliseconds(500)) return true;
     *last = now;
     std::cout << Json{{"what", what}, {"done", done}, {"total", total}}.dump() << std::endl;
+    // kinalign train reads these lines; if it has ended, the pipe is broken.
     return static_cast<bool>(std::cout);  // the parent program is gone: stop
   };
 }
 
 /// Counts of the data that a model learnt from.
+/// Stated in the model, so that a reader knows how much data is behind it.
 struct LearntFrom {
   std::size_t stretches = 0, frames = 0;
   std::set<std::string> subjects;
@@ -132,6 +140,8 @@ struct LearntFrom {
 /// the model that it went on from; "" if there is none.
 void state_training(const TrainingJob& job, const WindowsFacts& facts, const LearntFrom& from,
                     const std::string& before, ModelFacts& model) {
+  // Data set, licence and hash go along with the weights, so a model's origin can always be
+  // checked.
   Json out{{"data",
             {{{"name", facts.dataset},
               {"licence", facts.licence},
@@ -147,6 +157,7 @@ void state_training(const TrainingJob& job, const WindowsFacts& facts, const Lea
   if (job.hand_weight > 0.0) out["hand_weight"] = job.hand_weight;
   if (job.vary_speed > 0.0) out["vary_speed"] = job.vary_speed;
   if (job.vary_size > 0.0) out["vary_size"] = job.vary_size;
+  // The whole statement of the earlier model is nested: its data count, too.
   if (!job.from.empty()) out["from"] = Json::parse(before, nullptr, false);
   model.software = "kinalign " KINALIGN_VERSION;
   model.training = out.dump();
@@ -156,17 +167,20 @@ void state_training(const TrainingJob& job, const WindowsFacts& facts, const Lea
 template <class Model, class Read>
 Result<std::optional<Model>> model_before(const TrainingJob& job, Read read) {
   if (job.from.empty()) return std::optional<Model>();
+  // Another method has another network, whose weights would not fit.
   Model model = KA_TRY(read(KA_TRY(bytes_of(job.from)), job.from));
   if (model.facts.method == job.method) return std::optional<Model>(std::move(model));
   return Failure(Error{job.from, 0, "a model of the method " + job.method,
                        "a model of the method " + shown(model.facts.method)});
 }
 
+/// Weights can be continued only if each of them means the same as before.
 Failure cannot_go_on(const TrainingJob& job, const std::string& expected) {
   return Failure(Error{job.from, 0, expected, "another one"});
 }
 
 /// Divides pairs by the parts of the file's split. Without a split, all are trained on.
+/// A part with any other name, such as test, is neither learnt nor judged.
 DividedPairs divide(std::vector<Pair> all) {
   DividedPairs out;
   for (Pair& pair : all) {
@@ -178,6 +192,8 @@ DividedPairs divide(std::vector<Pair> all) {
 
 /// Replaces the file's parts by those of the job's lists of takes: train, validation, and test for
 /// all others. Without a list the file's parts stay.
+/// `kinalign eval` and `kinalign benchmark` choose takes in this way, without a file of windows for
+/// each fold.
 void divide_by_lists(const TrainingJob& job, Windows& windows) {
   if (job.learn.empty()) return;
   const auto holds = [](const std::vector<std::string>& list, const std::string& name) {
@@ -191,11 +207,13 @@ void divide_by_lists(const TrainingJob& job, Windows& windows) {
 }
 
 /// The bytes of a model's file, and the course of its training.
+/// The file is written only after all processes have finished.
 struct Fitted {
   std::string model;
   std::vector<TrainingPoint> points;
 };
 
+// Every word but "cuda" means the processor; main() has checked that there is a GPU.
 FitOptions fit_options(const TrainingJob& job) {
   return {job.options, job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
 }
@@ -205,6 +223,7 @@ Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
                              const std::optional<DenoiseModel>& from) {
   if (!from) return pairs_of(windows, job.input, job.truth, least_rows);
   const DenoiseLayout& layout = from->layout;
+  // A network that has learnt speeds at one rate is wrong at another.
   if (std::abs(windows.facts.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
     return Failure(Error{job.windows, 0, "windows at the model's rate", "another rate"});
   }
@@ -217,6 +236,7 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
                                TrainingState state, const TrainingHooks& hooks) {
   if (job.hand_weight > 0.0) method.training.loss.hands = job.hand_weight;
   const auto from = KA_TRY(model_before<DenoiseModel>(job, read_denoise_model));
+  // The second network of such a method would have to go on, too, and bra-p-plain's file lacks it.
   if (from && method.perceptual) {
     return Failure(
         Error{job.from, 0, "a method with one network, to continue training", job.method});
@@ -232,6 +252,7 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
 }
 
 /// The method's variety, with the values that the job sets.
+/// 0 in the job means that the method's own value stays.
 Variety variety_of(const TrainingJob& job, Variety own) {
   if (job.vary_speed > 0.0) own.speed = job.vary_speed;
   if (job.vary_size > 0.0) own.size = job.vary_size;
@@ -244,6 +265,7 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, PoseMethod method, const Win
   method.training.variety = variety_of(job, method.training.variety);
   const auto from = KA_TRY(model_before<PoseModel>(job, read_pose_model));
   const PoseData data = KA_TRY(pose_data(windows, job.truth, job.nodes));
+  // A method that is solved and not trained (wouda) has nothing to go on from.
   if (from && (method.begin != nullptr || from->layout.nodes != data.nodes)) {
     return cannot_go_on(job, "a network of the same nodes");
   }
@@ -298,12 +320,14 @@ Result<JointFrames> body_of(const TensorFile& file, const std::string& number, s
 /// Writes the projected answers to all bodies of a file. The last line of output states the mean
 /// errors of the constraints before and after.
 Result<void> project_bodies(const TrainingJob& job) {
+  // Runs in this program and not in kinalign, because each step of the projection needs gradients.
   const DenoiseModel model = KA_TRY(read_denoise_model(KA_TRY(bytes_of(job.project)), job.project));
   const TensorFile bodies = KA_TRY(read_safetensors(KA_TRY(bytes_of(job.bodies)), job.bodies));
   const std::size_t joints = model.layout.inputs.size(), count = bodies.tensors.size() / 2;
   const Progress progress = progress_lines();
   TensorFile out;
   ConstraintErrors before, after;
+  // Means over all bodies of the file.
   const auto add = [&](ConstraintErrors& sum, const ConstraintErrors& one) {
     const double share = 1.0 / static_cast<double>(count);
     sum.feet_cm += share * one.feet_cm;
@@ -335,11 +359,13 @@ Result<void> project_bodies(const TrainingJob& job) {
 }
 
 /// Trains by the task of the method, which read_job() has checked.
+/// The lists must outlive the pointers that find_method() gives.
 Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingState state,
                        const TrainingHooks& hooks) {
   const auto denoise = denoise_methods();
   const auto pose = pose_methods();
   const auto fuse = fuse_methods();
+  // The order of the lists does not matter, since names are unique.
   if (const auto* method = find_method(pose, job.method)) {
     return fit_pose_job(job, *method, windows, std::move(state), hooks);
   }
@@ -373,6 +399,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     if (json.contains("learn")) json.at("learn").get_to(out.learn);
     if (json.contains("judge")) json.at("judge").get_to(out.judge);
     out.evaluate = json.value("evaluate", "");
+    // An evaluated model states its own method, so the job need not name one.
     if (!out.evaluate.empty()) return out;
     out.method = json.at("method").get<std::string>();
     out.out = json.at("out").get<std::string>();
@@ -388,6 +415,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.from = json.value("from", "");
     if (json.contains("place")) out.place = place_of(json.at("place"));
     out.options = KA_TRY(options_of(out.method, name));
+    // Before the job's own options, so that these win.
     if (!out.from.empty()) go_on_gently(out.options);
     if (json.contains("options")) read_options(json.at("options"), out.options);
   } catch (const Json::exception& fault) {
@@ -398,6 +426,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
 
 Result<void> run_job(const TrainingJob& job) {
   if (!job.project.empty()) return project_bodies(job);
+  // Kept in memory: the hash at the end is that of exactly the bytes that were learnt from.
   const std::string bytes = KA_TRY(bytes_of(job.windows));
   Windows windows = KA_TRY(read_windows(bytes, job.windows));
   divide_by_lists(job, windows);
@@ -405,6 +434,7 @@ Result<void> run_job(const TrainingJob& job) {
     return print_marks(job, windows, KA_TRY(bytes_of(job.evaluate)));
   }
   TrainingState state;
+  // Without a checkpoint the run begins anew: it may have been stopped before its first one.
   if (job.resume && std::filesystem::exists(job.checkpoint)) {
     state = KA_TRY(read_checkpoint(KA_TRY(bytes_of(job.checkpoint)), job.identity, job.checkpoint));
   }
@@ -414,6 +444,7 @@ Result<void> run_job(const TrainingJob& job) {
   KA_TRY(processes.agree(job.identity + " " + std::to_string(job.options.steps) + " " +
                          std::to_string(state.step)));
   TrainingHooks hooks{.keep = {}, .every = job.keep_every, .share = processes.share()};
+  // The other processes print nothing but their result and errors.
   if (is_first) hooks.progress = progress_lines();
   if (is_first && !job.checkpoint.empty()) {
     hooks.keep = [&](const TrainingState& now) {
@@ -425,6 +456,7 @@ Result<void> run_job(const TrainingJob& job) {
   hash.update(bytes);
   hashed.windows_sha256 = hash.hex();
   const Fitted fit = KA_TRY(fit_job(hashed, windows, std::move(state), hooks));
+  // The processes part here; the others need not wait while the first one writes files.
   processes.leave();
   if (!is_first) {
     std::cout << Json{{"trained_with", job.place.size}}.dump() << std::endl;
@@ -433,6 +465,7 @@ Result<void> run_job(const TrainingJob& job) {
   KA_TRY(save_log(job, fit.points));
   KA_TRY(write_file(job.out, fit.model));
   std::error_code ignored;
+  // After the model is written: a kill between both leaves a run that can go on.
   if (!job.checkpoint.empty()) std::filesystem::remove(job.checkpoint, ignored);
   Json last{{"written", job.out}, {"loss", fit.points.empty() ? 0.0 : fit.points.back().loss}};
   if (!fit.points.empty() && fit.points.back().judgement) {

@@ -11,6 +11,8 @@
 
 namespace kinalign {
 
+/// One of three kinds: it projects (`project`), evaluates (`evaluate`) or trains (all else). The
+/// paths are those of the machine on which the job runs.
 struct TrainingJob {
   std::string method;
   std::string windows;             // the file of windows
@@ -43,6 +45,7 @@ struct TrainingJob {
 Result<TrainingJob> read_job(const std::string& text, const std::string& name);
 
 /// Does the job. Progress goes to stdout, one JSON object a line.
+/// The last line names the written file, or it is a row of marks.
 Result<void> run_job(const TrainingJob& job);
 
 }  // namespace kinalign

@@ -16,9 +16,12 @@
 
 namespace {
 
+// docs/training.md names this limit.
 constexpr double least_gflops = 20.0;  // speed of a matrix product on one core of 2015 or later
 
 /// The speed of a product of two 256 x 256 matrices, GFLOP/s: the best of ten.
+/// models.md 9.1 compares BLAS libraries in this way. The best of ten counts, because other work on
+/// the machine slows single products.
 double product_gflops() {
   using Clock = std::chrono::steady_clock;
   constexpr int size = 256;
@@ -49,6 +52,7 @@ void warn_of_slow_products() {
 
 /// Prints the error as JSON and returns the exit code. Exit code 4: another process of the training
 /// has ended, and its own error states the reason.
+/// stdout for the parent program, stderr for people who run this program themselves.
 int fail(const kinalign::Error& error) {
   std::cout << nlohmann::ordered_json{{"error",
                                        {{"file", error.file},
@@ -62,6 +66,7 @@ int fail(const kinalign::Error& error) {
 
 }  // namespace
 
+// One argument and no flags: people use kinalign train, which writes the job.
 int main(int argc, char** argv) {
   if (argc != 2) {
     std::cerr << "usage: kinalign-learn JOB.json\n"
@@ -72,12 +77,15 @@ int main(int argc, char** argv) {
   // This must come first: threads inherit the setting at their start. Denormal numbers cost a
   // hundredfold.
   at::globalContext().setFlushDenormal(true);
+  // The same seed then gives the same weights (docs/training.md). Where no such algorithm exists,
+  // LibTorch only warns.
   at::globalContext().setDeterministicAlgorithms(true, true);
   std::ifstream in(argv[1], std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(in), {});
   try {
     auto job = kinalign::read_job(text, argv[1]);
     if (!job) return fail(job.error());
+    // Checked here, because LibTorch would only fail at the first tensor.
     if (job->device == "cuda" && !torch::cuda::is_available()) {
       return fail({"--device", 0, "a GPU and a LibTorch with CUDA (docs/training.md)",
                    "no GPU that LibTorch can use"});

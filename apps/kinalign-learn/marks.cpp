@@ -26,6 +26,7 @@ std::string name_of(Devices devices) {
   return std::string(names[static_cast<std::size_t>(devices)]);
 }
 
+/// `fuser` must live as long as the function.
 Fusion fusion_of(Fuser& fuser) {
   return [&](const FuseInput& input) { return fuser.solve(input); };
 }
@@ -43,6 +44,7 @@ Json errors_json(const FuseErrors& errors) {
           {"hidden", errors.hidden}};
 }
 
+/// A ratio says more than the jitter itself: 1 is as smooth as the truth.
 Json errors_json(const PoseErrors& errors) {
   return {{"sip_deg", errors.sip_deg},
           {"angle_deg", errors.angle_deg},
@@ -52,9 +54,11 @@ Json errors_json(const PoseErrors& errors) {
           {"frames", errors.frames}};
 }
 
+// Flushed at once: the parent program reads line by line.
 void print_row(const Json& row) { std::cout << row.dump() << std::endl; }
 
 /// The errors of each person, by name.
+/// They are sorted, because the map is.
 template <class Errors>
 Json people_json(const std::map<std::string, Errors>& people) {
   Json out = Json::object();
@@ -63,6 +67,7 @@ Json people_json(const std::map<std::string, Errors>& people) {
 }
 
 /// Prints a row for each state of the nodes.
+/// 0: the first leaf is the one that is lost; it is the left wrist in the usual nodes.
 Result<void> print_pose_marks(const TrainingJob& job, const Windows& windows, PoseModel model) {
   const std::string method = model.facts.method;
   auto solver = KA_TRY(PoseSolver::make(std::move(model)));
@@ -102,10 +107,12 @@ void print_headings(const std::string& method, const std::vector<HeadingMark>& m
 /// heading. The filter fuses without learning.
 Result<void> print_fuse_marks(const TrainingJob& job, const Windows& windows, FuseModel model) {
   auto fuser = KA_TRY(Fuser::make(std::move(model)));
+  // The model decides which nodes are simulated, not the job.
   const FuseLayout layout = fuser.model().layout;
   const FuseData data =
       KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, fuse_options(job.input, windows)));
   const std::vector<Devices> all{all_devices.begin(), all_devices.end()};
+  // The filter without learning knows only the Kinect's joints.
   const HeadingsOf by_joints = [&](const FuseInput& input) {
     FuseInput own = input;
     unexchange(layout, own);
@@ -116,6 +123,7 @@ Result<void> print_fuse_marks(const TrainingJob& job, const Windows& windows, Fu
   const Fusion filter = [&](const FuseInput& input) {
     FuseInput own = input;
     unexchange(layout, own);
+    // A fair comparison: the filter, too, gets corrected headings.
     own.nodes = with_headings(std::move(own.nodes), by_joints(own));
     return filtered_pose(layout, data.pose.body, own);
   };
@@ -135,6 +143,7 @@ Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& da
   Json out;
   for (const PoseMark& mark : KA_TRY(pose_marks(solver, data, 0))) {
     std::string state = mark.nodes;  // "20 minutes later"
+    // Keys of JSON without blanks.
     std::replace(state.begin(), state.end(), ' ', '_');
     out[state + "_position_cm"] = mark.smoothed.position_cm;
     out[state + "_sip_deg"] = mark.smoothed.sip_deg;
@@ -156,6 +165,7 @@ Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& da
   return out.dump();
 }
 
+// A name that the file lacks is not an error here: the Kinect is then simulated.
 FuseDataOptions fuse_options(const std::string& input, const Windows& windows) {
   FuseDataOptions out;
   if (windows.facts.find(input) != nullptr) out.kinect = input;

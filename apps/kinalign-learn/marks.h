@@ -14,6 +14,8 @@
 namespace kinalign {
 
 /// The marks for the model's file. Empty if the data has no test part.
+/// `kinalign info` shows these numbers. They are computed once, after training, on people of the
+/// test part.
 Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& data);
 Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& data);
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+// LibTorch's own Gloo is usable only if its headers are there (Debian: libgloo-dev).
 #if defined(USE_C10D_GLOO) && __has_include(<gloo/context.h>)
 #define KINALIGN_HAS_GLOO 1
 #include <arpa/inet.h>
@@ -33,6 +34,7 @@ Failure too_many(const ProcessPlace& place) {
 
 namespace {
 
+// docs/training_processes.md states both limits.
 constexpr std::chrono::minutes longest_start{5};
 /// The closed connections of a process that ends are noticed at once; this limit is for machines
 /// that vanish.
@@ -49,6 +51,7 @@ std::string own_address(const ProcessPlace& place) {
   if (::getaddrinfo(place.address.c_str(), std::to_string(place.port).c_str(), &hints, &found) != 0)
     return "";
   std::string out;
+  // connect() on a datagram socket sends nothing; it only chooses the route and the own address.
   const int way = ::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_storage own{};
   socklen_t length = sizeof own;
@@ -59,11 +62,13 @@ std::string own_address(const ProcessPlace& place) {
                     NI_NUMERICHOST) == 0) {
     out = text.data();
   }
+  // Reached on success and on failure; all resources are freed here.
   if (way >= 0) ::close(way);
   ::freeaddrinfo(found);
   return out;
 }
 
+/// The user's interface, else the one that leads to process 0, else Gloo's own choice.
 std::shared_ptr<::gloo::transport::Device> device_for(const ProcessPlace& place) {
   if (!place.interface.empty()) return Gloo::createDeviceForInterface(place.interface);
   const std::string own = own_address(place);
@@ -72,6 +77,7 @@ std::shared_ptr<::gloo::transport::Device> device_for(const ProcessPlace& place)
 
 }  // namespace
 
+/// The share's function holds the group, so the connection lives as long as any user of the share.
 struct Processes::Group {
   ProcessPlace place;
   c10::intrusive_ptr<c10d::Store> store;
@@ -81,6 +87,7 @@ struct Processes::Group {
   bool sum(torch::Tensor& values) const {
     try {
       std::vector<at::Tensor> all{values};
+      // In place: `values` has the sum afterwards.
       gloo->allreduce(all)->wait();
       return true;
     } catch (const std::exception&) {
@@ -96,6 +103,7 @@ Result<Processes> Processes::join(const ProcessPlace& place) {
   try {
     c10d::TCPStoreOptions start;
     start.port = place.port;
+    // Process 0 keeps the store, through which all processes find each other.
     start.isServer = place.rank == 0;
     start.numWorkers = static_cast<std::size_t>(place.size);
     start.timeout = longest_start;
@@ -122,6 +130,7 @@ Result<Processes> Processes::join(const ProcessPlace& place) {
 Result<void> Processes::agree(const std::string& text) {
   if (!group_) return {};
   try {
+    // Process 0 writes its text; get() waits until it is there.
     const std::vector<std::uint8_t> own(text.begin(), text.end());
     if (share_.is_first()) group_->store->set("job", own);
     if (group_->store->get("job") == own) return {};
@@ -142,6 +151,7 @@ void Processes::leave() {
   }
 }
 
+// Without Gloo a single process works as always, and several are refused with the reason.
 #else
 
 struct Processes::Group {};

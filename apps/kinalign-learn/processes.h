@@ -12,6 +12,7 @@
 namespace kinalign {
 
 /// The place of this process among all processes of a training.
+/// kinalign train finds it from --processes, or from the variables of srun and mpirun.
 struct ProcessPlace {
   std::int64_t rank = 0, size = 1;
   std::string address;       // the address of process 0's machine
@@ -22,6 +23,8 @@ struct ProcessPlace {
 /// A batch has 32 examples, and each process needs at least one.
 inline constexpr std::int64_t most_processes = 32;
 
+/// join() connects, agree() compares the jobs, share() divides the batches, leave() ends together.
+/// A single process passes all of them without a network.
 class Processes {
  public:
   /// Waits at most five minutes for all processes. A single process does not wait. Fails if a

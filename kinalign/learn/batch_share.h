@@ -24,6 +24,8 @@ struct BatchPart {
   }
 };
 
+/// After one failed sum, `broken_` stays true and no further sum is tried: the processes are then
+/// no longer in step.
 class BatchShare {
  public:
   /// Adds the tensors of all processes, in place and on the CPU. Returns false if a process has
@@ -46,6 +48,7 @@ class BatchShare {
   /// This process's part of a batch. If there are more processes than examples, some parts are
   /// empty.
   BatchPart part(std::int64_t batch) const {
+    // Rounded in the same way for all ranks, so the parts cover the batch without gap or overlap.
     const std::int64_t begin = batch * rank_ / size_;
     return {begin, batch * (rank_ + 1) / size_ - begin, batch};
   }

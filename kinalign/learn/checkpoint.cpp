@@ -20,6 +20,7 @@ using NamedTensors = std::map<std::string, torch::Tensor>;
 
 constexpr const char* checkpoint_key = "kinalign_checkpoint";
 
+/// The maps of a state and the prefixes of their names in the file, for writing and for reading.
 template <class Use>
 void for_each_map(TrainingState& state, const Use& use) {
   use("weights.", state.weights);
@@ -50,7 +51,10 @@ void read_numbers(const Json& json, TrainingState& out) {
 }
 
 // --- TensorBoard: protobuf records, each with a masked CRC-32C of its length and of its data.
+// Protobuf is written by hand, because few kinds of field are needed. models.md 9.10 has the layout
+// of the file.
 
+/// CRC-32C (Castagnoli), bit by bit: 0x82f63b78 is its polynomial in reversed order.
 std::uint32_t crc32c(std::string_view bytes) {
   std::uint32_t crc = 0xffffffffU;
   for (const char byte : bytes) {
@@ -78,11 +82,13 @@ void put_record(std::string& out, const std::string& data) {
   put_little(out, masked(data), 4);
 }
 
+/// A protobuf varint: seven bits a byte, the lowest first; the top bit says that more follow.
 void put_varint(std::string& out, std::uint64_t value) {
   for (; value >= 0x80; value >>= 7U) out += static_cast<char>((value & 0x7fU) | 0x80U);
   out += static_cast<char>(value);
 }
 
+/// A field with a length. Wire type 2 stands in the low three bits of its key.
 void put_bytes(std::string& out, int field, const std::string& bytes) {
   put_varint(out, static_cast<std::uint64_t>(field) << 3U | 2U);
   put_varint(out, bytes.size());
@@ -93,11 +99,13 @@ void put_bytes(std::string& out, int field, const std::string& bytes) {
 std::string event_of(std::int64_t step, const std::string& tag, double value) {
   std::string one;
   put_bytes(one, 1, tag);
+  // Key of field 2 (simple_value), wire type 5: a float of four bytes.
   one += '\x15';
   std::uint32_t bits = 0;
   const auto number = static_cast<float>(value);
   std::memcpy(&bits, &number, sizeof bits);
   put_little(one, bits, 4);
+  // Keys of wall_time (field 1, a double) and of step (field 2, a varint).
   std::string summary, event = "\x09";
   put_bytes(summary, 1, one);
   put_little(event, 0, 8);
@@ -136,6 +144,8 @@ Result<TrainingState> read_checkpoint(std::string_view bytes, const std::string&
   }
   TrainingState out;
   try {
+    // Moments and average belong to one loss on one set of data; with others the result would not
+    // be that of the stopped run.
     if (json.at("job").get<std::string>() != job) {
       return Failure(Error{name, 0, "the run of this method, data and settings", "another run"});
     }
@@ -152,6 +162,7 @@ Result<TrainingState> read_checkpoint(std::string_view bytes, const std::string&
   return out;
 }
 
+// Six digits are enough for people; a checkpoint keeps the numbers in full.
 std::string csv_of(const std::vector<TrainingPoint>& points) {
   std::string out = "step,loss,rate,gradient,judgement\n";
   for (const TrainingPoint& point : points) {
@@ -169,6 +180,7 @@ std::string csv_of(const std::vector<TrainingPoint>& points) {
 }
 
 std::string events_of(const std::vector<TrainingPoint>& points) {
+  // TensorBoard expects the version of the format as the first record.
   std::string version = "\x09", out;
   put_little(version, 0, 8);
   put_bytes(version, 3, "brain.Event:2");

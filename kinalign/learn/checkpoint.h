@@ -11,6 +11,8 @@ namespace kinalign {
 
 /// A SafeTensors file of all tensors. `job` describes what is trained; a continued run must have
 /// the same job.
+/// A run that goes on from it gives the same bytes as a run without a stop (docs/training.md). So
+/// the file holds both moments of Adam, the average and all points of the log too.
 std::string write_checkpoint(const TrainingState& state, const std::string& job);
 
 /// Fails if the file is not a checkpoint or belongs to another job.

@@ -11,11 +11,15 @@ namespace kinalign {
 
 namespace {
 
+// The paper gives no sizes; these are the definitions of models.md 2.3 (noise 1 cm, one joint in
+// ten dropped).
 constexpr std::size_t clean_units = 256, latent_layers = 5;
 constexpr std::int64_t batch = 32, crop = 61;
 constexpr double noise = 0.01, dropped = 0.1;  // m; share of dropped joints
 
 /// Training task: removes noise from clean motion.
+/// The truth is brought into the body's frame of the input, the space of the answers that the
+/// network later sees.
 class CleanMotionTask : public TrainingTask {
  public:
   CleanMotionTask(const DenoiseLayout& layout, const std::vector<Pair>& pairs, torch::Device device)
@@ -59,11 +63,13 @@ class CleanMotionTask : public TrainingTask {
     const auto own = [&](const torch::Tensor& x) {
       return x.slice(0, part.begin, part.begin + part.count);
     };
+    // In cm: the squared error, and half the error of accelerations, which makes the answer smooth.
     const auto error = (network.forward(own(rough), part) - own(clean)) * 100.0;
     return part.mean(error.pow(2) * weights_) +
            0.5 * part.mean(second_differences(error).abs() * weights_);
   }
 
+  // There is no validation part, so train() keeps the weights of the last step.
   std::optional<double> judge(const TorchNetwork&) override { return std::nullopt; }
 
  private:
@@ -97,6 +103,7 @@ Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::ve
   torch::manual_seed(options.seed + 1);
   TorchNetwork network(clean_motion_architecture(layout.answers()));
   network.to(device);
+  // Another seed than the first network's, so that both do not draw the same crops.
   TrainingOptions own = options;
   own.seed = options.seed + 1;
   own.judge_every = 0;
@@ -113,6 +120,7 @@ Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::ve
 torch::Tensor motion_features(const TorchNetwork& network, const torch::Tensor& answers) {
   Architecture encoder = network.architecture();
   encoder.layers.resize(latent_layers);
+  // Normalised for each frame, so that the loss does not depend on the scale of the hidden layer.
   const auto features = run_layers(encoder.layers, network.tensors(), answers);
   return torch::layer_norm(features, {features.size(2)});
 }

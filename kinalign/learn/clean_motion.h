@@ -10,6 +10,7 @@
 namespace kinalign {
 
 /// A network from answers [B,T,3 Jout] m, in the body's frame, to cleaner ones of the same shape.
+/// The form of BRA's network, with a narrow layer in the middle, which motion_features() reads.
 Architecture clean_motion_architecture(std::size_t answers);
 
 /// Trains the network on the truth of `pairs`, with noise of 1 cm on the joints and random dropout

@@ -15,6 +15,7 @@
 namespace kinalign {
 
 /// Weights of the terms of the loss. Lengths are in centimetres.
+/// Defaults are those of our own method; other methods set the terms of their papers.
 struct DenoiseLoss {
   double distance = 1.0;      // mean distance of joints
   double square = 0.0;        // mean square in dm^2, used by BRA and CNN
@@ -26,6 +27,8 @@ struct DenoiseLoss {
   double hidden = 0.0;  // BRA-P: squared difference of the features of the network of clean motion
 };
 
+/// Everything that a method decides about its data and loss. `crop` is in frames; the default of 61
+/// covers two seconds at 30 Hz.
 struct DenoiseTraining {
   DenoiseLoss loss{};
   std::int64_t batch = 32, crop = 61;
@@ -49,6 +52,8 @@ struct DenoiseScales {
 /// would be two thirds of the loss, and no Kinect sees them. `hands`: factor for wrists and hands.
 std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands);
 
+/// Features of all pairs are computed once, in the constructor; a step only cuts crops from them.
+/// Scales come from the training pairs alone, so that judged people stay unknown.
 class DenoiseTask : public TrainingTask {
  public:
   /// `learnt`: pairs to train on. `judged`: pairs of other people for validation; may be empty.
@@ -87,7 +92,9 @@ class DenoiseTask : public TrainingTask {
 
  private:
   /// The features of one sequence.
+  /// A whole stretch on the CPU; batches are moved to the device when they are drawn.
   struct Example {
+    // `valid` is 0 or 1 and serves as a weight in each mean.
     torch::Tensor input, base, truth, valid;  // [T,C], [T,Jout,3], [T,Jout,3], [T,Jout]
   };
   struct Batch {

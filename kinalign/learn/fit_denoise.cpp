@@ -29,12 +29,14 @@ DenoiseModel begun_model(const DenoiseMethod& method, const DenoiseLayout& layou
 
 }  // namespace
 
+// A residual that begins at 0 makes the network start as good as its base (models.md 11.1).
 void begin_network(const DenoiseMethod& method, const DenoiseTask& task, TorchNetwork& network) {
   if (method.begins == Begins::as_base) network.zero_last(task.first_answer());
   if (method.begins != Begins::linear) return;
   network.zero_last();
   const LinearAnswer linear = task.linear_answer();
   torch::NoGradGuard guard;
+  // Layer 1 of branch 0 of layer 0: the convolution of refine-linear (methods/refine.cpp).
   network.tensors().at("0.0.1.weight").copy_(linear.weight);
   network.tensors().at("0.0.1.bias").copy_(linear.bias);
 }
@@ -72,6 +74,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   DenoiseLayout layout =
       KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz, pairs.parents));
   if (!method.from_base) layout.bases.assign(layout.outputs.size(), -1);
+  // Training that goes on from a model keeps its layout and scales, because its weights were learnt
+  // with them.
   if (from != nullptr) layout = from->layout;
   DenoiseTask task(layout, method.training, divided.learnt, divided.judged, options.device);
   if (from != nullptr) task.use_scales({from->input_mean, from->input_scale, from->answer_mean});
@@ -80,6 +84,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   if (method.perceptual) {
     clean =
         KA_TRY(fit_clean_motion(layout, divided.learnt, options.training, options.device, hooks));
+    // Fixed, so that the first network can't please the loss by changing its judge.
     for (auto& [name, tensor] : clean->tensors()) tensor.set_requires_grad(false);
     task.compare_features(
         [&](const torch::Tensor& answers) { return motion_features(*clean, answers); });
@@ -88,6 +93,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
       put_tensors(*clean, "second.", out.model.tensors);
     }
   }
+  // Seeded here and not earlier, because fit_clean_motion() draws from the same generator.
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
   if (from == nullptr) begin_network(method, task, network);
@@ -95,6 +101,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   network.to(options.device);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
   if (method.training.states_spread) {
+    // The network is too sure on people that it has learnt; the ratio of ridge's errors corrects
+    // that for unseen people.
     out.model.spread_factor = task.spread_factor(network) * unseen_ratio(layout, divided.learnt);
   }
   out.model.architecture = network.architecture();

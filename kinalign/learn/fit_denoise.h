@@ -13,12 +13,15 @@ struct DenoiseFit {
   std::vector<TrainingPoint> points;
 };
 
+/// The choices of the user; all else comes from the method.
 struct FitOptions {
   TrainingOptions training;
   torch::Device device = torch::kCPU;
 };
 
 /// Pairs to train on, and pairs to judge the network during training.
+/// The two parts should not share people, else the judgement rewards a network for knowing them
+/// (models.md 9.4).
 struct DividedPairs {
   std::vector<Pair> learnt, judged;
 };

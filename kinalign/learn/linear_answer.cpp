@@ -16,6 +16,8 @@ void LinearFit::add(const torch::Tensor& input, const torch::Tensor& target,
                     const torch::Tensor& counts) {
   const std::int64_t half = kernel_ / 2;
   const auto padded = torch::constant_pad_nd(input.to(torch::kFloat64), {0, 0, half, half});
+  // A row holds the channels of a frame with all their taps, in the order of a convolution's
+  // weights.
   const auto windows = padded.unfold(0, kernel_, 1).reshape({-1, kernel_ * channels_});
   const auto rows = counts.nonzero().flatten();
   const auto ones = torch::ones({windows.size(0), 1}, torch::kFloat64);
@@ -33,6 +35,7 @@ LinearAnswer LinearFit::solved(double penalty) const {
   // The bias is not penalised; this keeps the system solvable without rows.
   penalties[width] = 1e-6;
   const auto weights = torch::linalg_solve(gram_ + torch::diag(penalties), moment_);
+  // The squared error follows from the same sums: y'y - 2 w'm + w'G w.
   const auto left =
       squares_ - 2.0 * (weights * moment_).sum(0) + (weights * torch::mm(gram_, weights)).sum(0);
   return {weights.slice(0, 0, width)

@@ -14,6 +14,7 @@ struct LinearAnswer {
   torch::Tensor left;    // [N] mean square error over the rows
 };
 
+/// Keeps the sums of the normal equations, not the rows, so memory does not grow with the data.
 class LinearFit {
  public:
   /// `kernel`: number of frames, odd.

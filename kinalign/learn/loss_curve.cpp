@@ -9,6 +9,7 @@ namespace kinalign {
 
 namespace {
 
+// In the picture's units; right and left are wide enough for the labels of both axes.
 constexpr double width = 640.0, height = 320.0, left = 70.0, right = 70.0, top = 40.0,
                  bottom = 45.0;
 
@@ -37,6 +38,8 @@ std::string within_xml(const std::string& text) {
 struct Axis {
   double least = 0.0, most = 1.0;
 
+  // Values grow upwards, and y of SVG grows downwards. If all values are equal, they lie at the
+  // bottom.
   double at(double value) const {
     const double span = most > least ? most - least : 1.0;
     return height - bottom - (value - least) / span * (height - top - bottom);
@@ -82,6 +85,7 @@ std::string loss_curve(const std::vector<TrainingPoint>& points, const std::stri
   for (const TrainingPoint& one : points) {
     const double step = static_cast<double>(one.step);
     last_step = std::max(last_step, step);
+    // A loss with a likelihood can be negative; such points have no logarithm and are left out.
     if (one.loss > 0.0) losses.push_back({step, std::log10(one.loss)});
     if (one.judgement) judgements.push_back({step, *one.judgement});
   }

@@ -18,6 +18,7 @@ enum class Begins : std::uint8_t {
 };
 
 /// A network that cleans skeletons.
+/// All in which two methods differ. DenoiseTask and train() are the same for all of them.
 struct DenoiseMethod {
   std::string_view name, summary, source;
   /// The network from the layout's channels to its answers, plus one channel per joint if it states

@@ -69,6 +69,7 @@ torch::Tensor mean_of(const torch::Tensor& values) {
 }
 
 /// A model's network in two halves: from the input to its code, and from the code to the motion.
+/// The two halves meet at the unpool: the pooled code before it is what the steps of Adam change.
 class Autoencoder {
  public:
   Autoencoder(const DenoiseModel& model, const DenoiseFeatures& features)
@@ -97,6 +98,7 @@ class Autoencoder {
 
   /// The decoded motion [T,Jout,3] m in the body's frame.
   torch::Tensor motion(const torch::Tensor& code) const {
+    // The average unpool of use, not the random one of training.
     const auto unpooled = 0.5 * code.repeat_interleave(2, 1).slice(1, 0, frames_);
     const auto out = run_layers(decoder_, tensors_, unpooled);
     const std::int64_t channels = base_.size(1) * 3;
@@ -112,6 +114,8 @@ class Autoencoder {
 };
 
 /// The constraints of a motion, found from the input and the answer.
+/// Lengths and path come from the answer, standing feet from the input. Feet are compared in the
+/// world, because a foot that stands still moves in the body's frame.
 class Constraints {
  public:
   Constraints(const DenoiseLayout& layout, const JointFrames& body, const DenoiseFeatures& features,
@@ -146,6 +150,7 @@ class Constraints {
     const auto bones = (body.index_select(1, ends_) - body.index_select(1, begins_)).pow(2).sum(-1);
     const auto path = (body.index_select(1, roots_) - path_).pow(2).sum(-1);
     return {mean_where(moves, standing_), mean_of(path),
+            // The small number keeps the gradient finite for a bone of length 0.
             mean_of(((bones + 1e-4).sqrt() - lengths_).pow(2))};
   }
 
@@ -170,6 +175,7 @@ class Constraints {
       const auto frames = standing_frames(foot, layout.rate_hz);
       const auto stands = to_torch({frames.begin(), frames.end()}, {whole(frames.size())});
       places.push_back(whole(*answered));
+      // One column for each foot joint that input and answer both have.
       columns.push_back(stands.slice(0, 1) * stands.slice(0, 0, -1));
     }
     feet_ = torch::tensor(places, torch::kInt64);
@@ -195,6 +201,7 @@ std::vector<std::uint8_t> standing_frames(std::span<const float> foot, double ra
   std::vector<double> heights;
   for (std::size_t t = 0; t < frames; ++t) heights.push_back(foot[3 * t + 1]);
   if (frames < 2) return out;
+  // A low quantile and not the minimum: one wrong frame must not lower the floor.
   const double floor_m = quantile(heights, usual_lowest);
   for (std::size_t t = 0; t < frames; ++t) {
     const float* a = &foot[3 * (t == 0 ? 0 : t - 1)];
@@ -202,6 +209,7 @@ std::vector<std::uint8_t> standing_frames(std::span<const float> foot, double ra
     const double speed = rate_hz * std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
     out[t] = speed < fastest_m_s && heights[t] < floor_m + highest_m ? 1 : 0;
   }
+  // Stands that are too short do not count.
   for (auto begin = out.begin(); begin != out.end();) {
     const auto end = std::find_if(begin, out.end(), [begin](auto one) { return one != *begin; });
     if (end - begin < least_standing) std::fill(begin, end, 0);
@@ -233,6 +241,7 @@ Result<Projected> project(const DenoiseModel& model, const JointFrames& body,
     const Constraints constraints(model.layout, body, features, answer);
     out.before = errors_of(constraints.squares(answer));
     code.set_requires_grad(true);
+    // An epsilon of 1e-5, as in the released code (models.md 2.1).
     torch::optim::Adam adam({code}, torch::optim::AdamOptions(options.rate).eps(1e-5));
     for (std::int64_t step = 0; step < options.steps; ++step) {
       adam.zero_grad();

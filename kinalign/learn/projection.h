@@ -27,6 +27,7 @@ struct ConstraintErrors {
   double path_cm = 0.0, bone_cm = 0.0;
 };
 
+/// The caller steadies the answer like any other answer (Steadier).
 struct Projected {
   Denoised answer;                 // in the space of the body, without the steadying
   ConstraintErrors before, after;  // the model's answer; the projected answer

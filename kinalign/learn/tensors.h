@@ -12,9 +12,11 @@
 
 namespace kinalign {
 
+/// LibTorch counts in signed numbers.
 inline std::int64_t whole(std::size_t value) { return static_cast<std::int64_t>(value); }
 
 /// Copies the values into a tensor of that shape.
+/// The tensor owns its memory, so the vector may go away.
 inline torch::Tensor to_torch(const std::vector<float>& values,
                               const std::vector<std::int64_t>& shape) {
   auto out = torch::empty(shape, torch::kFloat32);

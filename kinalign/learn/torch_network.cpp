@@ -26,6 +26,8 @@ torch::Tensor uniform(std::vector<std::int64_t> shape, double bound) {
 }
 
 /// Makes the tensors of layers; returns the number of output channels.
+/// The order of the layers decides which random numbers each tensor gets, so it is part of a
+/// result's repeatability.
 class Maker {
  public:
   explicit Maker(Tensors& tensors) : tensors_(tensors) {}
@@ -94,8 +96,11 @@ class Maker {
       }
       tensors_[path + ".weight_hh_l0" + way] = torch::cat(squares);
       auto bias = uniform({gates * units}, bound);
+      // LSTM: input, forget, cell, output. An open forget gate lets gradients reach far back at
+      // first.
       if (gates == 4) bias.slice(0, units, 2 * units).fill_(1.0);
       tensors_[path + ".bias_ih_l0" + way] = bias;
+      // PyTorch has two biases for each gate. One of them is enough at the start.
       tensors_[path + ".bias_hh_l0" + way] = torch::zeros({gates * units});
     }
     return layer.bidirectional ? 2 * layer.out : layer.out;
@@ -114,6 +119,7 @@ class Maker {
 };
 
 /// Runs layers on values [B,T,C].
+/// One object serves one pass. `part` decides whether dropout and the random unpool are active.
 class Runner {
  public:
   /// `part`: the part of the batch in training; absent outside training.
@@ -180,6 +186,7 @@ class Runner {
     return x;
   }
 
+  /// Padding is done by hand, because a causal convolution needs all of it before the first frame.
   torch::Tensor conv(const Layer& layer, const std::string& path, const torch::Tensor& x) const {
     const std::int64_t reach = whole((layer.kernel - 1) * layer.dilation);
     const std::int64_t before = layer.causal ? reach : reach / 2;
@@ -239,11 +246,13 @@ class Runner {
                            const torch::Tensor& x) const {
     const std::int64_t frames = x.size(1), window = whole(layer.window);
     if (frames == 0) return x;
+    // A sequence shorter than the window is padded with its last frame, as in infer.
     const std::int64_t lacking = std::max<std::int64_t>(window - frames, 0);
     const auto last = x.slice(1, frames - 1).expand({x.size(0), lacking, x.size(2)});
     const auto sequences = torch::cat({x, last}, 1).transpose(1, 2).flatten(0, 1);
     const auto results =
         run(layer.branches.front(), path_below(path, 0), sequences.unfold(1, window, 1));
+    // col2im adds overlapping windows; dividing by the same sum of ones gives their mean.
     const auto overlaid = [&](const torch::Tensor& windows) {
       return torch::col2im(windows.transpose(1, 2), {frames + lacking, 1}, {window, 1}, {1, 1},
                            {0, 0}, {1, 1});
@@ -330,6 +339,7 @@ void TorchNetwork::zero_last(const torch::Tensor& bias) {
 void TorchNetwork::to(torch::Device device) {
   torch::NoGradGuard guard;
   for (auto& [name, tensor] : tensors_) {
+    // A moved tensor must be a leaf of the graph, else it would get no gradient.
     tensor = tensor.detach().to(device).set_requires_grad(true);
   }
 }

@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// Values agree with those of infer's Network up to rounding, so a model that was trained here runs
+/// without LibTorch. Tensors are kept by name, as the file of a model has them.
 class TorchNetwork {
  public:
   /// Draws the weights from torch's generator, which must be seeded before: uniform within
@@ -28,6 +30,7 @@ class TorchNetwork {
 
   /// Sets the weights of the last linear or conv layer to 0, so that the network outputs `bias`
   /// [outputs], or 0 if it is undefined.
+  /// A network that corrects an answer then begins without a correction.
   void zero_last(const torch::Tensor& bias = {});
   void to(torch::Device device);
 

@@ -16,8 +16,12 @@ using WeightMap = std::map<std::string, torch::Tensor>;
 
 /// Adam's decay of the first and the second moment.
 constexpr double first_decay = 0.9, second_decay = 0.98, epsilon = 1e-8;
+// models.md 9.5: the average follows quickly at first and slowly later.
 constexpr double average_decay = 0.999;
+// A single step that is not finite is skipped; several in a row mean that training has failed.
 constexpr int most_failures = 5;
+// Checkpoints usually come at multiples of this number, just after a point. No sum is then open
+// when a state is stored.
 constexpr std::int64_t point_every = 50;
 
 /// Moves from `from` to `to` along half a cosine; `share` goes from 0 to 1.
@@ -58,6 +62,7 @@ void begin(const TorchNetwork& network, TrainingState& state) {
 }
 
 /// The norm of all gradients together.
+/// In double and tensor by tensor, in the order of names, so that the result is repeatable.
 double gradient_norm(const WeightMap& tensors) {
   double sum = 0.0;
   for (const auto& [name, tensor] : tensors) {
@@ -72,6 +77,7 @@ void step_weights(TorchNetwork& network, const TrainingOptions& options, double 
   torch::NoGradGuard guard;
   const double rate = rate_at(options, state.step), n = static_cast<double>(state.step + 1);
   const double cut = norm > options.longest_gradient ? options.longest_gradient / norm : 1.0;
+  // Adam's corrections of both moments, which start at 0, in one factor.
   const double correction =
       std::sqrt(1.0 - std::pow(second_decay, n)) / (1.0 - std::pow(first_decay, n));
   const double kept = std::min(average_decay, (1.0 + n) / (10.0 + n));
@@ -82,6 +88,7 @@ void step_weights(TorchNetwork& network, const TrainingOptions& options, double 
     torch::Tensor& second = state.second.at(name);
     first.mul_(first_decay).add_(gradient, 1.0 - first_decay);
     second.mul_(second_decay).addcmul_(gradient, gradient, 1.0 - second_decay);
+    // Weight decay acts before the step and not through the gradient (AdamW), and only on matrices.
     if (weight.dim() > 1) weight.mul_(1.0 - rate * options.weight_decay);
     weight.addcdiv_(first, second.sqrt().add_(epsilon), -rate * correction);
     state.average.at(name).mul_(kept).add_(weight, 1.0 - kept);
@@ -91,8 +98,10 @@ void step_weights(TorchNetwork& network, const TrainingOptions& options, double 
 /// Judges the network with the weights that would be kept, and stores the best ones.
 std::optional<double> judge(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState& state) {
+  // Training goes on from the plain weights, so they come back after the judgement.
   const WeightMap now = copy_of(network.tensors());
   if (options.average) put_weights(state.average, network);
+  // The first process judges for all, so that all stop at the same step.
   const BatchShare& share = task.share();
   const auto judgement = share.of_first(share.is_first() ? task.judge(network) : std::nullopt);
   if (!judgement || !state.best_judgement || *judgement < *state.best_judgement) {
@@ -128,6 +137,7 @@ double joined(double loss, WeightMap& tensors, const BatchShare& share) {
   for (auto& [name, tensor] : tensors) {
     if (tensor.grad().defined()) pieces.push_back(tensor.grad().flatten().to(torch::kCPU));
   }
+  // Loss and gradients travel in one tensor: one message between the processes for each step.
   const torch::Tensor all = share.total(torch::cat(pieces));
   std::int64_t at = 1;
   for (auto& [name, tensor] : tensors) {
@@ -148,6 +158,8 @@ std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
     if (tensor.grad().defined()) tensor.mutable_grad().reset();
   }
   const auto step = static_cast<std::uint64_t>(state.step);
+  // The seed of each step is a function of its number, so a run that goes on draws the same
+  // dropout.
   torch::manual_seed(mix64(mix64(options.seed) ^ step));  // for dropout
   const torch::Tensor loss = task.loss(network, options.seed, step);
   loss.backward();
@@ -178,6 +190,8 @@ double rate_at(const TrainingOptions& options, std::int64_t step) {
   return eased(options.rate, first / 1e4, std::min(1.0, (at - peak) / std::max(1.0, end - peak)));
 }
 
+// Each turn: gradients, a step, a judgement if it is due, a point of the log, a checkpoint. The
+// checkpoint comes last, so that it contains the judgement and the point of its step.
 Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState state,
                             const TrainingHooks& hooks) {
@@ -205,6 +219,7 @@ Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
     if (last || judgement || is_due(state.step, point_every)) {
       add_point(options, judgement, sums, state);
     }
+    // `weights` of the state is brought up to date only here; all else in it is always current.
     if (!last && hooks.keep && is_due(state.step, hooks.every)) {
       state.weights = copy_of(network.tensors());
       KA_TRY(hooks.keep(state));

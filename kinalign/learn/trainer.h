@@ -18,6 +18,7 @@
 namespace kinalign {
 
 /// A training task: batches with their loss, and a judgement of the network.
+/// train() calls loss() once a step, and judge() in the first process only.
 class TrainingTask {
  public:
   TrainingTask() = default;
@@ -38,6 +39,8 @@ class TrainingTask {
   BatchShare share_;
 };
 
+/// Defaults are a method's usual choice; each method sets its own, and `kinalign train` may change
+/// steps, rate, seed, judgements and patience.
 struct TrainingOptions {
   std::int64_t steps = 1200;
   double rate = 2e-3;            // the highest learning rate
@@ -50,6 +53,7 @@ struct TrainingOptions {
   std::uint64_t seed = 1;
 };
 
+/// A line of the log. A judgement is there only at steps at which the network was judged.
 struct TrainingPoint {
   std::int64_t step = 0;
   double loss = 0.0;  // mean since the last point

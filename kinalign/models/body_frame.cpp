@@ -9,6 +9,8 @@ namespace kinalign {
 
 namespace {
 
+// A Kinect's left-right line shrinks or flips if a person stands sideways to it (models.md 1.3).
+// The direction of a shorter line is noise, so it does not change the heading.
 constexpr double least_width = 0.15;  // m, summed over the left/right pairs
 
 /// The index of the first of `words` that is among `names`.
@@ -48,6 +50,8 @@ void fill_between(JointFrames& body, std::size_t joint, std::size_t before, std:
 }
 
 /// Fills the gaps of one joint; see fill_missing().
+/// One pass over the frames: `last` is the newest frame so far in which the joint was seen. Frames
+/// before the first one get its position, in the causal form too, because there is no earlier one.
 void fill_joint(JointFrames& body, std::size_t joint, bool causal) {
   std::optional<std::size_t> last;
   for (std::size_t t = 0; t < body.frames(); ++t) {
@@ -62,6 +66,7 @@ void fill_joint(JointFrames& body, std::size_t joint, bool causal) {
     }
     last = t;
   }
+  // Frames after the last one in which the joint was seen. If causal, the loop has filled them.
   if (!last || causal) return;
   for (std::size_t t = *last + 1; t < body.frames(); ++t) copy_joint(body, *last, t, joint);
 }
@@ -125,6 +130,8 @@ std::vector<BodyFrame> body_frames(const BodyJoints& joints, const JointFrames& 
     for (std::size_t k = 0; k < 3; ++k) last.root[k] = static_cast<float>(root[k]);
     out[t] = last;
   }
+  // Frames before the first known heading get that heading; else a body that enters sideways would
+  // start with an arbitrary one.
   for (std::size_t t = 0; first_known && t < *first_known; ++t) {
     out[t].cosine = out[*first_known].cosine;
     out[t].sine = out[*first_known].sine;
@@ -133,6 +140,7 @@ std::vector<BodyFrame> body_frames(const BodyJoints& joints, const JointFrames& 
 }
 
 void fill_missing(JointFrames& body, bool causal) {
+  // Joints that were never seen come last: their mean needs the filled positions of all others.
   std::vector<std::size_t> seen, never;
   for (std::size_t j = 0; j < body.joints; ++j) {
     (was_seen(body, j) ? seen : never).push_back(j);

@@ -25,6 +25,8 @@ struct BodyJoints {
 std::optional<BodyJoints> body_joints(const std::vector<std::string>& names);
 
 /// A space that goes along with the body: origin at its root, y up, x to its left.
+/// Networks work in this space, so that they need not learn every place and every direction that a
+/// person can face. The vertical stays the world's.
 struct BodyFrame {
   std::array<float, 3> root{};       // m
   float cosine = 1.0F, sine = 0.0F;  // the heading; (cosine, 0, sine) points to the body's left

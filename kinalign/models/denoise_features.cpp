@@ -21,6 +21,8 @@ void move(const std::vector<BodyFrame>& frames, std::span<float> positions, cons
 }
 
 /// For each output the input joint of the same name, else that of its nearest ancestor; -1: none.
+/// Both lists are compared by Kinect names. A finger that only a suit has thus starts at the wrist
+/// or hand of the input.
 std::vector<int> inputs_standing_for(const DenoiseLayout& layout) {
   const auto seen = kinect_names(layout.inputs), answered = kinect_names(layout.outputs);
   std::vector<int> out;
@@ -50,6 +52,8 @@ Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
   out.rate_hz = rate_hz;
   out.parents = parents.empty() ? kinect_parents_of(kinect_names(out.outputs)) : std::move(parents);
   out.bases = inputs_standing_for(out);
+  // A window of 0.3 s, made odd because the value at its centre is used. models.md 6.2 has the
+  // cut-off frequencies of such windows.
   const auto window = static_cast<std::size_t>(std::lround(rate_hz * 0.3));
   out.smoothing.window = window + (window % 2 == 0 ? 1 : 0);
   return out;
@@ -67,6 +71,8 @@ std::vector<std::size_t> inputs_of_outputs(const DenoiseLayout& layout) {
 DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body) {
   const std::size_t joints = body.joints, frames = body.frames();
   DenoiseFeatures out;
+  // The order matters: gaps are filled before smoothing, and the body's frame is computed from
+  // smoothed joints. The network's own input stays unsmoothed.
   fill_missing(body, layout.smoothing.causal);
   JointFrames smoothed = body;
   smooth(layout.smoothing, 3 * joints, smoothed.positions);
@@ -81,6 +87,7 @@ DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body) 
     out.input.insert(out.input.end(), row, row + joints * 3);
     for (std::size_t i = 0; i < joints * 3; ++i) out.input.push_back(row[i] - before[i]);
     for (std::size_t j = 0; j < joints; ++j) {
+      // The states are those of the device: a filled gap still counts as missing.
       out.input.push_back(static_cast<float>(body.seen[t * joints + j]) * 0.5F);
     }
     for (const int base : layout.bases) {

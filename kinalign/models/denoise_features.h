@@ -14,6 +14,9 @@
 namespace kinalign {
 
 /// The joints of the input and of the output, and the settings for the body's frame.
+/// The network's answer is an offset: an output joint is its base joint plus the answer. A network
+/// that answers 0 therefore already gives the smoothed input (models.md 11.1: a residual on a
+/// baseline).
 struct DenoiseLayout {
   std::vector<std::string> inputs;   // joint names
   std::vector<std::string> outputs;  // joint names
@@ -39,6 +42,8 @@ Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
 std::vector<std::size_t> inputs_of_outputs(const DenoiseLayout& layout);
 
 /// The features of T frames.
+/// Differences give speeds. States let the network trust guessed joints less. Bases stay outside
+/// the network; Denoiser::answer_of() adds the answer to them.
 struct DenoiseFeatures {
   /// [T,7J]: positions in the body's frame (3J, m), their differences from the previous frame (3J,
   /// m), and the state of each joint (J): 1 tracked, 0.5 inferred, 0 missing.

@@ -16,6 +16,9 @@ Steadier::Steadier(const Steadying& how, const DenoiseLayout& layout)
       inputs_(mirror_partners(layout.inputs)),
       outputs_(mirror_partners(layout.outputs)) {}
 
+// A mirrored person also moves like a person. The mean of both answers cancels errors that prefer
+// one side (mirror averaging, models.md 11.6). Smoothing comes before the bones, because smoothing
+// changes their lengths.
 Denoised Steadier::steadied(const Answer& answer, const JointFrames& body, Denoised plain) const {
   std::vector<float>& positions = plain.positions;
   if (how_.mirror) {
@@ -35,6 +38,7 @@ Denoised Steadier::steadied(const Answer& answer, const JointFrames& body, Denoi
 }
 
 Result<Denoiser> Denoiser::make(DenoiseModel model) {
+  // A network that states a spread has one more channel for each output joint, after the positions.
   const std::size_t answers = model.layout.answers();
   const std::size_t outputs = answers + (model.states_spread ? model.layout.outputs.size() : 0);
   Network network = KA_TRY(Network::make(model.architecture, tensors_below(model.tensors, "net.")));
@@ -94,6 +98,7 @@ Denoised Denoiser::answer_of(const DenoiseFeatures& features, std::span<const fl
           model_.answer_mean[c] + scale * answers[t * row + c];
     }
     for (std::size_t j = 0; j < joints && model_.states_spread; ++j) {
+      // The network states the logarithm of centimetres, so that the spread is always positive.
       const double centimetres = std::exp(static_cast<double>(answers[t * row + width + j]));
       out.spread.push_back(static_cast<float>(centimetres * 0.01 * model_.spread_factor));
     }
@@ -101,6 +106,7 @@ Denoised Denoiser::answer_of(const DenoiseFeatures& features, std::span<const fl
   return out;
 }
 
+// bra-p's second network was trained on motion in the body's frame, so this runs before to_world().
 void Denoiser::apply_second(Denoised& answer) {
   if (!second_) return;
   std::vector<float> out;
@@ -120,6 +126,7 @@ Denoised Denoiser::answer(const JointFrames& body) {
   return answer;
 }
 
+// If the steadying mirrors, the network runs twice: for the body and for its mirror image.
 Denoised Denoiser::clean(const JointFrames& body) {
   const auto again = [this](const JointFrames& other) { return answer(other); };
   return steadier_.steadied(again, body, answer(body));

@@ -24,6 +24,8 @@ struct Steadying {
   bool operator==(const Steadying&) const = default;
 };
 
+/// All that training decides and use must repeat: the layout of joints, the scales, the networks
+/// and the steadying. Denoiser::make() checks that the networks fit the layout.
 struct DenoiseModel {
   ModelFacts facts;
   DenoiseLayout layout;
@@ -55,6 +57,8 @@ struct Denoised {
 };
 
 /// A method as a function: from a body to its answer, in the space of the body.
+/// The networks of a model and the filters without learning (filters.h) have this form, so that
+/// comparisons steady all of them alike.
 using Answer = std::function<Denoised(const JointFrames& body)>;
 
 /// Steadies answers, the same way for every method: the mean of the answers to a body and to its
@@ -74,6 +78,7 @@ class Steadier {
 };
 
 /// A model ready for use. It can be used by one thread at a time.
+/// Users call clean(). Its steps are public because LiveCleaner runs them over a moving window.
 class Denoiser {
  public:
   static Result<Denoiser> make(DenoiseModel model);

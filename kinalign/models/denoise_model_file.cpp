@@ -14,6 +14,8 @@ namespace {
 
 using Json = ModelHeader;
 
+// Limits of docs/formats/model.md. A model may come from anywhere, so a broken file must neither
+// allocate without bound nor make the arithmetic overflow.
 constexpr std::size_t most_joints = 1000, most_window = 1001;
 constexpr double least_rate_hz = 0.1, most_rate_hz = 10'000.0;
 constexpr double least_scale = 1e-6, most_scale = 1e6;
@@ -91,6 +93,7 @@ bool are_unique(std::vector<std::string> names) {
 }
 
 /// True if the parents contain no cycle.
+/// A walk up that takes more steps than there are joints has met a joint twice.
 bool is_forest(const std::vector<int>& parents) {
   for (std::size_t j = 0; j < parents.size(); ++j) {
     int at = parents[j];
@@ -136,6 +139,8 @@ std::string misfit(const DenoiseModel& model) {
 
 }  // namespace
 
+// The scales are tensors of their own in the file. read_denoise_model() takes them out again, so
+// that only the networks' tensors remain.
 std::string write_denoise_model(const DenoiseModel& model) {
   std::map<std::string, Architecture> networks{{"net", model.architecture}};
   if (model.second) networks["second"] = *model.second;
@@ -149,6 +154,8 @@ std::string write_denoise_model(const DenoiseModel& model) {
 Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::string& name) {
   TensorFile file = KA_TRY(read_safetensors(bytes, name));
   const Json header = KA_TRY(read_model_header(file, name));
+  // The task is checked before the other members. A model for poses then gives a clear message
+  // instead of one about a missing member.
   if (const Json task = header.value("task", Json()); task.is_string() && task != "denoise") {
     return Failure(
         Error{name, 0, "a model that cleans skeletons", "task " + shown(task.get<std::string>())});
@@ -166,6 +173,7 @@ Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::strin
   out.input_mean = KA_TRY(take_row(file.tensors, "input.mean", name));
   out.input_scale = KA_TRY(take_row(file.tensors, "input.scale", name));
   out.answer_mean = KA_TRY(take_row(file.tensors, "answer.mean", name));
+  // Names and shapes of these tensors are checked by Network::make(), when the model is used.
   out.tensors = std::move(file.tensors);
   const std::string fault = misfit(out);
   if (!fault.empty()) return Failure(Error{name, 0, "parts that fit together", fault});

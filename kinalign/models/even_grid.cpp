@@ -14,6 +14,8 @@ namespace kinalign {
 namespace {
 
 constexpr double most_frames = 1e7;
+// Limits for input that a model can't use, or that its user should know of. docs/denoise.md lists
+// the usual causes: millimetres, or another axis that points up.
 /// M, of the head below the root; a person lying down has both at one height.
 constexpr float least_below = 0.2F;
 constexpr float most_reach = 1.6F;                   // m, from the root to a joint
@@ -47,6 +49,7 @@ Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
       return Failure(Error{"", 0, "rising stamps", "frame " + std::to_string(i) + " is earlier"});
     }
   }
+  // Pauses and dropped frames hardly change the median, so these alone don't refuse a recording.
   const double step = usual_step(stamps);
   if (step * rate_hz > 2.0 || step * rate_hz < 0.25) {
     return Failure(Error{"", 0, "about " + text_of(rate_hz, "frames a second"),
@@ -62,6 +65,7 @@ Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std:
   std::vector<std::optional<std::size_t>> out;
   out.reserve(wanted.size());
   for (const std::string& name : wanted) out.push_back(index_of(names, name));
+  // Other joints may be absent: they are then missing in every frame.
   const auto needed = body_joints(wanted);
   std::vector<std::size_t> joints = needed ? needed->root : std::vector<std::size_t>{};
   if (needed) {
@@ -77,6 +81,7 @@ Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std:
 }
 
 /// The median height of the body, m, over frames in which more than half of the joints are seen.
+/// The median keeps single frames with joints far off from refusing a whole recording.
 double body_size(const JointFrames& body) {
   std::vector<double> sizes;
   for (std::size_t t = 0; t < body.frames(); ++t) {
@@ -128,6 +133,7 @@ float gap_between(const float* a, const float* b) {
 }
 
 /// Sets joints too far from the root to missing; returns their number.
+/// Their positions become 0, because JointFrames holds zeros where a joint is missing.
 std::size_t leave_out_far(std::size_t root_joint, JointFrames& body) {
   std::size_t out = 0;
   for (std::size_t i = 0; i < body.seen.size(); ++i) {
@@ -142,6 +148,7 @@ std::size_t leave_out_far(std::size_t root_joint, JointFrames& body) {
 }
 
 /// The first frame in which the root has moved faster than a person can since the frame before.
+/// Such a jump may mean that the device has begun to follow another person (docs/denoise.md).
 std::optional<std::size_t> first_jump(std::size_t root_joint, const JointFrames& body,
                                       double rate_hz) {
   const auto most = static_cast<float>(most_speed / rate_hz);
@@ -165,6 +172,8 @@ void put_joint(const PointFrames& points, const Between& where, std::size_t at, 
   const std::size_t a = where.before * names + where.joint, b = a + names;
   const double share = where.share;
   auto seen = std::min(points.state[a], points.state[b]);
+  // At the time of a sample only that sample's state counts. Else a joint would also be missing in
+  // the frame before or after a missing one.
   if (share < 1e-6) seen = points.state[a];
   if (share > 1 - 1e-6) seen = points.state[b];
   body.seen[at] = static_cast<std::uint8_t>(seen);
@@ -183,6 +192,8 @@ EvenSpan span_of(Time first, Time last, double rate_hz) {
   return {first, static_cast<std::size_t>(std::clamp(steps, 0.0, most_frames)) + 1};
 }
 
+// One pass: `before` only moves forward, because the grid's times rise. Times up to half a step
+// beyond both ends use the first or the last sample, to match span_of().
 JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places,
                            const PointFrames& points, const EvenGrid& grid) {
   const auto at_s = [&](std::size_t i) {
@@ -229,6 +240,8 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
   EvenFrames out{.body = joints_on_grid(places, points, {rate_hz, grid.gap_s, span}),
                  .start = span.start,
                  .rate_hz = rate_hz};
+  // The size is checked before far joints are removed: in millimetres nearly all joints would be
+  // far, and the message would not name the reason.
   const double size = body_size(out.body);
   if (size < least_size || size > most_size) {
     return Failure(Error{"", 0, "a body of 0.4 to 2.6 m, in metres, y up",

@@ -28,6 +28,7 @@ struct EvenGrid {
   std::optional<EvenSpan> span{};
 };
 
+/// The body on the grid, and two faults that do not prevent cleaning but deserve a warning.
 struct EvenFrames {
   JointFrames body;
   Time start{};  // stamp of the first frame

@@ -37,6 +37,9 @@ struct Step {
 };
 
 /// The Kalman filter and smoother of one axis of one joint.
+/// The model is a point with constant acceleration that white jerk disturbs (models.md 6.4); the
+/// state is position, speed and acceleration. begin() starts a joint, add() takes frames in order,
+/// and smoothed() goes backwards over the kept steps.
 class AxisSmoother {
  public:
   AxisSmoother(const Kalman& how, double rate_hz) {
@@ -46,6 +49,8 @@ class AxisSmoother {
     noise_ *= how.jerk;
   }
 
+  /// The first spread (variances in m^2, m^2/s^2 and m^2/s^4) leaves speed and acceleration open,
+  /// so that the first measurements decide them.
   void begin(double value) {
     steps_.clear();
     state_ = {value, 0.0, 0.0};
@@ -69,6 +74,7 @@ class AxisSmoother {
       const State gain = step.predicted_spread.col(0) / total;
       step.filtered += gain * innovation;
       step.filtered_spread -= gain * step.predicted_spread.row(0);
+      // Rounding makes the matrix unsymmetric, and later steps would enlarge the error.
       step.filtered_spread = 0.5 * (step.filtered_spread + step.filtered_spread.transpose()).eval();
     }
     state_ = step.filtered;
@@ -77,6 +83,8 @@ class AxisSmoother {
   }
 
   /// The positions of all steps after the backward pass of the smoother.
+  /// Rauch, Tung and Striebel: the filtered state of a frame is corrected by how far the smoothed
+  /// state of the next frame lies from its prediction.
   std::vector<double> smoothed() const {
     std::vector<double> out(steps_.size());
     State after = steps_.back().filtered;
@@ -103,6 +111,8 @@ class AxisSmoother {
 void hold(JointFrames& body, double rate_hz) {
   const auto trusted = static_cast<std::size_t>(trusted_inferred_s * rate_hz);
   for (std::size_t j = 0; j < body.joints; ++j) {
+    // A Kinect's guess is used for a moment only; a longer run of inferred frames counts as
+    // missing.
     std::size_t inferred = 0;
     for (std::size_t t = 0; t < body.frames(); ++t) {
       std::uint8_t& seen = body.seen[t * body.joints + j];
@@ -113,6 +123,8 @@ void hold(JointFrames& body, double rate_hz) {
   fill_missing(body, true);
 }
 
+// The formulas of models.md 6.3. The derivative uses the previous filtered position, as in the
+// paper.
 void one_euro(const OneEuro& how, JointFrames& body, double rate_hz) {
   fill_missing(body, true);
   const double slow = share_of(how.derivative_hz, rate_hz);
@@ -142,6 +154,8 @@ void kalman_smooth(const Kalman& how, JointFrames& body, double rate_hz) {
   AxisSmoother smoother(how, rate_hz);
   for (std::size_t j = 0; j < body.joints; ++j) {
     for (std::size_t k = 0; k < 3; ++k) {
+      // Filled positions only start the filter. If a joint is missing, add() gets no variance, and
+      // the filter predicts.
       smoother.begin(place(filled, 0, j)[k]);
       for (std::size_t t = 0; t < body.frames(); ++t) {
         const std::uint8_t seen = body.seen[t * body.joints + j];

@@ -13,6 +13,8 @@ namespace kinalign {
 /// than 0.2 s counts as missing. Causal.
 void hold(JointFrames& body, double rate_hz);
 
+/// Values in the ranges of models.md 6.3. `least_hz` sets how calm a still joint is; `slope` lets
+/// the filter follow a fast one.
 struct OneEuro {
   double least_hz = 1.2;       // cut-off frequency at rest
   double slope = 3.0;          // Hz added to the cut-off for each m/s

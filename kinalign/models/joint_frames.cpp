@@ -11,6 +11,8 @@ namespace kinalign {
 namespace {
 
 /// The joint's name on the other side of the body; `name` itself if it contains no side.
+/// Words are tried before first letters. A joint such as "root" gives "loot"; no skeleton has such
+/// a joint, so mirror_partners() makes "root" its own partner.
 std::string other_side(const std::string& name) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 4> words{
       {{"Left", "Right"}, {"Right", "Left"}, {"left", "right"}, {"right", "left"}}};
@@ -44,6 +46,7 @@ void mirror_positions(std::span<float> positions, const std::vector<std::size_t>
   for (std::size_t at = 0; at + 3 * joints <= positions.size() && joints > 0; at += 3 * joints) {
     float* row = &positions[at];
     for (std::size_t j = 0; j < joints; ++j) {
+      // Each pair is exchanged once, at the lower index.
       if (partners[j] > j) std::swap_ranges(row + 3 * j, row + 3 * j + 3, row + 3 * partners[j]);
     }
     for (std::size_t j = 0; j < joints; ++j) row[3 * j] = -row[3 * j];

@@ -38,6 +38,9 @@ constexpr std::array<Word, 20> prmd_words{{{"Waist", "SpineBase"},
                                            {"FootRight", "AnkleRight"},
                                            {"ToesRight", "FootRight"}}};
 
+/// The names of usual mocap suits. "Neck1" becomes "NeckTop", and UI-PRMD's "Neck" becomes
+/// "NeckBase": a Kinect has no such joints, and its names stay free for the joints at its own
+/// places.
 constexpr std::array<Word, 22> mocap_words{{{"Hips", "SpineBase"},
                                             {"Spine1", "SpineMid"},
                                             {"Spine3", "SpineShoulder"},
@@ -77,6 +80,8 @@ std::optional<std::size_t> index_of(const std::vector<std::string>& names, std::
 }
 
 std::vector<std::string> kinect_names(const std::vector<std::string>& names) {
+  // Each vocabulary is recognised by its root. The two must not be mixed: "Head" means the neck in
+  // UI-PRMD, and the head in a suit.
   if (index_of(names, "SpineBase")) return names;
   const bool prmd = index_of(names, "Waist").has_value();
   std::vector<std::string> out;

@@ -6,6 +6,8 @@
 
 namespace kinalign {
 
+/// `task` decides which reader a file needs. `training` and `metrics` stay JSON text, so this
+/// header does not need the JSON library.
 struct ModelFacts {
   std::string task, method, software;
   std::string training;  // JSON: data, licences, hashes, settings

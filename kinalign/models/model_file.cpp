@@ -90,6 +90,7 @@ Result<std::vector<float>> take_row(std::map<std::string, Tensor>& tensors, cons
 
 Tensor row_of(const std::vector<float>& values) { return {{values.size()}, values}; }
 
+// A file holds the tensors of all its networks in one list; the prefix tells them apart.
 std::map<std::string, Tensor> tensors_below(const std::map<std::string, Tensor>& tensors,
                                             const std::string& prefix) {
   std::map<std::string, Tensor> out;

@@ -17,6 +17,7 @@
 
 namespace kinalign {
 
+/// Members keep their order, so that the same model gives the same bytes.
 using ModelHeader = nlohmann::ordered_json;
 
 /// The bytes of a model's file. `own`: header members of the task, written between those that every
@@ -42,6 +43,7 @@ Result<Architecture> network_of(const ModelHeader& header, const std::string& ke
                                 const std::string& name);
 
 /// Removes the tensor `key` from `tensors` and returns its values.
+/// Readers take the scales out in this way; the tensors that remain belong to networks.
 Result<std::vector<float>> take_row(std::map<std::string, Tensor>& tensors, const std::string& key,
                                     const std::string& name);
 Tensor row_of(const std::vector<float>& values);

@@ -29,6 +29,8 @@ Result<std::vector<std::string>> joints_of(const Windows& windows, const std::st
 }
 
 /// The state of each joint (0, 1, 2), from the array "state" if there is one, else from "valid".
+/// A stream may have both arrays, one or none. Without both, all joints count as tracked. If
+/// "valid" is 0, the joint is missing, whatever "state" says.
 std::vector<std::uint8_t> seen_of(const StretchStream& stream, std::size_t rows,
                                   std::size_t joints) {
   std::vector<std::uint8_t> out(rows * joints, 2);
@@ -92,6 +94,8 @@ std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen
 }
 
 /// Sets non-finite numbers of missing joints to 0. Fails if a joint that is not missing has one.
+/// Other programs often write NaN where nothing was measured. A single NaN in a batch would spread
+/// to all weights.
 Result<void> check_numbers(const std::vector<std::uint8_t>& there, const std::string& stream,
                            std::vector<float>& positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -133,6 +137,7 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
     if (stretch.rows < least) continue;
     const auto* rough = positions_of(stretch, input, joints.size());
     const auto* precise = positions_of(stretch, truth, out.outputs.size());
+    // The manifest lists both streams, so a stretch without one of them means a damaged file.
     if (rough == nullptr || precise == nullptr) {
       return Failure(Error{"", 0, missing, "none"});
     }
@@ -154,6 +159,7 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
 
 Result<Pairs> pairs_for(const Windows& windows, const std::string& input, const std::string& truth,
                         const Pairs& joints, std::size_t least) {
+  // Only names, rate and parents are taken over; pairs come from this file.
   Pairs out = joints;
   out.all.clear();
   for (const Stretch& stretch : windows.stretches) {
@@ -179,6 +185,7 @@ Result<JointFrames> kinect_frames(const Windows& windows, const Stretch& stretch
   const auto seen = seen_of(stretch.streams.at(stream), stretch.rows, names.size());
   JointFrames out{wanted.size(), std::vector<float>(stretch.rows * wanted.size() * 3, 0.0F),
                   std::vector<std::uint8_t>(stretch.rows * wanted.size(), 0)};
+  // Joint by joint, because each may be at another place of the stream, or absent.
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     const auto j = index_of(names, wanted_names[k]);
     if (!j) continue;

@@ -14,6 +14,7 @@ namespace kinalign {
 
 /// The data of both devices for one motion, between two gaps of a take. The truth is in the space
 /// of the input.
+/// All arrays have the same T rows, at the rate of the file.
 struct Pair {
   JointFrames input;
   std::vector<float> truth;         // [T,Jout,3] m
@@ -22,6 +23,8 @@ struct Pair {
   std::string part;  // name of the split's part, for example "train"
 };
 
+/// All pairs of a file, and the names that their arrays refer to. Pairs of all parts of the split
+/// are in `all`; Pair::part tells them apart.
 struct Pairs {
   std::vector<std::string> inputs, outputs;  // joint names
   double rate_hz = 0.0;

@@ -21,6 +21,7 @@ struct Direction {
 };
 
 /// Directions in a T-pose that faces +z.
+/// x points to the person's left, y up. The names are the Kinect's.
 constexpr std::array<Direction, 20> rest_directions{
     {{"SpineMid", 0, 1, 0},    {"SpineShoulder", 0, 1, 0}, {"Neck", 0, 1, 0},
      {"Head", 0, 1, 0},        {"ShoulderLeft", 1, 0, 0},  {"ElbowLeft", 1, 0, 0},
@@ -38,6 +39,9 @@ std::optional<Vec3> known_direction(const std::string& joint) {
 }
 
 /// The tree from its root outward, and the clip's joint that turns each bone.
+/// A joint of a skeleton has one rotation, but each of its children needs a direction of its own. A
+/// point with several children therefore gets one extra joint for each child, which turns that
+/// child's bone.
 struct Plan {
   std::vector<std::size_t> order;                  // indices of the points, root first
   std::vector<std::vector<std::size_t>> children;  // children of each point
@@ -69,6 +73,8 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
     return static_cast<int>(skeleton.parents.size()) - 1;
   };
   plan.joint[plan.order[0]] = add(body.names[plan.order[0]], -1);
+  // `order` grows while it is read, so this walks the tree level by level. Points in a circle are
+  // never reached.
   for (std::size_t i = 0; i < plan.order.size(); ++i) {
     const std::size_t p = plan.order[i];
     for (const std::size_t j : plan.children[p]) {
@@ -89,6 +95,7 @@ std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
   std::vector<std::optional<Vec3>> ways;
   ways.reserve(names.size());
   for (const std::string& name : names) ways.push_back(known_direction(name));
+  // Children before parents: a joint without a direction gets one from the joint below it.
   for (std::size_t i = plan.order.size(); i-- > 1;) {
     const auto p = static_cast<std::size_t>(body.parents[plan.order[i]]);
     if (!ways[p]) ways[p] = ways[plan.order[i]];
@@ -107,6 +114,8 @@ std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
 
 /// The rotation that best turns the rest directions of a joint's children to their current
 /// directions. With one child it is the smallest rotation from `before`.
+/// With several children it is the least-squares rotation (Kabsch): the singular vectors of the sum
+/// of outer products, with the sign that excludes a reflection.
 Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const Quat& before) {
   if (rest.size() < 2) {
     return rest.empty() ? before : Quat::FromTwoVectors(before * rest[0], now[0]) * before;
@@ -120,6 +129,8 @@ Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const 
 }
 
 /// Appends frames to a clip. set_lengths() is called first.
+/// `global_` holds the global rotation of each joint of the clip in the current frame. `clip_` and
+/// `plan_` belong to the caller.
 class Poser {
  public:
   Poser(const PointBody& body, const Plan& plan, Clip& clip)
@@ -129,6 +140,7 @@ class Poser {
         clip_(clip),
         global_(clip.skeleton.joints()) {}
 
+  /// One frame is enough: callers pass joints whose bones have constant lengths.
   void set_lengths(const float* frame) {
     for (std::size_t j = 0; j < body_.parents.size(); ++j) {
       if (body_.parents[j] < 0) continue;
@@ -164,6 +176,7 @@ class Poser {
 
   Vec3 direction(const float* frame, std::size_t from, std::size_t to) const {
     const Vec3 way = at(frame, to) - at(frame, from);
+    // Two joints at one place have no direction; the rest direction keeps the rotation finite.
     const double length = way.norm();
     return length > 1e-9 ? Vec3(way / length) : rest_[to];
   }

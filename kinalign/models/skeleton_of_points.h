@@ -10,6 +10,7 @@
 
 namespace kinalign {
 
+/// The tree of the points. Order does not matter: a child may come before its parent.
 struct PointBody {
   std::vector<std::string> names;  // [J]
   std::vector<int> parents;        // [J] exactly one root

@@ -22,6 +22,8 @@ Eigen::VectorXd powers(double x, std::size_t order) {
 
 std::vector<double> polynomial_weights(std::size_t window, std::size_t order, double at) {
   const auto n = static_cast<Eigen::Index>(window);
+  // Times are scaled to -1 ... 1, because high powers of frame numbers would make the equations
+  // badly conditioned.
   const double middle = (static_cast<double>(window) - 1.0) / 2.0, scale = std::max(middle, 1.0);
   Eigen::MatrixXd design(n, static_cast<Eigen::Index>(order) + 1);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -42,6 +44,7 @@ void smooth(const Smoothing& how, std::size_t channels, std::span<float> values)
   std::vector<std::vector<double>> weights(window);
   const std::vector<float> before(values.begin(), values.end());
   for (std::size_t t = 0; t < frames; ++t) {
+    // Near both ends the window stays whole and the frame lies off its centre.
     const std::size_t begin = std::min(t > centre ? t - centre : std::size_t{0}, frames - window);
     std::vector<double>& w = weights[t - begin];
     if (w.empty()) w = polynomial_weights(window, order, static_cast<double>(t - begin));

@@ -14,10 +14,13 @@ namespace kinalign {
 
 namespace {
 
+// Signatures of ZIP records (PKWARE's APPNOTE.TXT): end of central directory, entry of the central
+// directory, local header, ZIP64 end of central directory.
 constexpr std::uint32_t end_mark = 0x06054b50, entry_mark = 0x02014b50, local_mark = 0x04034b50,
                         end64_mark = 0x06064b50;
 /// Bytes of the fixed part of a ZIP record.
 constexpr std::size_t end_size = 22, entry_size = 46, local_size = 30;
+// Limits that keep sums and products of untrusted lengths within 64 bits.
 constexpr std::size_t most_dimensions = 8;
 constexpr std::size_t most_length = std::size_t{1} << 40U;  // length of one dimension
 constexpr std::int64_t most_rows = std::int64_t{1} << 40U;
@@ -49,6 +52,7 @@ Failure broken(const std::string& name, std::string expected, std::string found)
   return Failure(Error{name, 0, std::move(expected), std::move(found)});
 }
 
+/// A member of the ZIP: the size of its bytes, and the offset of its local header.
 struct Entry {
   std::string name;
   std::uint64_t size = 0, at = 0;
@@ -84,6 +88,8 @@ std::optional<std::size_t> find_end(const Bytes& bytes) {
 Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& name) {
   const auto end = find_end(bytes);
   if (!end) return broken(name, "an NPZ (numpy.savez)", "no ZIP directory at the end");
+  // A file with many or large members has its count and offset in the ZIP64 end record. A locator
+  // of 20 bytes before the end record holds the offset of that record.
   std::uint64_t count = bytes.number(*end + 10, 2), at = bytes.number(*end + 16, 4);
   if ((count == 0xffff || at == 0xffffffff) && *end >= 20) {
     const std::uint64_t end64 = bytes.number(*end - 12, 8);
@@ -104,6 +110,7 @@ Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& nam
     }
     Entry entry{std::string(bytes.piece(at + entry_size, length)), bytes.number(at + 24, 4),
                 bytes.number(at + 42, 4)};
+    // Method 0 is «stored». Inflating would need a library, and arrays are read in place.
     if (bytes.number(at + 10, 2) != 0) {
       return broken(name, "arrays that are stored (numpy.savez, kinalign dataset windows)",
                     entry.name + ", which is compressed");
@@ -123,6 +130,8 @@ std::string_view after(std::string_view header, std::string_view key) {
 }
 
 /// Reads type and shape of a NumPy header; empty if it is not valid or in Fortran order.
+/// The header is the text of a Python dictionary (NumPy's format .npy). NumPy always writes it in
+/// one form, so this searches for the keys and does not parse Python.
 std::optional<StoredArray> read_header(std::string_view header) {
   StoredArray out;
   std::string_view type = after(header, "'descr': '");
@@ -160,6 +169,7 @@ Result<StoredArray> read_array(std::string_view npy, const std::string& what) {
   if (npy.size() < 12 || npy.substr(0, 6) != "\x93NUMPY") {
     return broken(what, "an array of NumPy", "none");
   }
+  // Version 1 of the format has a length of 2 bytes, later versions one of 4.
   const bool wide = npy[6] > 1;
   const std::size_t begin = wide ? 12 : 10, length = bytes.number(8, wide ? 4 : 2);
   if (!bytes.holds(begin, length)) return broken(what, "a complete header", "the end of the array");
@@ -171,6 +181,7 @@ Result<StoredArray> read_array(std::string_view npy, const std::string& what) {
     if (one != 0 && size > there / one) return broken(what, "all of its values", "fewer");
     size *= one;
   }
+  // Too many bytes are refused as well: the shape is then not that of the values.
   if (size != there)
     return broken(what, std::to_string(size) + " bytes of values", std::to_string(there));
   array->bytes = npy.substr(begin + length);
@@ -187,6 +198,7 @@ void append_as_float(std::string_view bytes, std::vector<float>& out) {
 }
 
 /// Appends `count` rows as floats; false if the type is not a number.
+/// Networks compute in float, so values of all types are converted.
 bool append_row(const StoredArray& array, std::size_t first, std::size_t count,
                 std::vector<float>& out) {
   const std::size_t rows = array.shape.empty() ? 0 : array.shape[0];
@@ -229,10 +241,12 @@ Result<std::vector<std::int64_t>> integers(const std::map<std::string, StoredArr
 }
 
 /// Converts NumPy's UTF-32 text to UTF-8.
+/// The manifest is such a text: NumPy has no other type for a single string.
 std::string utf8_of(const StoredArray& array) {
   std::string out;
   for (std::size_t at = 0; at + 4 <= array.bytes.size(); at += 4) {
     const auto code = static_cast<std::uint32_t>(Bytes(array.bytes).number(at, 4));
+    // NumPy fills texts shorter than the type's length with zeros.
     if (code == 0) continue;
     if (code < 0x80) {
       out += static_cast<char>(code);
@@ -328,6 +342,8 @@ Result<void> append_piece(const Arrays& arrays, const Piece& piece, Windows& out
 
 /// The number of rows from the start of window `w` - 1 to that of window `w`. It uses stamps,
 /// because `first` is rounded if the windows have another rate than the take.
+/// A step that is too long gives a number beyond most_rows, which join() refuses; llround() of it
+/// would overflow.
 std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
   const double step =
       static_cast<double>(places.time_ns[w]) - static_cast<double>(places.time_ns[w - 1]);
@@ -336,6 +352,9 @@ std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
 }
 
 /// Joins windows that overlap or follow each other to stretches.
+/// Windows are cut with an overlap (docs/windows.md), so most rows occur twice. `begin` is the row
+/// of the take at which window `w` begins, `reached` the row after the last one appended; only rows
+/// from there on are new.
 Result<void> join(const Arrays& arrays, const Places& places, Windows& out,
                   const std::string& name) {
   std::int64_t begin = 0, reached = 0;
@@ -350,6 +369,7 @@ Result<void> join(const Arrays& arrays, const Places& places, Windows& out,
     if (begin > most_rows || begin < -most_rows) {
       return broken(name, "stamps of a take", std::to_string(begin) + " rows in it");
     }
+    // A window that repeats only known rows, or that begins after a gap, starts a new stretch.
     const bool goes_on = same_take && begin <= reached && begin + rows > reached &&
                          places.time_ns[w] > places.time_ns[w - 1];
     if (!goes_on) {
@@ -404,6 +424,7 @@ Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
     if (!bytes.holds(entry.at, local_size) || bytes.number(entry.at, 4) != local_mark) {
       return broken(name, entry.name + " where the ZIP directory says", "another entry");
     }
+    // Name and extra field of the local header may be longer than those of the directory.
     const std::size_t begin =
         entry.at + local_size + bytes.number(entry.at + 26, 2) + bytes.number(entry.at + 28, 2);
     if (!bytes.holds(begin, entry.size)) {
@@ -427,6 +448,7 @@ Result<Windows> read_windows(std::string_view npz, const std::string& name) {
   KA_TRY(join(arrays, places, out, name));
   for (const auto& [key, array] : arrays) {
     const std::size_t at = key.rfind("_rest_offsets");
+    // Rest offsets have a row for each take, not for each window, so join() leaves them out.
     if (at == std::string::npos || array.shape.empty()) continue;
     append_row(array, 0, array.shape[0], out.rest_offsets[key.substr(0, at)]);
   }

@@ -31,6 +31,7 @@ struct StretchStream {
 };
 
 /// Rows of one take between two gaps.
+/// Networks must not learn across a gap, so each stretch is a sequence of its own.
 struct Stretch {
   std::size_t take = 0;  // index in the manifest's list of takes
   std::size_t part = 0;  // index in the manifest's list of parts
@@ -57,6 +58,7 @@ struct WindowsFacts {
   const Stream* find(const std::string& stream) const;
 };
 
+/// A whole file in memory. `take` and `part` of each stretch are indices into `facts`.
 struct Windows {
   WindowsFacts facts;
   std::vector<Stretch> stretches;

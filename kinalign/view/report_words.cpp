@@ -22,7 +22,10 @@ double take_seconds(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz) 
 }
 
 std::string duration_text(double s) {
+  // 59.995 s would be shown as "60.00 s"; from there on minutes are used. `longest` keeps the
+  // conversion to a whole number within its range.
   constexpr double shown_as_minute = 59.995, longest = 1e15;
+  // Written so that NaN comes here too.
   if (!(s >= shown_as_minute)) return fmt::format("{:.2f} s", s);
   const auto whole = static_cast<std::int64_t>(std::min(s + 0.005, longest));
   return whole < 3600
@@ -32,6 +35,7 @@ std::string duration_text(double s) {
 
 std::string share_text(std::uint64_t part, std::uint64_t whole) {
   if (part == 0 || whole == 0) return "";
+  // One digit of 0.04 % would be 0.0 %, although there is something.
   const double percent = 100.0 * static_cast<double>(part) / static_cast<double>(whole);
   return percent < 0.05 ? "< 0.1 %" : fmt::format("{:.1f} %", percent);
 }
@@ -39,12 +43,15 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
 std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool counted) {
   if (!interval_ns)
     return counted ? "counted stamps of unknown accuracy" : "stamps of unknown accuracy";
+  // An interval of 0 means that the stream and the reference have one clock.
   if (*interval_ns == 0) return counted ? "counted stamps, shared clock" : "shared clock";
   return fmt::format("{}± {:.1f} ms", counted ? "counted stamps " : "",
                      1e-6 * static_cast<double>(*interval_ns));
 }
 
+// gmtime_r, because gmtime shares one buffer among all threads.
 std::string date_text(std::int64_t ns) {
+  // Rounded to the nearest millisecond before it is split, so that no part can be 1000.
   const std::int64_t ms = (ns + 500'000) / 1'000'000;
   const std::time_t whole = ms / 1000;
   std::tm parts{};
@@ -55,6 +62,8 @@ std::string date_text(std::int64_t ns) {
 }
 
 bool is_date(std::int64_t ns) {
+  // About one year: no device with a calendar has a stamp of 1970, and counts from a start are
+  // shorter.
   constexpr std::int64_t year_ns = 32'000'000'000'000'000;
   return ns >= year_ns;
 }

@@ -18,6 +18,8 @@ namespace kinalign {
 namespace {
 
 /// A stream that is being written.
+/// All kinds of stream look alike to show_streams(): the time of the next sample, and a call that
+/// writes it.
 class Showing {
  public:
   virtual ~Showing() = default;
@@ -27,6 +29,8 @@ class Showing {
 };
 
 /// Writes the messages of a skeleton's stream.
+/// Every frame becomes a pose to plot. Transforms are drawn, so only the frames that are due are
+/// written (ShownPace).
 class ShowClip {
  public:
   static Result<ShowClip> begin(const std::string& stream, const ClipInput& input, ShownFile& out) {
@@ -53,6 +57,7 @@ class ShowClip {
   std::uint16_t transforms_ = 0, poses_ = 0;
 };
 
+/// The same for points: states and places to plot, transforms to draw.
 class ShowPoints {
  public:
   static Result<ShowPoints> begin(const std::string& stream, const PointInput& input,
@@ -80,6 +85,7 @@ class ShowPoints {
   std::uint16_t transforms_ = 0, points_ = 0;
 };
 
+/// One channel for each node. Nodes have no place, so they have no transforms.
 class ShowImu {
  public:
   static Result<ShowImu> begin(const std::string& stream, const ImuInput& input, ShownFile& out) {
@@ -106,6 +112,8 @@ class ShowImu {
   std::vector<std::uint16_t> nodes_;
 };
 
+/// Reads a stream block by block. `block_` holds the samples from `row_` on, and next_ the time of
+/// the first of them; both are brought up to date after each sample.
 template <class Frames, class Show>
 class StreamShowing final : public Showing {
  public:
@@ -115,6 +123,7 @@ class StreamShowing final : public Showing {
   Result<void> begin() { return fill(); }
   std::optional<Time> next() const override { return next_; }
   Result<void> show(ShownFile& out) override {
+    // The half-width is that of the device's clock model at this stamp.
     const ShownTime time{*next_, half_width(*clock_, block_.stamps[row_])};
     KA_TRY(show_(block_, row_, time, pace_.shows(time.at), out));
     ++row_;
@@ -123,6 +132,7 @@ class StreamShowing final : public Showing {
 
  private:
   Result<void> fill() {
+    // A block may be empty although more follow, so this repeats.
     while (!ended_ && row_ >= block_.size()) {
       ended_ = !KA_TRY(pass_(block_));
       row_ = 0;
@@ -141,6 +151,7 @@ class StreamShowing final : public Showing {
   ShownPace pace_;  // for transforms
 };
 
+/// Adds the stream's channels and reads its first block.
 template <class Frames, class Show, class Input>
 Result<std::unique_ptr<Showing>> showing_of(const RecordedStream& stream, const Input& input,
                                             ShownFile& out) {
@@ -151,6 +162,7 @@ Result<std::unique_ptr<Showing>> showing_of(const RecordedStream& stream, const 
   return std::unique_ptr<Showing>(std::move(showing));
 }
 
+/// The kind of a stream's data decides how it is shown.
 Result<std::unique_ptr<Showing>> begin_stream(const RecordedStream& stream, ShownFile& out) {
   if (const auto* clip = std::get_if<ClipInput>(&stream.data)) {
     return showing_of<ClipFrames, ShowClip>(stream, *clip, out);
@@ -162,12 +174,14 @@ Result<std::unique_ptr<Showing>> begin_stream(const RecordedStream& stream, Show
 }
 
 /// The recording's own JSON: marks, counts, the host's clocks.
+/// Its messages are copied unchanged, with the recording's log times. Chunks are read one by one.
 class ShowJson final : public Showing {
  public:
   ShowJson(MessagePass pass, std::map<std::uint16_t, std::uint16_t> channels)
       : pass_(std::move(pass)), channels_(std::move(channels)) {}
 
   static Result<std::unique_ptr<Showing>> begin(const RecordingSource& recording, ShownFile& out) {
+    // Ids of channels differ between the two files, because ours has other channels as well.
     std::map<std::uint16_t, std::uint16_t> channels;  // the recording's id -> ours
     std::vector<std::uint16_t> ids;
     for (const JsonChannel& one : recording.json_channels()) {
@@ -185,6 +199,7 @@ class ShowJson final : public Showing {
   }
   Result<void> show(ShownFile& out) override {
     const Message& message = messages_[row_];
+    // These messages have one time, the host's.
     const Time at = *next();
     KA_TRY(out.add(channels_.at(message.channel), at, at, message.json));
     ++row_;
@@ -218,12 +233,15 @@ class ShowJson final : public Showing {
 };
 
 /// Writes all streams in the order of their samples' times. `own`: the recording's own messages.
+/// A merge of sorted streams: `next` is ordered by time and has each stream at most once. Viewers
+/// need messages in this order to play a file.
 Result<void> show_streams(const std::vector<RecordedStream>& recorded, std::unique_ptr<Showing> own,
                           ShownFile& shown, const Progress& progress) {
   std::vector<std::unique_ptr<Showing>> streams;
   // Time of the next sample, and the index of its stream.
   std::set<std::pair<Time, std::size_t>> next;
   std::uint64_t rows = 0, done = 0;
+  // A stream that has ended is not put back.
   const auto wait = [&](std::size_t i) {
     if (const auto at = streams[i]->next()) next.emplace(*at, i);
   };
@@ -242,6 +260,7 @@ Result<void> show_streams(const std::vector<RecordedStream>& recorded, std::uniq
     const std::size_t first = next.extract(next.begin()).value().second;
     KA_TRY(streams[first]->show(shown));
     wait(first);
+    // A call for each sample would cost more than the sample.
     if (++done % 1024 == 0 && !go_on(progress, "converting", done, rows)) {
       return Failure(interruption());
     }
@@ -253,6 +272,7 @@ Result<void> show_streams(const std::vector<RecordedStream>& recorded, std::uniq
 
 Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
                              const Progress& progress) {
+  // The file gets its name only at commit(), so a conversion that fails leaves none.
   OutputFile file = KA_TRY(OutputFile::create(files, paths.out, paths.overwrite));
   ShownFile shown(file);
   KA_TRY(shown.begin());

@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// The output, and the file whose own messages go along.
 struct ShowFiles {
   /// The recording whose JSON channels (marks, counts, the host's clocks) are copied; nullptr:
   /// none.
@@ -23,6 +24,7 @@ struct ShowFiles {
 };
 
 /// Messages are written in the order of their times.
+/// `recording` is read once, all streams side by side.
 Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
                              const Progress& progress = {});
 

@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// One schema for all streams: a sample has only its values. Names of channels are in the stream's
+/// header, which is attached.
 McapSchema sample_schema() {
   return {0, "kinalign.XdfSample", "jsonschema",
           R"({"type": "object", "properties": {"stamp": {"type": "number", "description": )"
@@ -26,6 +28,7 @@ McapSchema sample_schema() {
 }
 
 /// The time of a log entry; absent if a recorder can't have such a time.
+/// A recorder counts seconds, often from the start of its machine; 4e9 s after 1970 is in 2096.
 std::optional<Time> time_of(double s) {
   constexpr double latest_s = 4e9;
   if (!(s >= 0.0) || s > latest_s) return std::nullopt;
@@ -43,6 +46,7 @@ Json value_json(std::int64_t value) { return value; }
 Json value_json(const std::string& value) { return value; }
 
 /// A sample with its stamp, whether the stamp was deduced, and its values.
+/// A sample has one value for each channel; all values of a stream have one type.
 std::string sample_json(const XdfSamples& samples, std::size_t t) {
   Json values = Json::array();
   std::visit(
@@ -59,6 +63,7 @@ std::string sample_json(const XdfSamples& samples, std::size_t t) {
 
 /// A channel's name: the stream's name without slashes and blanks, with its id if other streams
 /// have the same name.
+/// Viewers take a slash for a level of a tree, and blanks are awkward in their paths.
 std::string topic_of(const XdfStream& stream, bool alone) {
   std::string name = stream.name.empty() ? "stream" : stream.name;
   for (char& c : name) {
@@ -73,6 +78,8 @@ struct Channel {
 };
 
 /// The channels for samples, one for each stream.
+/// The survey must be complete before the first sample: its clock lines correct the stamps, and
+/// attachments come first in the file.
 class Channels {
  public:
   Channels(const XdfSurvey& survey, ShownFile& out) : survey_(survey), out_(out) {}
@@ -88,14 +95,17 @@ class Channels {
     return {};
   }
 
+  /// Called for each item of the file, in its order; only samples become messages.
   Result<void> take(const XdfItem& item) {
     const auto* samples = std::get_if<XdfSamples>(&item);
     if (samples == nullptr) return {};
     const auto channel = channels_.find(samples->stream);
+    // Samples of a stream without a header can't be described.
     if (channel == channels_.end()) return {};
     for (std::size_t t = 0; t < samples->size(); ++t) {
       const auto at = time_of(corrected_xdf_stamp(channel->second.lines, samples->stamps[t]));
       if (!at) {
+        // Counted and not refused: the other samples are good.
         ++timeless;
         continue;
       }
@@ -117,6 +127,7 @@ class Channels {
 
 Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
                           Overwrite overwrite, const Progress& progress) {
+  // The file is read twice: for the clocks of its streams, then for the samples.
   const XdfSurvey survey = KA_TRY(survey_xdf(files, from, progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   ShownFile shown(file);

@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// The counts of the new file, and what was wrong in the old one.
 struct ShownXdf {
   Shown shown;
   Findings findings;

@@ -24,6 +24,7 @@ Result<std::uint16_t> ShownFile::add_channel(std::string topic, McapSchema schem
     return Failure(Error{path_, 0, "at most " + std::to_string(most) + " channels", "more"});
   }
   const auto next = static_cast<std::uint16_t>(schemas_.size() + 1);
+  // Many channels share a schema; ids count from 1, because MCAP's 0 means none.
   const auto [known, is_new] = schema_ids_.try_emplace(schema.name, next);
   schema.id = known->second;
   channels_.push_back(
@@ -38,12 +39,14 @@ Result<void> ShownFile::add(std::uint16_t channel, Time at, Time device, std::st
     ++counts_.out_of_range;
     return {};
   }
+  // A chunk must be readable by itself, so the first message of a channel brings its description.
   if (!chunk_.messages().contains(channel)) {
     const McapChannel& described = channels_[channel - 1U];
     chunk_.add(schemas_[described.schema_id - 1U]);
     chunk_.add(described);
   }
   const auto log = static_cast<std::uint64_t>(to_ns(at));
+  // A device's own stamp may be negative; MCAP has no negative times.
   const auto published = static_cast<std::uint64_t>(std::max<std::int64_t>(0, to_ns(device)));
   chunk_.add(McapMessage{channel, numbers_[channel - 1U]++, log, published, json});
   ++counts_.messages;
@@ -56,6 +59,7 @@ Result<void> ShownFile::finish() {
   return writer_.finish();
 }
 
+// Compressed with zstd, which viewers read; JSON shrinks a lot.
 Result<void> ShownFile::close_chunk() {
   if (chunk_.empty()) return {};
   return writer_.write(store(std::exchange(chunk_, {}), McapCompression::zstd));

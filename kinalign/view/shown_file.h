@@ -15,11 +15,14 @@
 
 namespace kinalign {
 
+/// Printed when the file is done.
 struct Shown {
   std::uint64_t messages = 0;
   std::uint64_t out_of_range = 0;  // samples before 1970, which MCAP can't state
 };
 
+/// begin(), attachments, then channels and messages in any order, then finish(). Messages are kept
+/// in chunk_ until it has 1 MiB; each chunk has the channels and schemas that it needs.
 class ShownFile {
  public:
   /// `out` must live longer; its owner commits it.

@@ -12,12 +12,14 @@
 namespace kinalign {
 
 /// At most 30 frames a second in the long run, and 31 within any one second.
+/// `due_` moves on by whole steps and not by the frames' own distances, so jitter does not add up.
 class ShownPace {
  public:
   /// True if the frame at that time is shown. Call it for the frames in their order.
   bool shows(Time at) {
     const bool went_back = due_ && at + step + early < *due_;  // lies before the frame shown last
     if (due_ && at + early < *due_ && !went_back) return false;
+    // The first frame, and the first after a step back, start the turns anew.
     const bool follows = due_ && !went_back;
     due_ = follows ? std::max(*due_, at - early) + step : at + step;
     return true;
@@ -29,6 +31,7 @@ class ShownPace {
   // and less than half a step, so that every second frame of a 60 Hz device is shown.
   static constexpr Duration early = std::chrono::milliseconds(4);
 
+  // Absent before the first frame.
   std::optional<Time> due_;  // time of the next frame; moves on by at least a step
 };
 

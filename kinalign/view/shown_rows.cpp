@@ -28,6 +28,7 @@ McapSchema schema(std::string name, const std::string& properties) {
 Json time_json(Time at) {
   const std::int64_t ns = to_ns(at);
   constexpr std::int64_t second = 1'000'000'000;
+  // Division rounds towards zero; `nsec` must never be negative.
   const std::int64_t sec = ns / second - (ns % second < 0 ? 1 : 0);
   return {{"sec", sec}, {"nsec", ns - sec * second}};
 }
@@ -43,10 +44,12 @@ Quat quat_at(const std::vector<double>& values, std::size_t i) {
   return {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
 }
 
+/// Names come from files, so bytes that are not UTF-8 are replaced and do not stop the conversion.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// A transform in the words of viewers: the place and turn of `child` in the space of `parent`.
 struct Frame {
   std::string parent, child;
   Vec3 place = Vec3::Zero();
@@ -62,8 +65,10 @@ Json frame_json(const Frame& frame, const Json& time) {
 }
 
 /// The transforms, with the turn from the viewers' world to ours as the first.
+/// Foxglove's message holds all transforms of one instant.
 std::string frames_json(const std::vector<Frame>& frames, const ShownTime& time) {
   const Json at = time_json(time.at);
+  // A quarter turn about x: our y becomes the viewers' z.
   const double half = std::numbers::sqrt2 / 2.0;
   Json list = {
       frame_json({"world", std::string(shown_space), Vec3::Zero(), {half, half, 0, 0}}, at)};
@@ -71,12 +76,14 @@ std::string frames_json(const std::vector<Frame>& frames, const ShownTime& time)
   return text_of({{"transforms", std::move(list)}});
 }
 
+/// Each message states its time itself, for programs that don't look at log times.
 void add_time(const ShownTime& time, Json& json) {
   json["timestamp"] = time_json(time.at);
   if (time.half_width) json["interval_ns"] = time.half_width->count();
 }
 
 /// The nearest ancestor of a Kinect's joint that is not missing; absent if there is none.
+/// The root is its own parent in kinect_parents, which ends the loop.
 std::optional<std::size_t> ancestor(const PointFrames& frames, std::size_t row, std::size_t joint) {
   while (kinect_parents[joint] != joint) {
     joint = kinect_parents[joint];
@@ -122,6 +129,7 @@ std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
     const std::size_t at = t * skeleton.joints() + j;
     const int parent = skeleton.parents[j];
+    // A root's place is in the lab, where the device saw it.
     out.push_back({parent < 0
                        ? std::string(shown_space)
                        : stream + "/" + skeleton.joint_names[static_cast<std::size_t>(parent)],
@@ -134,6 +142,7 @@ std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
 std::string transforms_json(const std::string& stream, const std::vector<std::string>& joints,
                             const PointFrames& frames, std::size_t t, const ShownTime& time) {
   const std::size_t row = t * joints.size();
+  // Other points have no known bones, so each is placed in the lab.
   const bool kinect =
       std::equal(joints.begin(), joints.end(), kinect_joints.begin(), kinect_joints.end());
   std::vector<Frame> out;
@@ -141,6 +150,8 @@ std::string transforms_json(const std::string& stream, const std::vector<std::st
     if (frames.state[row + j] == Tracking::missing) continue;
     const auto parent = kinect ? ancestor(frames, row, j) : std::nullopt;
     const Vec3 place = vec_at(frames.positions, row + j);
+    // Points have places only; the difference is the place in the parent's space, since nothing
+    // turns.
     const Vec3 from = parent ? vec_at(frames.positions, row + *parent) : Vec3(Vec3::Zero());
     out.push_back({parent ? stream + "/" + joints[*parent] : std::string(shown_space),
                    stream + "/" + joints[j], place - from, Quat::Identity()});
@@ -186,6 +197,7 @@ std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::
   Json json;
   add_time(time, json);
   json["valid"] = samples.valid[cell] != 0;
+  // A sample that is not valid has no values, but its time is shown.
   if (samples.valid[cell] == 0) return text_of(json);
   if (content.orientation) json["orientation"] = rotation_json(quat_at(samples.orientation, cell));
   if (content.acceleration) json["acceleration"] = vector_json(vec_at(samples.acceleration, cell));

@@ -17,11 +17,13 @@ namespace kinalign {
 inline constexpr std::string_view shown_space = "lab";
 
 /// A sample's time on UTC, and its certainty.
+/// `half_width` is half of the interval that holds the true time; absent if it is not known.
 struct ShownTime {
   Time at{};
   std::optional<Duration> half_width;
 };
 
+/// Foxglove knows the first one by its name and draws it; the others are only plotted.
 McapSchema transforms_schema();  // foxglove.FrameTransforms
 McapSchema pose_schema();        // kinalign.Pose: each joint in its parent's space
 McapSchema points_schema();      // kinalign.Points
@@ -41,6 +43,7 @@ std::string pose_json(const Skeleton& skeleton, const ClipFrames& frames, std::s
 std::string points_json(const std::vector<std::string>& joints, const PointFrames& frames,
                         std::size_t t, const ShownTime& time);
 /// `cell`: the index of row t and node s, t * S + s.
+/// Only quantities that the stream has (`content`) are written.
 std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::size_t cell,
                      const ShownTime& time);
 

@@ -12,6 +12,7 @@ namespace kinalign {
 
 namespace {
 
+/// The words of --format.
 constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
     {{"text", TableFormat::text},
      {"markdown", TableFormat::markdown},
@@ -20,6 +21,7 @@ constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
      {"json", TableFormat::json}}};
 
 /// The digits grouped by thousands: "2,961,581".
+/// Only the digits before the point are grouped.
 std::string grouped(std::string digits) {
   const std::size_t first = digits.starts_with('-') ? 1 : 0;
   const std::size_t point = std::min(digits.find('.'), digits.size());
@@ -46,6 +48,7 @@ std::string replaced(std::string_view text,
   return out;
 }
 
+/// Characters that would end a cell, begin HTML, or be taken for emphasis.
 std::string for_markdown(std::string_view text) {
   return replaced(text, {{'|', "\\|"}, {'\n', " "}, {'<', "&lt;"}, {'*', "\\*"}, {'_', "\\_"}});
 }
@@ -72,6 +75,7 @@ std::size_t width_of(std::string_view text) {
 }
 
 /// The table as text, in columns of one width; numbers are right-aligned.
+/// Two passes: the widths of all columns, then the lines.
 std::string text_of(const Table& table) {
   const std::vector<bool> right = numeric_columns(table);
   std::vector<std::vector<std::string>> lines(1);
@@ -94,6 +98,7 @@ std::string text_of(const Table& table) {
       const std::string room(widths[c] - width_of(line[c]), ' ');
       text += (c == 0 ? "" : "  ") + (right[c] ? room + line[c] : line[c] + room);
     }
+    // No blanks at the ends of lines, so that a table can stand in a file under version control.
     out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
   }
   return out;
@@ -125,6 +130,7 @@ std::string latex_row(std::size_t columns, Text text) {
 }
 
 /// The table in LaTeX; a line separates a row of sums.
+/// A table environment of its own, to be put into a paper; it needs no package.
 std::string latex_of(const Table& table) {
   std::string places;
   for (const bool right : numeric_columns(table)) places += right ? 'r' : 'l';
@@ -141,6 +147,7 @@ std::string latex_of(const Table& table) {
   return out + "\\hline\n\\end{tabular}\n\\end{table}\n";
 }
 
+/// RFC 4180: a cell with a comma, a quote or a line end is quoted, and quotes within are doubled.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   return "\"" + replaced(text, {{'"', "\"\""}}) + "\"";
@@ -156,6 +163,7 @@ std::string csv_of(const Table& table) {
     out += "\n";
     for (std::size_t c = 0; c < row.size(); ++c) {
       if (c > 0) out += ",";
+      // An unknown value is an empty cell.
       if (const auto* text = std::get_if<std::string>(&row[c])) out += csv_cell(*text);
       if (const auto* whole = std::get_if<std::int64_t>(&row[c])) out += fmt::format("{}", *whole);
       if (const auto* number = std::get_if<double>(&row[c])) out += fmt::format("{}", *number);
@@ -183,6 +191,7 @@ std::string json_of(const Table& table) {
     for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].key] = json_cell(row[c]);
     rows.push_back(std::move(object));
   }
+  // Bytes that are not UTF-8 are replaced.
   return rows.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -212,6 +221,7 @@ std::string cell_text(const Cell& cell, const TableColumn& column) {
   return "–";
 }
 
+// Unknown values fit both kinds, so a column of them alone counts as text.
 std::vector<bool> numeric_columns(const Table& table) {
   std::vector<bool> out;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {

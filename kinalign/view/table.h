@@ -15,12 +15,15 @@ namespace kinalign {
 /// Empty (monostate) if the value is not known.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 
+/// `key` never changes, because other programs read it; `title` may.
 struct TableColumn {
   std::string key;    // in CSV and JSON: "height_cm"
   std::string title;  // for people: "height, cm"
   int decimals = 0;   // for people; CSV and JSON have all digits
 };
 
+/// Made by the verb, written here. A number stays a number until it is written, so that formats can
+/// differ in its digits.
 struct Table {
   std::string caption;
   std::vector<TableColumn> columns;
@@ -29,6 +32,7 @@ struct Table {
 };
 
 /// A cell for people: digits grouped by thousands, the column's decimals, "–" if not known.
+/// For text, Markdown, LaTeX and HTML.
 std::string cell_text(const Cell& cell, const TableColumn& column);
 /// True for columns with only numbers, which are right-aligned.
 std::vector<bool> numeric_columns(const Table& table);

@@ -7,6 +7,7 @@ namespace kinalign {
 
 namespace {
 
+// Our choice (models.md 5.2), because the paper gives none.
 constexpr std::size_t bilstm_units = 192, bilstm_width = 256;
 
 /// The layers of the network.
@@ -25,6 +26,8 @@ Architecture bilstm_architecture(const FuseLayout& layout) {
 
 }  // namespace
 
+// Three networks for the paper's comparison. Those of one device show what the device gives if no
+// weights are shared (models.md 5.2).
 FuseMethod bilstm_method(Devices devices) {
   FuseMethod out{.name = "bilstm",
                  .summary = "the paper's bidirectional LSTM on a Kinect and nodes",
@@ -32,6 +35,7 @@ FuseMethod bilstm_method(Devices devices) {
                  .architecture = bilstm_architecture,
                  .training = {},
                  .options = {.steps = 900, .rate = 2e-3, .rise = 0.1, .average = false}};
+  // The paper names no variation of its data, so crops stay as they are.
   out.training.variety = no_variety;
   out.training.draws.devices = devices;
   if (devices == Devices::kinect) {

@@ -17,6 +17,7 @@ namespace kinalign {
 namespace {
 
 constexpr double kinect_hz = 30.0;
+// Places of a Kinect before a person, in its working range.
 constexpr double nearest_m = 2.2, farthest_m = 3.2, camera_height_m = 0.9;
 constexpr double most_yaw_deg = 45.0;
 constexpr std::int64_t tick_100ns = 333'333;  // Kinect time between frames
@@ -29,6 +30,7 @@ std::array<std::size_t, kinect_joint_count> body_joints_of_kinect(const PoseBody
     const auto joint =
         std::find_if(fuse_joints.begin(), fuse_joints.end(),
                      [&](const FuseJoint& one) { return one.kinect == kinect_joints[k]; });
+    // The simulator needs all 25 joints, although fusion does not use tips and thumbs.
     std::string_view name = kinect_joints[k].ends_with("Left") ? "lfingers" : "rfingers";
     if (joint != fuse_joints.end()) name = joint->body;
     out[k] = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -48,6 +50,7 @@ std::vector<double> true_joints(const PoseBody& body, const PoseSequence& sequen
     const Eigen::Quaterniond root = roots[t].cast<double>();
     for (const std::size_t j : which) {
       const Eigen::Map<const Eigen::Vector3f> about_root(&places[3 * (t * joints + j)]);
+      // From the root's space into the world: bone_positions() knows neither place nor heading.
       const Vec3 place = sequence.places[t] + root * about_root.cast<double>();
       out.insert(out.end(), {place.x(), place.y(), place.z()});
     }
@@ -62,6 +65,7 @@ RigidTransform camera_of(const PoseSequence& sequence, const RandomStream& rando
   const auto roots = true_roots(sequence);
   for (std::size_t t = 0; t < sequence.frames(); ++t) {
     middle += sequence.places[t] / static_cast<double>(sequence.frames());
+    // +z of the root is the person's front; the sum is the mean direction over the sequence.
     front += roots[t].cast<double>() * Vec3::UnitZ();
   }
   front.y() = 0.0;
@@ -70,6 +74,7 @@ RigidTransform camera_of(const PoseSequence& sequence, const RandomStream& rando
   const double distance = nearest_m + random.uniform(0, 1) * (farthest_m - nearest_m);
   const Vec3 to_camera = Eigen::AngleAxisd(yaw, Vec3::UnitY()) * front.normalized();
   Eigen::Matrix3d axes;
+  // The space of a Kinect: z out of the camera, y up. `axes` turns it into the world.
   axes.col(2) = -to_camera;
   axes.col(1) = Vec3::UnitY();
   axes.col(0) = axes.col(1).cross(axes.col(2));
@@ -86,6 +91,7 @@ JointFrames seen_in_world(const PointFrames& measured, const RigidTransform& wor
       const auto k = static_cast<std::size_t>(
           std::find(kinect_joints.begin(), kinect_joints.end(), joint.kinect) -
           kinect_joints.begin());
+      // The simulated Kinect has 25 joints, fusion uses 21.
       const std::size_t at = t * kinect_joint_count + k;
       const bool there = measured.state[at] != Tracking::missing;
       const Vec3 place =
@@ -122,6 +128,7 @@ JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
     ticks.push_back({number, static_cast<double>(t) / kinect_hz, number * tick_100ns});
   }
   const auto joints_at = [&](double seconds, std::span<double> out) {
+    // The camera asks for times between frames, too; the nearest frame answers.
     const double at =
         std::clamp(std::round(seconds * kinect_hz), 0.0, static_cast<double>(frames - 1));
     const auto from =
@@ -137,6 +144,8 @@ namespace {
 
 /// Simulates Kinects for all parts. A person has the same number in all parts, so the noise of that
 /// person is the same.
+/// `take_` counts all draws, so each one has its own camera and random errors of its own besides
+/// the person's.
 class SimulatedKinects {
  public:
   SimulatedKinects(const PoseBody& body, std::uint64_t seed) : body_(body), seed_(seed) {}
@@ -173,6 +182,7 @@ Result<std::vector<std::vector<JointFrames>>> own_kinect(
     JointFrames& own = out.emplace_back().emplace_back();
     own.joints = names.size();
     for (std::size_t t = 0; t < one.frames(); ++t) {
+      // A sequence has fewer frames than its stretch: another rate, and both ends cut off.
       const std::size_t row = one.first_row + t * one.rows_a_frame;
       const auto at = static_cast<std::ptrdiff_t>(row * names.size());
       const auto end = at + static_cast<std::ptrdiff_t>(names.size());
@@ -186,6 +196,7 @@ Result<std::vector<std::vector<JointFrames>>> own_kinect(
 
 }  // namespace
 
+// pose_data() gives people, nodes and truth. The Kinect is added for the same frames.
 Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
                            const std::vector<std::string>& nodes, const FuseDataOptions& options) {
   FuseData out;

@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// The Kinect's draws stand beside the sequences, because simulating a Kinect takes longer than
+/// cutting a crop. So it is done once, and a crop chooses one of the draws.
 struct FuseData {
   PoseData pose;
   /// For each sequence of the part with that name: the Kinect's joints in the world of the nodes,
@@ -32,6 +34,8 @@ Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
                            const std::vector<std::string>& nodes, const FuseDataOptions& options);
 
 /// The simulated Kinect's joints [T,J] for one sequence, in the world of its nodes.
+/// `person`, `seed` and `take` choose the noise: a person keeps the same systematic errors in all
+/// takes.
 JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
                              std::uint64_t person, std::uint64_t seed, std::uint64_t take);
 

@@ -11,6 +11,7 @@ namespace kinalign {
 namespace {
 
 /// Lanes of the random stream, one for each decision.
+/// With a lane of its own, a decision does not change if another one is left out.
 enum Lane : std::uint64_t {
   lane_heading,
   lane_device,
@@ -28,6 +29,7 @@ void lose_a_part(FuseInput& input, const FuseLayout& layout, const FuseDraws& dr
   const double length =
       layout.nodes.rate_hz * (draws.least_lost_s + random.uniform(0, lane_length) *
                                                        (draws.most_lost_s - draws.least_lost_s));
+  // A loss may reach over the end of the crop; it is then shorter.
   const auto begin = static_cast<std::size_t>(random.uniform(0, lane_begin) * frames);
   const auto end = std::min(input.frames(), begin + static_cast<std::size_t>(std::lround(length)));
   const auto one_of = [&](std::size_t count) {
@@ -59,14 +61,17 @@ void lose_kinect(JointFrames& kinect) { std::fill(kinect.seen.begin(), kinect.se
 
 void lose_nodes(NodeFrames& nodes) { std::fill(nodes.valid.begin(), nodes.valid.end(), 0); }
 
+// The order matters: errors first, then losses, then the step that a model does at use.
 FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws& draws,
                       std::uint64_t seed, std::uint64_t number) {
+  // Two streams for each crop: choices, and errors of nodes.
   const RandomStream random(seed, 2 * number), of_errors(seed, 2 * number + 1);
   NodeErrors errors = draws.errors;
   if (random.uniform(0, lane_heading) < draws.unknown_heading) errors.yaw_deg = draws.unknown_deg;
   input.nodes = with_errors(std::move(input.nodes), errors, of_errors);
   if (draws.devices == Devices::kinect) lose_nodes(input.nodes);
   if (draws.devices == Devices::nodes) lose_kinect(input.kinect);
+  // One number decides on both devices, so that they are never lost together.
   if (draws.devices == Devices::both) {
     const double device = random.uniform(0, lane_device);
     if (device < draws.without_kinect) {

@@ -14,6 +14,8 @@ namespace kinalign {
 
 enum class Devices : std::uint8_t { both, kinect, nodes };
 
+/// Modality dropout (models.md 5.2): a network that has seen each device missing serves either
+/// device alone, and both. In every crop at least one device is left.
 struct FuseDraws {
   Devices devices = Devices::both;  // a device that is not listed is always missing
   NodeErrors errors{.yaw_deg = 8.0};
@@ -41,11 +43,13 @@ inline constexpr std::array<KinectLimbJoints, 4> kinect_limb_joints{{
 /// Sets the joints of limb `limb` to missing in frames begin ... end - 1. `names` [J].
 void lose_limb(JointFrames& kinect, const std::vector<std::string>& names, std::size_t limb,
                std::size_t begin, std::size_t end);
+/// Positions and orientations stay in the arrays; only states and flags say that they are lost.
 void lose_kinect(JointFrames& kinect);
 void lose_nodes(NodeFrames& nodes);
 
 /// Applies the random variations. `input`: nodes without errors. The same seed and number give the
 /// same result.
+/// Called for each crop of a batch, and for each validation sequence with all losses set to 0.
 FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws& draws,
                       std::uint64_t seed, std::uint64_t number);
 

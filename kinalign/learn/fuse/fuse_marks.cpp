@@ -16,6 +16,7 @@ namespace kinalign {
 
 namespace {
 
+// Fixed, so that all methods are judged on the same errors.
 constexpr std::uint64_t fuse_marks_seed = 7;
 constexpr std::array<double, 4> hidden_s{0.5, 1.0, 2.0, 5.0};
 constexpr double between_s = 2.0;   // pause between two hidden limbs
@@ -25,12 +26,14 @@ constexpr double heading_seconds = 60.0;
 enum class JointGroup : std::uint8_t { trunk, arms, legs };
 
 /// A joint that is scored: its index in the body, and in the Kinect's joints if the Kinect has it.
+/// Joints that a Kinect lacks are scored too, but belong to no group of seen joints.
 struct ScoredJoint {
   std::size_t body = 0;
   std::optional<std::size_t> kinect;
   JointGroup group = JointGroup::trunk;
 };
 
+// Names of limbs begin with l or r; the rest of the name is the bone's.
 JointGroup group_of(std::string_view name) {
   static constexpr std::array<std::string_view, 2> legs{"tibia", "foot"};
   static constexpr std::array<std::string_view, 3> arms{"radius", "wrist", "hand"};
@@ -55,6 +58,8 @@ void hide_limbs(const FuseLayout& layout, JointFrames& kinect) {
   const double rate_hz = layout.nodes.rate_hz;
   double at_s = 1.0;
   for (std::size_t k = 0; at_s * rate_hz < static_cast<double>(kinect.frames()); ++k) {
+    // Limbs and lengths are shifted against each other after each round, so each limb is hidden for
+    // each length in turn.
     const double length_s = hidden_s[(k / kinect_limb_joints.size() + k) % hidden_s.size()];
     lose_limb(kinect, layout.joints, k % kinect_limb_joints.size(),
               static_cast<std::size_t>(at_s * rate_hz),
@@ -78,6 +83,7 @@ struct MeanOf {
 };
 
 /// The rotation about the vertical from the answer's headings to the true ones.
+/// Mean of angles by their sines and cosines, because angles wrap.
 Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& predicted,
                                 const std::vector<Eigen::Quaternionf>& roots) {
   double sine = 0.0, cosine = 0.0;
@@ -92,6 +98,8 @@ Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& predicted
 }
 
 /// Sums the errors of a method's answers.
+/// Distances are those about the root, in directions of the world. A joint that the Kinect lacks
+/// counts in all_cm only.
 class FuseScore {
  public:
   FuseScore(Devices devices, const FuseLayout& layout, const PoseBody& body)
@@ -102,6 +110,7 @@ class FuseScore {
     const auto roots = true_roots(truth);
     const auto predicted = bone_positions(body_, truth.rest_offsets, answer.rotations);
     const auto real = bone_positions(body_, truth.rest_offsets, truth.rotations);
+    // Nodes alone can't know the heading; the Kinect shows it, so its error counts there.
     const Eigen::Quaternionf turn = devices_ == Devices::nodes ? heading_turn(answer.root, roots)
                                                                : Eigen::Quaternionf::Identity();
     const std::size_t joints = body_.skeleton.joints();
@@ -125,6 +134,7 @@ class FuseScore {
         }
       }
     }
+    // SIP comes from the metrics of poses; it is relative to the root and needs no heading.
     errors_.add(pose_errors(body_, answer.rotations, {truth.rotations, truth.rest_offsets}, 30.0));
     frames_ += truth.frames();
   }
@@ -151,6 +161,7 @@ class FuseScore {
   }
 
  private:
+  /// A tracked joint far from the truth is as useless as a missing one.
   static bool is_hidden(const JointFrames& kinect, std::size_t t, std::size_t j,
                         const Eigen::Vector3f& true_place) {
     const std::size_t at = t * kinect.joints + j;
@@ -168,6 +179,7 @@ class FuseScore {
   std::size_t frames_ = 0;
 };
 
+/// Only states and flags change, so the arrays keep their shapes.
 FuseInput without_others(FuseInput input, Devices devices) {
   if (devices == Devices::kinect) lose_nodes(input.nodes);
   if (devices == Devices::nodes) lose_kinect(input.kinect);
@@ -175,6 +187,7 @@ FuseInput without_others(FuseInput input, Devices devices) {
 }
 
 /// A person's sequences one after another. Each node's errors are constant over the session.
+/// Headings need tens of seconds to show, longer than a sequence, so sequences are joined.
 struct Session {
   FuseInput input;
   std::vector<std::size_t> sequences;
@@ -207,6 +220,7 @@ std::map<std::string, Session> sessions_of(const FuseData& data, const NodeError
   return out;
 }
 
+/// Errors of a calibration, with all nodes present: losses come from hide_limbs() alone.
 NodeErrors session_errors(double yaw_deg) {
   NodeErrors out;
   out.yaw_deg = yaw_deg;
@@ -267,6 +281,7 @@ Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout&
       all.add(score);
       mark.people.emplace(name, score.errors());
     }
+    // Over all frames of all people, so long sessions weigh more.
     mark.all = all.errors();
   }
   return out;
@@ -278,9 +293,11 @@ std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLay
   const auto after = static_cast<std::size_t>(heading_seconds * layout.nodes.rate_hz);
   std::vector<HeadingMark> out;
   for (const std::string& node : layout.nodes.nodes) out.push_back({.node = node});
+  // crop_of() needs the sides, although nothing is mirrored here.
   const Sides sides(data.pose.body, layout.nodes.nodes, layout.joints);
   const auto truths = sessions_of(data, no_node_errors());
   for (const auto& [name, session] : sessions_of(data, errors)) {
+    // A session shorter than 60 s can't show the error after 60 s.
     if (session.input.frames() <= after) continue;
     const Crop first{.begin = 0, .count = after};
     const FuseInput shown{crop_of(session.input.nodes, first, sides),

@@ -29,6 +29,7 @@ struct FuseErrors {
   std::size_t frames = 0, hidden = 0;
 };
 
+/// A mean over all frames, and one for each person: a mean alone hides that people differ.
 struct FuseMark {
   Devices devices = Devices::both;
   FuseErrors all{};
@@ -39,6 +40,8 @@ struct FuseMark {
 using Fusion = std::function<FusedPose(const FuseInput& input)>;
 
 /// One result for each entry of `devices`, over data.tested. Fails if there is no test person.
+/// The method gets whole sessions, because headings need time; scores are summed over sequences.
+/// `data` is copied, because limbs of its Kinects are hidden for all methods in the same way.
 Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout& layout,
                                          const FuseData& data, const std::vector<Devices>& devices);
 

@@ -9,6 +9,7 @@
 
 namespace kinalign {
 
+/// A method is a network, its data and its training. FuseTask and train() serve all of them.
 struct FuseMethod {
   std::string_view name, summary, source;
   /// The network from the layout's channels to its answers.

@@ -13,6 +13,7 @@
 
 namespace kinalign {
 
+/// `crop` is in frames: 64 are about two seconds at 30 Hz.
 struct FuseTraining {
   PoseLoss loss{};
   /// Weight of the root's position error, dm; only in frames in which the Kinect sees the root.
@@ -22,6 +23,8 @@ struct FuseTraining {
   std::size_t batch = 32, crop = 64;
 };
 
+/// The truth is expressed in the space of each frame, as the network's answers are. That space
+/// comes from the input with its errors, so it is found anew for each crop.
 class FuseTask : public TrainingTask {
  public:
   /// `data` must live longer.
@@ -51,6 +54,7 @@ class FuseTask : public TrainingTask {
 
  private:
   /// Arrays of a batch under construction.
+  /// [B,T,...] in order; add() appends one sequence after another.
   struct Rows {
     std::vector<float> input, offsets, way, placed;
     std::vector<Turn> rotations;
@@ -58,6 +62,7 @@ class FuseTask : public TrainingTask {
   BatchPart all() const { return BatchShare().part(static_cast<std::int64_t>(training_.batch)); }
   void add(const PoseSequence& sequence, const FuseInput& input, Rows& rows) const;
   Batch tensors_of(Rows rows, std::size_t batch, std::size_t frames) const;
+  // The constructor calls both, in this order.
   void find_scales();
   void make_judged();
 

@@ -25,6 +25,8 @@ Layer gated_block(std::size_t dilation, bool causal) {
 }
 
 /// One device's channels from `begin` on, their convolutions, and their half of the gate.
+/// The gate reads all channels, those of the other device too, and closes or opens each channel of
+/// this branch by a factor between 0 and 1.
 std::vector<Layer> gated_branch(std::size_t begin, std::size_t channels, bool causal) {
   return {
       {.kind = LayerKind::product,
@@ -36,6 +38,7 @@ std::vector<Layer> gated_branch(std::size_t begin, std::size_t channels, bool ca
                      {.kind = LayerKind::sigmoid}}}}};
 }
 
+/// The receptive field is 61 frames: blocks with dilations 1, 2, 4 and 8, five frames each.
 Architecture gated_layers(const FuseLayout& layout, bool causal) {
   const std::size_t kinect = layout.kinect_channels(), nodes = layout.node_channels();
   return {layout.channels(),
@@ -63,6 +66,7 @@ FuseMethod gated_method() {
           .options = {.steps = 2000, .rate = 2e-3, .rise = 0.1, .average = false}};
 }
 
+// Causal convolutions see no later frame, so the network needs no look-ahead live.
 FuseMethod gated_online_method() {
   FuseMethod out = gated_method();
   out.name = "gated-online";

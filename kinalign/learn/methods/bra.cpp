@@ -15,6 +15,8 @@ constexpr std::size_t bra_units = 256;
 Layer bra_recurrent() { return {.kind = LayerKind::lstm, .out = bra_units, .bidirectional = true}; }
 
 /// Uses positions only; encoder and decoder are one bidirectional LSTM each.
+/// The middle layer is narrow, as in an autoencoder (models.md 2.2). Dropout acts on the input of
+/// each LSTM, because PyTorch ignores the dropout of an LSTM of one layer.
 Architecture bra_architecture(const DenoiseLayout& layout) {
   return {layout.channels(),
           {{.kind = LayerKind::slice, .out = 3 * layout.inputs.size()},
@@ -28,6 +30,8 @@ Architecture bra_architecture(const DenoiseLayout& layout) {
            {.kind = LayerKind::linear, .out = layout.answers()}}};
 }
 
+// The terms of the paper's loss: squared distance, bone lengths, smoothness. Answers are positions
+// about the root, so their unit is larger than that of corrections.
 DenoiseTraining bra_training() {
   return {.loss = {.distance = 0.0,
                    .square = 1.0,

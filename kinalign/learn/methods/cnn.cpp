@@ -12,6 +12,9 @@ namespace {
 constexpr std::size_t cnn_hidden = 256, cnn_kernel = 25;
 
 /// Input channels `seen`, the code, and the answer.
+/// Kernels of 25 frames, 256 hidden channels, pooling by 2 and dropout of 0.25 are those of the
+/// released code (models.md 2.1). Pooling keeps the greater of two frames; in training its inverse
+/// puts the value into a random one of them.
 Architecture autoencoder(const DenoiseLayout& layout, const Layer& seen) {
   return {layout.channels(),
           {seen,
@@ -30,6 +33,7 @@ Architecture cnn_architecture(const DenoiseLayout& layout) {
 }
 
 /// Uses positions of the output joints; at use the Kinect's joints take their place.
+/// Input and answer have one scale (`one_scale`), as an autoencoder needs it.
 Architecture manifold_architecture(const DenoiseLayout& layout) {
   return autoencoder(layout, chosen_positions(layout));
 }

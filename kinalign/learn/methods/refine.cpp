@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t refine_width = 128;
 
 /// x + relu(conv(dropout(x))), where conv covers three frames, `dilation` apart.
+/// A residual block: with small weights it hands its input on, so gradients reach the first layers.
 Layer refine_block(std::size_t dilation) {
   return {.kind = LayerKind::sum,
           .branches = {
@@ -25,6 +26,7 @@ std::size_t refine_outputs(const DenoiseLayout& layout) {
   return layout.answers() + layout.outputs.size();
 }
 
+/// Five frames, then blocks that reach 1, 2, 4 and 8 frames to each side: 35 frames in all.
 std::vector<Layer> correction(const DenoiseLayout& layout) {
   return {{.kind = LayerKind::conv, .out = refine_width, .kernel = 5},
           {.kind = LayerKind::relu},

@@ -23,6 +23,8 @@ Layer smooth_block() {
                         {.kind = LayerKind::leaky_relu, .slope = 0.2}}}};
 }
 
+/// along_time runs the branch on each coordinate, in windows of 32 frames, and averages windows
+/// that overlap.
 Architecture smoothnet_architecture(const DenoiseLayout& layout) {
   const Layer along_time{.kind = LayerKind::along_time,
                          .window = smooth_window,

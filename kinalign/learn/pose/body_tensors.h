@@ -13,6 +13,8 @@ namespace kinalign {
 
 /// The rotations [B,T,bones,3,3] for a network's answers [B,T,6 bones]. Row k of a matrix is column
 /// k of the rotation.
+/// Matrices stand transposed, because Turn is column-major: its nine numbers in memory are the
+/// columns.
 torch::Tensor rotations_of(const torch::Tensor& answers);
 
 /// A copy of all rotations in one list.

@@ -9,6 +9,8 @@
 
 namespace kinalign {
 
+/// Sums in double, so that a variance of many frames keeps its digits. Frames are added in any
+/// number of pieces.
 class ChannelSums {
  public:
   explicit ChannelSums(std::size_t channels) : sum_(channels, 0.0), squares_(channels, 0.0) {}

@@ -14,6 +14,8 @@
 namespace kinalign {
 
 /// Limits of the random variation of crops.
+/// Augmentations of models.md 9.6, of input and truth alike. Speed and size are off by default
+/// (docs/training.md).
 struct Variety {
   double mirrored = 0.5;  // share of mirrored crops
   double speed = 0.0;     // a crop is at most this share faster or slower
@@ -22,6 +24,7 @@ struct Variety {
 
 inline constexpr Variety no_variety{.mirrored = 0.0, .speed = 0.0, .size = 0.0};
 
+/// One draw of a Variety: factors of speed and size, 1 for none.
 struct Variation {
   bool mirrored = false;
   double speed = 1.0, size = 1.0;
@@ -39,6 +42,7 @@ struct Crop {
 };
 
 /// For each node, bone and joint its counterpart on the other side of the body.
+/// Found once for all crops, by names.
 struct Sides {
   std::vector<std::size_t> nodes, bones, joints, kinect;
   /// True if each node on one side has a counterpart on the other; else crops are never mirrored.
@@ -53,6 +57,7 @@ struct Sides {
 NodeFrames crop_of(const NodeFrames& nodes, const Crop& crop, const Sides& sides);
 JointFrames crop_of(const JointFrames& kinect, const Crop& crop, const Sides& sides);
 /// Crops nodes, rotations, places and the person's rest offsets.
+/// Truth and input are varied together, so that they still belong together.
 PoseSequence crop_of(const PoseSequence& sequence, const Crop& crop, const Sides& sides);
 
 }  // namespace kinalign

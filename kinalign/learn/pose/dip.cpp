@@ -11,6 +11,8 @@ namespace kinalign {
 namespace {
 
 /// The method's layers with `units` in each direction.
+/// Our default width is 256: a window of 26 frames in the published width takes 55 ms on one core,
+/// more than a frame has (models.md 4.1).
 Architecture dip_layers(const PoseLayout& layout, std::size_t units) {
   const Layer recurrent{.kind = LayerKind::lstm, .out = units, .bidirectional = true};
   return {layout.channels(),
@@ -68,6 +70,8 @@ PoseMethod dip_robust_method() {
   PoseMethod out = dip_method();
   out.name = "dip-robust";
   out.summary = "DIP's network, trained as ours";
+  // The defaults are the training of our own method: errors of nodes, lost nodes, and all terms of
+  // the loss.
   out.training = {};
   return out;
 }

@@ -8,6 +8,7 @@
 
 namespace kinalign {
 
+/// The caller adds the facts about data and metrics before it writes the model.
 struct PoseFit {
   PoseModel model;  // in `facts` only task and method are set
   std::vector<TrainingPoint> points;
@@ -26,6 +27,7 @@ Result<void> go_on_from(const BodyModel& from, Task& task, TorchNetwork& network
 }
 
 /// Copies the learnt weights and scales into a model.
+/// `body` is the mean body of the training people, which the model answers with (PoseBody).
 template <class Task>
 void put_learnt(const Task& task, const TorchNetwork& network, const PoseBody& body,
                 BodyModel& out) {

@@ -24,6 +24,8 @@ Layer inertial_block(std::size_t dilation, bool causal) {
                         {.kind = LayerKind::linear, .out = inertial_width}}}};
 }
 
+/// Blocks with dilations 1, 2, 4 and 8 and five frames each: 61 frames. The causal form looks 60
+/// frames back and none ahead.
 Architecture inertial_layers(const PoseLayout& layout, bool causal) {
   return {layout.channels(),
           {{.kind = LayerKind::linear, .out = inertial_width},
@@ -53,6 +55,7 @@ PoseMethod inertial_method() {
           .options = {.steps = 4500, .rate = 2e-3, .rise = 0.1, .average = false}};
 }
 
+// The answer waits only for the frames of the smoothing (docs/pose_live.md).
 PoseMethod inertial_online_method() {
   PoseMethod out = inertial_method();
   out.name = "inertial-online";

@@ -17,6 +17,7 @@ double radians_of(double degrees) { return degrees * std::numbers::pi / 180.0; }
 class Draws {
  public:
   explicit Draws(const RandomStream& random) : random_(random) {}
+  // Normal numbers come in pairs; the second one is kept for the next call.
   float normal(double sigma) {
     if (!has_second_) {
       const auto [first, second] = random_.normals(next_++, 0);
@@ -43,6 +44,8 @@ Eigen::Quaternionf turned_by_vector(const Eigen::Vector3f& vector) {
 }
 
 /// Errors of one node that are constant over all frames.
+/// `world` turns the node's world, `mount` sits between node and bone, as Y and M do in
+/// models/pose/node_calibration.h.
 struct NodeError {
   // Multiplied to the orientation from the left and from the right.
   Eigen::Quaternionf world, mount;
@@ -57,12 +60,15 @@ NodeError draw_error(const NodeErrors& errors, Draws& draws) {
   for (float& value : mount_vector) value = draws.normal(mount);
   tilt_vector.x() = draws.normal(tilt);
   tilt_vector.z() = draws.normal(tilt);
+  // A calibration leaves any heading within its bounds; drift is a random walk, so it is normal.
   const double heading = radians_of(errors.yaw_deg) * (2.0 * draws.uniform() - 1.0) +
                          static_cast<double>(draws.normal(radians_of(errors.drift_deg)));
   const Eigen::Vector3f yaw_vector(0.0F, static_cast<float>(heading), 0.0F);
   NodeError out;
   out.mount = turned_by_vector(mount_vector);
   out.world = turned_by_vector(tilt_vector) * turned_by_vector(yaw_vector);
+  // A tilted node subtracts gravity in a wrong direction. `gravity_leak` is the share of this error
+  // that stays in the acceleration.
   const Eigen::Vector3f down(0.0F, static_cast<float>(-gravity), 0.0F);
   out.leak = static_cast<float>(errors.gravity_leak) * (out.world * down - down);
   out.lost = draws.uniform() < errors.lost_share;
@@ -110,6 +116,8 @@ NodeFrames with_errors(NodeFrames nodes, const NodeErrors& errors, const RandomS
     for (std::size_t t = 0; t < nodes.frames(); ++t) {
       put_error(errors, error, t * nodes.nodes + n, draws, nodes);
     }
+    // Samples were drawn all the same, so that the errors of the next nodes do not depend on a
+    // loss.
     if (error.lost && !is_root) nodes = without_node(std::move(nodes), n);
   }
   return nodes;

@@ -13,6 +13,9 @@ namespace kinalign {
 
 /// Each node's errors are constant over the frames; noise is drawn for each sample. The defaults
 /// are the errors that remain after a calibration.
+/// Training with them makes a network robust: without them, calibrated nodes cost it far more
+/// (learning.md 0, finding 4). A wrong mounting or heading stays the same over a crop, as it does
+/// over a recording.
 struct NodeErrors {
   double mount_deg = 5.0;     // rotation of the node on its bone, about each axis, 1 sigma
   double tilt_deg = 1.5;      // error of the vertical, about x and z, 1 sigma
@@ -35,6 +38,7 @@ double drift_after(double minutes);
 NodeFrames with_errors(NodeFrames nodes, const NodeErrors& errors, const RandomStream& random);
 
 /// `nodes` without the samples of node `lost`.
+/// Only the flags change, so a lost node's numbers stay in the arrays.
 NodeFrames without_node(NodeFrames nodes, std::size_t lost);
 
 }  // namespace kinalign

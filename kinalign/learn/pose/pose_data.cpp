@@ -18,12 +18,16 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
+// Models of poses answer at 30 Hz. A file may have a multiple of this rate; accelerations then use
+// the frames between.
 constexpr double pose_rate_hz = 30.0;
 constexpr double acceleration_reach_s = 4.0 / 60.0;  // similar to the band of a node at 15 Hz
 constexpr double least_seconds = 1.5;
 constexpr std::size_t least_upright = 60;  // frames
 
 /// A node's place: on a bone, a share of the way to another joint, plus a lever.
+/// Nodes sit where docs/pose.md says. The lever lies in the bone's space, so it turns with the
+/// bone.
 struct NodePlace {
   std::string_view name, bone, towards;
   double share;
@@ -93,6 +97,8 @@ Result<FileSkeleton> file_skeleton(const Windows& windows, const std::string& st
 
 /// A stretch of the file: global rotations and positions of the joints of pose_joints, frame by
 /// frame.
+/// The arrays belong to the stretch and are not copied; go_to() computes one frame. Files hold
+/// rotations against the parent, so all joints are multiplied from the root outward.
 class GlobalFrames {
  public:
   static Result<GlobalFrames> make(const FileSkeleton& skeleton, const Stretch& stretch,
@@ -125,6 +131,7 @@ class GlobalFrames {
       file_rotations_[j] =
           parent < 0 ? local : Mat3(file_rotations_[static_cast<std::size_t>(parent)] * local);
     }
+    // Several joints of the body may turn with one joint of the file (a suit has fewer).
     all_rotations_.clear();
     for (const JointSource& one : skeleton_->joints) {
       all_rotations_.push_back(file_rotations_[one.turner]);
@@ -168,6 +175,7 @@ struct NodeMotion {
 /// Angular velocity in the rotated space, rad/s, from two frames `step_s` apart. Exact up to the
 /// third order of the angle.
 Vec3 angular_velocity(const Mat3& from, const Mat3& to, double step_s) {
+  // The antisymmetric part of a small rotation is its angle about each axis.
   const Mat3 turn = from.transpose() * to;
   return Vec3(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) /
          (2.0 * step_s);
@@ -178,6 +186,8 @@ void append(std::vector<float>& out, const Vec3& vector) {
 }
 
 /// Makes sequences at 30 Hz from the frames of a file.
+/// All frames of the file are walked once: accelerations need positions at the file's rate. Only
+/// every `stride_`-th frame is kept.
 class SequenceMaker {
  public:
   SequenceMaker(const FileSkeleton& skeleton, double file_rate_hz)
@@ -197,6 +207,7 @@ class SequenceMaker {
     for (std::size_t t = 0; t < frames.frames(); ++t) {
       frames.go_to(t);
       rotations = frames.rotations();
+      // The person's own zero goes before nodes and truth are made, so that both have it.
       for (std::size_t j = 0; j < rotations.size(); ++j) rotations[j] = rotations[j] * turns[j];
       add_nodes(frames, rotations, motion);
       if (!is_kept(t, frames.frames())) continue;
@@ -226,6 +237,7 @@ class SequenceMaker {
 
   void add_truth(const std::vector<Mat3>& rotations, PoseSequence& out) const {
     for (const std::size_t bone : skeleton_.bones) {
+      // Against the root: the heading of a person must not be learnt.
       out.rotations.emplace_back((rotations[0].transpose() * rotations[bone]).cast<float>());
     }
   }
@@ -253,6 +265,7 @@ class SequenceMaker {
   std::size_t stride_, reach_;
 };
 
+/// Second differences over a joint that was not measured would give accelerations that nobody made.
 bool is_all_valid(const Stretch& stretch, const std::string& stream) {
   const auto& arrays = stretch.streams.at(stream).arrays;
   const auto valid = arrays.find("valid");
@@ -294,6 +307,7 @@ WindowsFacts::Take take_of(const Windows& windows, const Stretch& stretch) {
   return stretch.take < takes.size() ? takes[stretch.take] : WindowsFacts::Take{};
 }
 
+/// A file without a split has one part; all of it is then used for training.
 std::vector<PoseSequence>& part_of(const Windows& windows, const Stretch& stretch, PoseData& out) {
   const auto& parts = windows.facts.parts;
   const std::string name = stretch.part < parts.size() ? parts[stretch.part] : "";
@@ -347,8 +361,10 @@ Result<void> add_sequences(const Windows& windows, const std::string& stream,
     const std::vector<Mat3> turns = all_turns(person, skeleton.pose, own);
     PoseSequence one = maker.make(KA_TRY(GlobalFrames::make(skeleton, stretch, stream)), turns);
     one.subject = subject;
+    // fuse_data() finds the Kinect's rows of the same stretch by this index.
     one.stretch = static_cast<std::size_t>(&stretch - windows.stretches.data());
     one.action = take_of(windows, stretch).action;
+    // The zeros of the rotations have changed, so the rest offsets must turn with them.
     one.rest_offsets = turned_offsets(parents, own, turns);
     part_of(windows, stretch, out).push_back(std::move(one));
   }
@@ -358,6 +374,7 @@ Result<void> add_sequences(const Windows& windows, const std::string& stream,
 Result<void> check_nodes(const std::vector<std::string>& nodes) {
   PoseLayout layout;
   layout.nodes = nodes;
+  // validate() demands a bone, and only the nodes are checked here.
   layout.bones = {"any"};
   KA_TRY(validate(layout));
   if (nodes.back() != "waist")
@@ -386,6 +403,7 @@ Result<PoseData> pose_data(const Windows& windows, const std::string& stream,
   if (times < 0.99 || std::abs(times - std::round(times)) > 0.01 * times) {
     return Failure(Error{"", 0, "a multiple of 30 Hz", std::to_string(rate_hz) + " Hz"});
   }
+  // A first pass over all stretches: a person's zero must be known before sequences are made.
   const auto upright = KA_TRY(upright_frames(windows, skeleton, stream));
   PoseData out;
   out.nodes = nodes;

@@ -14,6 +14,8 @@ namespace kinalign {
 
 /// A stretch of T frames at 30 Hz. Rotations are relative to each person's upright stand
 /// (upright_zero.h).
+/// The nodes are free of errors here. Each training crop gets fresh ones, so that no two crops have
+/// the same (node_errors.h).
 struct PoseSequence {
   std::string subject, action;
   NodeFrames nodes;                // [T,N] without errors
@@ -26,6 +28,7 @@ struct PoseSequence {
   std::size_t frames() const { return nodes.frames(); }
 };
 
+/// All that a training on poses needs, in memory. PoseTask keeps a reference to it.
 struct PoseData {
   std::vector<std::string> nodes;  // [N] the last one is the root's
   PoseBody body;                   // mean body of the training people

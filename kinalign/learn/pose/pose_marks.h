@@ -13,6 +13,7 @@
 
 namespace kinalign {
 
+/// The errors of one model with its nodes in one state.
 struct PoseMark {
   /// State of the nodes: "clean", "calibrated", "20 minutes later", "wrist_left lost".
   std::string nodes;

@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// A method is a network, its channels, its data and its training. PoseTask and train() serve all.
 struct PoseMethod {
   std::string_view name, summary, source;
   PoseInputs inputs = PoseInputs::ours;

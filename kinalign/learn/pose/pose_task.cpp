@@ -33,11 +33,13 @@ CropDraws::CropDraws(const std::vector<PoseSequence>& sequences, const Sides& si
 /// Draws a sequence, a variation and a start such that the crop fits into the sequence if possible.
 CropDraws::Drawn CropDraws::draw(const RandomStream& random, std::size_t frames,
                                  const Variety& variety) const {
+  // The first sequence whose cumulative weight exceeds the number.
   const double weight = random.uniform(0, 0) * reached_.back();
   const auto at = static_cast<std::size_t>(
       std::upper_bound(reached_.begin(), reached_.end() - 1, weight) - reached_.begin());
   Crop crop{.begin = 0, .count = frames, .variation = draw_variation(variety, random)};
   if (!can_mirror_) crop.variation.mirrored = false;
+  // A faster crop covers more frames of the sequence.
   const std::size_t covered = crop.source_frames();
   const std::size_t places = frames_[at] > covered ? frames_[at] - covered + 1 : 1;
   const auto begin = static_cast<std::size_t>(random.uniform(0, 1) * static_cast<double>(places));
@@ -81,11 +83,13 @@ void PoseTask::make_judged() {
 
 /// Finds each input channel's mean and deviation over the training people, if the method
 /// standardises its inputs.
+/// Else mean 0 and scale 1 are kept: the features are in units near 1 already.
 void PoseTask::find_scales() {
   const std::size_t channels = layout_.channels();
   input_mean_.assign(channels, 0.0F);
   input_scale_.assign(channels, 1.0F);
   if (!training_.standardised) return;
+  // Over nodes without errors: errors are drawn only later.
   ChannelSums sums(channels);
   for (const PoseSequence& one : data_.learnt) sums.add(pose_features(layout_, one.nodes).input);
   for (std::size_t c = 0; c < channels; ++c) {
@@ -108,6 +112,7 @@ PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step,
   std::vector<Turn> rotations;
   for (std::size_t k = first; k < first + batch; ++k) {
     const std::uint64_t number = step * training_.batch + k;
+    // One stream for the crop, one for its errors.
     const RandomStream places(seed, 2 * number), errors(seed, 2 * number + 1);
     const auto drawn = crops_.draw(places, crop, training_.variety);
     const PoseSequence one = crop_of(data_.learnt[drawn.sequence], drawn.crop, sides_);
@@ -137,6 +142,7 @@ torch::Tensor PoseTask::loss(const TorchNetwork& network, std::uint64_t seed, st
   const PoseLoss& weights = training_.loss;
   auto out = weights.matrices * part.mean((rotations - batch.rotations).pow(2).sum({-1, -2}));
   if (weights.position <= 0.0 && weights.acceleration <= 0.0) return out;
+  // Positions of the true body with both rotations, about the root.
   const auto error =
       body_.places_of(rotations, batch.offsets) - body_.places_of(batch.rotations, batch.offsets);
   out = out + weights.position * part.mean(metres_of(error));

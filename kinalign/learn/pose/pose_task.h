@@ -16,6 +16,8 @@
 namespace kinalign {
 
 /// Weights of the terms of the loss.
+/// Positions and accelerations go through the body, so an error near the root counts for all joints
+/// below it.
 struct PoseLoss {
   double matrices = 1.0;       // squared distance of rotation matrices, summed over their entries
   double position = 5.0;       // distance of joints, m
@@ -43,10 +45,13 @@ class CropDraws {
 
  private:
   bool can_mirror_;
+  // Lengths of the sequences: a drawn crop must fit into its sequence.
   std::vector<std::size_t> frames_;
   std::vector<double> reached_;  // cumulative weights of the sequences
 };
 
+/// Crops are cut and get their errors when a batch is drawn, so no crop occurs twice. Judged inputs
+/// are made once.
 class PoseTask : public TrainingTask {
  public:
   /// `data` must live longer.

@@ -29,6 +29,7 @@ class UprightFrames {
 
   /// For each joint [J] the rotation X that changes its zero: its rotation G becomes G X. Needs at
   /// least one frame.
+  /// The heading of the root is kept, because a zero must not turn a person round.
   std::vector<Eigen::Matrix3d> turns() const;
 
  private:

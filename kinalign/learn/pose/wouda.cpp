@@ -9,6 +9,7 @@ namespace kinalign {
 
 namespace {
 
+// 150 batches of 32 crops of 64 frames.
 constexpr std::uint64_t ridge_batches = 150;
 constexpr double ridge_strength = 1e-3;  // the mean square of a channel is about 0.1 to 1
 
@@ -41,6 +42,7 @@ void begin_wouda(const PoseTask& task, std::uint64_t seed, TorchNetwork& network
     const auto batch = task.draw(seed, step);
     const auto rows = stacked(batch.input, conv);
     const auto identity = torch::eye(3, batch.rotations.options()).slice(0, 0, 2);
+    // The form of a network's answer: two columns of the rotation, without the identity.
     const auto six = (batch.rotations.slice(3, 0, 2) - identity).flatten(2).flatten(0, 1);
     const auto square = torch::matmul(rows.t(), rows);
     const auto product = torch::matmul(rows.t(), six.to(torch::kFloat64));

@@ -49,6 +49,7 @@ struct Part {
 
 /// The filtered bones that the body has. A bone may have a Kinect direction, a node, both or
 /// neither.
+/// Bones that the body lacks are left out here, so the loop over frames looks nothing up by name.
 std::vector<Part> parts_of(const FuseLayout& layout, const PoseBody& body) {
   std::vector<Part> out;
   const auto shown = seen_bones(body, layout.joints);
@@ -73,6 +74,8 @@ JointFrames smoothed_kinect(const FuseInput& input, const Smoothing& smoothing) 
 
 /// Filters one frame after another. A bone that no device measures keeps its last rotation against
 /// its parent.
+/// `world_` holds the rotations of the current frame; `held_` those against the parent, of the last
+/// frame. `layout` and `options` must live longer.
 class BoneFilter {
  public:
   BoneFilter(const FuseLayout& layout, const PoseBody& body, const BoneFilterOptions& options)
@@ -107,6 +110,7 @@ class BoneFilter {
     const auto across = direction_at(kinect, t, *hips_), up = direction_at(kinect, t, *spine_);
     if (!across || !up) return;
     const Eigen::Vector3f x = across->direction;
+    // The hips' line is kept as it is, and the spine's is made perpendicular to it.
     const Eigen::Vector3f y = (up->direction - x.dot(up->direction) * x).normalized();
     root.col(0) = x;
     root.col(1) = y;

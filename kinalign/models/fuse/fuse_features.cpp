@@ -20,6 +20,8 @@ Eigen::Vector3f joint_at(const JointFrames& kinect, std::size_t t, std::size_t j
   return Eigen::Map<const Eigen::Vector3f>(&kinect.positions[3 * (t * kinect.joints + j)]);
 }
 
+// A joint whose position is not finite counts as not seen: one NaN would spread through the
+// network.
 bool is_seen(const JointFrames& kinect, std::size_t t, std::size_t j) {
   return kinect.seen[t * kinect.joints + j] != 0 && joint_at(kinect, t, j).allFinite();
 }
@@ -65,6 +67,8 @@ void FuseFeatureMaker::find_space(const FuseInput& input, std::size_t t) {
     across += Eigen::Vector2f(way.x(), way.z());
   }
   if (across.norm() >= 2.0F * least_width_m) {
+    // A first-order low-pass over `smoothing_s`. It uses earlier frames only, so the channels are
+    // the same live and from a file.
     const float keep = std::exp(-1.0F / (smoothing_s * static_cast<float>(layout_->nodes.rate_hz)));
     left_ = left_ ? Eigen::Vector2f(keep * *left_ + (1.0F - keep) * across) : across;
   }
@@ -85,6 +89,7 @@ void FuseFeatureMaker::make(const FuseInput& input, std::size_t t, std::span<flo
   const bool is_there = is_seen(kinect, t, base_);
   std::size_t next = 0;
   for (std::size_t j = 0; j < kinect.joints; ++j) {
+    // Without SpineBase the joints have no origin, so all of them count as missing.
     const bool seen = is_there && is_seen(kinect, t, j);
     const Eigen::Vector3f place =
         seen ? Eigen::Vector3f(from_world * (joint_at(kinect, t, j) - space_.place))
@@ -94,6 +99,7 @@ void FuseFeatureMaker::make(const FuseInput& input, std::size_t t, std::span<flo
   }
   out[next++] = is_there ? 1.0F : 0.0F;
   nodes_.make_in(space_.turn, input.nodes, t, out.subspan(next, layout_->nodes.channels()));
+  // The last flag says whether the space is the orientation of the root's node.
   out.back() = orientation_at(input.nodes, t, layout_->nodes.leaves()) ? 1.0F : 0.0F;
 }
 

@@ -61,6 +61,8 @@ std::vector<std::string> fuse_joint_names();
 Result<void> validate(const FuseLayout& layout);
 
 /// The space of one frame, and its origin.
+/// The network's answers for a frame are in this space. So it is kept beside the channels until the
+/// answers are turned back into the world.
 struct FuseSpace {
   Eigen::Quaternionf turn = Eigen::Quaternionf::Identity();  // the space's rotation in the world
   Eigen::Vector3f place = Eigen::Vector3f::Zero();  // m, the Kinect's SpineBase in the world

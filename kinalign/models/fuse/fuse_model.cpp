@@ -23,6 +23,8 @@ bool is_placed(const FuseInput& input) {
 
 }  // namespace
 
+// The network gives the rotations of root and bones in the space of the frame. Bones are then
+// expressed against the root, as PoseBody needs them.
 FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
                        std::span<Turn> rotations) {
   const Turn root = turn_of_answer(&answers[6 * rotations.size()]);
@@ -77,6 +79,7 @@ FusedPose Fuser::answer(const FuseInput& input) {
   return pose_of({features.space, answers, 0, input.frames()});
 }
 
+// The nodes are hidden from the network here, because their headings are not known yet.
 std::vector<HeadingState> Fuser::headings(const FuseInput& given) {
   FuseInput input = given;
   unexchange(model_.layout, input);
@@ -88,6 +91,7 @@ std::vector<HeadingState> Fuser::headings(const FuseInput& given) {
                        directions_of_pose(filter, input.kinect, seen.rotations, seen.root));
 }
 
+// Steps 3 and 5 to 9 of docs/fuse.md; headings() is step 4.
 FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& headings) {
   FuseInput own = input;
   unexchange(model_.layout, own);
@@ -102,6 +106,7 @@ FusedPose Fuser::measured_pose_of(const FuseAnswers& output, const FuseInput& in
   turn_to_measured(input, output.first, out);
   place_at_seen(input, output.first, out);
   if (!model_.smoothing) return out;
+  // Rotations are smoothed over five frames, places over nine (Smoothing{}).
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
   std::vector<Turn> roots;
   for (const Eigen::Quaternionf& root : out.root) roots.emplace_back(root.toRotationMatrix());
@@ -146,6 +151,8 @@ void Fuser::place_at_seen(const FuseInput& input, std::size_t first, FusedPose& 
 
 /// Turns the pose towards the measurements. `first`: the row of `input` at which the pose begins.
 void Fuser::turn_to_measured(const FuseInput& input, std::size_t first, FusedPose& pose) const {
+  // Smoothing needs all joints, so gaps are filled first. The states of the input are then
+  // restored, so that no bone follows a filled gap.
   JointFrames smoothed = input.kinect;
   fill_missing(smoothed, false);
   smooth(Smoothing{.window = smoothed_kinect_frames}, 3 * smoothed.joints, smoothed.positions);

@@ -18,6 +18,7 @@ namespace kinalign {
 /// Metres per unit of the network's output for the root's position against the Kinect's SpineBase.
 inline constexpr float fuse_place_unit_m = 0.1F;
 
+/// BodyModel holds the network and the body; the layout adds the channels of both devices.
 struct FuseModel : BodyModel {  // task "fuse"
   FuseLayout layout;
 };

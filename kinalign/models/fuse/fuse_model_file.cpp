@@ -37,6 +37,8 @@ std::string write_fuse_model(const FuseModel& model) {
                            {"input", {{"nodes", layout.nodes.nodes}, {"joints", layout.joints}}}});
 }
 
+// The bones stand in the file's body and not in its layout, so the layout gets them after the body
+// is read.
 Result<FuseModel> read_fuse_model(std::string_view bytes, const std::string& name) {
   FuseModel out;
   const auto read_own = [&](const ModelHeader& header) {

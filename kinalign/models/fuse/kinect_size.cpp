@@ -62,6 +62,8 @@ std::optional<double> legs_by_kinect(const std::vector<std::string>& joints,
     measured += *seen;
     compared += bone.length;
   }
+  // One factor for the whole body: the sum of the measured bones divided by that of the same bones
+  // of UI-PRMD's people. Bones that were not seen count on neither side.
   if (compared < 0.5 * all) return std::nullopt;
   return legs_of_them * measured / compared;
 }

@@ -15,6 +15,7 @@ namespace kinalign {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
+// A forearm or shank turns this share of the way to its node (docs/fuse.md, step 6).
 constexpr float node_share = 0.75F;
 
 /// The bone that carries a node; "" is the root.
@@ -54,6 +55,7 @@ Eigen::Quaternionf yaw_turn(float yaw) {
   return Eigen::Quaternionf(Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitY()));
 }
 
+// The filter works in double; the states of all frames are kept in float.
 HeadingState state_of(const Eigen::Matrix<double, 4, 1>& mean,
                       const Eigen::Matrix<double, 4, 4>& spread) {
   return {.yaw = static_cast<float>(mean(0)),
@@ -110,6 +112,7 @@ void HeadingFilter::reset() {
   }
 }
 
+// Only the heading drifts. A node does not move on its bone, so the mounting has no noise.
 void HeadingFilter::predict(Filter& filter) const {
   const double walk = options_.walk_deg_per_minute * degree;
   filter.spread(0, 0) += walk * walk / (60.0 * layout_->nodes.rate_hz);
@@ -124,6 +127,8 @@ void HeadingFilter::measure(Filter& filter, const Eigen::Quaternionf& orientatio
   const Eigen::Vector3d axis = filter.bone->axis.cast<double>();
   const Eigen::Vector3d expected = (turn * filter.bone->axis).cast<double>();
   const Eigen::Vector3d miss = seen.direction.cast<double>() - expected;
+  // The Jacobian of the expected direction: a small turn about the vertical, then small turns of
+  // the node on its bone.
   Eigen::Matrix<double, 3, 4> slope;
   slope.col(0) = Eigen::Vector3d::UnitY().cross(expected);
   slope.rightCols<3>() = -turn.cast<double>().toRotationMatrix() * crossing(axis);
@@ -173,6 +178,7 @@ class HeadingSmoother {
     }
     std::vector<HeadingState> out(frames * nodes);
     for (std::size_t n = 0; n < nodes; ++n) {
+      // Backwards per node, because the filters of two nodes do not depend on each other.
       HeadingFilter::Filter later;
       for (std::size_t t = frames; t-- > 0;) {
         HeadingFilter::Filter& now = after[t * nodes + n];

@@ -99,6 +99,7 @@ void turn_to_seen(std::span<const SeenBone> bones, const JointFrames& kinect, st
                   const Eigen::Quaternionf& root, std::span<Turn> rotations) {
   for (const SeenBone& bone : bones) {
     const auto seen = direction_at(kinect, t, bone);
+    // An inferred joint is the Kinect's own guess, so it does not overrule the network.
     if (!seen || !seen->tracked) continue;
     Turn& own = rotations[bone.bone];
     const Eigen::AngleAxisf way(
@@ -121,6 +122,7 @@ void unexchange(const FuseLayout& layout, FuseInput& input) {
     const auto across = direction_at(kinect, t, hips);
     const auto root = orientation_at(input.nodes, t, layout.nodes.leaves());
     if (!across || !root) continue;
+    // The root's x axis points to the person's left.
     const Eigen::Vector3f left = *root * hips.axis;
     if (across->direction.dot(left) > against) continue;
     for (std::size_t j = 0; j < names.size(); ++j) {

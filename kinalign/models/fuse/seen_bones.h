@@ -13,6 +13,7 @@
 namespace kinalign {
 
 /// A bone that a Kinect shows, between two of its joints.
+/// If the bone's rotation in the world is R, the Kinect should see it along R `axis`.
 struct SeenBone {
   std::size_t from = 0, to = 0;            // indices into the Kinect's joints
   Eigen::Vector3f axis{0.0F, 1.0F, 0.0F};  // unit, in the bone's own space

@@ -136,6 +136,7 @@ void LiveCleaner::forget_first() {
   }
 }
 
+// Live lines use lengths of the last ten seconds; a file gets the medians of the whole run instead.
 std::vector<float> LiveCleaner::whole() const {
   std::vector<float> out = answers_;
   const std::vector<int>& parents = denoiser_->model().layout.parents;

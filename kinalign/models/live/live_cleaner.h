@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// step() takes each frame of the grid in order; finish() is called at the end, until it is empty.
+/// `window_` and the rows of both `Seen` always begin with the same frame.
 class LiveCleaner {
  public:
   /// Frames, for the bone lengths: 10 s at 30 Hz.

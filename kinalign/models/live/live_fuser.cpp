@@ -41,6 +41,7 @@ std::vector<T> row_of(const std::vector<T>& all, std::size_t row, std::size_t wi
   return {begin, begin + static_cast<std::ptrdiff_t>(width)};
 }
 
+// Copies one frame, so that the functions for whole sequences also serve single frames.
 FuseInput frame_at(const FuseInput& all, std::size_t t) {
   const std::size_t nodes = all.nodes.nodes, joints = all.kinect.joints;
   return {
@@ -92,6 +93,7 @@ LiveFuser::LiveFuser(Fuser& fuser, std::size_t look_ahead)
 }
 
 void LiveFuser::begin_headings() {
+  // A new calibration may turn the nodes' world, so the turn between both worlds is found anew.
   yaw_.reset();
   filter_.reset();
 }

@@ -22,6 +22,8 @@ struct FusedFramePose {
   Eigen::Vector3f place = Eigen::Vector3f::Zero();  // m
 };
 
+/// add() takes frames in order and answer() gives the poses; until is_turned() frames only wait.
+/// `window_`, `kinect_`, `both_` and `headings_` always begin with the same frame.
 class LiveFuser {
  public:
   /// At most this many frames are kept while the rotation between the two devices' worlds is

@@ -10,6 +10,8 @@
 
 namespace kinalign {
 
+/// Keeps the rows of the last second, sorted by stamp, and makes frames of the grid from them.
+/// Network delays change the order of rows, so add() sorts.
 class LiveJoints {
  public:
   /// The longest time that a frame waits for the Kinect's next row.

@@ -10,6 +10,7 @@ LivePose::LivePose(const PoseSolver& solver, const LiveWornOptions& options, std
       solver_(solver, look_ahead) {}
 
 void LivePose::advance(Time now, std::vector<LivePoseFrame>& out) {
+  // No other device is waited for, so the condition for one is always true.
   worn_.advance(
       now, [](Time) { return true; }, ready_);
   answer(out);

@@ -11,12 +11,15 @@
 
 namespace kinalign {
 
+/// `stamp` is the time of the grid's frame, not of a sample; `valid` says which nodes had samples.
 struct LivePoseFrame {
   Time stamp{};
   FramePose pose;
   std::vector<std::uint8_t> valid;  // [N] per node
 };
 
+/// Samples go in through worn(); advance() then gives the poses. The solver answers some frames
+/// late, so `pending_` keeps the stamp and the validity of each frame until then.
 class LivePose {
  public:
   /// `solver` must live longer and must not be moved. `look_ahead`: see WindowSolver.

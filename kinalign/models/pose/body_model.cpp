@@ -12,6 +12,7 @@ namespace kinalign {
 
 namespace {
 
+// A file may come from anywhere. These limits keep its numbers usable.
 constexpr std::size_t most_body_joints = 1000;
 constexpr double longest_bone_m = 100.0;
 
@@ -69,6 +70,7 @@ Result<void> check_scales(std::size_t channels, const std::vector<float>& mean,
 }  // namespace
 
 std::string write_body_model(const BodyModel& model, ModelHeader own) {
+  // The task's members come first, then the body: every task thus writes its header in one order.
   own["output"] = body_header(model.body, model.smoothing);
   std::map<std::string, Tensor> tensors = model.tensors;
   tensors["input.mean"] = row_of(model.input_mean);
@@ -92,6 +94,7 @@ Result<void> read_body_model(std::string_view bytes, const std::string& name, Bo
   out.input_mean = KA_TRY(take_row(file.tensors, "input.mean", name));
   out.input_scale = KA_TRY(take_row(file.tensors, "input.scale", name));
   out.tensors = std::move(file.tensors);
+  // The parts are checked only after all are read: `channels` needs the body's bones.
   const auto fits = [&]() -> Result<void> {
     const std::size_t count = KA_TRY(channels());
     KA_TRY(check_body(out.body));

@@ -25,6 +25,7 @@ void make_orientation(NodeTrack& track) {
   MahonyFilter filter;
   track.orientation.resize(4 * track.stamps.size());
   for (std::size_t i = 0; i < track.stamps.size(); ++i) {
+    // The first sample has no step before it; 1 ms stands in for it. live_nodes.cpp does the same.
     const double step = i == 0 ? 1e-3 : seconds_between(track.stamps[i - 1], track.stamps[i]);
     filter.update(step, {vec3(track.angular_velocity, i), vec3(track.acceleration, i)});
     put_quat(track.orientation, i, filter.orientation());
@@ -35,6 +36,7 @@ void make_angular_velocity(NodeTrack& track) {
   const std::size_t samples = track.stamps.size();
   track.angular_velocity.assign(3 * samples, 0.0);
   for (std::size_t i = 0; i + 1 < samples; ++i) {
+    // The turn in the node's own space; the last sample keeps 0.
     const Quat turn = quat(track.orientation, i).conjugate() * quat(track.orientation, i + 1);
     vec3(track.angular_velocity, i) =
         rotation_vector(turn.normalized()) / seconds_between(track.stamps[i], track.stamps[i + 1]);
@@ -42,6 +44,8 @@ void make_angular_velocity(NodeTrack& track) {
 }
 
 /// One node's samples, prepared for evaluation at any time.
+/// Accelerations are rotated into the world once, before averaging: in the node's space a turning
+/// node would mix its axes. `track` must live longer.
 class NodeCurve {
  public:
   explicit NodeCurve(const NodeTrack& track) : track_(track) {

@@ -39,6 +39,7 @@ void put_node(const NodeTrack& track, const EvenSpan& grid, double rate_hz, std:
 /// Frames in which every node is lost.
 WornFrames lost_nodes(std::size_t frames, std::size_t nodes);
 
+/// Nodes as they are worn, on the grid; calibrate() and on_bones() bring them onto bones.
 struct EvenNodes {
   WornFrames worn;  // frame t is at start + t / rate
   Time start{};

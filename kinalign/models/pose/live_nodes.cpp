@@ -67,6 +67,7 @@ void LiveNodes::add(std::size_t number, const NodeReadings& sample) {
     node.has_angular_velocity = sample.angular_velocity.has_value();
     track.gravity = sample.gravity;
   }
+  // The filter of orientations can't go back in time.
   const bool out_of_order =
       !node.has_orientation && node.filtered && sample.stamp <= *node.filtered;
   const bool twice = std::binary_search(track.stamps.begin(), track.stamps.end(), sample.stamp);

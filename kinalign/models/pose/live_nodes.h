@@ -22,6 +22,8 @@ struct NodeReadings {
   bool gravity = true;                   // the acceleration contains gravity
 };
 
+/// Keeps the samples of the last second of each node, sorted by stamp. add() is called for each
+/// sample, frame() for each time of the grid once is_ready().
 class LiveNodes {
  public:
   /// The longest time that a frame waits for a node that is late. One packet holds 65 ms of

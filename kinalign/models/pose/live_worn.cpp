@@ -34,6 +34,7 @@ void forget_frames(std::size_t frames, WornFrames& all) {
   erase_front_of(all.valid, samples);
 }
 
+// A copy of the later frames, because first_still() takes a whole sequence.
 WornFrames frames_from(const WornFrames& all, std::size_t first) {
   WornFrames out = all;
   forget_frames(first, out);
@@ -106,6 +107,7 @@ void LiveWorn::make_frame(std::vector<LiveWornFrame>& out) {
 std::optional<TPose> LiveWorn::wanted_t_pose() const {
   const double rate = layout_->rate_hz;
   if (marked_ || options_.t_pose) {
+    // Seconds count from the grid's first frame; `first` and `last` are indices of recent_.
     const double begin = marked_ ? seconds(*marked_ - *nodes_.begin()) : options_.t_pose->from;
     const double end = marked_ ? begin + held_s : options_.t_pose->to;
     const double first = std::max(std::ceil(begin * rate) - static_cast<double>(forgotten_), 0.0);

@@ -38,6 +38,8 @@ struct LiveWornFrame {
   NodeFrames nodes;  // one frame
 };
 
+/// Frames of the grid have a number from the root's first sample on. recent_ holds frames
+/// forgotten_ ... made_ - 1, so frame f has index f - forgotten_ in it.
 class LiveWorn {
  public:
   /// After a mark, the T-pose is expected to be held for this long.
@@ -69,6 +71,7 @@ class LiveWorn {
   std::optional<std::string> take_refusal() { return std::exchange(refusal_, std::nullopt); }
 
  private:
+  // make_frame() drives the rest: it appends a frame, looks for a T-pose and hands frames on.
   Time time_of(std::size_t frame) const;
   void make_frame(std::vector<LiveWornFrame>& out);
   void look_for_t_pose();

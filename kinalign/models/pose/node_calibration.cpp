@@ -114,6 +114,8 @@ std::optional<double> heading_by_arm(const WornFrames& worn, std::size_t node, c
     count += 1.0;
   }
   if (count == 0.0 || std::hypot(sum.x(), sum.z()) < least_swing * count) return std::nullopt;
+  // A left arm that comes down turns about -z, a right arm about +z. The measured axis lies
+  // elsewhere by the unknown heading.
   const double is = std::atan2(sum.x(), sum.z()), expected = is_left ? std::numbers::pi : 0.0;
   return expected - is;
 }
@@ -214,6 +216,8 @@ Result<NodeCalibration> calibrate(const PoseLayout& layout, const Skeleton& body
   out.worn_as_told = are_worn_as_told(layout, rest);
   const MeanAngle by_mounting = mean_angle(credible_headings(rest));
   out.spread_deg = in_degrees(by_mounting.worst);
+  // The rule of `--heading auto` in docs/pose.md. If the user chose `shared` although the headings
+  // lie far apart, the root's node alone gives the heading: their mean would be meaningless.
   const bool own = out.worn_as_told && out.spread_deg > most_shared_deg;
   out.headings = options.headings.value_or(own ? Headings::mounting : Headings::shared);
   double shared = own ? rest.heading.back() : by_mounting.angle;
@@ -233,6 +237,8 @@ Result<NodeCalibration> calibrate(const PoseLayout& layout, const Skeleton& body
   return out;
 }
 
+// Applies bone = Y q M to orientations. Accelerations are in the world, so only Y turns them;
+// angular velocities are in the node's space, so only M does.
 NodeFrames on_bones(const NodeCalibration& calibration, WornFrames worn) {
   for (std::size_t at = 0; at < worn.valid.size(); ++at) {
     const auto& node = calibration.nodes[at % worn.nodes];

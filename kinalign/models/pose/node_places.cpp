@@ -57,6 +57,7 @@ bool is_capital(char c) { return std::isupper(static_cast<unsigned char>(c)) != 
 /// left, lower, leg.
 std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> out;
+  // A new word begins after any other character, and at a capital after a small letter.
   bool goes_on = false, was_small = false;
   for (const char c : name) {
     if (std::isalpha(static_cast<unsigned char>(c)) == 0) {
@@ -125,6 +126,7 @@ Result<std::vector<Quat>> t_pose_rotations(const PoseLayout& layout, const Skele
       return Failure(Error{"", 0, "a model for nodes on known places of the body", shown(node)});
     }
     const Vec3 direction = vec3_of(place->t_pose);
+    // Waist and head: their bones have no direction that a T-pose fixes.
     if (direction.isZero()) {
       out.push_back(Quat::Identity());
       continue;

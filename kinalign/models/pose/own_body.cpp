@@ -16,6 +16,7 @@ constexpr double least_bone_m = 1e-3;
 }  // namespace
 
 double leg_length(const Skeleton& body) {
+  // A joint's rest offset is the bone that ends there: the shank ends at the foot's joint.
   double both = 0.0;
   for (const char* joint : {"ltibia", "lfoot", "rtibia", "rfoot"}) {
     if (const auto at = index_of(body.joint_names, joint)) both += body.rest_offsets[*at].norm();
@@ -36,6 +37,7 @@ Result<Skeleton> with_lengths_of(Skeleton body, const Skeleton& own) {
   for (std::size_t j = 0; j < body.joints(); ++j) {
     const std::size_t at = pose_joint_at(body.joint_names[j]);
     const double length = body.rest_offsets[j].norm();
+    // A bone without length has no direction that could be made longer.
     if (at == pose_joints.size() || length < least_bone_m) continue;
     body.rest_offsets[j] *= offsets[at].norm() / length;
   }

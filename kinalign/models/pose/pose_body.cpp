@@ -68,6 +68,7 @@ Result<void> validate(const PoseBody& body) {
 Turn turn_of_six(const float* six) {
   constexpr float least = 1e-6F;
   Eigen::Vector3f a(six[0], six[1], six[2]), b(six[3], six[4], six[5]);
+  // Gram and Schmidt. The small number keeps the answer finite if a network gives zeros.
   a /= a.norm() + least;
   b -= a.dot(b) * a;
   b /= b.norm() + least;
@@ -116,6 +117,8 @@ ClipFrames clip_frames(const PoseBody& body, std::span<const Turn> rotations,
     vec3(out.local_positions, t * joints) = Vec3(0.0, height, 0.0);
     put_quat(out.local_rotations, t * joints, root[t].cast<double>().normalized());
     for (std::size_t j = 1; j < joints; ++j) {
+      // Networks answer with rotations against the root, so that errors do not add up along a chain
+      // (models.md 1.6). A clip stores them against the parent.
       const Turn above = turn_of(body, frame, static_cast<std::size_t>(body.skeleton.parents[j]));
       const Turn local = above.transpose() * turn_of(body, frame, j);
       vec3(out.local_positions, t * joints + j) = body.skeleton.rest_offsets[j];

@@ -67,6 +67,8 @@ inline constexpr std::array<std::string_view, 15> pose_bones{
     "lfemur", "ltibia",    "rfemur",   "rtibia", "lowerback", "upperback", "thorax", "upperneck",
     "head",   "lclavicle", "lhumerus", "lwrist", "rclavicle", "rhumerus",  "rwrist"};
 
+/// Networks estimate one rotation per bone; several joints may share it. So [B] is shorter than
+/// [J].
 struct PoseBody {
   Skeleton skeleton;               // joint 0 is the only root
   std::vector<std::string> bones;  // [B] names

@@ -11,6 +11,7 @@ namespace kinalign {
 
 namespace {
 
+// Units that bring the channels near 1; docs/formats/model.md states them.
 constexpr float acceleration_unit = 10.0F, angular_velocity_unit = 3.0F;  // m/s2, rad/s
 
 /// One sample of one node.
@@ -31,6 +32,7 @@ NodeSample sample_of(const NodeFrames& nodes, std::size_t t, std::size_t n) {
       .acceleration = Eigen::Map<const Eigen::Vector3f>(&nodes.acceleration[3 * at]),
       .angular_velocity = Eigen::Map<const Eigen::Vector3f>(&nodes.angular_velocity[3 * at]),
       .valid = true};
+  // A quaternion much shorter than 1 is no orientation, for example four zeros.
   const float length = out.orientation.norm();
   if (!std::isfinite(length) || length < 0.5F || !out.acceleration.allFinite() ||
       !out.angular_velocity.allFinite()) {

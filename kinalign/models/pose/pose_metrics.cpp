@@ -55,6 +55,7 @@ double jitter_of(const std::vector<float>& positions, std::size_t joints,
                                               3.0 * static_cast<double>(positions[i - 2 * row]) -
                                               static_cast<double>(positions[i - 3 * row]);
       }
+      // The third difference times rate^3 is the jerk (models.md 8.6).
       mean.add(third.norm());
     }
   }
@@ -103,6 +104,7 @@ PoseErrors pose_errors(const PoseBody& body, std::span<const Turn> answer, const
     if (is_among(name, {"lfemur", "rfemur", "lhumerus", "rhumerus"})) sip.add(error);
     (is_among(name, {"upperneck", "head"}) ? head : angle).add(error);
   }
+  // Both poses use the true person's bones, so the position error is due to rotations alone.
   const auto ours = bone_positions(body, truth.rest_offsets, answer);
   const auto theirs = bone_positions(body, truth.rest_offsets, truth.rotations);
   const auto scored = scored_joints(body.skeleton);

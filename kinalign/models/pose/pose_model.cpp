@@ -7,6 +7,7 @@
 
 namespace kinalign {
 
+// Binomial weights. Matrices are averaged, not quaternions, because these have two signs.
 void smooth_turns(std::size_t bones, std::vector<Turn>& rotations) {
   static constexpr std::array<float, 5> weights{1.0F, 4.0F, 6.0F, 4.0F, 1.0F};
   const std::vector<Turn> before = rotations;

@@ -22,6 +22,7 @@ std::string write_pose_model(const PoseModel& model);
 /// Fails if the file is not a model of this task or its parts do not fit together.
 Result<PoseModel> read_pose_model(std::string_view bytes, const std::string& name);
 
+/// `root` is the orientation of the root's node: a network for nodes does not estimate it.
 struct SolvedPose {
   std::vector<Turn> rotations;           // [T,B] against the root
   std::vector<Eigen::Quaternionf> root;  // [T] rotation in the world

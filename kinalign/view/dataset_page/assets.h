@@ -6,6 +6,7 @@
 
 namespace kinalign {
 
+// Constant texts in the program.
 std::string_view dataset_script();    // assets/table.js
 std::string_view dataset_style();     // assets/dataset.css, after the style of a take's page
 std::string_view dataset_template();  // assets/dataset.html

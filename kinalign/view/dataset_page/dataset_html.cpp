@@ -19,15 +19,18 @@ namespace kinalign {
 
 namespace {
 
+/// A count with its noun: "1 take", "12 takes".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", grouped(count), count == 1 ? one : many);
 }
 
+/// The verdicts in the order of the page, worst first.
 std::array<std::pair<std::string_view, std::uint64_t>, 3> verdicts_of(const DatasetPage& page) {
   return {{{"bad", page.bad}, {"usable", page.usable}, {"good", page.good}}};
 }
 
 /// The line below the title: "3 bad, 12 usable, 385 good".
+/// Verdicts without a take are not named.
 std::string headline(const DatasetPage& page) {
   if (page.takes == 0) return "no takes yet";
   std::string out;
@@ -37,6 +40,7 @@ std::string headline(const DatasetPage& page) {
   return out;
 }
 
+/// One bad take makes the headline red, because somebody has to look at it.
 std::string_view quality(const DatasetPage& page) {
   if (page.takes == 0) return "";
   return page.bad > 0 ? "bad" : page.usable > 0 ? "usable" : "good";
@@ -49,6 +53,7 @@ std::string verdict_bar(const DatasetPage& page) {
       "<svg class=\"verdict-bar\" viewBox=\"0 0 100 1\" preserveAspectRatio=\"none\" role=\"img\" "
       "aria-label=\"{}\">",
       headline(page));
+  // Each part begins where the one before ends.
   double at = 0.0;
   for (const auto& [word, count] : verdicts_of(page)) {
     const double share = 100.0 * static_cast<double>(count) / static_cast<double>(page.takes);
@@ -59,6 +64,7 @@ std::string verdict_bar(const DatasetPage& page) {
   return out + "</svg>";
 }
 
+/// One line below the headline: takes, people, length, licence.
 std::string facts_of(const DatasetPage& page) {
   std::vector<std::string> facts{counted(page.takes, "take", "takes"),
                                  counted(page.people, "person", "people"),
@@ -81,10 +87,12 @@ std::string numbers_of(const DatasetPage& page) {
   return out;
 }
 
+// A dash, because an empty cell would look like a fault of the page.
 std::string number_or_none(const std::optional<double>& value, double factor) {
   return value ? fmt::format("{:.1f}", factor * *value) : "–";
 }
 
+/// The modalities that a take has, in the paper's order.
 std::string streams_of(const DatasetTake& take) {
   std::vector<std::string_view> names;
   if (take.has_mocap) names.emplace_back("mocap");
@@ -93,13 +101,16 @@ std::string streams_of(const DatasetTake& take) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// A second line within a cell; nothing if there is no text.
 std::string small(std::string_view text) {
   return text.empty() ? "" : fmt::format("<small>{}</small>", escaped(text));
 }
 
 /// A row of the table. Its cells have the order of the head in assets/dataset.html.
+/// The class is an attribute, because the filter of the page needs it and no column shows it.
 std::string row_of(const DatasetTake& take) {
   const std::string name = escaped(take.name);
+  // A take without a page of its own has a name and no link.
   const std::string link = take.page.empty()
                                ? fmt::format("<span>{}</span>", name)
                                : fmt::format("<a href=\"{}\">{}</a>", escaped(take.page), name);
@@ -119,6 +130,7 @@ std::string row_of(const DatasetTake& take) {
 }
 
 /// Licence, citation and contact of the data set.
+/// A missing licence is stated, since a data set without one can hardly be used by others.
 std::string about_list(const DatasetPage& page) {
   const std::array<std::pair<std::string_view, const std::string*>, 3> texts{
       {{"Licence", &page.licence}, {"Citation", &page.citation}, {"Contact", &page.contact}}};
@@ -131,6 +143,7 @@ std::string about_list(const DatasetPage& page) {
 }
 
 /// A sentence about takes that the table leaves out; empty if it has all.
+/// The command lists all takes, because a page of thousands of pictures would be too large.
 std::string cut_of(const DatasetPage& page) {
   if (page.worst.size() == page.takes) return "";
   return fmt::format(
@@ -138,6 +151,7 @@ std::string cut_of(const DatasetPage& page) {
       grouped(page.worst.size()), grouped(page.takes), escaped(page.folder));
 }
 
+/// The command that makes missing pages; empty if there are none.
 std::string pages_of(const DatasetPage& page) {
   if (page.takes_without_page == 0) return "";
   const std::string who =
@@ -148,6 +162,7 @@ std::string pages_of(const DatasetPage& page) {
                      escaped(page.folder));
 }
 
+/// Manifests that were added but not built have no take to show.
 std::string not_built_of(const DatasetPage& page) {
   if (page.not_built == 0) return "";
   return fmt::format("{} not built and not in the table: <code>kinalign dataset build {}</code>.",
@@ -158,6 +173,7 @@ std::string not_built_of(const DatasetPage& page) {
 
 /// Fills the page's template with its parts.
 std::string dataset_html(const DatasetPage& page) {
+  // The policy allows exactly this style, so both sheets are one text.
   const std::string style = std::string(page_style()) + std::string(dataset_style());
   PageParts parts;
   parts["policy"] = page_policy(dataset_script(), style);
@@ -173,6 +189,7 @@ std::string dataset_html(const DatasetPage& page) {
   parts["description"] = escaped(page.description);
   parts["numbers"] = numbers_of(page);
   parts["not_built"] = not_built_of(page);
+  // Worst first; the script can sort them in other ways.
   for (const DatasetTake& take : page.worst) parts["rows"] += row_of(take);
   parts["cut"] = cut_of(page);
   parts["pages"] = pages_of(page);

@@ -14,6 +14,7 @@ namespace kinalign {
 inline constexpr std::string_view dataset_page_mark =
     "<meta name=\"kinalign-page\" content=\"data set\">";
 
+/// Takes are links to their own pages, so those must lie at the paths that DatasetTake::page names.
 std::string dataset_html(const DatasetPage& page);
 
 }  // namespace kinalign

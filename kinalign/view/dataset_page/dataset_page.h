@@ -14,6 +14,7 @@
 namespace kinalign {
 
 /// A row of the page's table.
+/// The page sorts and filters rows by these values.
 struct DatasetTake {
   std::string name, subject, class_id, action, action_name;
   std::string verdict, reason;  // "usable"; the most severe finding in words
@@ -26,6 +27,7 @@ struct DatasetTake {
   std::vector<PageBody> bodies;                   // one row of each, K = 1; empty: no picture
 };
 
+/// Counts are over the whole data set, although the table may have only its worst takes.
 struct DatasetPage {
   std::string name, licence, contact, description, citation, software;
   std::uint64_t people = 0, takes = 0;

@@ -20,6 +20,7 @@ constexpr double most_units_per_m = 90.0;  // a small body, from a file in other
 constexpr double farthest_m = 1000.0;      // farther places are broken numbers and would shrink the
                                            // picture
 
+/// In metres, in the take's space, before it is drawn.
 struct Bone {
   Vec3 from, to;
   bool inferred = false;
@@ -31,6 +32,7 @@ struct Dot {
   bool inferred = false;
 };
 
+/// A body as the picture needs it: two lists with one colour.
 struct Drawn {
   std::string_view colour;
   std::vector<Bone> bones;
@@ -49,6 +51,7 @@ bool is_drawable(const Vec3& place) {
   return place.allFinite() && place.cwiseAbs().maxCoeff() < farthest_m;
 }
 
+/// A joint is on a bone if it has a parent or a child.
 std::vector<bool> joints_on_bones(const PageBody& body) {
   std::vector<bool> out(body.parents.size(), false);
   for (std::size_t j = 0; j < body.parents.size(); ++j) {
@@ -71,6 +74,7 @@ Drawn drawn(const PageBody& body) {
   };
   const std::vector<bool> on_bone = joints_on_bones(body);
   for (std::size_t j = 0; j < body.parents.size(); ++j) {
+    // A root stands for its own parent here, so that its state and place are checked alike.
     const bool has_parent = body.parents[j] >= 0;
     const std::size_t p = has_parent ? static_cast<std::size_t>(body.parents[j]) : j;
     const Tracking least = std::min(state(j), state(p));
@@ -98,12 +102,15 @@ Vec3 widest_axis(const std::vector<Drawn>& bodies) {
     for (const Bone& bone : body.bones) add(bone.to);
     for (const Dot& dot : body.dots) add(dot.at);
   }
+  // The direction of the largest variance: half the angle of the covariance (principal axis).
   const double angle =
       0.5 * std::atan2(2.0 * (xz - x * z / n), (xx - x * x / n) - (zz - z * z / n));
   return {std::cos(angle), 0.0, std::sin(angle)};  // within 90 degrees of +x
 }
 
 /// Converts metres into units of the picture.
+/// All bodies share it, so that they stand to each other as in the take. The scale is the smallest
+/// that the limits ask for.
 class Camera {
  public:
   explicit Camera(const std::vector<Drawn>& bodies) : axis_(widest_axis(bodies)) {
@@ -138,8 +145,10 @@ std::string path_of(const std::vector<Bone>& bones, bool inferred, const Camera&
   std::pair<int, int> pen{-1, -1};
   for (const Bone& bone : bones) {
     if (bone.inferred != inferred) continue;
+    // Whole units keep the text short; a fraction of half a pixel can't be seen.
     const auto from = camera.at(bone.from), to = camera.at(bone.to);
     if (std::abs(from.first - to.first) + std::abs(from.second - to.second) < 3) continue;
+    // A chain of bones needs only one move, which keeps a page of hundreds of pictures small.
     if (from != pen) out += fmt::format("M{} {}", from.first, from.second);
     out += fmt::format("L{} {}", to.first, to.second);
     pen = to;
@@ -167,6 +176,7 @@ std::string skeleton_svg(const std::vector<PageBody>& bodies) {
     if (!one.bones.empty() || !one.dots.empty()) all.push_back(std::move(one));
   }
   if (all.empty()) return "";
+  // One camera for all bodies of the take.
   const Camera camera(all);
   std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\">", width, height);
   const auto add = [&out](std::string_view colour, std::string_view kind, const std::string& path) {

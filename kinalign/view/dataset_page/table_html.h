@@ -9,6 +9,7 @@
 namespace kinalign {
 
 /// A <figure> with the table and its caption. A wide table scrolls sideways.
+/// Pages of benchmarks use it, too.
 std::string table_html(const Table& table);
 
 }  // namespace kinalign

@@ -14,6 +14,7 @@ namespace kinalign {
 inline constexpr std::string_view models_page_mark =
     "<meta name=\"kinalign-page\" content=\"benchmark\">";
 
+/// Everything but the moving bodies works without a script.
 std::string models_html(const ModelsPage& page);
 
 }  // namespace kinalign

@@ -32,6 +32,7 @@ struct PosePicture {
 };
 
 /// Pictures in rows and columns, all in one scale and from one direction.
+/// Each row has as many pictures as there are columns.
 struct PosePictures {
   std::string id, title, caption;
   std::vector<std::pair<std::string, std::string>> columns;  // title, and the take and time
@@ -47,6 +48,7 @@ struct ErrorCurve {
   std::vector<float> cm;  // [K]
 };
 
+/// All curves begin at the take's start.
 struct ErrorPlot {
   std::string caption;
   float step_s = 0.5F;  // value k is for the time from k to k + 1 steps
@@ -64,12 +66,14 @@ struct MovingBody {
 };
 
 /// A part of a take with the answers of all methods, shown moving.
+/// All bodies have the same T rows, so one clock moves them.
 struct SideBySide {
   std::string caption;
   double rate_hz = 30.0;
   std::vector<MovingBody> bodies;  // the truth first; empty: nothing is shown
 };
 
+/// Sections in the order of the page. An empty part is left out.
 struct ModelsPage {
   std::string name, software;
   std::string headline;                                      // the result in a sentence

@@ -15,6 +15,7 @@ namespace kinalign {
 
 namespace {
 
+// A unit is a centimetre of the body; whole units keep the page small.
 constexpr float units_per_m = 100.0F;
 constexpr int picture_margin = 8;  // units
 constexpr double from_left_deg = 25.0, from_above_deg = 8.0;
@@ -30,10 +31,12 @@ struct Spot {
 /// Projects a place in parallel onto the picture.
 Spot seen_from_camera(const float* place) {
   constexpr double degree = std::numbers::pi / 180.0;
+  // Computed once, at the first call.
   static const auto side = static_cast<float>(std::sin(from_left_deg * degree)),
                     front = static_cast<float>(std::cos(from_left_deg * degree)),
                     above = static_cast<float>(std::sin(from_above_deg * degree)),
                     level = static_cast<float>(std::cos(from_above_deg * degree));
+  // Turned about the vertical, then tilted; there is no perspective, so lengths can be compared.
   const float right = front * place[0] - side * place[2];
   const float near = side * place[0] + front * place[2];
   const float up = level * place[1] - above * near;
@@ -41,6 +44,7 @@ Spot seen_from_camera(const float* place) {
           static_cast<int>(std::lround(units_per_m * up))};
 }
 
+/// A joint far off would shrink all pictures of the table.
 bool is_near(const float* place) {
   return std::all_of(place, place + 3, [](float v) { return std::abs(v) < farthest_m; });
 }
@@ -52,6 +56,7 @@ struct Line {
 };
 
 /// The bones of a figure. A bone with a missing or far end is left out.
+/// It is called twice for each figure: for the common area, and to draw it.
 std::vector<Line> lines_of(const StickFigure& figure) {
   const auto state = [&](std::size_t joint) {
     return figure.states.empty() ? Tracking::tracked : static_cast<Tracking>(figure.states[joint]);
@@ -69,6 +74,7 @@ std::vector<Line> lines_of(const StickFigure& figure) {
 }
 
 /// The area that all pictures of a table must show, in units.
+/// The origin is always within it, so a picture without bones has a size, too.
 struct Bounds {
   int left = 0, right = 0, bottom = 0, top = 0;
 
@@ -96,6 +102,7 @@ Bounds bounds_of(const PosePictures& pictures) {
   return out;
 }
 
+// SVG's y grows downwards, places grow upwards.
 std::string path_of(const std::vector<Line>& lines, bool inferred, const Bounds& bounds) {
   std::string out;
   for (const Line& line : lines) {
@@ -139,6 +146,7 @@ std::string pictures_html(const PosePictures& pictures) {
     out += fmt::format("<tr><th>{}</th>", escaped(name));
     for (std::size_t c = 0; c < row.size(); ++c) {
       const PosePicture& picture = row[c];
+      // For readers of a screen: what a picture shows cannot be heard.
       const std::string label =
           fmt::format("{}, {}: {}", name, pictures.columns[c].first, picture.below);
       out += fmt::format("<td>{}<small>{}</small></td>",

@@ -6,6 +6,7 @@
 
 namespace kinalign {
 
+// All are constant texts in the program.
 std::string_view page_script();    // assets/main.js with all that it imports
 std::string_view page_style();     // assets/page.css
 std::string_view page_template();  // assets/page.html

@@ -14,6 +14,7 @@ namespace {
 constexpr double shortest_end_m = 0.04;
 
 /// The parents of a Kinect's joints; -1 for all other points.
+/// Only a Kinect's joints have known bones. A joint whose parent is not in the stream has none.
 std::vector<int> point_parents(const std::vector<std::string>& names) {
   std::vector<int> parents(names.size(), -1);
   for (std::size_t j = 0; j < names.size(); ++j) {
@@ -48,6 +49,7 @@ std::optional<JointRows> JointRows::of(const std::variant<ClipRows, PointRows, I
 
 Tracking JointRows::state(std::size_t row, std::size_t joint) const {
   const std::size_t cell = row * joints_ + joint;
+  // A skeleton has one flag for a whole row, points one for each joint.
   if (states_ == nullptr) {
     return valid_->empty() || (*valid_)[row] != 0 ? Tracking::tracked : Tracking::missing;
   }
@@ -57,6 +59,7 @@ Tracking JointRows::state(std::size_t row, std::size_t joint) const {
   return std::max((*states_)[cell], Tracking::inferred);
 }
 
+// Allocates a pose each time; it is called for kept rows and for nodes only.
 void pose_of_row(const Skeleton& skeleton, const ClipRows& rows, std::size_t row,
                  GlobalPose& pose) {
   const std::size_t joints = skeleton.joints();
@@ -91,6 +94,7 @@ BodyFigures::BodyFigures(const TakeGroup& group, std::size_t body) : number_(bod
     body_.parents = point_parents(body_.joint_names);
     const bool bones = std::any_of(body_.parents.begin(), body_.parents.end(),
                                    [](int parent) { return parent >= 0; });
+    // colour() of take_figures.cpp makes points red later if other streams were moved onto them.
     body_.colour = bones ? PageColour::kinect : PageColour::mocap;
     joints_ = body_.joint_names.size();
     bones_.resize(joints_);
@@ -132,6 +136,7 @@ void BodyFigures::add_bones(const JointRows& rows, std::size_t row) {
 
 /// Stores a row for the page. End sites are computed from the pose, and missing unless all joints
 /// are tracked.
+/// Positions of end sites are appended to each row after those of the joints.
 void BodyFigures::keep_row(const JointRows& joints,
                            const std::variant<ClipRows, PointRows, ImuRows>& rows,
                            std::size_t row) {
@@ -145,6 +150,7 @@ void BodyFigures::keep_row(const JointRows& joints,
   if (ends_.empty()) return;
   const auto& clip = std::get<ClipRows>(rows);
   pose_of_row(*skeleton_, clip, row, pose_);
+  // An end site follows from the rotations, so it is there if the whole row is.
   const auto state = all_tracked ? Tracking::tracked : Tracking::missing;
   for (const EndSite& end : ends_) {
     const auto j = static_cast<std::size_t>(end.parent);
@@ -157,6 +163,7 @@ std::vector<BoneLength> BodyFigures::bones() const {
   std::vector<BoneLength> out;
   for (std::size_t j = 0; j < bones_.size(); ++j) {
     const Sums& sums = bones_[j];
+    // A deviation needs two values.
     if (sums.rows < 2) continue;
     out.push_back({number_, j, sums.rows, sums.mean,
                    std::sqrt(sums.squares / static_cast<double>(sums.rows - 1)), sums.shortest,

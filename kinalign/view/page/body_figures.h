@@ -14,6 +14,7 @@
 namespace kinalign {
 
 /// The rows of joints in a slab, for skeletons and for points.
+/// A view: the rows must live longer. It hides how skeletons and points store validity.
 class JointRows {
  public:
   /// Absent for rows of nodes.
@@ -40,6 +41,8 @@ inline void put_vector(std::vector<float>& to, const Vec3& v) {
 /// The pose of one row of a clip, in the space of its roots.
 void pose_of_row(const Skeleton& skeleton, const ClipRows& rows, std::size_t row, GlobalPose& pose);
 
+/// add() takes each row of the take in order; the take_...() functions move the results out at the
+/// end. Counts and bones use all rows; positions only the rows with `keep`.
 class BodyFigures {
  public:
   BodyFigures(const TakeGroup& group, std::size_t body);
@@ -54,6 +57,7 @@ class BodyFigures {
   std::vector<BoneLength> bones() const;
 
  private:
+  // Only sums are kept, so memory does not grow with the take.
   struct Sums {
     std::uint64_t rows = 0;
     double mean = 0.0, squares = 0.0, shortest = 0.0, longest = 0.0;  // m; squares: Welford's sum

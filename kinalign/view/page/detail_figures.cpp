@@ -11,6 +11,7 @@ namespace {
 Vec3 onto_root_at(const RawMove& move, double at) {
   const std::vector<float>& times = *move.onto_seconds;
   const auto behind = std::lower_bound(times.begin(), times.end(), static_cast<float>(at));
+  // Beyond the stored rows the first or the last place is used.
   if (behind == times.begin()) return move.onto_root.front();
   if (behind == times.end()) return move.onto_root.back();
   const auto b = static_cast<std::size_t>(behind - times.begin());
@@ -21,6 +22,8 @@ Vec3 onto_root_at(const RawMove& move, double at) {
 
 /// The transform of one raw sample. By the paper's method each sample has its own, and none if the
 /// root was not seen.
+/// The translation is found as alignment finds it: the root of the sample is put onto the other
+/// body's root at that time.
 std::optional<RigidTransform> transform_of(const RawPoints& raw, const RawMove& move, std::size_t t,
                                            std::size_t joints, double at) {
   if (move.space == nullptr) return RigidTransform{};
@@ -42,11 +45,13 @@ DetailFigures::DetailFigures(PageDetail detail, std::vector<std::size_t> onto_jo
       half_step_s_(0.5 * row_step_s),
       all_rows_(all_rows) {}
 
+// Called for every row of the take; only those within the detail are kept.
 void DetailFigures::add(double seconds, std::int64_t nearest_raw_ns, const JointRows& points,
                         const std::optional<JointRows>& onto, std::size_t row) {
   if (seconds < detail_.begin_s || seconds > detail_.end_s) return;
   const auto at = static_cast<float>(seconds);
   const double nearest = 1e-9 * static_cast<double>(nearest_raw_ns);
+  // Within half a row of a raw sample, no row is nearer to it.
   if (nearest <= half_step_s_) {
     detail_.near_seconds.push_back(at);
     detail_.near_s = std::max(detail_.near_s, static_cast<float>(nearest));
@@ -63,6 +68,7 @@ void DetailFigures::add(double seconds, std::int64_t nearest_raw_ns, const Joint
 }
 
 void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& detail) {
+  // True even if no sample lies within the part: the inputs were read.
   detail.has_raw = true;
   const PointFrames& frames = raw.frames;
   const std::size_t joints = frames.size() == 0 ? 0 : frames.state.size() / frames.size();
@@ -74,6 +80,8 @@ void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& 
     const auto transform = transform_of(raw, move, t, joints, at);
     detail.raw_seconds.push_back(static_cast<float>(at));
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
+      // A sample without transform has no place in the take's space, so its joints count as
+      // missing.
       const bool seen = transform && frames.state[cell] != Tracking::missing;
       const Vec3 place = vec3(frames.positions, cell);
       put_vector(detail.raw_positions, seen ? Vec3(m * (*transform * place)) : Vec3::Zero());
@@ -88,6 +96,7 @@ DetailStretch raw_node_stretch(const std::vector<RawNode>& raw, const DetailStre
   std::size_t samples = 0;
   for (const RawNode& node : raw) samples += node.stamps.size();
   if (samples <= most) return stretch;
+  // The part is shortened to the share of samples that fits, around its middle.
   const double kept = static_cast<double>(most) / static_cast<double>(samples);
   const double middle = 0.5 * (stretch.begin_s + stretch.end_s);
   const double half = 0.5 * kept * (stretch.end_s - stretch.begin_s);
@@ -96,6 +105,7 @@ DetailStretch raw_node_stretch(const std::vector<RawNode>& raw, const DetailStre
 
 void add_raw(const RawNode& raw, const Quat& sensor_from_bone, Time first,
              const DetailStretch& stretch, NodeFigures& figures) {
+  // The axes are then those of the node's other signals on the page.
   const Quat back = sensor_from_bone.conjugate();
   for (std::size_t t = 0; t < raw.stamps.size(); ++t) {
     const double at = seconds(raw.stamps[t] - first);

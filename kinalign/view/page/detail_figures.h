@@ -14,6 +14,7 @@ namespace kinalign {
 
 /// Raw samples of a stream of points, with stamps on the take's axis and places in the stream's own
 /// space.
+/// The verb reads them from the take's inputs, if these are still there.
 struct RawPoints {
   std::string stream;
   PointFrames frames;
@@ -28,6 +29,8 @@ struct RawNode {
 };
 
 /// Collects one body's rows within a part of the take.
+/// A page that stores every row already needs no second copy of them; then only the rows nearest to
+/// raw samples are collected.
 class DetailFigures {
  public:
   /// `onto_joints`: the counterparts, joints of the body that this one was moved onto. `all_rows`:
@@ -48,6 +51,7 @@ class DetailFigures {
 };
 
 /// The transform that alignment applied to a stream of points.
+/// Raw samples must be moved as the resampled ones were, else both could not be compared.
 struct RawMove {
   const SpaceReport* space = nullptr;  // nullptr: not moved
   /// For the paper's transform: the stream's root joint, and the places of the other body's root.
@@ -66,6 +70,7 @@ struct DetailStretch {
 
 /// The part around the middle of `stretch` in which all nodes together have at most `most` raw
 /// samples, if they come evenly.
+/// A limit keeps the page small: nodes at 100 Hz and more have many samples.
 DetailStretch raw_node_stretch(const std::vector<RawNode>& raw, const DetailStretch& stretch,
                                std::size_t most);
 

@@ -19,6 +19,7 @@ std::optional<PageFloor> floor_of(const SpaceReport& space, std::size_t body);
 Zone zone_of(const PageFloor& floor, const Vec3& place);
 
 /// Counts the joints of a row by their zones.
+/// Joints at an unknown place are counted apart.
 void count_zones(const JointRows& joints, std::size_t row, PageFloor& floor);
 
 }  // namespace kinalign

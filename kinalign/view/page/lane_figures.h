@@ -12,6 +12,8 @@
 namespace kinalign {
 
 /// The lanes of one group: one, or one for each node.
+/// Skeletons and points have one lane, with the share of their joints; nodes have one lane each,
+/// since each may fail by itself.
 class LaneFigures {
  public:
   LaneFigures(const TakeGroup& group, std::size_t bins);

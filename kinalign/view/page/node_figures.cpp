@@ -18,6 +18,7 @@ namespace {
 constexpr double standard_gravity = 9.80665;  // m/s2
 constexpr double half_window_s = 0.05;        // passes 8 Hz and less: half of a 15 Hz node's range
 constexpr double most_lag_s = 0.25;
+// With fewer rows the fitted rotations would explain almost any difference.
 constexpr std::size_t fewest_rows = 20;  // needed for a comparison
 
 // ---- by name
@@ -54,6 +55,7 @@ const std::vector<Wear>& wears() {
 }
 
 /// The letters of a name in lower case: "Wrist_L" gives "wristl".
+/// Digits and separators do not matter for words.
 std::string plain(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -65,6 +67,7 @@ std::string plain(const std::string& name) {
 }
 
 /// The side in a name: "Left" or "Right" for "wrist_left", "L_Foot", "shank_r"; else empty.
+/// A single letter counts only beside an underscore: "arm" has an "r", and "lab" an "l".
 std::string_view side_of(const std::string& name) {
   const std::string text = plain(name);
   const auto has = [&](std::string_view word, std::string_view letters) {
@@ -110,6 +113,7 @@ Quat best_rotation(const Eigen::Matrix3d& cross) {
 using Matrix4 = Eigen::Matrix4d;
 
 /// The matrix M with p * q = M q, q as w,x,y,z.
+/// A product of quaternions is linear in each of them, so it has a matrix.
 Matrix4 left_of(const Quat& p) {
   Matrix4 m;
   m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), -p.z(), p.y(), p.y(), p.z(), p.w(), -p.x(),
@@ -127,6 +131,7 @@ Matrix4 right_of(const Quat& p) {
 
 Quat quat_of(const Eigen::Vector4d& v) { return Quat(v[0], v[1], v[2], v[3]).normalized(); }
 
+/// The two rotations of one row.
 struct OrientationPair {
   Quat node, bone;
 };
@@ -160,6 +165,7 @@ OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
 }
 
 /// The sums for Pearson's correlation.
+/// Magnitudes are compared with it, because no rotation changes them.
 struct Correlation {
   double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
   void add(double a, double b) { n += 1, x += a, y += b, xx += a * a, yy += b * b, xy += a * b; }
@@ -174,6 +180,7 @@ struct Weights {
   std::vector<double> slope, bend;
 };
 /// Least squares by the normal equations of 1, t and t^2.
+/// Times are relative to the middle row, so slope and bend at time 0 are those of that row.
 Weights parabola(std::span<const double> times) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   for (const double t : times) {
@@ -191,6 +198,7 @@ Weights parabola(std::span<const double> times) {
 }
 
 /// A signal of a node and that of its bone, over the rows in which both are known.
+/// Rows that are not known are zeros, so that all series have as many rows as the page.
 struct SignalFit {
   std::vector<float> node, bone;  // [K,3]; the bone's in the node's space
   double rms = 0.0, correlation = 0.0;
@@ -213,6 +221,7 @@ std::optional<WornOn> worn_on(const std::string& node, const std::vector<std::st
   return std::nullopt;
 }
 
+// A quantity that the group does not have stays 0 or the identity.
 std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& rows,
                                        std::size_t row) {
   const std::size_t nodes = group.node_names.size();
@@ -225,6 +234,8 @@ std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& row
     if (group.content.angular_velocity) out[s].rate = vec3(rows.angular_velocity, at);
     if (group.content.acceleration) out[s].acceleration = vec3(rows.acceleration, at);
   }
+  // Values in the root's space are brought back: the other nodes' orientation is relative to the
+  // root's, and their acceleration lacks the root's.
   if (group.root_node.empty() || !group.content.orientation) return out;
   const auto root = static_cast<std::size_t>(
       std::find(group.node_names.begin(), group.node_names.end(), group.root_node) -
@@ -248,6 +259,7 @@ BoneReading bone_reading(std::span<const TimedPose* const> poses, std::size_t mi
   const Weights weights = parabola(times);
   BoneReading out;
   out.rotation = poses[middle]->pose.rotations[bone.turns];
+  // Differences from the middle keep the numbers small, so that the bend loses no digits.
   const Vec3 here = poses[middle]->pose.positions[bone.place];
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const GlobalPose& pose = poses[i]->pose;
@@ -283,6 +295,7 @@ void NodeCompare::add(double seconds, const ClipRows& clip, const ImuRows& nodes
   now.known = clip.valid.empty() || clip.valid[row] != 0;
   now.keep = keep;
   if (keep) now.nodes = node_readings(group_, nodes, row);
+  // One row is complete as soon as half_window_ rows follow it.
   while (waiting_.size() > next_ + half_window_) settle_next();
   while (next_ > half_window_) {
     waiting_.pop_front();
@@ -297,6 +310,7 @@ void NodeCompare::settle_next() {
   Waiting& row = waiting_[middle];
   if (!row.keep) return;
   Kept& kept = kept_.emplace_back();
+  // A row whose bones stay empty is still kept, so that all series have the same rows.
   kept.nodes = std::move(row.nodes);
   const std::size_t first = middle - std::min(middle, half_window_);
   const std::size_t last = std::min(middle + half_window_, waiting_.size() - 1);
@@ -307,6 +321,7 @@ void NodeCompare::settle_next() {
     if (step > longest_step_s_) return;
     poses.push_back(&waiting_[i].pose);
   }
+  // Three points determine a parabola.
   if (poses.size() < 3) return;
   for (const WornOn& bone : candidates_) {
     kept.bones.push_back(bone_reading(poses, middle - first, bone));
@@ -328,6 +343,7 @@ std::size_t NodeCompare::candidate_of(std::size_t node) const {
 }
 
 /// The correlation of the magnitudes of both angular velocities.
+/// All kept rows count, whatever the size of the motion.
 double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
   Correlation sums;
   for (const Kept& row : kept_) {
@@ -338,7 +354,9 @@ double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
 }
 
 /// The joint of another node that turns clearly more like this node than its own bone; else empty.
+/// Bones that were chosen by their rotation can't contradict it, so only named ones are looked at.
 std::string NodeCompare::more_like(std::size_t node) const {
+  // Limits on correlations: exchanged nodes are reported, similar bones are not.
   constexpr double clearly = 0.1, sure = 0.8;
   if (!named_[node] || !group_.content.angular_velocity) return "";
   const double own = alike(node, node);
@@ -356,6 +374,8 @@ namespace {
 
 /// Fits the rotation from the bone's vectors to the node's. `of_node(row)` and `of_bone(row)` give
 /// the vectors; rows that are not `known` get zeros.
+/// The rows are walked twice: for the rotation, then for the differences that remain. The bone's
+/// vectors are stored turned, so that a page draws both curves over each other.
 template <class Rows, class Known, class OfNode, class OfBone>
 SignalFit fit_signal(const Rows& rows, Known known, OfNode of_node, OfBone of_bone) {
   SignalFit out;
@@ -380,6 +400,7 @@ SignalFit fit_signal(const Rows& rows, Known known, OfNode of_node, OfBone of_bo
   return out;
 }
 
+/// The magnitude of vector k; `vectors` [K,3].
 double length_at(const std::vector<float>& vectors, std::size_t k) {
   const std::size_t i = 3 * k;
   return std::hypot(static_cast<double>(vectors[i]), static_cast<double>(vectors[i + 1]),
@@ -390,6 +411,7 @@ double length_at(const std::vector<float>& vectors, std::size_t k) {
 /// through the best shift and its neighbours. Absent if rows are too far apart.
 std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uint8_t>& known,
                              double step_s) {
+  // With fewer than three shifts to each side, or short takes, a peak would mean nothing.
   const auto most = static_cast<std::ptrdiff_t>(std::floor(most_lag_s / step_s));
   const auto rows = static_cast<std::ptrdiff_t>(known.size());
   if (most < 3 || rows < 4 * most) return std::nullopt;
@@ -405,6 +427,7 @@ std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uin
     alike.push_back(sums.value());
   }
   const auto best = std::max_element(alike.begin(), alike.end());
+  // A peak at the edge may lie beyond it, and a weak one may be chance.
   if (best == alike.begin() || best + 1 == alike.end() || *best < 0.5) return std::nullopt;
   const double left = *(best - 1), right = *(best + 1), bend = left - 2.0 * *best + right;
   const double shift = bend < 0.0 ? 0.5 * (left - right) / bend : 0.0;
@@ -445,6 +468,7 @@ void NodeCompare::compare_acceleration(const Pair& pair, NodeFigures& out) const
 }
 
 /// Compares orientations after the best constant rotations of world and sensor.
+/// Mounting and heading are unknown, so both are fitted; drift and slip remain.
 void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const {
   std::vector<OrientationPair> pairs;
   for (const Kept& row : kept_) {
@@ -461,6 +485,7 @@ void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const 
     }
     squares += off * off;
     out.orientation_error.push_back(static_cast<float>(off));
+    // The node's axes in the take's space, for the player. Its own world has another heading.
     const Quat axes = fit.world.conjugate() * q;
     for (const double x : {axes.w(), axes.x(), axes.y(), axes.z()}) {
       out.axes.push_back(static_cast<float>(x));
@@ -471,6 +496,7 @@ void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const 
 }
 
 /// Compares a node with its bone. With too few rows there is no comparison.
+/// `valid` comes first: the lag of compare_rate() needs it.
 NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
   const Pair pair{node, candidate_of(node)};
   NodeFigures out;
@@ -483,6 +509,7 @@ NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
     out.valid.push_back(is_known(row, pair) ? 1 : 0);
     out.rows += out.valid.back();
   }
+  // Names and the count of rows are stated all the same.
   if (out.rows < fewest_rows) return out;
   if (group_.content.angular_velocity) compare_rate(pair, kept_step_s, out);
   if (group_.content.acceleration) compare_acceleration(pair, out);

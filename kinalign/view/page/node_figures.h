@@ -25,10 +25,12 @@ struct WornOn {
 
 /// The bone by the usual names of nodes and joints ("wrist_left", "LeftForeArm"); absent for other
 /// names.
+/// A node need not lie at the joint that turns its bone: a forearm's node lies near the hand.
 std::optional<WornOn> worn_on(const std::string& node, const std::vector<std::string>& joints);
 
 /// A node's values as measured, whatever the take's space: the orientation of the sensor in the
 /// node's own world, vectors in the sensor's space.
+/// Without an orientation in the stream, `orientation` is the identity.
 struct NodeReading {
   bool valid = false;
   Quat orientation = Quat::Identity();
@@ -39,6 +41,7 @@ struct NodeReading {
 std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& rows, std::size_t row);
 
 /// A bone at one time. Rate and acceleration are in its own space.
+/// A node at this bone would measure these values, but for its mounting and its errors.
 struct BoneReading {
   Quat rotation = Quat::Identity();                       // the bone's, in the take's space
   Vec3 rate = Vec3::Zero(), acceleration = Vec3::Zero();  // rad/s; m/s2, without gravity
@@ -55,6 +58,9 @@ struct TimedPose {
 BoneReading bone_reading(std::span<const TimedPose* const> poses, std::size_t middle,
                          const WornOn& bone);
 
+/// Derivatives of a row need rows on both sides, so rows wait in waiting_ until half_window_ more
+/// have come. next_ is the row to compute next; rows before it are kept only as far as its window
+/// reaches back. Memory therefore grows with the stored rows alone.
 class NodeCompare {
  public:
   NodeCompare(const ImuGroup& group, const Skeleton& skeleton, double rate_hz);

@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t block_rows = 256;
 constexpr unsigned most_zeros = 20, all_zero = 31;
 
+/// `open_` holds the `used_` bits of the byte that is not yet complete.
 class BitWriter {
  public:
   void put(std::uint64_t value, unsigned bits) {
@@ -40,11 +41,13 @@ class BitWriter {
   unsigned used_ = 0;
 };
 
+/// Zigzag: 0, -1, 1, -2, 2 become 0, 1, 2, 3, 4, so small numbers of both signs stay small.
 std::uint32_t unsigned_of(std::int64_t x) {
   return static_cast<std::uint32_t>(x < 0 ? -2 * x - 1 : 2 * x);
 }
 
 /// The bits that a number takes with that k.
+/// The same rule as in put_block().
 std::uint64_t cost(std::uint32_t u, unsigned k) {
   const std::uint32_t zeros = u >> k;
   return zeros < most_zeros ? zeros + 1 + k : most_zeros + 32;
@@ -59,12 +62,14 @@ struct Coded {
 };
 
 /// Tries the few k near the mean's logarithm and keeps the one with the fewest bits.
+/// The best k of a Rice code is near the logarithm of the mean; a few around it are tried in full.
 void choose_k(Coded& block) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < block.count; ++i) sum += block.numbers[i];
   if (sum == 0) return;
   const double mean = static_cast<double>(sum) / static_cast<double>(block.count);
   const auto near = static_cast<unsigned>(std::max(0.0, std::floor(std::log2(mean + 1.0))));
+  // A block of zeros has left already, with k = 31 and no bits.
   block.bits = UINT64_MAX;
   for (unsigned k = near > 1 ? near - 2 : 0; k <= std::min(near + 1, 30u); ++k) {
     std::uint64_t bits = 0;
@@ -92,6 +97,7 @@ Coded coded(std::span<const std::int64_t> values, unsigned order) {
 void put_block(std::span<const std::int64_t> values, BitWriter& out) {
   unsigned best = 0;
   Coded block = coded(values, 0);
+  // Values suit constant columns, differences steady motion, second differences smooth motion.
   for (unsigned order = 1; order <= 2; ++order) {
     Coded other = coded(values, order);
     if (other.bits >= block.bits) continue;
@@ -114,10 +120,13 @@ void put_block(std::span<const std::int64_t> values, BitWriter& out) {
 }
 
 /// Packs the numbers that `at(row, column)` gives.
+/// One stream of bits for all columns: only its end is padded to a byte.
 template <class At>
 std::string packed(std::size_t rows, std::size_t columns, At at) {
   BitWriter out;
+  // The zeros let the first rows be coded like all others.
   std::vector<std::int64_t> values(rows + 2);  // with two zeros in front
+  // Column by column, because neighbours in time are alike and neighbours in a row are not.
   for (std::size_t c = 0; c < columns; ++c) {
     for (std::size_t r = 0; r < rows; ++r) values[r + 2] = at(r, c);
     for (std::size_t first = 0; first < rows; first += block_rows) {
@@ -136,6 +145,7 @@ std::string base64(std::string_view bytes) {
   std::string out;
   out.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    // Three bytes become four digits of six bits.
     std::uint32_t group = 0;
     const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
     for (std::size_t k = 0; k < 3; ++k) {

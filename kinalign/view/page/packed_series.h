@@ -17,10 +17,13 @@
 namespace kinalign {
 
 /// Base64 by RFC 4648, with padding.
+/// Browsers decode it with atob().
 std::string base64(std::string_view bytes);
 
 /// `values` [K,columns], each as the nearest multiple of `step`, limited to 2^28 steps from zero. A
 /// number that is not finite is stored as 0.
+/// Motion is smooth, so second differences are small, and small numbers take few bits (Rice
+/// coding).
 std::string packed_series(std::span<const float> values, std::size_t columns, double step);
 
 /// The same for small whole numbers.

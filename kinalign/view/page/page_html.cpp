@@ -13,6 +13,7 @@ namespace kinalign {
 
 namespace {
 
+/// The template keeps a block if its part is not empty, whatever it contains.
 std::string flag(bool on) { return on ? "yes" : ""; }
 
 template <class Has>
@@ -21,8 +22,10 @@ std::string any_node(const TakePage& page, Has has) {
 }
 
 /// All texts of the page, by the names of their places in the template.
+/// Functions of page_text.h give HTML; plain texts are escaped here.
 PageParts parts_of(const TakePage& page) {
   PageParts parts;
+  // The policy has the hashes of exactly these two texts, so the page loads and runs nothing else.
   parts["policy"] = page_policy(page_script(), page_style());
   parts["software"] = escaped(page.software);
   parts["title"] = escaped(page.file) + ": " + std::string(to_string(quality_of(page)));
@@ -57,12 +60,14 @@ PageParts parts_of(const TakePage& page) {
 }
 
 /// Sets which blocks of the template the page has.
+/// A figure without data would be an empty frame, so its block is left out.
 void put_flags(const TakePage& page, PageParts& parts) {
   const auto lane = [&](auto has) {
     return flag(std::any_of(page.lanes.begin(), page.lanes.end(), has));
   };
   parts["resampled"] = lane([](const PageLane& l) { return l.resampled; });
   parts["interval"] = lane([](const PageLane& l) { return l.interval_known; });
+  // The caption of figure 3 says how many bins there are.
   parts["bins"] = page.lanes.empty() ? "0" : std::to_string(page.lanes.front().tracked.size());
   parts["points"] = flag(std::any_of(page.bodies.begin(), page.bodies.end(),
                                      [](const PageBody& b) { return b.kind == PageKind::points; }));
@@ -77,6 +82,7 @@ void put_flags(const TakePage& page, PageParts& parts) {
   parts["orientation"] = any_node(page, [](const NodeFigures& n) { return n.has_orientation; });
   parts["raw_nodes"] = raw_nodes_text(page);
   parts["axes"] = flag(has_axes(page));
+  // One caption for all nodes: they are of one stream, which has gravity or not.
   const std::string gravity = any_node(page, [](const NodeFigures& n) { return n.has_gravity; });
   parts["gravity"] = gravity.empty() ? ", gravity removed" : ", gravity included";
   parts["rest"] = gravity.empty() ? "0" : "9.8 m/s²";
@@ -84,6 +90,7 @@ void put_flags(const TakePage& page, PageParts& parts) {
 
 }  // namespace
 
+// Apostrophes too, because attributes may be quoted by them.
 std::string escaped(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -110,6 +117,7 @@ std::string escaped(std::string_view text) {
 }
 
 Result<std::string> page_html(const TakePage& page) {
+  // The libraries of the script are embedded at build time; without them the page could not draw.
   if (!page_parts_missing().empty()) {
     return Failure(Error{"", 0, "a kinalign that was built with esbuild, libjs-three and node-d3",
                          "a kinalign without " + std::string(page_parts_missing())});

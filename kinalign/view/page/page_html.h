@@ -12,6 +12,8 @@ namespace kinalign {
 
 /// The text escaped for HTML elements and quoted attributes. Bytes that are not UTF-8 become
 /// U+FFFD.
+/// Every text from a file or a user must go through it: names of takes and streams may contain
+/// markup.
 std::string escaped(std::string_view text);
 
 /// Fails if libraries of the script were missing when kinalign was built.

@@ -15,11 +15,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Rounding steps of series, below the resolution of any of the devices.
+// In s, m, rad/s and m/s2.
 constexpr double second_step = 1e-4, metre_step = 5e-4, rate_step = 0.01, acceleration_step = 0.02;
+// In rad, and parts of a quaternion.
 constexpr double angle_step = 2e-5, rotation_step = 1.0 / 2048.0;
 
+/// The words that the script compares with.
 std::string_view name_of(PageKind kind) { return kind == PageKind::clip ? "clip" : "points"; }
 
+/// Fewer digits make a smaller page. A number that is not finite becomes 0, because JSON has none.
 double rounded(double x, double step) {
   const double y = std::round(x / step);
   return std::isfinite(y) ? y / std::round(1.0 / step) : 0.0;
@@ -29,6 +33,7 @@ Json vector_json(const Vec3& v) {
   return {rounded(v.x(), 1e-6), rounded(v.y(), 1e-6), rounded(v.z(), 1e-6)};
 }
 
+/// Bins are few, so they stand as plain numbers.
 Json bins_json(const std::vector<float>& bins, double factor, double step) {
   Json out = Json::array();
   for (const float x : bins) out.push_back(rounded(factor * static_cast<double>(x), step));
@@ -36,6 +41,7 @@ Json bins_json(const std::vector<float>& bins, double factor, double step) {
 }
 
 /// A body with its packed positions and states.
+/// Positions are rounded to half a millimetre.
 Json body_json(const PageBody& body) {
   const std::size_t joints = body.joint_names.size();
   return {{"name", body.name},
@@ -51,6 +57,7 @@ Json body_json(const PageBody& body) {
 /// A space with its transform and residuals.
 Json space_json(const PageSpace& space) {
   const Quat& q = space.report.transform.rotation;
+  // The residuals of the report, which figure 6 shows.
   Json joints = Json::array();
   for (const JointResidual& joint : space.report.joints) {
     joints.push_back({{"joint", joint.joint},
@@ -73,6 +80,7 @@ Json space_json(const PageSpace& space) {
           {"joints", std::move(joints)}};
 }
 
+/// The bounds of the zones go along, so that the script has no numbers of its own.
 Json floor_json(const PageFloor& floor) {
   return {{"body", floor.body},
           {"camera", vector_json(floor.camera)},
@@ -93,6 +101,7 @@ Json bone_json(const BoneLength& bone) {
 }
 
 /// A lane; distances and intervals only if the stream has them.
+/// In ms, the unit of figure 3.
 Json lane_json(const PageLane& lane) {
   Json out{{"stream", lane.stream},
            {"part", lane.part},
@@ -107,6 +116,7 @@ Json lane_json(const PageLane& lane) {
 }
 
 /// A node's signals; only those that it measures.
+/// Raw samples have times of their own, since they lie between rows.
 Json node_json(const NodeFigures& node) {
   Json out{{"node", node.node},
            {"joint", node.joint},
@@ -127,6 +137,7 @@ Json node_json(const NodeFigures& node) {
       out["raw_acceleration"] = series_json(node.raw_acceleration, 3, acceleration_step);
     }
   }
+  // The error for figure 13, the axes for the player.
   if (node.has_orientation) {
     out["orientation_error"] = series_json(node.orientation_error, 1, angle_step);
     out["axes"] = series_json(node.axes, 4, rotation_step);
@@ -143,6 +154,7 @@ Json detail_json(const TakePage& page, const PageDetail& detail) {
            {"near_seconds", series_json(detail.near_seconds, 1, second_step)},
            {"has_raw", detail.has_raw}};
   if (!detail.seconds.empty()) {
+    // Each row has the places of all counterparts.
     const std::size_t pairs = detail.onto_positions.size() / detail.seconds.size() / 3;
     out["seconds"] = series_json(detail.seconds, 1, second_step);
     out["positions"] = series_json(detail.positions, 3 * joints, metre_step);
@@ -157,6 +169,7 @@ Json detail_json(const TakePage& page, const PageDetail& detail) {
   return out;
 }
 
+/// A list of the page as a list of JSON objects.
 template <class Items, class ToJson>
 Json list_json(const Items& items, ToJson to_json) {
   Json out = Json::array();
@@ -180,6 +193,7 @@ Json series_json(const std::vector<std::uint8_t>& values, std::size_t columns) {
           {"packed", packed_series(std::span(values), columns)}};
 }
 
+// "</script>" in a name would end the script element, and "<!--" would begin a comment.
 std::string safe_in_script(const std::string& json) {
   std::string out;
   out.reserve(json.size());
@@ -198,6 +212,7 @@ std::string_view to_string(PageColour colour) {
   return colour == PageColour::kinect ? "kinect" : "imu";
 }
 
+// Marks of the recording are drawn on all figures over time.
 std::string page_json(const TakePage& page) {
   Json marks = Json::array();
   for (const TakeMark& mark : page.report.marks) {

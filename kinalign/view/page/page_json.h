@@ -26,6 +26,7 @@ nlohmann::ordered_json series_json(const std::vector<std::uint8_t>& values, std:
 std::string safe_in_script(const std::string& json);
 
 /// One JSON object that may stand inside a <script> of HTML: it contains no '<'.
+/// Figures are in the units of TakePage; assets/data.js unpacks the series.
 std::string page_json(const TakePage& page);
 
 }  // namespace kinalign

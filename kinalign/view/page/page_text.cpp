@@ -17,6 +17,7 @@ namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
+/// The class of the style sheet that colours a stream's verdict.
 std::string_view colour_of_stream(const TakePage& page, const std::string& stream) {
   for (const PageLane& lane : page.lanes) {
     if (lane.stream == stream) return to_string(lane.colour);
@@ -31,6 +32,7 @@ const PageBody* body_called(const TakePage& page, const std::string& name) {
 }
 
 /// A row of cells. Cells that begin with '=' contain words and are left-aligned.
+/// Numbers are right-aligned, which is the style of a cell without a class.
 std::string row(std::string_view cell, const std::vector<std::string>& cells) {
   std::string out = "<tr>";
   for (const std::string& text : cells) {
@@ -49,11 +51,13 @@ std::string table(const std::vector<std::string>& heads, const std::string& rows
       row("th", heads), rows, caption);
 }
 
+/// The name of a stream, with its nodes if it has some.
 std::string stream_name(const StreamReport& s) {
   return s.nodes.empty() ? s.stream : fmt::format("{} {}", s.stream, fmt::join(s.nodes, ", "));
 }
 
 /// The mean rate over the whole stream, which the device really sent at.
+/// A device's real rate differs from its nominal one.
 std::string real_rate(const StampSurvey& survey) {
   const double length = seconds(survey.last - survey.first);
   if (survey.kept() < 2 || !(length > 0.0)) return "";
@@ -61,6 +65,7 @@ std::string real_rate(const StampSurvey& survey) {
 }
 
 /// The samples that would fit into the steps longer than usual.
+/// A long step has room for itself and for the samples that did not come.
 std::string lost(const StampSurvey& survey) {
   if (survey.median_step_ns <= 0) return "";
   const double room =
@@ -72,22 +77,27 @@ std::string lost(const StampSurvey& survey) {
   return share.empty() ? "0" : fmt::format("{} ({})", grouped(count), share);
 }
 
+/// Samples that came but were not used, for any reason.
 std::string left_out(const StreamReport& s) {
   return grouped(s.survey.duplicates + s.survey.backward + s.survey.ahead + s.held_back);
 }
 
+/// The number of gaps within the take, and their time.
 std::string gaps(const StreamReport& s) {
   if (s.gaps == 0) return "0";
   return fmt::format("{} ({:.2f} s)", s.gaps, 1e-9 * static_cast<double>(s.gap_time_ns));
 }
 
+/// Reports state positions in centimetres.
 std::string cm(double m) { return fmt::format("{:.1f}", 100.0 * m); }
 
+/// A share for a cell of a table, which should not be empty.
 std::string share_or_zero(std::uint64_t part, std::uint64_t whole) {
   const std::string text = share_text(part, whole);
   return text.empty() ? "0" : text;
 }
 
+/// The methods of docs/align_space.md in words.
 std::string how_moved(const PageSpace& space) {
   if (space.report.method == "fit") return "by one rotation and translation, fitted to the take";
   if (space.report.method == "given") return "by one rotation and translation, as given";
@@ -108,6 +118,7 @@ std::string bodies_with_bones(const TakePage& page) {
 }  // namespace
 
 /// Subject, action, length, frames and date.
+/// Stamps that count from a start have no date.
 std::string facts_text(const TakePage& page) {
   const AlignmentReport& report = page.report;
   std::vector<std::string> facts;
@@ -134,9 +145,11 @@ std::string headline(const TakePage& page) {
         verdict.quality == Quality::good ? good : (verdict.quality == Quality::bad ? bad : usable);
     list.push_back(verdict.stream);
   }
+  // A take without fault says so in one word.
   if (usable.empty() && bad.empty()) {
     return good.size() == 1 ? "Good" : fmt::format("Good: all {} streams", good.size());
   }
+  // The worst come first: they decide whether the take can be used.
   std::vector<std::string> parts;
   if (!bad.empty()) parts.push_back(fmt::format("{} bad", fmt::join(bad, ", ")));
   if (!usable.empty()) parts.push_back(fmt::format("{} usable", fmt::join(usable, ", ")));
@@ -166,6 +179,7 @@ std::string worst_title(const TakePage& page) {
 std::string worst_items(const TakePage& page) {
   std::string out;
   for (const Concern& concern : page.worst) {
+    // Even a good take has a largest value; it must not look like a fault.
     const std::string small = concern.quality == Quality::good ? " (within the limits)" : "";
     out += fmt::format("<li>{}: {}{}</li>", escaped(concern.stream), escaped(words_of(concern)),
                        small);
@@ -175,6 +189,7 @@ std::string worst_items(const TakePage& page) {
 
 /// The numbers of the first screen: residuals, worst interval in time, shares of joints, worst
 /// node.
+/// Only numbers that exist are listed, so the list differs from take to take.
 std::string numbers_list(const TakePage& page) {
   std::string out;
   const auto add = [&out](const std::string& number, const std::string& what) {
@@ -184,6 +199,7 @@ std::string numbers_list(const TakePage& page) {
     add(cm(space.report.after_m) + " cm",
         space.report.stream + " from " + space.report.onto + ", rms");
   }
+  // The widest interval of all streams: one number answers whether times can be trusted.
   std::optional<std::int64_t> widest;
   for (const StreamReport& s : page.report.streams) {
     if (s.worst_interval_ns) widest = std::max(widest.value_or(0), *s.worst_interval_ns);
@@ -193,6 +209,8 @@ std::string numbers_list(const TakePage& page) {
   }
   for (const StreamReport& s : page.report.streams) {
     const PageBody* body = body_called(page, s.stream);
+    // Only points that are not the reference: shares of joints say how well a Kinect saw the
+    // person.
     if (body == nullptr || body->kind != PageKind::points || s.stream == page.report.reference) {
       continue;
     }
@@ -218,6 +236,7 @@ bool has_axes(const TakePage& page) {
 /// The colours and marks of the player that occur in this take.
 std::string legend(const TakePage& page) {
   std::string out;
+  // Rings and lines stand in the legend only if they can occur.
   bool points = false;
   for (const PageBody& body : page.bodies) {
     if (!body.in_take_space) continue;
@@ -248,6 +267,7 @@ std::string player_caption(const TakePage& page) {
 std::string time_table(const TakePage& page) {
   std::string rows;
   for (const StreamReport& s : page.report.streams) {
+    // The reference defines the rows, so it has neither an interval nor a nearest sample.
     const bool reference = s.stream == page.report.reference;
     rows +=
         row("td",
@@ -287,6 +307,7 @@ std::string detail_caption(const TakePage& page) {
                 1e3 * static_cast<double>(detail.near_s));
   text += " Grey: no value; no value is made up.";
   if (!page.spaces.empty()) text += " Thin: the joint's counterpart in the reference.";
+  // A long take has raw samples for a part only; the caption names the part.
   const double length = seconds(page.report.end - page.report.begin);
   if (detail.end_s < length || detail.begin_s > 0.0) {
     text += fmt::format(" Raw samples of {:.0f} to {:.0f} s only.", detail.begin_s,
@@ -296,9 +317,11 @@ std::string detail_caption(const TakePage& page) {
 }
 
 /// A paragraph for each stream that was moved, and for each that stays in its own space.
+/// A stream in its own space can be looked at, but not together with the others.
 std::string space_text(const TakePage& page) {
   std::string out;
   for (const PageSpace& space : page.spaces) {
+    // One angle says how far two devices were turned against each other.
     const Eigen::AngleAxisd turn(space.report.transform.rotation);
     out += fmt::format(
         "<p>{} was moved onto {} {}: distance {} cm rms, before {}; rotated by {:.1f}°.</p>",
@@ -361,6 +384,7 @@ std::string zone_table(const TakePage& page) {
   if (page.floors.empty()) return "";
   const PageFloor& floor = page.floors.front();
   constexpr std::array<const char*, zone_count> names{"best", "largest", "outside both"};
+  // Shares are of all joints, those at an unknown place too.
   std::uint64_t all = floor.missing;
   for (const auto& zone : floor.zones) all += zone.tracked + zone.inferred;
   std::string rows;
@@ -405,9 +429,11 @@ std::string node_text(const TakePage& page) {
 }
 
 /// The table of differences between each node and its bone.
+/// Angles in degrees for people; the page's data are in radians.
 std::string node_table(const TakePage& page) {
   std::string rows;
   for (const NodeFigures& node : page.nodes) {
+    // An unknown number is an empty cell and not 0.
     const auto number = [](bool known, double x, int digits) {
       return known ? fmt::format("{:.{}f}", x, digits) : std::string("");
     };
@@ -442,6 +468,7 @@ std::string findings_list(const TakePage& page) {
   if (page.report.findings.empty()) return "<p>Alignment found no problems.</p>";
   std::string out = "<ul class=\"findings\">";
   for (const Finding& finding : page.report.findings) {
+    // The marks of the style sheet: the same colours as those of verdicts.
     const std::string_view mark = finding.severity == Severity::error
                                       ? "bad"
                                       : (finding.severity == Severity::note ? "note" : "usable");
@@ -455,6 +482,7 @@ std::string findings_list(const TakePage& page) {
 }
 
 /// The table of input files.
+/// The hashes let a reader check that the inputs are still the same files.
 std::string inputs_table(const TakePage& page) {
   if (page.inputs.empty()) return "";
   std::string rows;
@@ -468,6 +496,7 @@ std::string inputs_table(const TakePage& page) {
 }
 
 /// The note on how many rows the page stores.
+/// Readers must know that figures of a thinned page may miss short events.
 std::string thinning_text(const TakePage& page) {
   if (page.stride == 1) {
     return fmt::format("The page holds every row of the take ({}).", grouped(page.report.frames));

@@ -14,6 +14,7 @@ namespace kinalign {
 namespace {
 
 /// The count of numbers that the page stores for one row of a group.
+/// A node has a rate, an acceleration, both also of its bone, an error, axes and a flag: 18.
 std::uint64_t numbers_of(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return 3 * clip->skeleton.joints();
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
@@ -27,6 +28,7 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
 }
 
 /// A bin spans at least two rows: if stamps jitter by less than half a step, no bin is empty.
+/// At least one, else a lane would have no place for its row.
 std::size_t bins_of(const TakeHeader& header, std::size_t most) {
   const auto pairs = static_cast<std::size_t>(header.frames / 2);
   return std::max<std::size_t>(1, std::min(most, pairs));
@@ -40,11 +42,14 @@ double seconds_since(Time first, Time now) { return seconds(now - first); }
 std::uint64_t page_stride(const TakeHeader& header, std::uint64_t most_numbers) {
   std::uint64_t numbers = 1;
   for (const TakeGroup& group : header.groups) numbers += numbers_of(group);
+  // Rounded up, so that the limit holds.
   const std::uint64_t rows = std::max<std::uint64_t>(1, most_numbers / numbers);
   return std::max<std::uint64_t>(1, (header.frames + rows - 1) / rows);
 }
 
 /// A group of the take, with all the figures that are collected of it.
+/// Only skeletons and points have one. `floor`, `space` and `detail` are absent where they do not
+/// apply.
 struct GroupFigures {
   std::size_t group = 0;
   BodyFigures figures;
@@ -53,6 +58,7 @@ struct GroupFigures {
   std::optional<DetailFigures> detail;
 };
 
+// `page` grows while rows are added; `row` counts all rows, `first` is the stamp of row 0.
 struct TakeFigures::State {
   TakeHeader header;
   TakeFigureOptions options;
@@ -91,6 +97,8 @@ std::optional<std::size_t> TakeFigures::State::body_called(const std::string& na
   return std::nullopt;
 }
 
+/// Every group has lanes; only skeletons and points are bodies. A body's index is its place in
+/// `bodies` and later in the page.
 void TakeFigures::State::plan_bodies() {
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
     lanes.emplace_back(header.groups[g], options.bins);
@@ -100,10 +108,12 @@ void TakeFigures::State::plan_bodies() {
 }
 
 /// The transforms of the report whose two bodies are on the page, with their pairs of joints.
+/// Joints that one body lacks are left out of the pairs.
 void TakeFigures::State::plan_spaces() {
   for (const SpaceReport& report : page.report.spaces) {
     const auto from = body_called(report.stream), onto = body_called(report.onto);
     if (!from || !onto) continue;
+    // Copied, because the page outlives the take's header.
     PageSpace space;
     space.report = report;
     space.body = *from;
@@ -115,6 +125,7 @@ void TakeFigures::State::plan_spaces() {
       const std::size_t a = index_of(ours, joint.joint), b = index_of(theirs, joint.onto);
       if (a < ours.size() && b < theirs.size()) space.pairs.emplace_back(a, b);
     }
+    // The moved body is the Kinect: its place and direction are those of the transform.
     bodies[*from].floor = floor_of(report, *from);
     bodies[*from].space = page.spaces.size();
     page.spaces.push_back(std::move(space));
@@ -122,6 +133,7 @@ void TakeFigures::State::plan_spaces() {
 }
 
 /// A detail for each resampled stream of points.
+/// Only resampled points have raw samples between rows to compare with.
 void TakeFigures::State::plan_details() {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const TakeGroup& group = header.groups[bodies[b].group];
@@ -139,8 +151,10 @@ void TakeFigures::State::plan_details() {
   }
 }
 
+/// Nodes need a skeleton to be compared with. The first one in the take's space is preferred.
 void TakeFigures::State::plan_nodes() {
   std::optional<std::size_t> clip, nodes;
+  // Backwards, so that the first group of a kind wins.
   for (std::size_t g = header.groups.size(); g-- > 0;) {
     const TakeGroup& group = header.groups[g];
     // A skeleton outside the take's space can still be compared: it turns like its nodes.
@@ -156,17 +170,20 @@ void TakeFigures::State::plan_nodes() {
                   std::get<ClipGroup>(header.groups[*clip].kind).skeleton, page.report.rate_hz);
 }
 
+/// A verdict for each group, and each input file once.
 void TakeFigures::State::judge() {
   for (const TakeGroup& group : header.groups) {
     page.verdicts.push_back(verdict_of(page.report, group.name, group.files));
     for (const InputFacts& file : group.files) {
       const auto known = std::find(page.inputs.begin(), page.inputs.end(), file);
+      // Several groups may come from one file.
       if (known == page.inputs.end()) page.inputs.push_back(file);
     }
   }
 }
 
 /// Adds a concern for each node that turns like the bone of another node.
+/// Only now, because the comparison of nodes needs all rows.
 void TakeFigures::State::judge_nodes() {
   const std::string& stream = header.groups[node_group].name;
   const auto verdict = std::find_if(page.verdicts.begin(), page.verdicts.end(),
@@ -180,15 +197,19 @@ void TakeFigures::State::judge_nodes() {
   }
 }
 
+/// Stamps beyond both ends fall into the first and the last bin.
 std::size_t TakeFigures::State::bin_of(double s) const {
+  // A take of one row has no length; everything is in the first bin.
   if (!(length_s > 0.0)) return 0;
   const double bin = std::floor(s / length_s * static_cast<double>(options.bins));
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(options.bins - 1)));
 }
 
 /// Adds one row to all figures; the page stores every stride-th row.
+/// The one place where all figures see a row.
 void TakeFigures::State::add_row(const TakeSlab& slab, std::size_t r) {
   const double at = seconds_since(*first, slab.stamps[r]);
+  // The first row is always kept.
   const bool keep = row++ % page.stride == 0;
   const std::size_t bin = bin_of(at);
   if (keep) page.seconds.push_back(static_cast<float>(at));
@@ -223,6 +244,7 @@ void TakeFigures::State::add_detail(const TakeSlab& slab, std::size_t r, double 
 /// Adds the raw samples of the detail's body, moved like the body. The page must have its bodies
 /// already.
 void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
+  // Raw samples belong to a body by the stream's name.
   const PageBody& body = page.bodies[detail.body];
   const auto raw = std::find_if(options.raw.begin(), options.raw.end(),
                                 [&](const RawPoints& r) { return r.stream == body.name; });
@@ -235,6 +257,7 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
     const PageBody& onto = page.bodies[space->onto];
     move.space = &space->report;
     move.root = index_of(body.joint_names, how.root);
+    // By the paper's method each sample is moved by the other root's path, which the page stores.
     move.onto_seconds = &page.seconds;
     const std::size_t joints = onto.joint_names.size(),
                       root = index_of(onto.joint_names, how.onto_root);
@@ -265,6 +288,7 @@ void TakeFigures::State::add_raw_node_samples() {
                                    [&](const NodeFigures& n) { return n.node == raw.node; });
     if (raw.stream != stream || node == page.nodes.end()) continue;
     Quat sensor_from_bone = Quat::Identity();
+    // The mounting that alignment was given; without one, values were not turned.
     if (how != header.parameters.streams.end() && how->mounting.contains(raw.node)) {
       sensor_from_bone = quat(how->mounting.at(raw.node), 0).normalized();
     }
@@ -272,6 +296,7 @@ void TakeFigures::State::add_raw_node_samples() {
   }
 }
 
+/// The mean time between stored rows, for the lags of nodes.
 double TakeFigures::State::kept_step_s() const {
   if (page.seconds.size() < 2) return 1.0;
   return static_cast<double>(page.seconds.back()) / static_cast<double>(page.seconds.size() - 1);
@@ -299,6 +324,7 @@ TakeFigures::TakeFigures(const TakeHeader& header, const AlignmentReport& report
   s.page.action = header.action;
   s.page.stride = page_stride(header, s.options.most_numbers);
   s.length_s = seconds(report.end - report.begin);
+  // The order matters: spaces need the bodies, and details need the spaces.
   s.plan_bodies();
   s.plan_spaces();
   s.plan_details();
@@ -326,6 +352,7 @@ TakePage TakeFigures::finish() {
     s.page.joint_states.push_back(body.figures.take_states());
     s.page.bodies.push_back(body.figures.take_body());
   }
+  // Bodies and lanes are in the page now; raw samples below need the bodies' positions.
   s.colour();
   for (GroupFigures& body : s.bodies) {
     if (!body.detail) continue;
@@ -341,6 +368,7 @@ TakePage TakeFigures::finish() {
   return std::move(s.page);
 }
 
+// Each group has its own open gap; the longest of all is kept.
 void LongestGap::add(const TakeSlab& slab) {
   now_.resize(slab.rows.size());
   for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
@@ -360,6 +388,7 @@ void LongestGap::add(const TakeSlab& slab) {
       }
       if (!now.open) now = {at, at, true};
       now.end = at;
+      // >= so that a gap of a single row counts, too.
       if (now.end - now.begin >= longest_.end - longest_.begin) longest_ = now;
     }
   }

@@ -29,6 +29,8 @@ struct TakeFigureOptions {
 /// Every stride-th row is stored, so that the page stays small; 1: all rows.
 std::uint64_t page_stride(const TakeHeader& header, std::uint64_t most_numbers);
 
+/// The constructor plans all figures from header and report; add() collects; finish() makes the
+/// page.
 class TakeFigures {
  public:
   /// `header` and `report` are copied.
@@ -51,6 +53,8 @@ class TakeFigures {
 
 /// The longest time in which a stream of points has nothing valid, slab by slab. The detail of a
 /// long take is put around it.
+/// A pass of its own over the take, before TakeFigures, since the detail's place must be known
+/// first.
 class LongestGap {
  public:
   void add(const TakeSlab& slab);

@@ -24,6 +24,7 @@ enum class PageKind { clip, points };
 enum class PageColour { mocap, kinect, imu };
 
 /// A skeleton or points, over the stored rows.
+/// One body of the player and of the figures. All arrays have the page's K rows.
 struct PageBody {
   std::string name;  // the take's group
   PageKind kind = PageKind::clip;
@@ -36,6 +37,7 @@ struct PageBody {
 };
 
 /// A part of the take with every row and the raw samples of one body: the paper's figure 7.
+/// Times are in s from the take's first row.
 struct PageDetail {
   std::size_t body = 0;  // index in TakePage::bodies; resampled points
   double begin_s = 0.0, end_s = 0.0;
@@ -57,6 +59,7 @@ struct PageDetail {
 
 /// The transform of a stream of points into the space of another body, and what the page draws of
 /// it.
+/// Figures 5 to 7 draw it; `report` has its numbers.
 struct PageSpace {
   SpaceReport report;
   std::size_t body = 0, onto = 0;  // indices in TakePage::bodies
@@ -73,6 +76,7 @@ inline constexpr double largest_near_m = 0.5, largest_far_m = 4.5;
 inline constexpr double field_deg = 70.0;
 
 /// The Kinect in the take's space, and the states of joints by the zone that they were in.
+/// Only for a Kinect with one transform for the whole take (floor_of()).
 struct PageFloor {
   std::size_t body = 0;
   Vec3 camera = Vec3::Zero();    // m
@@ -85,6 +89,7 @@ struct PageFloor {
 };
 
 /// The constancy of a bone. A skeleton's bones are constant by construction, a Kinect's are not.
+/// Figure 10.
 struct BoneLength {
   std::size_t body = 0, joint = 0;  // from the joint's parent to the joint
   std::uint64_t rows = 0;           // rows in which both ends are tracked
@@ -92,12 +97,14 @@ struct BoneLength {
 };
 
 /// The counts of tracked, inferred and missing rows of each joint of a body, over all rows.
+/// Figure 9.
 struct JointStates {
   std::size_t body = 0;
   std::vector<std::array<std::uint64_t, 3>> counts;  // [J] by Tracking
 };
 
 /// A stream's samples over time, in equal bins of the take.
+/// Bins keep a lane small whatever the take's length is.
 struct PageLane {
   std::string stream, part;  // "imu", "waist"
   PageColour colour = PageColour::mocap;
@@ -109,6 +116,7 @@ struct PageLane {
 };
 
 /// A node and the bone that it is worn on. Signals are in the node's own space, as it was mounted.
+/// Figures 11 to 13, and a row of the table of nodes.
 struct NodeFigures {
   std::string node, joint;    // "wrist_left", "LeftForeArm"
   bool joint_by_name = true;  // false: the joint that turns most like the node
@@ -132,14 +140,18 @@ struct NodeFigures {
   std::vector<float> raw_rate, raw_acceleration;  // [R,3]
 };
 
+/// Everything that a page shows. Indices between the lists are named after the list that they refer
+/// to.
 struct TakePage {
   std::string file;  // name of the take, without its folder
   std::string software, subject, action;
   AlignmentReport report;
+  // Judged by kinalign/align/verdict.h; the first screen shows them.
   std::vector<Verdict> verdicts;  // one for each stream
   std::vector<Concern> worst;     // at most three, worst first
   std::vector<InputFacts> inputs;
 
+  // The stored rows, and the figures made of them.
   std::uint64_t stride = 1;
   std::vector<float> seconds;  // [K] s since the first row
   std::vector<PageBody> bodies;
