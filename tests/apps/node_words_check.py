@@ -50,12 +50,12 @@ def a_clock_beyond_the_assumptions_is_named_once_and_in_the_summary(_):
 
 
 @case
-def a_step_is_told_first_then_what_it_costs_then_that_it_is_over(_):
+def stamps_that_a_step_costs_are_reported_then_the_step_then_that_it_is_over(_):
     with TextServer() as server:
         ended(start_node(BUILD, server.node_port, 7, "--seconds", 8, "--step", "6:0.5"))
     assert re.fullmatch(r"node 7: joined .*\n"
-                        r"node 7: warning: its counter stepped by at least (499|500)\.\d+ ms\n"
                         r"node 7: warning: the stamps of 5\.\d s are no longer certified\n"
+                        r"node 7: warning: its counter stepped by at least (499|500)\.\d+ ms\n"
                         r"node 7: its counter runs evenly again", "\n".join(server.told)), server.told
 
 

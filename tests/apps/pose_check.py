@@ -162,7 +162,7 @@ def nodes_in_each_others_place_in_another_unit_or_frozen_are_told(folder):
     said = told("pose", manifest, "-o", out, *words, code=1)["warnings"]
     by_reader, by_t_pose = said
     assert "imu_wrist_left.csv: expected accelerations with gravity of 6 to 40 m/s2" in by_reader, said
-    assert by_t_pose.startswith("wrist_left: 8.8 m/s2 are left in the T-pose"), said
+    assert by_t_pose.startswith("wrist_left: 8.8 m/s2 in the T-pose are not gravity"), said
     wrist.write_text(was[1])
     put_rows(waist, node_rows(waist)[:800])
     said = told("pose", manifest, "-o", out, *words, code=1)["warnings"]
