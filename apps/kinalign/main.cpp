@@ -11,6 +11,7 @@
 /// Collects everything that verbs get from the system; no code below reads the environment itself.
 int main(int argc, char** argv) {
   kinalign::PosixFiles files;
+  // getcwd fails if the current folder was removed. The root is then taken as the current folder.
   std::array<char, PATH_MAX> folder{};
   const auto variable = [](const std::string& name) -> std::string {
     const char* value = std::getenv(name.c_str());

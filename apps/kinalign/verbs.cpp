@@ -5,6 +5,8 @@ namespace kinalign {
 
 /// The order is that of the help page.
 std::vector<Verb> all_verbs() {
+  // Files come first, then recording, data sets, learning, simulation and the lab's services, and
+  // last the program's own pages.
   return {align_verb(),
           info_verb(),
           check_verb(),

@@ -9,6 +9,8 @@
 
 namespace kinalign {
 
+/// Each function makes the description of one verb. The options behind it are made anew for each
+/// call (make_verb in apps/cli/verb.h).
 Verb align_verb();
 Verb info_verb();
 Verb check_verb();

@@ -29,6 +29,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+// Larger files are not of this program; the limits protect the memory.
 constexpr std::size_t most_bench_windows = std::size_t{4} << 30U;  // a larger file is refused
 constexpr std::size_t most_bench_model = std::size_t{1} << 30U;    // a larger file is refused
 constexpr std::size_t least_bench_rows = 8;  // frames; shorter stretches are left out
@@ -40,6 +41,7 @@ struct TrainingSpeed {
   std::string_view method;
   double step_s = 0.0;
 };
+// A method without a row here has an unknown time in the plan.
 constexpr std::array<TrainingSpeed, 6> training_speeds{{{"cnn", 0.73},
                                                         {"bra", 2.7},
                                                         {"bra-p", 5.9},
@@ -54,6 +56,7 @@ std::string model_file(const CleaningOptions& o, const std::string& method) {
 
 /// The job of kinalign-learn. Its identity does not depend on where the files lie.
 Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std::string& method) {
+  // `steps` is left out if it is 0: the method's own default then stays in force.
   Json options{{"seed", o.seed}};
   if (o.steps > 0) options["steps"] = o.steps;
   Json job{{"schema", "kinalign.training_job/1"},
@@ -62,6 +65,8 @@ Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std
            {"truth", true_stream},
            {"learn", data.learnt},
            {"options", options}};
+  // The identity is the hash of all that determines the training: the job and the bytes of the
+  // windows. Paths, threads and the device are added later.
   Sha256 identity;
   identity.update(job.dump());
   identity.update(data.windows_hash);
@@ -72,6 +77,8 @@ Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std
 /// True if the model was trained by a job of that identity.
 Result<bool> has_identity(const std::string& bytes, const std::string& file,
                           const std::string& identity) {
+  // The trainer writes the job's identity into the model. A model of another program has none and
+  // does not match.
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, file));
   const Json training = Json::parse(model.facts.training, nullptr, false);
   return training.is_object() && training.value("identity", "") == identity;
@@ -86,6 +93,7 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
   Json job = job_of_method(o, data, method);
   const auto identity = job.at("identity").get<std::string>();
   std::error_code fault;
+  // A model with the right identity is used again, so a run that was stopped does not train twice.
   if (fs::exists(file, fault)) {
     const std::string bytes = KA_TRY(read_whole(files, file, most_bench_model));
     if (KA_TRY(has_identity(bytes, file, identity))) return file;
@@ -96,10 +104,13 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
   }
   const std::string run = o.folder + "/models/" + method + ".training";
   KA_TRY(make_folders(run));
+  // These members say where and on which machine to train. They stay outside of the identity.
   job.update({{"windows", data.windows},
               {"out", file},
               {"log", run + "/log.csv"},
               {"checkpoint", run + "/checkpoint.safetensors"},
+              // A checkpoint is left by a training that was stopped. The worker continues from it
+              // if it fits the job.
               {"resume", fs::exists(run + "/checkpoint.safetensors", fault)},
               {"device", o.device},
               {"threads", call.jobs}});
@@ -110,14 +121,19 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
 }
 
 /// The answer of a method: trained, or fitted in closed form.
+/// A network is trained by another program and then answers through its model file. All other
+/// methods are fitted to the training takes in this process.
 Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
                           const std::string& method, Call& call) {
   if (is_trained(method)) {
     std::vector<JointFrames> tested;
     for (const Pair* pair : data.tested) tested.push_back(pair->input);
+    // Methods that differ only in their use of a network share its trained part: "cnn+project" uses
+    // "cnn".
     const std::string model = KA_TRY(trained_method(o, data, trained_part(method), call));
     return trained_answer(method, model, data.layout, tested, call);
   }
+  // The task names the same people as the training, so all methods learn from the same takes.
   const EvalTask task{data.layout,
                       data.pairs.all,
                       {.method = method,
@@ -135,11 +151,13 @@ Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
 /// Runs a method on all tested stretches, and marks each answer twice: plain, and steadied.
 CleanedTakes run_answer(const std::string& method, const Answer& answer, const CleaningData& data,
                         const DenoiseMarker& marker) {
+  // The default steadying has all three parts: mirror image, smoothing and constant bones.
   const Steadier steadier({}, data.layout);
   CleanedTakes out;
   out.method = method;
   for (const Pair* pair : data.tested) {
     Denoised plain = answer(pair->input);
+    // A copy is kept before steadying: figures show the plain answers.
     out.answers.push_back(plain.positions);
     out.marks.emplace_back();
     out.marks.back()[0] = marker.marks_of(*pair, plain.positions, plain.spread);
@@ -151,6 +169,8 @@ CleanedTakes run_answer(const std::string& method, const Answer& answer, const C
 
 /// Marks answers that exist already. They are steadied without a mirror image, since a program is
 /// run once.
+/// Without the mirror image the steadier has no need of a second answer, so the function may return
+/// the stored one.
 CleanedTakes marked_answers(const std::string& method,
                             const std::vector<std::vector<float>>& answers,
                             const CleaningData& data, const DenoiseMarker& marker) {
@@ -169,6 +189,8 @@ CleanedTakes marked_answers(const std::string& method,
 }
 
 /// A column of table 9.
+/// The first three columns are the paper's definitions, all others the well-defined ones
+/// (docs/benchmark.md).
 struct MarksColumn {
   const char *key, *title;
   int decimals;
@@ -190,6 +212,7 @@ using PersonMarks = std::array<std::optional<double>, marks_columns.size()>;
 PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method,
                             const std::string& person, std::size_t which) {
   std::vector<ProtocolMarks> protocol;
+  // The paper's marks are means over frames. A long stretch therefore weighs more than a short one.
   std::array<double, 3> sums{};
   double frames = 0.0;
   for (std::size_t i = 0; i < data.tested.size(); ++i) {
@@ -202,6 +225,7 @@ PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method
     for (std::size_t k = 0; k < values.size(); ++k) sums[k] += n * values[k];
     frames += n;
   }
+  // The other marks are combined by their own rule, in which a mark may be absent.
   const ProtocolMeans means = protocol_row(protocol);
   return {sums[0] / frames,   sums[1] / frames,      sums[2] / frames,
           means.position_cm,  means.fitted_cm,       means.bone_cm,
@@ -209,6 +233,8 @@ PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method
 }
 
 /// E_s of the truth itself, cm: the mean over frames.
+/// The truth's roughness is the value that a good answer should have. It is the same for all
+/// methods, so any method's marks give it.
 double true_smoothness(const CleaningData& data, const CleanedTakes& method) {
   double sum = 0.0, frames = 0.0;
   for (std::size_t i = 0; i < data.tested.size(); ++i) {
@@ -226,6 +252,8 @@ std::set<std::string> people_of(const std::vector<const Pair*>& pairs) {
 }
 
 /// A row of table 9: mean and deviation over people. `which`: 0 plain, 1 steadied.
+/// People are the units of the statistics: frames of one person are too alike to count as
+/// independent. A mark that no stretch has leaves an empty cell.
 std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method,
                             std::size_t which) {
   std::array<std::vector<double>, marks_columns.size()> values;
@@ -236,6 +264,7 @@ std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method
     }
   }
   std::vector<Cell> out{method.method + (which == 1 ? ", steadied" : "")};
+  // Each value gives two cells, mean and deviation. with_joined_deviations() relies on this order.
   for (const auto& one : values) {
     double sum = 0.0;
     for (const double value : one) sum += value;
@@ -248,10 +277,14 @@ std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method
 
 }  // namespace
 
+// The order is: cut, read, hash, pair. The hash is that of the file's bytes, since the identity of
+// each model depends on it.
 Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
   KA_TRY(make_folders(o.folder + "/models"));
   CleaningData out;
   out.windows = o.folder + "/windows.npz";
+  // "0" asks for no least share of valid cells. Methods must cope with missing joints; marks leave
+  // out cells without a truth.
   const WindowsWanted wanted{.data = o.data,
                              .split = o.split,
                              .where = "",
@@ -267,12 +300,15 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
   out.pairs = KA_TRY(pairs_of(KA_TRY(read_windows(bytes, out.windows)), rough_stream, true_stream,
                               least_bench_rows));
   out.layout = KA_TRY(eval_layout(out.pairs));
+  // Sets sort the names, so the job does not depend on the order of the pairs.
   std::set<std::string> learnt, learnt_people, tested_takes;
   for (const Pair& pair : out.pairs.all) {
     if (pair.part == "train") {
       learnt.insert(pair.take);
       learnt_people.insert(pair.subject);
     } else if (pair.part == "test") {
+      // The pointer stays valid: `pairs` is not changed any more, and moving the structure keeps
+      // the vector's memory.
       out.tested.push_back(&pair);
       tested_takes.insert(pair.take);
     }
@@ -290,12 +326,14 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
 
 Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const CleaningData& data,
                                               Call& call) {
+  // The marker is made from all pairs once, so every method is marked by the same rule.
   const DenoiseMarker marker = KA_TRY(DenoiseMarker::make(data.layout, data.pairs.all));
   std::vector<CleanedTakes> out;
   for (const std::string& method : o.methods) {
     call.console.detail(method);
     out.push_back(run_answer(method, KA_TRY(answer_for(o, data, method, call)), data, marker));
   }
+  // Programs run last: a program that fails must not cost the results of a long training.
   for (const std::string& words : o.programs) {
     const ProgramMethod method = KA_TRY(program_method(words));
     call.console.detail(method.name);
@@ -311,6 +349,7 @@ std::vector<TrainingPlan> training_plan(const CleaningOptions& o) {
   std::set<std::string> planned;
   for (const std::string& name : o.methods) {
     const std::string method = trained_part(name);
+    // Two methods may need the same trained part. The first one trains it.
     if (!is_trained(name) || !planned.insert(method).second) continue;
     std::error_code fault;
     TrainingPlan plan{method, fs::exists(model_file(o, method), fault),
@@ -323,6 +362,8 @@ std::vector<TrainingPlan> training_plan(const CleaningOptions& o) {
   return out;
 }
 
+// The caption holds everything that a reader of the table needs to judge it: people, takes and the
+// meaning of the columns.
 Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all) {
   Table out;
   out.caption = fmt::format(
@@ -336,6 +377,7 @@ Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all
     out.columns.push_back({std::string(column.key) + "_sd", "±", column.decimals});
   }
   for (const CleanedTakes& method : all) {
+    // Each method has two rows that follow each other: plain, then steadied.
     for (const std::size_t which : {std::size_t{0}, std::size_t{1}}) {
       out.rows.push_back(marks_row(data, method, which));
     }
@@ -343,6 +385,7 @@ Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all
   return out;
 }
 
+// The columns are: method, then pairs of a mean and its deviation.
 Table with_joined_deviations(const Table& table) {
   Table out;
   out.caption = table.caption;
@@ -350,6 +393,7 @@ Table with_joined_deviations(const Table& table) {
   for (std::size_t c = 1; c + 1 < table.columns.size(); c += 2) {
     out.columns.push_back(table.columns[c]);
   }
+  // A cell with text can't be computed with, so CSV and JSON keep the table with separate columns.
   for (const auto& row : table.rows) {
     out.rows.push_back({row.front()});
     for (std::size_t c = 1; c + 1 < table.columns.size(); c += 2) {
@@ -366,6 +410,7 @@ std::vector<float> errors_over_time(const CleaningData& data, const Pair& pair,
                                     const std::vector<float>& answer) {
   const std::size_t joints = data.layout.outputs.size();
   const auto places = shared_joints_there(kinect_names(data.layout.outputs));
+  // 100 turns metres into centimetres. Joints without a valid truth do not count.
   std::vector<float> out;
   for (std::size_t t = 0; t < pair.input.frames(); ++t) {
     double sum = 0.0, count = 0.0;

@@ -17,6 +17,8 @@
 
 namespace kinalign {
 
+/// The flags of `benchmark run` that concern methods. The folder keeps windows, models and tables,
+/// so a run that was stopped continues.
 struct CleaningOptions {
   std::string data, split, folder;  // the data set; the split of its people; the folder for results
   std::vector<std::string> methods;   // names in eval_methods()
@@ -26,6 +28,8 @@ struct CleaningOptions {
 };
 
 /// The pairs that methods learn from, and those that they are tested on.
+/// `tested` points into `pairs`, so the structure must not be copied. Each pair is a stretch of one
+/// take in which both streams have frames.
 struct CleaningData {
   std::string windows, windows_hash;
   Pairs pairs;
@@ -40,6 +44,7 @@ struct CleaningData {
 Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call);
 
 /// The answers of a method to data.tested.
+/// `answers` and `marks` have the order of data.tested.
 struct CleanedTakes {
   std::string method;
   std::vector<std::vector<float>> answers;         // each stretch [T,Jout,3] m, not steadied
@@ -58,6 +63,8 @@ struct TrainingPlan {
   std::int64_t steps = 0;
   std::optional<double> seconds;  // on one busy core; absent: not known
 };
+/// The trainings that run_methods() would do, in its order. Nothing is read but the names in the
+/// folder.
 std::vector<TrainingPlan> training_plan(const CleaningOptions& o);
 
 /// Table 9: the paper's three columns and the well-defined ones, mean and deviation over the test
@@ -68,6 +75,7 @@ Table with_joined_deviations(const Table& table);
 
 /// The mean distance to the truth over the marked joints, cm, for each frame [T]. 0 if no joint is
 /// valid.
+/// A curve for one method and one stretch. The joints are those that a Kinect and the truth share.
 std::vector<float> errors_over_time(const CleaningData& data, const Pair& pair,
                                     const std::vector<float>& answer);
 

@@ -26,6 +26,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// A Kinect has no such joints. Both places show which way the head looks, which its joint alone
+// does not.
 constexpr float nose_m = 0.14F, crown_m = 0.16F;  // distances from the head's joint
 constexpr double hidden_s = 3.0;  // how long a limb is hidden, and the pause between two limbs
 /// Kinect samples further apart are not interpolated.
@@ -33,6 +35,8 @@ constexpr double kinect_gap_s = 0.2;
 constexpr const char* true_group = "mocap";
 
 /// The indices of the compared joints in a skeleton, found by a Kinect's names or by CMU's.
+/// The truth of a take may be a Kinect-like skeleton or the model's body, whose joints have CMU's
+/// names.
 Result<std::array<std::size_t, compared_joints>> joints_among(
     const std::vector<std::string>& names) {
   const auto as_kinect = kinect_names(names);
@@ -40,6 +44,7 @@ Result<std::array<std::size_t, compared_joints>> joints_among(
   for (std::size_t p = 0; p < compared_joints; ++p) {
     const std::string wanted(compared_places[p]);
     auto at = index_of(as_kinect, wanted);
+    // A Kinect's name has one equivalent among the joints of a body for fusion (fuse_joints).
     for (const FuseJoint& joint : fuse_joints) {
       if (!at && joint.kinect == wanted) at = index_of(names, std::string(joint.body));
     }
@@ -51,6 +56,7 @@ Result<std::array<std::size_t, compared_joints>> joints_among(
 
 /// The rotation of a joint in the world's space.
 Eigen::Quaternionf turned_in_world(const Clip& clip, std::size_t t, std::size_t joint) {
+  // The loop goes from the joint to the root and multiplies each parent from the left.
   Eigen::Quaternionf out = Eigen::Quaternionf::Identity();
   for (int j = static_cast<int>(joint); j >= 0;
        j = clip.skeleton.parents[static_cast<std::size_t>(j)]) {
@@ -65,6 +71,8 @@ using WorldPlaces = std::vector<float>;  // [T,17,3] m
 
 /// The compared places of a clip. Nose and crown lie at fixed distances from the head's joint and
 /// turn with it.
+/// Forward kinematics gives the joints [T,J,3] m. The two places on the head follow from the head's
+/// rotation.
 Result<WorldPlaces> places_of(const Clip& clip) {
   const auto joints = KA_TRY(joints_among(clip.skeleton.joint_names));
   const std::size_t count = clip.skeleton.joints(), frames = clip.frames.size();
@@ -81,6 +89,7 @@ Result<WorldPlaces> places_of(const Clip& clip) {
     const std::size_t head = joints[2];
     const Eigen::Vector3f base(&out[3 * (t * compared_count + 2)]);
     const Eigen::Quaternionf turn = turned_in_world(clip, t, head);
+    // In the head's own space z points ahead and y up.
     for (const Eigen::Vector3f& way :
          {Eigen::Vector3f(0.0F, 0.0F, nose_m), Eigen::Vector3f(0.0F, crown_m, 0.0F)}) {
       const Eigen::Vector3f place = base + turn * way;
@@ -92,14 +101,18 @@ Result<WorldPlaces> places_of(const Clip& clip) {
 
 /// The places relative to the middle of the hips, with x to the body's left.
 BodyPlaces in_body(WorldPlaces places) {
+  // Places 9 and 12 are the hips, 3 and 6 the shoulders. Both pairs give the direction of the
+  // body's left.
   const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
   const std::size_t cells = places.size() / 3;
+  // 2 is the state "tracked". Every place is present here, so no frame lacks a direction.
   const JointFrames body{compared_count, places, std::vector<std::uint8_t>(cells, std::uint8_t{2})};
   to_body(body_frames(joints, body), places);
   return places;
 }
 
 /// The skeleton of a take's reference stream, "mocap".
+/// The truth is the take's skeleton, as it was recorded. Runs in the child process.
 Result<Clip> true_clip(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const auto& groups = reader.header().groups;
@@ -112,6 +125,8 @@ Result<Clip> true_clip(FileSystem& files, const std::string& path) {
   Clip out;
   out.skeleton = std::get<ClipGroup>(wanted->kind).skeleton;
   TakeSlab slab;
+  // A take comes in slabs. The figure needs the whole skeleton at once, since it picks frames
+  // anywhere.
   while (KA_TRY(reader.next(slab))) {
     const auto* rows = std::get_if<ClipRows>(&slab.rows[at]);
     if (rows == nullptr) continue;
@@ -127,6 +142,8 @@ Result<Clip> true_clip(FileSystem& files, const std::string& path) {
 }
 
 /// For each frame of the grid the row with the nearest stamp.
+/// Models answer on a grid of their own rate, while the truth has the stamps of its device. Stamps
+/// rise, so one walk over the rows finds all of them.
 std::vector<std::size_t> nearest_rows(const std::vector<Time>& stamps, const EvenSpan& span,
                                       double rate_hz) {
   std::vector<std::size_t> out;
@@ -136,6 +153,7 @@ std::vector<std::size_t> nearest_rows(const std::vector<Time>& stamps, const Eve
         std::chrono::duration<double>(static_cast<double>(t) / rate_hz));
     const Time wanted = span.start + since;
     const auto off = [&](std::size_t i) { return std::abs((stamps[i] - wanted).count()); };
+    // A tie goes to the later row. The row never goes back, since the wanted stamps rise as well.
     while (row + 1 < stamps.size() && off(row + 1) <= off(row)) ++row;
     out.push_back(row);
   }
@@ -175,6 +193,8 @@ double heading_of(const BodyFrame& frame) {
 
 /// The angle by which the truth's heading is ahead of an answer's, rad: the mean direction over all
 /// frames.
+/// The heading of the nodes' world is arbitrary. A mean of angles is taken over sine and cosine,
+/// since plain angles jump by a full turn.
 float turned_against(const WorldPlaces& truth, const WorldPlaces& answer) {
   const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
   const auto frames = [&](const WorldPlaces& places) {
@@ -193,8 +213,11 @@ float turned_against(const WorldPlaces& truth, const WorldPlaces& answer) {
 
 /// Adds a node on the truth's head to `nodes`, as number `n`. Its world is that of the nodes, which
 /// is turned by `yaw` against the truth's.
+/// The orientation, acceleration and angular velocity follow from the truth, without errors of a
+/// sensor. The page states this.
 void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size_t n,
                    NodeFrames& nodes) {
+  // -yaw turns the truth's world into that of the nodes.
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(-yaw, Eigen::Vector3f::UnitY()));
   const std::size_t frames = nodes.frames();
   const auto rate = static_cast<float>(rate_hz);
@@ -207,11 +230,15 @@ void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size
     // The second differences span 67 ms (two frames to each side at 30 Hz), as in training.
     const std::size_t early = t < 2 ? 0 : t - 2, late = std::min(t + 2, frames - 1);
     Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();
+    // Near both ends the window is not complete. The acceleration is zero there.
     if (late - early == 4) {
       acceleration = turn * (place(late) - 2.0F * place(t) + place(early)) * (rate * rate / 4.0F);
     }
+    // The step is the rotation from the frame before to the frame after. It is central, so it has
+    // no delay.
     const Eigen::AngleAxisf step(truth.head[before].conjugate() * truth.head[after]);
     float angle = step.angle();
+    // The shorter way round is the real one.
     if (angle > static_cast<float>(EIGEN_PI)) angle -= static_cast<float>(2.0 * EIGEN_PI);
     const float span = static_cast<float>(std::max<std::size_t>(after - before, 1)) / rate;
     const Eigen::Vector3f angular = step.axis() * (angle / span);
@@ -223,10 +250,13 @@ void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size
               nodes.acceleration.begin() + static_cast<std::ptrdiff_t>(3 * at));
     std::copy(angular.data(), angular.data() + 3,
               nodes.angular_velocity.begin() + static_cast<std::ptrdiff_t>(3 * at));
+    // The computed node is valid in every frame.
     nodes.valid[at] = 1;
   }
 }
 
+// The child sends its result as text. Floats are written with enough digits to be read back
+// unchanged.
 Json json_of(const ComparedMotion& motion) {
   return {{"take", motion.take},    {"rate_hz", motion.rate_hz}, {"frames", motion.frames},
           {"truth", motion.truth},  {"answers", motion.answers}, {"states", motion.states},
@@ -252,6 +282,7 @@ Result<ComparedMotion> motion_of_json(const std::string& text, const std::string
 }
 
 /// Runs the work in a child process. Errors without a file name the take.
+/// A crash of HDF5 on one take must not end the run, so each take has a process of its own.
 Result<ComparedMotion> guarded(const ComparedTake& take,
                                const std::function<Result<ComparedMotion>()>& work) {
   const auto in_child = [&]() -> Result<std::string> {
@@ -263,6 +294,7 @@ Result<ComparedMotion> guarded(const ComparedTake& take,
 }
 
 /// The nodes of a take on the grid, calibrated for that model.
+/// The words tell where the T-pose is and how headings are found ("auto").
 Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, const WornWords& worn,
                              const EvenSpan& span) {
   const PosedNodes posed =
@@ -274,6 +306,8 @@ Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, co
 /// answer without it.
 Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const ComparedTake& take,
                                 FileSystem& files) {
+  // The grid begins with the truth's first frame and has the rate of the models, so truth and
+  // answers share their frames.
   const Clip clip = KA_TRY(true_clip(files, take.path));
   const NamedNodes named = KA_TRY(nodes_of_take(files, take.path, ""));
   const double rate_hz = solvers.front().model().layout.rate_hz;
@@ -285,8 +319,11 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
     if (layout.rate_hz != rate_hz) {
       return Failure(Error{"", 0, "models with the same rate", "several rates"});
     }
+    // No take has a node on the head: put_head_node() fills its place below.
     NodeFrames nodes = KA_TRY(nodes_for(solver.model(), named, {"", "auto"}, span));
     const auto head = std::find(layout.nodes.begin(), layout.nodes.end(), "head");
+    // The first answer uses the real nodes only. Its heading tells how far the nodes' world is
+    // turned.
     WorldPlaces places = KA_TRY(places_of(solver.clip(nodes, span.start)));
     if (head != layout.nodes.end()) {
       const float yaw = turned_against(truth.places, places);
@@ -294,12 +331,15 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
                     nodes);
       places = KA_TRY(places_of(solver.clip(nodes, span.start)));
     }
+    // in_body() removes position and heading: without a camera no node knows them, so they are not
+    // compared.
     out.answers.push_back(in_body(std::move(places)));
   }
   return out;
 }
 
 /// The limbs that are hidden one after the other, by a Kinect's names.
+/// The order is that of the page's caption: figure 10 shows the right arm first.
 const std::array<std::vector<std::string>, 4>& hidden_limbs() {
   static const std::array<std::vector<std::string>, 4> all{
       {{"ElbowRight", "WristRight", "HandRight"},
@@ -311,6 +351,8 @@ const std::array<std::vector<std::string>, 4>& hidden_limbs() {
 
 /// The limb that is hidden in frame `t`; absent in every second stretch.
 std::optional<std::size_t> hidden_limb_at(std::size_t t, double rate_hz) {
+  // Stretches of 3 s alternate: none hidden, right arm, none, left arm, and so on. The first 3 s
+  // are whole.
   const auto stretch = static_cast<std::size_t>(static_cast<double>(t) / rate_hz / hidden_s);
   if (stretch % 2 == 0) return std::nullopt;
   return (stretch / 2) % hidden_limbs().size();
@@ -329,6 +371,7 @@ void hide_limbs(const std::vector<std::string>& joints, double rate_hz, JointFra
     for (std::size_t j = 0; j < joints.size(); ++j) {
       if (!is_hidden(t, rate_hz, joints[j])) continue;
       const std::size_t at = t * joints.size() + j;
+      // A hidden joint looks like one that the Kinect lost: state 0 and zeros as its position.
       kinect.seen[at] = 0;
       std::fill_n(kinect.positions.begin() + static_cast<std::ptrdiff_t>(3 * at), 3, 0.0F);
     }
@@ -336,12 +379,16 @@ void hide_limbs(const std::vector<std::string>& joints, double rate_hz, JointFra
 }
 
 /// Adds the Kinect's own joints as an answer. A missing joint stays at its last place.
+/// This is the baseline of figure 10. Its states go to `out.states`, so that the picture can leave
+/// out missing joints.
 void put_kinect(const FuseLayout& layout, JointFrames kinect, ComparedMotion& out) {
   const JointFrames seen = kinect;
   fill_missing(kinect, true);
   WorldPlaces places;
   for (std::size_t t = 0; t < kinect.frames(); ++t) {
     for (std::size_t p = 0; p < compared_count; ++p) {
+      // A Kinect has no nose and crown. Their cells hold another joint's position, and state 0
+      // marks them as missing.
       const auto j = index_of(layout.joints, std::string(compared_places[p]));
       const std::size_t at = t * kinect.joints + j.value_or(0);
       places.insert(places.end(), &kinect.positions[3 * at], &kinect.positions[3 * at] + 3);
@@ -360,22 +407,26 @@ Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSy
   BothDevices both;
   both.kinect = KA_TRY(points_of_take(files, take.path, ""));
   both.nodes = KA_TRY(nodes_of_take(files, take.path, ""));
+  // The calibration of the nodes uses the whole Kinect: limbs are hidden after it.
   FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), {"", "auto"}));
   hide_limbs(layout.joints, rate_hz, given.input.kinect);
   const EvenSpan span{given.start, given.input.frames()};
   ComparedMotion out{take.name, rate_hz, span.frames, {}, {}, {}, {}};
   out.truth = in_body(KA_TRY(true_frames(clip, span, rate_hz)).places);
   put_kinect(layout, given.input.kinect, out);
+  // One model gives all three answers: a device that is switched off is invalid in every frame.
   FuseInput kinect_alone = given.input, nodes_alone = given.input;
   std::fill(kinect_alone.nodes.valid.begin(), kinect_alone.nodes.valid.end(), std::uint8_t{0});
   std::fill(nodes_alone.kinect.seen.begin(), nodes_alone.kinect.seen.end(), std::uint8_t{0});
   const Skeleton mean = fuser.model().body.skeleton;
   for (const FuseInput* input : {&kinect_alone, &nodes_alone, &given.input}) {
+    // The Kinect shows the lengths of bones. An answer without it may not use them.
     fuser.use_body(input == &nodes_alone ? mean : given.body);
     out.answers.push_back(in_body(KA_TRY(places_of(fuser.clip(*input, given.start)))));
   }
   for (std::size_t t = 0; t < span.frames; ++t) {
     for (const std::string_view place : compared_places) {
+      // Every place has an entry, although only joints of limbs can be hidden.
       out.hidden.push_back(is_hidden(t, rate_hz, std::string(place)) ? 1 : 0);
     }
   }

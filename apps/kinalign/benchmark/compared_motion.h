@@ -19,6 +19,8 @@ namespace kinalign {
 
 /// The compared places of a body: joints by a Kinect's names, then two places that turn with the
 /// head.
+/// The order is fixed: places 0 to 14 are joints, so `compared_joints` counts them, and both places
+/// of the head come last.
 inline constexpr std::array<std::string_view, 17> compared_places{
     "SpineBase",     "SpineShoulder", "Head",       "ShoulderLeft", "ElbowLeft", "WristLeft",
     "ShoulderRight", "ElbowRight",    "WristRight", "HipLeft",      "KneeLeft",  "AnkleLeft",
@@ -32,10 +34,13 @@ inline constexpr std::array<int, 17> compared_parents{-1, 0, 1,  1, 3,  4,  1, 6
 /// Places [T,17,3] m relative to the middle of the hips, turned so that x is the body's left.
 using BodyPlaces = std::vector<float>;
 
+/// All that a figure needs of one take. It crosses the border between two processes as JSON, so its
+/// numbers must be finite.
 struct ComparedMotion {
   std::string take;
   double rate_hz = 30.0;
   std::size_t frames = 0;
+  // [T,17,3] m; every member of `answers` has the same shape and grid of stamps.
   BodyPlaces truth;
   std::vector<BodyPlaces> answers;
   std::vector<std::uint8_t> states;  // [T,17] Tracking of answers[0] if that is a Kinect
@@ -49,6 +54,7 @@ struct ComparedTake {
 
 /// The answers of all models to the take's nodes. The take has no node on the head, so a model that
 /// needs one gets one computed from the truth.
+/// The models must have one rate. The order of the answers is that of `solvers`.
 Result<ComparedMotion> compare_poses(std::vector<PoseSolver>& solvers, const ComparedTake& take,
                                      Call& call);
 

@@ -40,6 +40,8 @@ struct JointGroup {
 /// The first group is also the one of single frames' errors.
 const std::vector<JointGroup>& joint_groups() {
   static const std::vector<JointGroup> all{
+      // Places 0, 1, 9 and 12 (trunk and hips) are left out. Bodies are compared with the middle of
+      // the hips in one place.
       {"all_cm", "all, cm", {2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14}},
       {"shoulders_cm", "shoulders, cm", {3, 6}},
       {"elbows_cm", "elbows, cm", {4, 7}},
@@ -60,9 +62,11 @@ double distance_cm(const BodyPlaces& a, const BodyPlaces& b, std::size_t cell) {
 }
 
 /// The angle between the directions in which two heads look in frame `t`, degrees.
+/// The direction of look goes from the head's joint to the nose.
 double look_apart_deg(const BodyPlaces& a, const BodyPlaces& b, std::size_t t) {
   double dot = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
+    // Cells are numbered frame by frame: t * 17 + place.
     const std::size_t nose = 3 * (t * compared_count + nose_place) + k,
                       head = 3 * (t * compared_count + head_place) + k;
     const auto x = static_cast<double>(a[nose] - a[head]),
@@ -71,6 +75,8 @@ double look_apart_deg(const BodyPlaces& a, const BodyPlaces& b, std::size_t t) {
     aa += x * x;
     bb += y * y;
   }
+  // Rounding may put the cosine slightly above 1, for which acos is not defined. 1e-12 keeps a body
+  // without a head from dividing by zero.
   const double cosine = dot / std::sqrt(std::max(aa * bb, 1e-12));
   return turn_bend_deg * std::acos(std::clamp(cosine, -1.0, 1.0));
 }
@@ -86,6 +92,7 @@ double frame_error_cm(const ComparedMotion& motion, std::size_t answer, std::siz
 }
 
 /// The mean over the cells of all motions for which `counts` is true; absent if there is none.
+/// All cells of all takes weigh the same, so a long take counts more than a short one.
 std::optional<double> mean_distance(
     const std::vector<ComparedMotion>& motions, std::size_t answer,
     const std::vector<std::size_t>& places,
@@ -116,6 +123,7 @@ double mean_look_deg(const std::vector<ComparedMotion>& motions, std::size_t ans
   return sum / std::max(count, 1.0);
 }
 
+/// An absent mean gives an empty cell and not a zero, which would look like a perfect answer.
 Cell cell_of(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
 
 /// Frame `t` as a figure for a picture.
@@ -127,6 +135,7 @@ StickFigure figure_of(const BodyPlaces& places, std::size_t t, FigureColour colo
 }
 
 /// Frame `t` of the Kinect; missing joints are left out.
+/// Only answers.front() of a device figure is a Kinect, so only it has states.
 StickFigure seen_figure_of(const ComparedMotion& motion, std::size_t t) {
   StickFigure out = figure_of(motion.answers.front(), t, FigureColour::kinect);
   const auto first = motion.states.begin() + static_cast<std::ptrdiff_t>(compared_count * t);
@@ -134,6 +143,7 @@ StickFigure seen_figure_of(const ComparedMotion& motion, std::size_t t) {
   return out;
 }
 
+/// The truth is drawn first and pale, so the answer lies over it.
 PosePicture answer_over_truth(const ComparedMotion& motion, std::size_t t, StickFigure answer,
                               std::string below) {
   StickFigure truth = figure_of(motion.truth, t, FigureColour::truth);
@@ -149,6 +159,8 @@ std::string second_of(const ComparedMotion& motion, std::size_t t) {
 std::array<std::size_t, instants> even_instants(std::size_t from, std::size_t to) {
   std::array<std::size_t, instants> out{};
   for (std::size_t i = 0; i < instants; ++i) {
+    // The instants are the middles of five equal parts: the first and the last frame are never
+    // shown.
     out[i] = from + (to - from) * (2 * i + 1) / (2 * instants);
   }
   return out;
@@ -157,10 +169,14 @@ std::array<std::size_t, instants> even_instants(std::size_t from, std::size_t to
 /// The takes that a figure is made from.
 struct FigureTakes {
   std::vector<ComparedTake> nodes, both;  // with nodes; with nodes and a Kinect
+  // False if no test person has such a take. The page then states that the takes are not of test
+  // people.
   bool nodes_tested = true, both_tested = true;
 };
 
 /// The first takes of test people; if test people have none, the first of all takes.
+/// Takes of test people are preferred, since a model that was trained on this split has not seen
+/// them.
 std::vector<ComparedTake> preferred(std::vector<std::pair<ComparedTake, bool>> all,
                                     bool& are_tested) {
   are_tested = std::any_of(all.begin(), all.end(), [](const auto& one) { return one.second; });
@@ -177,6 +193,7 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(o.data, call));
   const auto takes = KA_TRY(built_takes(files, o.data, index, ""));
   std::set<TakeName> tested;
+  // A take belongs to a test person if the split's part "test" names it.
   for (const SplitPart& part : KA_TRY(read_split(files, o.split)).parts) {
     if (part.name == "test") tested.insert(part.takes.begin(), part.takes.end());
   }
@@ -186,6 +203,7 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
     const std::pair one{
         ComparedTake{to_string(take.name), o.data + "/" + path_of(take.name, TakeFile::take)},
         tested.contains(take.name)};
+    // A take with a Kinect and nodes serves all three figures.
     nodes.push_back(one);
     if (take.summary.has(Modality::kinect)) both.push_back(one);
   }
@@ -195,6 +213,7 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
   return out;
 }
 
+/// Reads and builds the model. A model that can't be used fails here, before any take is read.
 Result<PoseSolver> pose_solver(const std::string& path, Call& call) {
   const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_model_bytes));
   return PoseSolver::make(KA_TRY(read_pose_model(bytes, path)));
@@ -215,6 +234,8 @@ struct AnsweredTakes {
 };
 
 /// Compares all takes. A take that fails is counted, and stops no other.
+/// The page is worth having even if some takes can't be answered. The first fault stands for all of
+/// them in the note.
 AnsweredTakes answered(const std::vector<ComparedTake>& takes, bool are_tested,
                        const std::function<Result<ComparedMotion>(const ComparedTake&)>& compare) {
   AnsweredTakes out;
@@ -248,6 +269,8 @@ PosePictures pose_figure(const AnsweredTakes& all) {
   PosePictures out;
   out.id = "figure-8";
   out.title = "Figure 8: the pose from five nodes";
+  // A figure without data keeps its title and says why it is empty, so the page has the same parts
+  // on every data set.
   if (motions.empty()) {
     out.absent = "No take has the nodes that the model needs. " + all.note();
     return out;
@@ -259,6 +282,7 @@ PosePictures pose_figure(const AnsweredTakes& all) {
       "nodes. {}",
       shown.take, how_compared);
   out.rows = {{"five nodes", {}}, {"truth", {}}};
+  // The pictures show the first take that could be answered. The table is over all of them.
   for (const std::size_t t : even_instants(0, shown.frames)) {
     out.columns.emplace_back(second_of(shown, t), "");
     out.rows[0].second.push_back(
@@ -280,10 +304,13 @@ PosePictures pose_figure(const AnsweredTakes& all) {
 }
 
 /// The frames in which the true head looks farthest aside, one in each fifth of the take.
+/// "Aside" is the distance from head to nose to the left or right and up or down. Straight ahead it
+/// is near zero.
 std::array<std::size_t, instants> head_instants(const ComparedMotion& motion) {
   std::array<std::size_t, instants> out{};
   for (std::size_t i = 0; i < instants; ++i) {
     double most = -1.0;
+    // One frame of each fifth spreads the instants over the take.
     for (std::size_t t = motion.frames * i / instants; t < motion.frames * (i + 1) / instants;
          ++t) {
       const std::size_t nose = 3 * (t * compared_count + nose_place),
@@ -309,6 +336,8 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
     out.absent = "No take has the nodes that the model needs. " + all.note();
     return out;
   }
+  // A missing second model is no reason to leave the figure out: the first row still shows the head
+  // without a node.
   if (!has_head_model) {
     out.absent =
         "No model with a node on the head was given. kinalign train inertial --nodes "
@@ -326,6 +355,7 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
                        "truth. The two models may have been trained on different people."
                      : "",
       how_compared);
+  // The number of answers is that of the models, in the order of make_pose_figures().
   const std::vector<std::string> names =
       has_head_model ? std::vector<std::string>{"five nodes", "and one on the head"}
                      : std::vector<std::string>{"five nodes"};
@@ -354,11 +384,15 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   return out;
 }
 
+// The order must be that of compare_devices(): the Kinect's own joints, then the three answers of
+// the model.
 constexpr std::array<const char*, 4> device_rows{"Kinect as it is", "Kinect alone", "nodes alone",
                                                  "both"};
 constexpr std::array<FigureColour, 4> device_colours{FigureColour::kinect, FigureColour::kinect,
                                                      FigureColour::imu, FigureColour::both};
 
+/// A cell counts as seen only if the Kinect of the take tracked or inferred the joint in that
+/// frame.
 bool is_seen_place(const ComparedMotion& motion, std::size_t cell) {
   return motion.states[cell] != 0;
 }
@@ -381,6 +415,7 @@ Table device_table(const AnsweredTakes& all) {
   const auto hidden = [](const ComparedMotion& motion, std::size_t cell) {
     return motion.hidden[cell] != 0;
   };
+  // Each row is one answer; the columns split the same joints into hidden and seen ones.
   for (std::size_t a = 0; a < device_rows.size(); ++a) {
     table.rows.push_back({std::string(device_rows[a]),
                           cell_of(mean_distance(motions, a, joints, any)),
@@ -391,6 +426,7 @@ Table device_table(const AnsweredTakes& all) {
 }
 
 /// The first stretch in which a limb is hidden; the whole motion if nothing is hidden.
+/// The picture shows one hidden stretch only, so that all instants are about the same limb.
 std::pair<std::size_t, std::size_t> first_hidden(const ComparedMotion& motion) {
   const auto is_hidden_frame = [&](std::size_t t) {
     const auto first = motion.hidden.begin() + static_cast<std::ptrdiff_t>(t * compared_count);
@@ -427,6 +463,8 @@ PosePictures device_figure(const AnsweredTakes& all) {
     for (std::size_t a = 0; a < device_rows.size(); ++a) {
       StickFigure answer =
           a == 0 ? seen_figure_of(shown, t) : figure_of(shown.answers[a], t, device_colours[a]);
+      // Only the first row is the raw Kinect: its hidden joints are left out instead of standing
+      // still.
       out.rows[a].second.push_back(answer_over_truth(
           shown, t, std::move(answer), fmt::format("{:.1f} cm", frame_error_cm(shown, a, t))));
     }
@@ -437,6 +475,7 @@ PosePictures device_figure(const AnsweredTakes& all) {
 }
 
 /// The path of a model: the given one, else the shipped one. Empty if neither exists.
+/// A shipped model makes the figures work without any flag.
 std::string model_or_shipped(const std::string& given, const std::string& name) {
   if (!given.empty()) return given;
   return shipped_model(name).value_or("");
@@ -450,6 +489,8 @@ PosePictures without_model(PosePictures figure, const std::string& how) {
 /// Figure 10, or the note that no model is there for it.
 Result<PosePictures> make_device_figure(const NodeFigureOptions& o, const FigureTakes& takes,
                                         Call& call) {
+  // A fusion model is needed for all rows but the first, so without one the whole figure is left
+  // out.
   const std::string path = model_or_shipped(o.fuse_model, "fuse");
   if (path.empty()) {
     return without_model(device_figure({}),
@@ -477,6 +518,7 @@ Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
   if (!with_head.empty()) {
     solvers.push_back(KA_TRY(pose_solver(with_head, call)));
     const auto& nodes = solvers.back().model().layout.nodes;
+    // A model without this node would give the same answer as the first one, under a wrong title.
     if (std::find(nodes.begin(), nodes.end(), "head") == nodes.end()) {
       return Failure(
           Error{with_head, 0, "a model with a node on the head", "a model without this node"});
@@ -485,12 +527,14 @@ Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
   const AnsweredTakes all =
       answered(takes.nodes, takes.nodes_tested,
                [&](const ComparedTake& take) { return compare_poses(solvers, take, call); });
+  // Both figures come from the same answers, so each take is read once.
   return std::vector<PosePictures>{pose_figure(all), head_figure(all, solvers.size() > 1)};
 }
 
 }  // namespace
 
 Result<std::vector<PosePictures>> node_figures(const NodeFigureOptions& o, Call& call) {
+  // The figures stand on the page in this order: 8, 9, 10.
   const FigureTakes takes = KA_TRY(figure_takes(o, call));
   auto out = KA_TRY(make_pose_figures(o, takes, call));
   out.push_back(KA_TRY(make_device_figure(o, takes, call)));

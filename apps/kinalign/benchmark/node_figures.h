@@ -11,6 +11,8 @@
 
 namespace kinalign {
 
+/// Each empty path of a model stands for the model that is shipped with the program. Models are
+/// optional: without one, the figure states how to make it.
 struct NodeFigureOptions {
   std::string data, split;  // the data set's folder; its split file
   std::string pose_model;   // for five nodes; empty: the shipped model

@@ -24,6 +24,7 @@ namespace {
 constexpr float bin_s = 0.5F;
 /// The moving bodies show this much of a take.
 constexpr double most_moving_s = 30.0;
+// Speeds are differences over this time to each side of a frame.
 constexpr double half_turn_window_s = 0.25;
 
 /// The joints that show what a person does.
@@ -34,6 +35,7 @@ struct ActingJoints {
 };
 
 /// Absent if a joint is missing.
+/// Without all six joints no instant can be chosen, and the page shows the reason.
 std::optional<ActingJoints> acting_joints(const std::vector<std::string>& outputs) {
   const auto names = kinect_names(outputs);
   std::array<std::size_t, 6> found{};
@@ -52,6 +54,8 @@ std::optional<ActingJoints> acting_joints(const std::vector<std::string>& output
 }
 
 /// The truth of a stretch, with the quantities by which instants are chosen.
+/// One object serves one stretch. It holds references, so data, joints and pair must outlive it. An
+/// instant is scored only if is_whole() is true.
 class TrueMotion {
  public:
   TrueMotion(const CleaningData& data, const ActingJoints& joints, const Pair& pair)
@@ -59,8 +63,10 @@ class TrueMotion {
         joints_(joints),
         count_(data.layout.outputs.size()),
         rate_hz_(data.layout.rate_hz) {
+    // 2 is the state "tracked": every joint takes part in the directions.
     JointFrames body{count_, pair.truth,
                      std::vector<std::uint8_t>(pair.valid.size(), std::uint8_t{2})};
+    // A body without hips and shoulders has no direction. turning() is then 0 everywhere.
     if (const auto found = body_joints(data.layout.outputs)) frames_ = body_frames(*found, body);
   }
 
@@ -92,6 +98,7 @@ class TrueMotion {
     if (frames_.empty()) return 0.0;
     const std::size_t a = earlier(t), b = later(t);
     const double turned = heading(b) - heading(a);
+    // The remainder keeps the shorter way round: a heading jumps by a full turn at the back.
     return std::remainder(turned, 2.0 * std::numbers::pi) / seconds(a, b);
   }
 
@@ -99,6 +106,7 @@ class TrueMotion {
   std::size_t window() const {
     return std::max<std::size_t>(static_cast<std::size_t>(half_turn_window_s * rate_hz_), 1);
   }
+  // The window is cut at both ends of the stretch; seconds() returns the real length.
   std::size_t earlier(std::size_t t) const { return t < window() ? 0 : t - window(); }
   std::size_t later(std::size_t t) const { return std::min(t + window(), frames() - 1); }
   double seconds(std::size_t a, std::size_t b) const {
@@ -127,13 +135,18 @@ struct PoseSearch {
 std::vector<PoseSearch> pose_searches() {
   using Motion = const TrueMotion&;
   using Joints = const ActingJoints&;
+  // A trunk's height is the difference between shoulders and hips: largest when upright, smallest
+  // when bent.
   const auto trunk = [](Motion m, Joints j, std::size_t t) {
     return m.height(t, j.shoulders) - m.height(t, j.hips);
   };
+  // y is up, so the second coordinate is the height.
   const auto hands = [](Motion m, Joints j, std::size_t t) {
     return std::array{static_cast<double>(m.place(t, j.wrist_left)[1]),
                       static_cast<double>(m.place(t, j.wrist_right)[1])};
   };
+  // The scores have different units, which does not matter: only scores of the same search are
+  // compared.
   return {{"standing",
            [=](Motion m, Joints j, std::size_t t) {
              const auto [left, right] = hands(m, j, t);
@@ -159,6 +172,7 @@ struct ChosenFrame {
 std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoints& joints,
                                        const std::vector<PoseSearch>& searches) {
   std::vector<ChosenFrame> out(searches.size());
+  // The edge is longer than half a window, so speed() and turning() always have a whole window.
   const auto edge = static_cast<std::size_t>(0.5 * data.layout.rate_hz);
   for (std::size_t p = 0; p < data.tested.size(); ++p) {
     const TrueMotion motion(data, joints, *data.tested[p]);
@@ -166,6 +180,7 @@ std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoi
       if (!motion.is_whole(t)) continue;
       for (std::size_t s = 0; s < searches.size(); ++s) {
         const double score = searches[s].score(motion, joints, t);
+        // The first of equal frames wins, so the choice does not depend on anything but the data.
         if (score > out[s].score) out[s] = {p, t, score};
       }
     }
@@ -174,6 +189,8 @@ std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoi
 }
 
 /// The origin of a picture: below the truth's hips, at the height of its lowest joint.
+/// The Kinect and the answers use the truth's origin as well, so an error of position can be seen
+/// in the picture.
 std::array<float, 3> origin_of(const CleaningData& data, const ActingJoints& joints,
                                const ChosenFrame& at) {
   const TrueMotion motion(data, joints, *data.tested[at.pair]);
@@ -193,11 +210,13 @@ StickFigure figure_at(const std::vector<float>& positions, std::size_t t,
   StickFigure out{colour, false, {}, parents, {}};
   const std::size_t first = 3 * t * parents.size();
   for (std::size_t i = 0; i < 3 * parents.size(); ++i) {
+    // i % 3 selects the coordinate: x, y, z.
     out.positions.push_back(positions[first + i] - origin[i % 3]);
   }
   return out;
 }
 
+/// The states decide how the page draws each joint: dashed where it is inferred.
 StickFigure kinect_at(const CleaningData& data, const ChosenFrame& at,
                       const std::array<float, 3>& origin) {
   const JointFrames& input = data.tested[at.pair]->input;
@@ -235,6 +254,7 @@ DrawnJoints drawn_joints(const std::vector<std::string>& names) {
   DrawnJoints out;
   std::vector<std::string> kept;
   const auto called = kinect_names(names);
+  // Fingers and other joints without an equivalent are left out, in the truth and in the answers.
   for (std::size_t j = 0; j < called.size(); ++j) {
     if (std::find(kinect_joints.begin(), kinect_joints.end(), called[j]) == kinect_joints.end()) {
       continue;
@@ -282,6 +302,8 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
   const auto chosen = choose_frames(data, *joints, searches);
   std::vector<StickFigure> truths;
   std::vector<std::array<float, 3>> origins;
+  // The first row shows what all methods were given. The rows of the methods follow, and the truth
+  // is the last.
   out.rows.emplace_back("Kinect", std::vector<PosePicture>{});
   for (std::size_t c = 0; c < chosen.size(); ++c) {
     out.columns.emplace_back(searches[c].name, where_of(data, chosen[c]));
@@ -296,6 +318,7 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
       const auto& [p, t, score] = chosen[c];
       StickFigure behind = truths[c];
       behind.is_pale = true;
+      // The number below a picture is that method's error in this very frame.
       const float cm = errors_over_time(data, *data.tested[p], method.answers[p])[t];
       out.rows.back().second.push_back(
           {{behind,
@@ -308,6 +331,7 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
   return out;
 }
 
+// A last bin that is not full is left out, since it would be noisier than all others.
 ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all) {
   const std::size_t longest = longest_stretch(data);
   const Pair& pair = *data.tested[longest];
@@ -334,6 +358,7 @@ ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& 
 SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes>& all) {
   const std::size_t longest = longest_stretch(data);
   const Pair& pair = *data.tested[longest];
+  // The page holds every frame of every body, so its size grows with this time.
   const auto most = static_cast<std::size_t>(most_moving_s * data.layout.rate_hz);
   const std::size_t frames = std::min(pair.input.frames(), most);
   SideBySide out;
@@ -352,6 +377,7 @@ SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes
   MovingBody kinect = moving_body(seen, pair.input.positions, pair.input.joints, frames);
   kinect.name = "Kinect";
   kinect.colour = FigureColour::kinect;
+  // Only the Kinect has states: an answer has a value for every joint.
   for (std::size_t t = 0; t < frames; ++t) {
     for (const std::size_t j : seen.joints) {
       kinect.states.push_back(pair.input.seen[t * pair.input.joints + j]);
@@ -363,6 +389,8 @@ SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes
     MovingBody body = moving_body(answered, answer, joints, frames);
     body.name = method.method;
     body.cm = errors_over_time(data, pair, answer);
+    // A stretch shorter than `most_moving_s` has fewer frames; the errors are cut to the frames
+    // that are shown.
     body.cm.resize(frames);
     out.bodies.push_back(std::move(body));
   }

@@ -13,6 +13,7 @@ namespace kinalign {
 
 /// Rows: the Kinect, each method (not steadied), the truth. Columns: an instant each of standing,
 /// waving, bending, turning right and turning left, chosen by the truth of all tested takes.
+/// Only the truth chooses the instants, so no method can be favoured by the choice.
 PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
 /// The errors over the longest tested stretch, as means over half a second.
@@ -20,6 +21,7 @@ ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& 
 
 /// The first half minute of the longest tested stretch: the truth, the Kinect, each method (not
 /// steadied). Fingers are left out.
+/// The bodies of the page's player. They have one clock, so all pictures turn and move together.
 SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
 }  // namespace kinalign

@@ -27,6 +27,8 @@ namespace {
 /// A larger answer is refused.
 constexpr std::size_t most_answer_bytes = std::size_t{1} << 30U;
 
+/// The values as bytes in the machine's order. NPZ type names such as "<f4" promise little-endian
+/// numbers.
 template <class T>
 std::string_view bytes_of_values(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
@@ -39,6 +41,7 @@ Result<void> write_question(const CleaningData& data, const Pair& pair, const st
   const NpzTexts inputs = npz_texts("joint_names", data.layout.inputs),
                  outputs = npz_texts("output_names", data.layout.outputs);
   const std::vector<double> rate{data.layout.rate_hz};
+  // The arrays are appended in the order in which they were declared.
   NpzWriter writer =
       KA_TRY(NpzWriter::create(call.surroundings.files, path, Overwrite::yes,
                                {npz_numbers("positions", Stored::float32, {frames, joints, 3}),
@@ -53,12 +56,15 @@ Result<void> write_question(const CleaningData& data, const Pair& pair, const st
 }
 
 /// Runs the program and returns its exit code. Its output goes to stderr.
+/// Standard input is /dev/null, so a program that asks a question ends instead of waiting. Standard
+/// output goes to stderr, since --json owns stdout.
 Result<int> run_program_on(const std::string& program, std::string question, std::string answer) {
   std::string name = program;
   const std::array<char*, 4> words{name.data(), question.data(), answer.data(), nullptr};
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  // The child's descriptor 1 becomes a copy of its descriptor 2.
   ::posix_spawn_file_actions_adddup2(&actions, 2, 1);
   pid_t child = 0;
   const int fault =
@@ -68,12 +74,15 @@ Result<int> run_program_on(const std::string& program, std::string question, std
     return Failure(Error{program, 0, "a program that can be started", std::strerror(fault)});
   }
   int status = 0;
+  // A signal to this process may interrupt waiting; the child goes on.
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  // A shell reports a death by signal N as 128 + N, too.
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 /// The numbers of an array of float32 or float64; empty for another type.
+/// NumPy writes float64 unless told otherwise, so both types are accepted.
 std::vector<float> floats_of(const StoredArray& array) {
   std::vector<float> out;
   if (array.type == "<f4") {
@@ -94,6 +103,7 @@ Result<std::vector<float>> read_answer(const std::string& path, std::size_t fram
   const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_answer_bytes));
   const auto arrays = KA_TRY(stored_arrays(bytes, path));
   const auto positions = arrays.find("positions");
+  // The program must answer each frame of the stretch for each joint in output_names.
   const std::vector<std::size_t> shape{frames, joints, 3};
   if (positions != arrays.end() && positions->second.shape == shape) {
     auto out = floats_of(positions->second);
@@ -112,6 +122,7 @@ Result<std::vector<float>> read_answer(const std::string& path, std::size_t fram
 Result<ProgramMethod> program_method(const std::string& words) {
   const std::size_t equals = words.find('=');
   const std::string name = words.substr(0, equals);
+  // The name becomes a folder and a row of the table, so it may contain no '/' and no space.
   const auto is_fit = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
   if (equals == std::string::npos || name.empty() || equals + 1 == words.size() ||
       !std::all_of(name.begin(), name.end(), is_fit)) {
@@ -129,6 +140,7 @@ Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& 
   std::error_code ignored;
   for (const Pair* pair : data.tested) {
     const std::string question = below + "/input.npz", answer = below + "/output.npz";
+    // An answer of the stretch before would be taken for this one if the program wrote nothing.
     std::filesystem::remove(answer, ignored);
     KA_TRY(write_question(data, *pair, question, call));
     const int code = KA_TRY(run_program_on(method.program, question, answer));

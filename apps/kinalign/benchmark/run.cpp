@@ -28,14 +28,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// A page of a benchmark is smaller. The limit keeps check_page() from reading a large foreign file.
 constexpr std::size_t longest_page = std::size_t{1} << 28U;
 
+/// The options of `kinalign benchmark run`. `programs` holds the values of --method; `methods` the
+/// words after the folder.
 struct BenchmarkRun {
   std::vector<std::string> data, methods, programs;
   std::string split, device = "cpu", format = "text";
   std::string pose_model, head_model, fuse_model;
   std::int64_t seed = 1, steps = 0;
 
+  // The options that cleaning.h knows. Without METHOD the default methods of the help page run.
   CleaningOptions cleaning(const Call& call) const {
     CleaningOptions out;
     out.data = folder_of(data);
@@ -92,6 +96,7 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   model("fuse-model", "model for figure 10: a Kinect and nodes (default: the shipped model)",
         o.fuse_model);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    // The parse is for its error: a wrong NAME=PROGRAM is wrong use, before anything is trained.
     for (const std::string& words : o.programs) KA_TRY(program_method(words));
     if (!common.out.empty()) return {};
     return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});
@@ -100,6 +105,7 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
 }
 
 /// Fails if the page's name belongs to a file that is no page of a benchmark.
+/// A run may replace its own page, so that repeating a command needs no --force.
 Result<void> check_page(const std::string& path, Call& call) {
   std::error_code fault;
   if (call.common.force || !std::filesystem::exists(path, fault)) return {};
@@ -116,7 +122,9 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
   Json json = Json::array();
   double seconds = 0.0;
   std::size_t trainings = 0, not_known = 0;
+  // The result is an upper bound, since the speeds were measured on a busy core.
   for (const TrainingPlan& one : training_plan(o)) {
+    // A model that is there takes no time, although it may turn out to be of another identity.
     const std::optional<double> takes = one.is_there ? 0.0 : one.seconds;
     trainings += one.is_there ? 0 : 1;
     not_known += takes ? 0 : 1;
@@ -142,6 +150,7 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
 }
 
 /// Writes table 9. Deviations are joined to their means, but in CSV they keep columns of their own.
+/// The three files have the same numbers: for a README, for a paper, and for computing.
 Result<void> write_tables(const Table& table, const std::string& folder, Call& call) {
   const Table for_people = with_joined_deviations(table);
   for (const auto& [name, format] :
@@ -155,6 +164,7 @@ Result<void> write_tables(const Table& table, const std::string& folder, Call& c
 }
 
 /// The row with the smallest number in the column of that key.
+/// nullptr if no row has a number in this column. `key` must be a column of the table.
 const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
   std::size_t column = 0;
   while (column < table.columns.size() && table.columns[column].key != key) ++column;
@@ -167,6 +177,7 @@ const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
   return best;
 }
 
+/// `row` must have a number in that column, as the rows of best_row() have.
 double value_of(const Table& table, const std::vector<Cell>& row, const std::string& key) {
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (table.columns[c].key == key) return std::get<double>(row[c]);
@@ -189,6 +200,8 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
     page.facts.push_back(
         fmt::format("{} steps per network", grouped(static_cast<std::uint64_t>(o.steps))));
   }
+  // The headline is the best mean position. Next to it stand the first method's value (the raw
+  // Kinect by default) and the best bones.
   if (const auto* best = best_row(table, "position_cm")) {
     const auto& name = std::get<std::string>(best->front());
     const double cm = value_of(table, *best, "position_cm");
@@ -217,6 +230,7 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
 }
 
 /// The word, quoted for a shell if needed.
+/// The page shows its own command. A name with spaces or quotes must survive a copy into a shell.
 std::string shell_word(const std::string& word) {
   const bool is_plain = std::all_of(word.begin(), word.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -224,11 +238,15 @@ std::string shell_word(const std::string& word) {
   });
   if (is_plain && !word.empty()) return word;
   std::string out = "'";
+  // Inside single quotes only the quote itself needs care: the text is ended, an escaped quote
+  // follows, and the text begins again.
   for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
   return out + "'";
 }
 
 /// The command that makes the same page again.
+/// Defaults are left out, except the seed and the folder, without which the command would not give
+/// the same page.
 std::string command_of(const BenchmarkRun& o, const CleaningOptions& cleaning) {
   std::vector<std::string> words{cleaning.data};
   words.insert(words.end(), cleaning.methods.begin(), cleaning.methods.end());
@@ -255,6 +273,7 @@ std::string figure_lines(const std::vector<PosePictures>& figures) {
   for (const PosePictures& figure : figures) {
     std::string name = figure.id;
     std::replace(name.begin(), name.end(), '-', ' ');
+    // A figure without data prints its reason in place of numbers.
     if (!figure.absent.empty()) out += fmt::format("{:<9}  {}\n", name, harmless(figure.absent));
     for (const Table& table : figure.tables) {
       for (const auto& row : table.rows) {
@@ -278,12 +297,14 @@ void print_results(const Table& table, const std::vector<PosePictures>& figures,
                    const std::string& format, const std::string& page_path, Call& call) {
   Json json{{"rows", rows_of_table(table)}, {"figures", Json::object()}, {"page", page_path}};
   for (const PosePictures& figure : figures) {
+    // A figure has several tables. Its rows are joined, since the page shows them as one result.
     Json rows = Json::array();
     for (const Table& one : figure.tables) {
       for (Json& row : rows_of_table(one)) rows.push_back(std::move(row));
     }
     json["figures"][figure.id] = rows;
   }
+  // A name that is not UTF-8 must not end the program after hours of training.
   call.console.print_json(json.dump(1, ' ', false, Json::error_handler_t::replace));
   if (call.common.json) return;
   print_table(with_joined_deviations(table), format, "rows", call);
@@ -294,13 +315,16 @@ void print_results(const Table& table, const std::vector<PosePictures>& figures,
 Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
   const CleaningOptions cleaning = o.cleaning(call);
   const std::string page_path = cleaning.folder + "/benchmark.html";
+  // --dry-run comes first: it reads nothing but the names of models.
   if (call.common.dry_run) return show_training_plan(cleaning, call);
+  // A page's name that is taken is an error before the training and not after it.
   KA_TRY(check_page(page_path, call));
   call.console.if_it_fails(
       [](const Error&) { return std::vector<std::string>{"trained networks are kept"}; });
   const CleaningData data = KA_TRY(open_cleaning(cleaning, call));
   const auto all = KA_TRY(run_methods(cleaning, data, call));
   const Table table = marks_table(data, all);
+  // If a model for the figures can't be read, table 9 of the long run is on the disk already.
   KA_TRY(write_tables(table, cleaning.folder, call));
   ModelsPage page = page_of(cleaning, data, all, table);
   page.command = command_of(o, cleaning);

@@ -26,9 +26,13 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// The plan of a twin, below its folder.
+/// The plan's text is the identity of a twin: a folder is continued only if its plan is the same,
+/// byte for byte.
 constexpr const char* plan_file = "truth/twin.json";
 constexpr std::size_t longest_plan = std::size_t{16} << 20;
 
+/// The options of `kinalign benchmark twin`. Scale, seed and motions determine every byte of the
+/// takes.
 struct TwinVerb {
   double scale = 0.02;
   std::int64_t seed = 1;
@@ -58,6 +62,7 @@ Usage describe_twin(TwinVerb& o) {
 }
 
 /// The input for making all takes.
+/// `o` must outlive the job. Takes have the order of the plan, and their index is their number.
 struct TwinJob {
   const TwinVerb& o;
   std::string folder;
@@ -72,6 +77,7 @@ Result<std::vector<std::string>> motions_in(const std::string& folder) {
   if (folder.empty()) return out;
   const std::string below = folder + "/";
   for (const std::string& name : KA_TRY(names_in_folder(folder))) {
+    // Names come sorted, so the take that gets a motion does not depend on the file system.
     if (name.ends_with(".bvh") || name.ends_with(".BVH")) out.push_back(below + name);
   }
   if (!out.empty()) return out;
@@ -79,6 +85,7 @@ Result<std::vector<std::string>> motions_in(const std::string& folder) {
 }
 
 /// The nearest parent folder of a path that exists.
+/// The disk of a folder that does not exist yet is that of its nearest existing parent.
 fs::path folder_that_is_there(fs::path path) {
   std::error_code fault;
   path = fs::absolute(path, fault);
@@ -97,6 +104,8 @@ std::uint64_t free_bytes(const std::string& folder) {
 Result<void> check_folder(const TwinJob& job, Call& call) {
   std::error_code fault;
   const std::string path = job.folder + "/" + plan_file;
+  // A twin that is there already is continued. No space is checked then: only a part of it may be
+  // missing.
   if (is_there(path)) {
     if (KA_TRY(read_whole(call.surroundings.files, path, longest_plan)) == job.plan) return {};
     return Failure(
@@ -107,6 +116,7 @@ Result<void> check_folder(const TwinJob& job, Call& call) {
         Error{job.folder, 0, "a new folder, or an unfinished twin", "a folder with other files"});
   }
   const std::uint64_t wanted = bytes_of(job.takes), there = free_bytes(job.folder);
+  // An unknown amount of free space must not stop the job.
   if (there == 0 || wanted < there) return {};
   return Failure(Error{job.folder, 0, size_text(wanted) + " of free disk space", size_text(there)});
 }
@@ -118,10 +128,12 @@ Result<void> begin_folder(const TwinJob& job, FileSystem& files) {
   KA_TRY(make_folders(job.folder + "/splits"));
   const std::string catalogue = job.folder + "/" + std::string(catalogue_file);
   if (!is_there(catalogue)) {
+    // The catalogue's name is that of the folder, also if the user typed "." or a path with "..".
     std::error_code fault;
     const std::string name = fs::weakly_canonical(job.folder, fault).filename().string();
     KA_TRY(write_whole(files, catalogue, KA_TRY(twin_catalogue(name)), Overwrite::no));
   }
+  // The plan is written last. check_folder() continues only a folder that has it.
   const std::string path = job.folder + "/" + plan_file;
   return is_there(path) ? Result<void>{} : write_whole(files, path, job.plan, Overwrite::no);
 }
@@ -139,6 +151,8 @@ struct TwinMade {
 };
 
 /// Makes the missing takes, several at once. A take that fails does not stop others.
+/// Threads take the missing takes one by one. `telling` guards the progress, the counts and the
+/// list of failures.
 Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call& call) {
   TwinMaker maker({call.surroundings.files, job.folder, catalogue, job.motions});
   const Progress progress = call.console.progress();
@@ -147,6 +161,7 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
   std::uint64_t all = 0, done = 0;   // frames
   for (std::size_t number = 0; number < job.takes.size(); ++number) {
     const TwinTake& take = job.takes[number];
+    // A take that exists counts without being made again, so a stopped job continues.
     if (const auto known = maker.known(take)) {
       ++out.were_there;
       out.add(take, *known);
@@ -155,11 +170,13 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
       all += take.frames;
     }
   }
+  // The progress function is not made for several threads, so only one may call it at a time.
   std::mutex telling;
   bool stopped = false;
   const auto is_wanted = [&](std::uint64_t frames) {
     const std::lock_guard lock(telling);
     done += frames;
+    // Once it is false, it stays false: all threads end as soon as they ask again.
     stopped = stopped || !go_on(progress, "making takes", done, all);
     return !stopped;
   };
@@ -168,7 +185,10 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
     const TwinTake& take = job.takes[missing[i]];
     const auto summary =
         maker.make(take, missing[i],
+                   // The progress inside a take only asks whether to go on. Frames are counted
+                   // once, when the take is done.
                    [&](std::string_view, std::uint64_t, std::uint64_t) { return is_wanted(0); });
+    // Ctrl-C makes the take fail as well. Such a failure is not one of the take.
     if (!is_wanted(take.frames) && !summary) return;
     const std::lock_guard lock(telling);
     if (summary) {
@@ -179,6 +199,7 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
     }
   });
   std::error_code ignored;
+  // The devices' files of takes that failed or were stopped go with the folder of the cache.
   fs::remove_all(job.folder + "/" + std::string(cache_folder) + "/twin", ignored);
   if (stopped) return Failure(interruption());
   return out;
@@ -191,12 +212,16 @@ Result<std::vector<std::string>> write_splits(const TwinJob& job, const DatasetI
   const auto takes = KA_TRY(built_takes(files, job.folder, index, ""));
   std::vector<std::string> out;
   for (const auto& [file, by] :
+       // The first word is the file's name, the second the rule by which make_split() divides the
+       // takes.
        {std::pair("people", "subject"), std::pair("denoise", "hfut-denoise"),
         std::pair("imu", "hfut-imu")}) {
     const std::string name = std::string("splits/") + file + ".json",
                       path = job.folder + "/" + name;
+    // A split that can't be made is skipped: the data set is complete without it.
     const auto split = make_split(takes, index.catalogue(), {.by = by, .seed = job.o.seed});
     if (!split) continue;  // a small twin may have too few takes
+    // An existing split is kept, because models may have been trained with it.
     if (!is_there(path)) {
       KA_TRY(write_whole(files, path, split_json(*split, takes), Overwrite::no));
     }
@@ -216,6 +241,7 @@ double hours_of(std::uint64_t frames) {
 }
 
 /// The takes by devices: "mocap + Kinect 13 takes, mocap + IMU 1 take, all three 10 takes".
+/// Shows which devices recorded together, since a method needs certain pairs.
 std::string pairs_text(const TwinCounts& counts) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < device_choices.size(); ++i) {
@@ -241,6 +267,7 @@ std::string tables_text(const std::vector<Table>& tables) {
 }
 
 /// Prints the plan of --dry-run with the room that it needs.
+/// Uses the same counting as the finished twin, with the plan's frames in place of the takes'.
 Result<int> show_twin_plan(const TwinJob& job, Call& call) {
   TwinCounts counts;
   for (const TwinTake& take : job.takes) count(take, take.frames, counts);
@@ -267,12 +294,14 @@ void say_made(const TwinJob& job, const TwinMade& made, const std::vector<std::s
   call.console.print(tables_text(twin_tables(job.o.scale, made.counts)));
   call.console.print(harmless(
       fmt::format("{}: {}, {:.2f} h, {}{}\n  people  {}, {}\n  pairs   {}\n  splits  {}\n"
+                  // The last line is a command that works on the new data set as it stands.
                   "  next    kinalign eval raw offset ridge --data {} -o results --folds people\n",
                   job.folder, counted(made.made + made.were_there, "take"),
                   hours_of(made.counts.sum().mocap), size_text(made.bytes),
                   made.were_there > 0 ? fmt::format("; {} existed before", made.were_there) : "",
                   counted(people.size(), "person", "people"), counted(actions.size(), "action"),
                   pairs_text(made.counts), splits.empty() ? "none" : joined(splits), job.folder)));
+  // A failed take is listed with its reason; running the command again tries it again.
   for (const auto& [name, error] : made.failed) {
     call.console.print(
         harmless(fmt::format("failed  {}: {}\n", to_string(name), to_string(error))));
@@ -287,6 +316,7 @@ void say_made(const TwinJob& job, const TwinMade& made, const std::vector<std::s
   call.console.print_json(json.dump(1, ' ', false, Json::error_handler_t::replace));
 }
 
+/// The plan is made from the options alone; motion files enter it by name only.
 Result<TwinJob> job_of(const TwinVerb& o, const Call& call) {
   auto motions = KA_TRY(motions_in(o.motion));
   TwinJob job{o, folder_of({call.common.out}), plan_twin(o.options()), std::move(motions), ""};
@@ -306,12 +336,14 @@ Result<int> run_twin(TwinVerb& o, Call& call) {
   if (call.common.dry_run) return show_twin_plan(job, call);
   call.console.detail(fmt::format("{} to make: about {}", counted(job.takes.size(), "take"),
                                   size_text(bytes_of(job.takes))));
+  // From here on files exist, so the advice changes from "nothing was written".
   call.console.if_it_fails([](const Error&) {
     return std::vector<std::string>{"run the same command again to continue"};
   });
   KA_TRY(begin_folder(job, files));
   const std::string path = job.folder + "/" + std::string(catalogue_file);
   const Catalogue catalogue =
+      // The catalogue is read from the disk, since begin_folder() keeps an existing one.
       KA_TRY(read_catalogue(KA_TRY(read_whole(files, path, longest_manifest)), path));
   const TwinMade made = KA_TRY(make_takes(job, catalogue, call));
   const DatasetIndex index = KA_TRY(open_index(job.folder, call));

@@ -15,6 +15,7 @@ Table table_with(const std::string& key, const std::string& caption) {
   table.has_sum = true;
   table.columns = {{key, key}};
   for (const std::string whose : {"paper", "asked", "made"}) {
+    // The keys name the origin for programs. Only the first title of three names it for people.
     table.columns.push_back({whose + "_mocap", whose + ": mocap"});
     table.columns.push_back({whose + "_kinect", "Kinect"});
     table.columns.push_back({whose + "_imu", "IMU"});
@@ -32,6 +33,7 @@ void add_row(const std::string& name, const std::vector<ModalityFrames>& values,
   table.rows.push_back(std::move(row));
 }
 
+/// The people of one row of the paper's table 6, as that table writes them.
 std::string ids_of(const PaperPeople& people) {
   return fmt::format(
       "{}", fmt::join(people.ids.begin(),
@@ -41,6 +43,7 @@ std::string ids_of(const PaperPeople& people) {
 }  // namespace
 
 std::vector<Table> twin_tables(double scale, const TwinCounts& made) {
+  // A scale of 1 gives the paper's own counts.
   const TwinCounts paper = paper_counts(1.0), asked = paper_counts(scale);
   Table people = table_with("people", "Frames by people (the paper's table 6)");
   for (std::size_t i = 0; i < paper_people.size(); ++i) {
@@ -57,6 +60,7 @@ std::vector<Table> twin_tables(double scale, const TwinCounts& made) {
             choices);
   }
   std::vector<Table> out{std::move(people), std::move(classes), std::move(choices)};
+  // All three tables end with the same sums.
   for (Table& table : out) add_row("sum", {paper.sum(), asked.sum(), made.sum()}, table);
   return out;
 }

@@ -10,6 +10,7 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset add`. Empty ids stand for those in the file.
 struct Add {
   std::vector<std::string> folder, files;  // folder: one
   std::string subject, action;
@@ -33,15 +34,18 @@ Usage describe_add(Add& o) {
 Result<int> run_add(Add& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   FileSystem& files = call.surroundings.files;
+  // The catalogue is read once for all files.
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
   call.console.if_it_fails([folder](const Error&) -> std::vector<std::string> {
     return {"files before this one were added; run the same command again after the repair"};
   });
+  // One adder serves all files, so each file sees the takes that were added before it.
   TakeAdder adder(files, folder, catalogue);
   auto json = nlohmann::ordered_json::array();
   for (const std::string& path : o.files) {
     const AddRequest request{path, o.subject, o.action, o.copy};
     const Added added = KA_TRY(adder.add(request, call.console.progress()));
+    // A file that was added before is no fault: the same command may be repeated after a failure.
     call.console.print(harmless(path + (added.was_there ? " was already added: " : ": ") +
                                 to_string(added.name) + "\n"));
     json.push_back(
@@ -49,6 +53,7 @@ Result<int> run_add(Add& o, Call& call) {
   }
   call.console.print("see    kinalign dataset build " + harmless(folder) + "\n");
   call.console.print_json(nlohmann::ordered_json{{"added", json}}.dump(
+      // A path need not be UTF-8. A byte that is not becomes U+FFFD instead of ending the verb.
       1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   return 0;
 }

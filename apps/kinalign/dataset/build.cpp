@@ -13,6 +13,8 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset build`. The share is not a flag: it comes from the environment
+/// that a cluster sets.
 struct Build {
   std::vector<std::string> folder;  // one
   bool all = false;
@@ -30,6 +32,7 @@ Usage describe_build(Build& o) {
 }
 
 /// The reason for building a take, as printed.
+/// The words are in the text and in the JSON, so programs may depend on them.
 std::string_view words_of(BuildReason reason) {
   switch (reason) {
     case BuildReason::first:
@@ -49,6 +52,7 @@ std::string_view words_of(BuildReason reason) {
 }
 
 /// Prints the plan of --dry-run.
+/// The plan has the longest takes first. A take without a line is up to date.
 Result<int> show_plan(const BuildPlan& plan, Call& call) {
   auto json = nlohmann::ordered_json::array();
   for (const BuildJob& job : plan.jobs) {
@@ -65,12 +69,15 @@ Result<int> show_plan(const BuildPlan& plan, Call& call) {
 }
 
 /// Counts the built takes, for the text and the JSON.
+/// `usable` and `bad` count verdicts of takes made in this run only. The JSON lists every take, in
+/// the order in which takes were finished.
 struct Tally {
   std::size_t made = 0, failed = 0, usable = 0, bad = 0;
   nlohmann::ordered_json takes = nlohmann::ordered_json::array();
 
   void add(const Built& one, Console& console) {
     const std::string name = to_string(one.name);
+    // A take that can't be made is one line. The others go on, and the exit code is 1.
     if (!one.summary) {
       ++failed;
       console.print(
@@ -81,6 +88,7 @@ struct Tally {
     ++made;
     usable += one.summary->quality == Quality::usable ? 1 : 0;
     bad += one.summary->quality == Quality::bad ? 1 : 0;
+    // Good takes are shown only with --verbose, since a build may have thousands of them.
     console.detail(
         fmt::format("{}: {} frames, {}", name, one.summary->frames, one.summary->verdict()));
     takes.push_back(
@@ -93,14 +101,19 @@ Result<int> run_build(Build& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
+  // share_of() reads the variables of a cluster; without them the share is the whole build.
   const BuildOptions options{call.jobs,
                              KA_TRY(share_of(call.surroundings.variable, o.index_offset)), o.all};
   Tally tally;
+  // build() calls both functions from its threads, but never two at once, so the tally needs no
+  // lock.
   const BuildWatch watch{call.console.progress(),
                          [&](const Built& one) { tally.add(one, call.console); }};
   const BuildPlan plan = KA_TRY(plan_build(files, folder, catalogue, options, watch.progress));
   if (call.common.dry_run) return show_plan(plan, call);
   KA_TRY(build(files, folder, catalogue, plan, watch));
+  // Several shares would write the same index at once. The next verb that opens it reads the new
+  // summaries anyway.
   if (options.share.size == 1) KA_TRY(open_index(folder, call));
   const std::string share =
       options.share.size == 1
@@ -109,6 +122,7 @@ Result<int> run_build(Build& o, Call& call) {
   call.console.print(harmless(fmt::format(
       "{}: {} made{}, {} up to date{}\n", folder, counted(tally.made, "take"),
       tally.failed > 0 ? fmt::format(", {} failed", tally.failed) : "", plan.up_to_date, share)));
+  // A command follows that lists the takes to look at, with the worst first.
   if (tally.bad + tally.usable > 0) {
     call.console.print(
         fmt::format("  {} bad, {} usable: kinalign dataset list {} --columns name,verdict,worst "

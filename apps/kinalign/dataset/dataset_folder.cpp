@@ -17,6 +17,7 @@ Positional folder_word(std::vector<std::string>& folder) {
 
 std::string folder_of(const std::vector<std::string>& words) {
   std::string folder = words.front();
+  // A single '/' is the root and stays.
   while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
   return folder.empty() ? "." : folder;
 }
@@ -34,6 +35,8 @@ Field split_field(std::string& split) {
 
 Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
   DatasetIndex index = KA_TRY(DatasetIndex::open(call.surroundings.files, folder));
+  // A summary that can't be read leaves its take out of all tables, so the user must see it in any
+  // case.
   for (const Finding& finding : index.findings()) {
     call.console.note(harmless(std::string(to_string(finding.severity)) + ": " +
                                to_string(finding.what) + ": " + finding.meaning));
@@ -52,18 +55,23 @@ Result<void> print_not_built(const DatasetIndex& index, const std::string& folde
 
 Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,
                                            const DatasetIndex& index, const std::string& where) {
+  // The brackets keep an "or" of the user's condition from swallowing what may follow it.
   const std::string condition = where.empty() ? "" : " where (" + where + ")";
   const Table names = KA_TRY(index.select("select name from takes" + condition + " order by name"));
   std::vector<SplitTake> takes;
   for (const auto& row : names.rows) {
+    // A view may give any type. A row that is no take's name is skipped.
     const auto* text = std::get_if<std::string>(&row.front());
     const auto name = text == nullptr ? std::nullopt : parse_take_name(*text);
+    // The index has only a part of a summary; splits and exports need the whole one.
     if (name) takes.push_back({*name, KA_TRY(read_summary(files, folder, *name))});
   }
   return takes;
 }
 
 bool print_findings(const Findings& findings, Call& call) {
+  // Findings of a data set of thousands of takes would fill the terminal. The exit code counts all
+  // of them.
   constexpr std::size_t shown_findings = 8;
   for (std::size_t i = 0; i < std::min(findings.size(), shown_findings); ++i) {
     const Finding& one = findings[i];

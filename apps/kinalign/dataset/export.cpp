@@ -22,12 +22,15 @@ namespace {
 /// Streams that did not fit into a format are listed up to this number of kinds.
 constexpr std::size_t shown_streams = 8;
 
+/// The options of `kinalign dataset export`. `split` is legal only for a format with parts.
 struct Export {
   std::vector<std::string> folder;
   std::string format = "npz", where, split;
   bool release = false;
 };
 
+/// The names are the choices of --format. They come from the list of formats, so a new format needs
+/// no change here.
 std::vector<std::string> format_names() {
   std::vector<std::string> out;
   for (const ExportFormat& one : export_formats()) out.push_back(one.name);
@@ -48,6 +51,7 @@ Usage describe_export(Export& o) {
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty())
       return Failure(Error{"-o", 0, "-o FOLDER, which must not exist yet", "none"});
+    // Only WebDataset stores parts: each part is a set of archives of its own.
     if (o.split.empty() || o.format == "webdataset") return {};
     return Failure(
         Error{"--split", 0, "--format webdataset, the only format with parts", o.format});
@@ -59,10 +63,13 @@ Usage describe_export(Export& o) {
 Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call) {
   FileSystem& files = call.surroundings.files;
   ExportJob job{folder_of(o.folder), call.common.out, o.format, o.release, {}};
+  // The folder's name is used to build paths, which must not get two '/'.
   while (job.target.size() > 1 && job.target.ends_with('/')) job.target.pop_back();
   auto takes = KA_TRY(built_takes(files, job.folder, index, o.where));
   std::map<TakeName, std::string> part_of;
   if (!o.split.empty()) {
+    // A split is checked against all takes, also those that --where leaves out: otherwise every
+    // missing take would be an error.
     const auto all = o.where.empty() ? takes : KA_TRY(built_takes(files, job.folder, index, ""));
     const Split split = KA_TRY(read_good_split(files, o.split, all));
     for (const SplitPart& part : split.parts) {
@@ -73,12 +80,14 @@ Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call)
     const auto part = part_of.find(take.name);
     if (!o.split.empty() && part == part_of.end()) continue;
     job.takes.push_back(
+        // Without a split every take is in one part, "takes".
         {take.name, std::move(take.summary), part == part_of.end() ? "takes" : part->second});
   }
   return job;
 }
 
 /// The names of streams and nodes, which every format writes into its files.
+/// A name of a stream or a node can hold a person's name, so a release looks at them, too.
 std::set<std::string> names_in(const ExportJob& job) {
   std::set<std::string> out;
   for (const ExportTake& take : job.takes) {
@@ -96,6 +105,8 @@ bool has_error(const Findings& findings) {
 }
 
 /// Prints a line for each reason, with the number of takes.
+/// Streams are lost for few reasons but in many takes, so the lines are grouped by reason. Returns
+/// the whole list for the JSON.
 nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
   std::map<std::string, std::vector<std::string>> takes;
   for (const LeftOutStream& one : made.left_out) takes[one.why].push_back(to_string(one.name));
@@ -116,11 +127,13 @@ Result<int> run_export(Export& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
   const ExportJob job = KA_TRY(job_of(o, index, call));
+  // The findings are of two kinds: texts that may identify people, and those of the export itself.
   Findings findings;
   if (o.release) {
     findings = look_for_people(index.catalogue(), job.folder + "/dataset.toml", names_in(job));
   }
   print_findings(findings, call);
+  // Publication can't be undone. A suspicion is therefore enough to stop before the first file.
   if (has_error(findings)) {
     call.console.print("nothing was written: the texts listed as errors may identify a person\n");
     call.console.print_json(
@@ -135,8 +148,11 @@ Result<int> run_export(Export& o, Call& call) {
   const auto formats = export_formats();
   const auto format = std::find_if(formats.begin(), formats.end(),
                                    [&](const ExportFormat& one) { return one.name == o.format; });
+  // Every format loses something. The line is printed always, so that nobody has to look it up.
   call.console.print(fmt::format("lost   {}\n", format->lost));
   const auto left_out = print_left_out(made, call);
+  // The files exist already at this point. An error among these findings changes only the exit
+  // code.
   print_findings(made.findings, call);
   findings.insert(findings.end(), made.findings.begin(), made.findings.end());
   call.console.print_json(
@@ -150,6 +166,7 @@ Result<int> run_export(Export& o, Call& call) {
   return has_error(made.findings) ? 1 : 0;
 }
 
+/// The text of the help page, made from the same list as the choices.
 std::string formats_text() {
   std::string out;
   for (const ExportFormat& one : export_formats()) {

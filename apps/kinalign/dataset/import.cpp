@@ -16,6 +16,8 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset import`. An empty text or a 0 leaves the choice to the corpus
+/// or its files.
 struct Import {
   std::vector<std::string> folder, sources;
   std::string from = "auto", subject, action, up;
@@ -25,6 +27,7 @@ struct Import {
 
 /// The command line of `kinalign dataset import`.
 Usage describe_import(Import& o) {
+  // "auto" is not in the library's list: an empty kind stands for it.
   std::vector<std::string> kinds{"auto"};
   for (const std::string& name : corpus_kind_names()) kinds.push_back(name);
   Usage usage;
@@ -59,6 +62,8 @@ Usage describe_import(Import& o) {
 }
 
 /// A line for each reason: "10 without Vicon left out: m03_s03_e01, m03_s03_e02, m03_s03_e03, ...".
+/// A corpus may leave out thousands of files. Three names show the kind, and the JSON has all of
+/// them.
 std::string left_out_lines(const std::vector<LeftOut>& all) {
   std::map<std::string, std::vector<std::string>> by_reason;
   for (const LeftOut& one : all) by_reason[one.why].push_back(one.what);
@@ -77,6 +82,8 @@ std::string left_out_lines(const std::vector<LeftOut>& all) {
 /// Names of the corpus, each with its id in the data set.
 using Changed = std::vector<std::pair<std::string, std::string>>;
 
+/// `what`: "people" or "actions". The words of a corpus are often no legal ids, and the user must
+/// be able to find them again.
 std::string changed_line(std::string_view what, const Changed& changed) {
   if (changed.empty()) return "";
   constexpr std::size_t most = 5;
@@ -94,6 +101,7 @@ nlohmann::ordered_json json_of(const Changed& changed) {
 }
 
 /// Prints the result of an import as JSON.
+/// `takes` counts new and old takes; "added" is their difference.
 void print_json(const Imported& made, Console& console) {
   auto left_out = nlohmann::ordered_json::array();
   for (const LeftOut& one : made.left_out) {
@@ -112,6 +120,7 @@ void print_json(const Imported& made, Console& console) {
                          .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+/// Before the first take nothing was changed, so this advice would be wrong.
 void advise_to_run_again(Console& console) {
   console.if_it_fails([](const Error&) -> std::vector<std::string> {
     return {"some takes are in the data set; run the same command again to continue"};
@@ -133,6 +142,8 @@ Result<int> run_import(Import& o, Call& call) {
   const Imported made =
       KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
                            [&](std::uint64_t done, std::uint64_t takes) {
+                             // The function is called after each take. A line for every hundred
+                             // shows that a long import is alive, also in a log file.
                              if (done == 1) advise_to_run_again(console);
                              if (done % 100 == 0 && done < takes)
                                console.print(fmt::format("{} of {}\n", done, takes));

@@ -15,6 +15,7 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset init`.
 struct Init {
   std::vector<std::string> folder;
   std::string template_name = "empty", name;
@@ -35,11 +36,14 @@ Usage describe_init(Init& o) {
 Result<int> run_init(Init& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   KA_TRY(make_folders(folder));
+  // weakly_canonical() also resolves "." and "..", whose last part would be no name for a data set.
   std::error_code fault;
   const std::string own = std::filesystem::weakly_canonical(folder, fault).filename().string();
   const std::string path = folder + "/" + std::string(catalogue_file);
   const std::string text =
       KA_TRY(catalogue_template(o.template_name, o.name.empty() ? own : o.name));
+  // Overwrite::no makes a repeated call fail without a loss: the file is written by hand from now
+  // on.
   KA_TRY(write_whole(call.surroundings.files, path, text, Overwrite::no));
   call.console.print(harmless(
       path +

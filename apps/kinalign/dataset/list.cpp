@@ -15,6 +15,8 @@ namespace kinalign {
 
 namespace {
 
+// These columns answer the first question about a data set: which takes are there, and which are
+// bad.
 constexpr const char* usual_columns =
     "name,subject,class,action,frames,seconds,kinect,imu,residual_cm,verdict";
 
@@ -39,23 +41,29 @@ Fields fields_of(Shown& o) {
           format_field(o.format)};
 }
 
+/// The options of `kinalign dataset list`: filters for people who know no SQL. All given filters
+/// must hold.
 struct List {
   Shown shown;
   std::string subject, class_id, action, verdict;
   std::vector<std::string> modality;
 };
 
+/// The options of `kinalign dataset query`: one condition, or one whole SELECT.
 struct Query {
   Shown shown;
   std::vector<std::string> words;
 };
 
+/// The columns of the view `takes`, which users name in --columns, --sort and conditions.
 std::vector<std::string> column_names() {
   std::vector<std::string> names;
   for (const TableColumn& column : DatasetIndex::columns()) names.push_back(column.key);
   return names;
 }
 
+/// Names of columns can't be values of a '?', so they go into the text of the query. Only known
+/// names may get there.
 Result<std::string> checked_column(const std::string& name, const char* flag) {
   const std::vector<std::string> known = column_names();
   if (std::find(known.begin(), known.end(), name) != known.end()) return name;
@@ -68,6 +76,8 @@ Result<std::string> checked_column(const std::string& name, const char* flag) {
 Result<std::string> chosen_columns(const std::string& text) {
   if (text == "all") return fmt::format("{}", fmt::join(column_names(), ", "));
   std::string out;
+  // The loop ends after the last comma. An empty name between two commas is refused as an unknown
+  // column.
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
     out += (out.empty() ? "" : ", ") +
@@ -80,12 +90,15 @@ Result<std::string> chosen_columns(const std::string& text) {
 /// The text after "order by". Verdicts are sorted by severity, not by the alphabet.
 Result<std::string> order_text(const std::string& sort) {
   if (sort.empty()) return std::string("name");
+  // A minus at the end, since one at the begin would look like a flag.
   const bool down = sort.ends_with('-');
   const std::string column =
       KA_TRY(checked_column(sort.substr(0, sort.size() - (down ? 1 : 0)), "--sort"));
+  // The alphabet would put "good" between "bad" and "usable".
   const std::string key = column == "verdict"
                               ? "case verdict when 'bad' then 0 when 'usable' then 1 else 2 end"
                               : column;
+  // The name is the last key, so equal rows always have the same order.
   return key + (down ? " desc" : "") + ", name";
 }
 
@@ -98,10 +111,13 @@ Result<std::string> select_text(const Shown& o, const std::string& where) {
   return sql;
 }
 
+/// Runs the SELECT and prints it. `values`: those of its '?'. Exit code 1 if a summary could not be
+/// read, since its take is missing.
 Result<int> show(const Shown& o, const DatasetIndex& index, const std::string& sql,
                  const std::vector<Cell>& values, Call& call) {
   const Table table = KA_TRY(index.select(sql, values));
   print_table(table, o.format, "takes", call);
+  // The note stands below the table in text only. Other formats are read by programs.
   if (o.format == "text") KA_TRY(print_not_built(index, folder_of(o.folder), call));
   return index.findings().empty() ? 0 : 1;
 }
@@ -126,6 +142,7 @@ Usage describe_list(List& o) {
   return usage;
 }
 
+/// The ids of people, classes or actions; each of these structures has a member `id`.
 std::vector<std::string> ids_of(const auto& described) {
   std::vector<std::string> ids;
   ids.reserve(described.size());
@@ -149,11 +166,14 @@ Result<void> check_id(const DatasetIndex& index, const std::string& column, cons
 /// Lists the takes for which all given filters hold.
 Result<int> run_list(List& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.shown.folder), call));
+  // A person is "03" in the index, and "sub-03" in the names of takes and folders.
   if (o.subject.starts_with("sub-")) o.subject.erase(0, 4);
   KA_TRY(check_id(index, "subject", o.subject, ids_of(index.catalogue().subjects)));
   KA_TRY(check_id(index, "class", o.class_id, ids_of(index.catalogue().classes)));
   KA_TRY(check_id(index, "action", o.action, ids_of(index.catalogue().actions)));
   std::string where;
+  // Values of filters are bound to '?' and never pasted into the text, so no value can change the
+  // query.
   std::vector<Cell> values;
   const auto want = [&](const std::string& column, const std::string& value) {
     if (value.empty()) return;
@@ -165,12 +185,14 @@ Result<int> run_list(List& o, Call& call) {
   want("action", o.action);
   want("verdict", o.verdict);
   for (const std::string& modality : o.modality) {
+    // A modality has a column with its number of frames.
     where += (where.empty() ? "" : " and ") + modality + " > 0";
   }
   return show(o.shown, index, KA_TRY(select_text(o.shown, where)), values, call);
 }
 
 /// True for a whole SELECT, false for a condition.
+/// "with" begins a SELECT with common table expressions.
 bool is_select(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return false;
@@ -178,6 +200,7 @@ bool is_select(std::string_view text) {
   std::transform(word.begin(), word.end(), word.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return word == "select" || word.starts_with("with ");
+  /// The parser knows the positional words already, so this check can look at both.
 }
 
 /// Flags that shape the program's own SELECT have no meaning for a SELECT that the user wrote.
@@ -192,6 +215,7 @@ Result<void> check_query(const Query& o, const Sources& given) {
   return {};
 }
 
+// A query has the flags of `list` for its output, but none of its filters.
 Usage describe_query(Query& o) {
   Usage usage;
   usage.positionals = {folder_word(o.shown.folder),
@@ -210,7 +234,9 @@ Result<int> run_query(Query& o, Call& call) {
             "interval_ms, nodes"};
   });
   const std::string sql =
+      // The brackets make one condition of the user's text, whatever it contains.
       is_select(words) ? words : KA_TRY(select_text(o.shown, "(" + words + ")"));
+  // DatasetIndex refuses every statement that writes, so a user's SELECT can't damage the index.
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.shown.folder), call));
   return show(o.shown, index, sql, {}, call);
 }

@@ -16,6 +16,8 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset rm`. `names` mixes takes and people; plan_removal() tells them
+/// apart.
 struct Remove {
   std::vector<std::string> folder, names;
   bool raw = false, yes = false;
@@ -34,6 +36,8 @@ Usage describe_remove(Remove& o) {
 constexpr std::size_t most_places = 5;  // more raw files are only counted
 
 /// The raw files that stay because --raw was not given.
+/// A path that ends in '/' is the take's own folder below sourcedata/. A file may be an input of
+/// other takes, too.
 std::string raw_left_text(const std::vector<std::string>& places) {
   std::string out;
   for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
@@ -48,6 +52,7 @@ std::string raw_left_text(const std::vector<std::string>& places) {
 }
 
 /// The raw files that stay because they were not copied or unpacked for this take.
+/// --raw does not remove files that lie elsewhere, nor the targets of links.
 std::string raw_kept_text(const std::vector<std::string>& places) {
   std::string out;
   for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
@@ -59,6 +64,7 @@ std::string raw_kept_text(const std::vector<std::string>& places) {
   return out;
 }
 
+/// Removing a shared raw file would make other takes impossible to build again.
 std::string raw_shared_text(const std::vector<std::string>& places) {
   if (places.empty()) return "";
   return "  " + counted(places.size(), "raw file") + " also used by other takes " +
@@ -67,6 +73,7 @@ std::string raw_shared_text(const std::vector<std::string>& places) {
 }
 
 /// The takes to be removed, and the raw files that stay.
+/// The text is shown before the question, so it must name everything that will be lost.
 std::string plan_text(const RemovalPlan& plan) {
   std::string out;
   for (const TakeName& name : plan.takes) out += to_string(name) + "\n";
@@ -79,8 +86,10 @@ std::string plan_text(const RemovalPlan& plan) {
 
 /// Asks on the terminal. Any answer but y or yes means no.
 bool agreed(Call& call) {
+  // The question goes to stderr, so a redirected standard output does not hide it.
   call.console.complain("remove these files permanently? [y/N]");
   std::string answer;
+  // Reading byte by byte takes no more than the line from the terminal.
   for (char c = 0; ::read(STDIN_FILENO, &c, 1) == 1 && c != '\n';) answer += c;
   return answer == "y" || answer == "yes";
 }
@@ -105,8 +114,10 @@ Result<int> run_remove(Remove& o, Call& call) {
   KA_TRY(load_catalogue(files, folder));
   const RemovalPlan plan = KA_TRY(plan_removal(files, folder, o.names, o.raw));
   auto json = plan_json(plan);
+  // "removed" becomes true only after the last file is gone.
   json["removed"] = false;
   if (!o.yes && !call.common.dry_run) {
+    // Both ends are needed: standard input for the answer and stderr for the question.
     const bool can_ask = ::isatty(STDIN_FILENO) == 1 && call.surroundings.err_is_terminal;
     if (!can_ask) {
       return call.console.refuse(
@@ -114,22 +125,28 @@ Result<int> run_remove(Remove& o, Call& call) {
     }
   }
   call.console.print(harmless(plan_text(plan)));
+  // The plan is flushed before the question, so that the user has read it.
   const bool stays = call.common.dry_run || (!o.yes && (call.console.flush(), !agreed(call)));
   if (stays) {
     call.console.print("nothing was removed\n");
     call.console.print_json(json_text(json));
     return 0;
   }
+  // From here on a failure leaves a part of the work done, so the advice changes.
   call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
     return {"some files may be removed; run the same command again to continue"};
   });
   KA_TRY(remove_takes(files, folder, plan));
+  // Opening the index removes the rows of takes that are gone.
   KA_TRY(open_index(folder, call));
+  // Splits are not edited. They are listed, since they name takes that do not exist any more.
   const auto splits = splits_naming(files, folder, {plan.takes.begin(), plan.takes.end()});
   json["removed"] = true;
   json["splits"] = splits_json(splits);
   call.console.print(harmless("removed\n" + splits_text(splits)));
   call.console.print_json(json_text(json));
+  // Unknown names are an error only together with the takes that were removed: plan_removal() fails
+  // if no name is known.
   return plan.unknown.empty() ? 0 : 1;
 }
 

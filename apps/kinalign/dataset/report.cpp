@@ -22,6 +22,8 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset report`. --card excludes --pages, since a card has no links to
+/// pages.
 struct Report {
   std::vector<std::string> folder;
   bool pages = false, card = false;
@@ -42,6 +44,7 @@ Usage describe_report(Report& o) {
     if (o.card && !out.empty() && !out.ends_with(".md")) {
       return Failure(Error{"-o", 0, "the card's file name, as in -o README.md", shown(out)});
     }
+    // -o may be missing: page and card have their usual places in the data set.
     if (o.card || out.empty() || out.ends_with(".html") || out.ends_with(".htm")) return {};
     return Failure(Error{"-o", 0, "the page's file name, as in -o report.html", shown(out)});
   };
@@ -49,6 +52,8 @@ Usage describe_report(Report& o) {
 }
 
 /// Writes a file. A file that this verb wrote before is replaced; any other only with --force.
+/// `mark` is a text that only files of this verb contain. A README.md written by hand is therefore
+/// never lost.
 Result<void> write_over_own(const std::string& path, std::string_view mark, const std::string& text,
                             Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -65,10 +70,14 @@ Result<void> write_over_own(const std::string& path, std::string_view mark, cons
 
 /// Makes a take's page with `kinalign report`. If the raw files are not those of the take any more,
 /// the page has no raw samples.
+/// Called from several threads. The page is made in a process of its own, since `report` forks and
+/// a thread must not.
 Result<void> make_page(const PageJob& job) {
   std::vector<std::string> words{"report", job.take,         "-o",      job.page, "--force",
                                  "--jobs", std::string("1"), "--color", "never"};
   Ended ended;
+  // The first try shows raw samples. If inputs are missing or were changed, the second try does
+  // without them.
   if (!job.inputs.empty()) {
     std::vector<std::string> with_inputs = words;
     with_inputs.insert(with_inputs.end(), {"--inputs", job.inputs});
@@ -78,15 +87,18 @@ Result<void> make_page(const PageJob& job) {
   if (job.inputs.empty() || ended.code > most_findings) ended = KA_TRY(run_own_process(words));
   if (ended.code <= most_findings) return {};
   if (interrupted()) return Failure(interruption());
+  // The first line of stderr is the error; advice and further lines follow it.
   const std::string first = ended.complaint.substr(0, ended.complaint.find('\n'));
   return Failure(Error{job.take, 0, "a take that kinalign report can make a page of",
                        first.empty() ? fmt::format("exit code {}", ended.code) : first});
 }
 
 /// The folder of the takes' pages: walks/report/ next to walks/report.html.
+/// `out` has an extension, as the check of -o and the default make sure.
 std::string place_of_pages(const std::string& out) { return out.substr(0, out.rfind('.')) + "/"; }
 
 /// A folder's name, percent-encoded for a relative link.
+/// Only the characters that RFC 3986 calls unreserved stay as they are.
 std::string as_link(std::string_view name) {
   std::string out;
   for (const char c : name) {
@@ -101,21 +113,26 @@ std::string as_link(std::string_view name) {
 /// Links each take of the page to its own page, if that page is of the take's present bytes.
 Result<void> link_pages(const TakePages& pages, const DatasetIndex& index, const std::string& place,
                         DatasetPage& page) {
+  // The hash decides: a page of an older version of the take would show other data.
   std::map<std::string, std::string> hashes;
   for (const auto& row : KA_TRY(index.select("select name, sha256 from takes")).rows) {
     hashes[std::get<std::string>(row.at(0))] = std::get<std::string>(row.at(1));
   }
+  // The link is relative, so the page and its folder can be moved together.
   const std::string folder =
       as_link(file_name(std::string_view(place).substr(0, place.size() - 1)));
   for (DatasetTake& take : page.worst) {
     const std::string file = pages.page_of(take.name, hashes[take.name]);
     if (file.empty()) continue;
     take.page.assign(folder).append("/").append(file);
+    // A take with a link does not count as one without a page.
     --page.takes_without_page;
   }
   return {};
 }
 
+/// Makes pages for the takes in the table of the data set's page only; further takes have no row to
+/// link from.
 Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const DatasetPage& page,
                              Call& call) {
   std::vector<std::string> names;
@@ -126,6 +143,7 @@ Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const 
 // ---- text and JSON
 
 /// Prints what was written: takes by verdict, and the pages made.
+/// Each count is in the text and in the JSON. Failed pages do not stop the verb but are listed.
 void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
          const std::optional<PagesMade>& pages, Call& call) {
   std::string text = fmt::format("{}: {}, {}: {} bad, {} usable, {} good\n", out, size_text(bytes),
@@ -160,6 +178,8 @@ void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
 // ---- the verb
 
 /// Writes the page of the data set, and with --pages those of its takes.
+/// The order matters: pages of takes are made before links to them can be set, and the data set's
+/// page is written last.
 Result<int> write_page(const std::string& folder, const DatasetIndex& index, bool with_pages,
                        Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -171,13 +191,16 @@ Result<int> write_page(const std::string& folder, const DatasetIndex& index, boo
   TakePages pages(files, folder, place, page.software);
   std::optional<PagesMade> made;
   if (with_pages) made = KA_TRY(make_pages(pages, index, page, call));
+  // Links are set without --pages, too: pages from an earlier run may still be right.
   KA_TRY(link_pages(pages, index, place, page));
   const std::string html = dataset_html(page);
   KA_TRY(write_over_own(out, dataset_page_mark, html, call));
   say(out, html.size(), page, made, call);
+  // A summary that can't be read or a page that failed gives exit code 1.
   return index.findings().empty() && (!made || made->failed.empty()) ? 0 : 1;
 }
 
+/// Writes the data card in Markdown, by default to the README.md of the data set.
 Result<int> write_card(const std::string& folder, const DatasetIndex& index, Call& call) {
   const std::string out = call.common.out.empty() ? folder + "/README.md" : call.common.out;
   const std::string text =

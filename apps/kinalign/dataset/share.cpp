@@ -9,6 +9,7 @@ namespace kinalign {
 
 namespace {
 
+/// The environment variables of one kind of starter. Both rank and size must be set.
 struct Names {
   const char *rank, *size, *least;  // `least`: the first rank of an array, subtracted from the
                                     // rank; nullptr: 0
@@ -22,6 +23,8 @@ constexpr std::array<Names, 4> steps{{{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_
 
 using Variable = std::function<std::string(const std::string&)>;
 
+/// A whole decimal number of at least 0. Anything else, also a number with text after it, is
+/// absent.
 std::optional<std::int64_t> number(const std::string& text) {
   std::int64_t value = 0;
   const char* end = text.data() + text.size();
@@ -30,6 +33,7 @@ std::optional<std::int64_t> number(const std::string& text) {
   return good ? std::optional(value) : std::nullopt;
 }
 
+// A rank without a size says nothing about the share. A Slurm batch script alone has such a rank.
 bool is_there(const Names& names, const Variable& variable) {
   return !variable(names.rank).empty() && !variable(names.size).empty();
 }
@@ -41,6 +45,7 @@ Result<BuildShare> read(const Names& names, const Variable& variable, const std:
   const std::string size_text = shares.empty() ? variable(names.size) : shares;
   const auto rank = number(rank_text), size = number(size_text);
   const auto least = names.least == nullptr ? 0 : number(variable(names.least)).value_or(0);
+  // A rank that can't be read, or lies outside of the size, is refused below.
   const std::int64_t own = rank.value_or(-1) - least + offset;
   if (rank && size && own >= 0 && own < *size) {
     return BuildShare{static_cast<std::size_t>(own), static_cast<std::size_t>(*size)};
@@ -56,12 +61,16 @@ Result<BuildShare> read(const Names& names, const Variable& variable, const std:
 
 Result<BuildShare> step_share_of(const Variable& variable) {
   for (const Names& names : steps) {
+    // The first starter that is present wins, since an inner one passes on the variables of the
+    // outer one.
     if (is_there(names, variable)) return read(names, variable, "", 0);
   }
   return BuildShare{};
 }
 
 Result<BuildShare> share_of(const Variable& variable, std::int64_t index_offset) {
+  // The default share is 0 of 1. Both divisions are multiplied: task i of job j is number j * tasks
+  // + i.
   BuildShare outer;
   if (is_there(array, variable)) {
     outer = KA_TRY(read(array, variable, variable("KINALIGN_SHARES"), index_offset));

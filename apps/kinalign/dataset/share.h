@@ -21,6 +21,8 @@ Result<BuildShare> share_of(const std::function<std::string(const std::string&)>
                             std::int64_t index_offset);
 
 /// The share of this task among the tasks of its step, without regard to an array.
+/// A process that is started by hand has the share 0 of 1, which is the whole work. `train` uses it
+/// for its processes.
 Result<BuildShare> step_share_of(const std::function<std::string(const std::string&)>& variable);
 
 }  // namespace kinalign

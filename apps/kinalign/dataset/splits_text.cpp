@@ -6,6 +6,7 @@
 
 namespace kinalign {
 
+// The lines follow others of a verb, so each begins with two spaces.
 std::string splits_text(const std::vector<SplitFile>& splits) {
   std::string out;
   for (const SplitFile& one : splits) {

@@ -12,6 +12,8 @@
 namespace kinalign {
 
 /// The lines; empty without such splits.
+/// A verb that changes names prints them, since it never edits a split: it may be part of published
+/// results.
 std::string splits_text(const std::vector<SplitFile>& splits);
 nlohmann::ordered_json splits_json(const std::vector<SplitFile>& splits);
 

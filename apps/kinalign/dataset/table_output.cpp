@@ -8,6 +8,7 @@ Field format_field(std::string& format) {
 }
 
 void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call) {
+  // With --json each table is a member of one object, under its own name.
   if (call.console.prints_json()) {
     std::string object;
     for (const NamedTable& one : tables) {
@@ -20,8 +21,11 @@ void print_tables(const std::vector<NamedTable>& tables, const std::string& form
   std::string text;
   for (const NamedTable& one : tables) {
     text += (text.empty() ? "" : "\n") +
+            // An unknown format can't reach this place, since the parser knows the choices. Text is
+            // the fallback.
             written(one.table, table_format(format).value_or(TableFormat::text));
   }
+  // Names in tables come from files and are made harmless. put() prints them also with --quiet.
   call.console.put(harmless(text));
 }
 

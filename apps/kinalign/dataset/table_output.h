@@ -15,11 +15,14 @@ namespace kinalign {
 /// The flag --format. With --json tables are JSON whatever the flag says.
 Field format_field(std::string& format);
 /// A table, and its name in JSON.
+/// print_tables() joins several of them. In text the name is not shown.
 struct NamedTable {
   std::string name;
   Table table;
 };
 /// Prints tables one below the other in that format, or as members of one JSON object.
+/// Results go to standard output also with --quiet, because the table is what the verb is called
+/// for.
 void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call);
 
 /// Prints a table in that format, or as the member `name` of a JSON object.

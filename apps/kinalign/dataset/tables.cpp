@@ -12,11 +12,14 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset tables`.
 struct Tables {
   std::vector<std::string> folder;
   std::string table = "all", format = "text";
 };
 
+// The order is that of the printed tables. The names are choices of --table and members of the
+// JSON.
 using Make = Result<Table> (*)(const DatasetIndex&);
 constexpr std::array<std::pair<const char*, Make>, 4> tables{{{"subjects", table_by_subject},
                                                               {"classes", table_by_class},
@@ -44,6 +47,7 @@ Result<int> run_tables(Tables& o, Call& call) {
   for (const auto& [name, make] : tables) {
     if (o.table != "all" && o.table != name) continue;
     const Table table = KA_TRY(make(index));
+    // Text and JSON are both made; which of them is printed is decided once at the end.
     const auto format = table_format(o.format).value_or(TableFormat::text);
     text += (text.empty() ? "" : "\n") + written(table, format);
     json += (json.empty() ? "\"" : ", \"") + std::string(name) +

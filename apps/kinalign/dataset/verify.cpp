@@ -14,6 +14,7 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign dataset verify`.
 struct Verify {
   std::vector<std::string> folder;
   bool deep = false;
@@ -32,22 +33,31 @@ Usage describe_verify(Verify& o) {
 void check_splits(FileSystem& files, const std::string& folder, Findings& findings) {
   const auto splits = splits_in(files, folder);
   const auto there = scan_takes(folder);
+  // Without splits there is nothing to check. A folder that can't be read has a finding of verify()
+  // already.
   if (splits.empty() || !there) return;
   std::vector<SplitTake> takes;
   for (const auto& [name, kinds] : *there) {
+    // A take without a readable summary can't be checked. It is skipped here, and verify() has
+    // reported it.
     const auto summary = read_summary(files, folder, name);
     if (summary) takes.push_back({name, *summary});
   }
   for (const auto& [path, split] : splits) {
     Findings found = check_split(split, takes, path);
+    // Notes of a split are about people in two parts, which many splits allow.
     std::erase_if(found, [](const Finding& one) { return one.severity == Severity::note; });
     if (found.empty()) continue;
+    // check_split() sorts its findings, so the first one is the most severe.
     Finding& worst = found.front();
+    // The only warning is about changed bytes. After a rebuild with a new version this is normal,
+    // so it becomes a note.
     if (worst.severity == Severity::warning) worst.severity = Severity::note;
     if (found.size() > 1) worst.what.found += fmt::format(", and {} more", found.size() - 1);
     worst.repair = "make it again with kinalign dataset split and --force";
     findings.push_back(std::move(worst));
   }
+  // The splits' findings were appended at the end; the list must be sorted by severity again.
   sort_findings(findings);
 }
 
@@ -56,6 +66,7 @@ Result<int> run_verify(Verify& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   FileSystem& files = call.surroundings.files;
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
+  // The jobs are threads: takes are hashed or read in parallel.
   Verified found =
       KA_TRY(verify(files, folder, catalogue, {call.jobs, o.deep}, call.console.progress()));
   check_splits(files, folder, found.findings);

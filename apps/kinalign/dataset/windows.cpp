@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t most_parts = 255;
 constexpr std::size_t shown_takes = 5;
 
+/// The options of `kinalign dataset windows`. Without --split all windows belong to one part,
+/// "all".
 struct Windows {
   std::vector<std::string> folder;
   WindowOptions options;
@@ -59,13 +61,16 @@ Result<void> divide(const Split& split, const std::string& file, std::vector<Spl
     return Failure(Error{file, 0, "at most 255 parts", std::to_string(split.parts.size())});
   }
   std::map<TakeName, std::uint8_t> part_of;
+  // The parts of the split replace the part "all".
   source.parts.clear();
   for (const SplitPart& part : split.parts) {
     for (const TakeName& name : part.takes) {
+      // The index of a part is stored for each window; most_parts keeps it in a byte.
       part_of[name] = static_cast<std::uint8_t>(source.parts.size());
     }
     source.parts.push_back(part.name);
   }
+  // Takes outside of the split were meant for no part, so they give no windows.
   std::erase_if(takes, [&](const SplitTake& take) { return !part_of.contains(take.name); });
   for (const SplitTake& take : takes) {
     source.takes.push_back({take.name, "", take.summary, part_of.at(take.name)});
@@ -84,10 +89,13 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
   if (o.split.empty()) {
     for (const SplitTake& take : takes) source.takes.push_back({take.name, "", take.summary, 0});
   } else {
+    // The split is checked against all takes, not only those of --where. A leak is an error: a
+    // network would be tested on known data.
     const auto all = o.where.empty() ? takes : KA_TRY(built_takes(files, folder, index, ""));
     KA_TRY(divide(KA_TRY(read_good_split(files, o.split, all)), o.split, takes, source));
   }
   for (WindowTake& take : source.takes) {
+    // An action that dataset.toml does not describe has no class.
     const Action* action = find_action(catalogue, take.name.action);
     if (action != nullptr) take.class_id = action->class_id;
   }
@@ -95,6 +103,8 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
 }
 
 /// Prints the number of windows of each part, and everything that was left out.
+/// Windows may be lost for three reasons: too few valid cells, stretches that are too short, and
+/// whole takes without the streams.
 void print(const WindowsMade& made, const WindowSource& source, Call& call) {
   Table table;
   table.columns = {{"part", "part"}, {"windows", "windows"}};
@@ -113,6 +123,7 @@ void print(const WindowsMade& made, const WindowSource& source, Call& call) {
   }
   auto left_out = nlohmann::ordered_json::array();
   for (const TakeLeftOut& one : made.takes_left_out) {
+    // The JSON lists every take; the text shows only the first ones.
     left_out.push_back({{"take", to_string(one.name)}, {"why", one.why}});
     if (left_out.size() > shown_takes) continue;
     call.console.print(
@@ -136,6 +147,7 @@ Result<int> run_windows(Windows& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   const WindowSource source = KA_TRY(source_of(o, folder, call));
   const WindowsMade made =
+      // One file holds the windows of all takes.
       KA_TRY(write_windows(call.surroundings.files, source, o.options,
                            {call.common.out, call.common.overwrite()}, call.console.progress()));
   call.console.wrote(call.common.out);

@@ -21,29 +21,37 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The same limit as in the benchmark, so both mark the same stretches.
 constexpr std::size_t least_rows = 8;  // stretches with fewer frames are left out
 
 /// The marks of a method on a tested stretch.
+/// One line of a cached text. Index 0 and 1 of `marks` stand for plain and steadied everywhere in
+/// this file.
 struct Marked {
   std::string take, subject;
   std::array<DenoiseMarks, 2> marks;  // plain answer, steadied answer
 };
 
+/// A mark that does not exist is null, since JSON has no other word for it.
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
+/// The whole histogram is kept: the single radius over all stretches can't be computed from means.
 Json radii_json(const RadiusMarks& radii) {
   return {radii.cells, radii.within, radii.sum_m, radii.errors};
 }
 
+/// The order is that of radii_json().
 RadiusMarks radii_of(const Json& json) {
   return {json.at(0).get<std::size_t>(), json.at(1).get<std::size_t>(), json.at(2).get<double>(),
           json.at(3).get<std::vector<std::uint32_t>>()};
 }
 
 /// The marks as an array, for the cache. marks_of() reads the same order.
+/// If the order or the meaning changes, cache_version in eval.cpp must change, too.
 Json marks_json(const DenoiseMarks& marks) {
   const ProtocolMarks& p = marks.protocol;
   const TableNine& t = marks.table_nine;
+  // One entry for each of the shared joints, null for a joint that the data lack.
   Json joints = Json::array();
   for (const auto& one : marks.joint_cm) joints.push_back(number(one));
   return {number(p.position_cm),
@@ -69,11 +77,13 @@ Json marks_json(const DenoiseMarks& marks) {
           number(marks.amplitude)};
 }
 
+/// The opposite of number().
 std::optional<double> number_of(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
 
 /// The marks that marks_json() wrote.
+/// Throws if an element is missing or of another type; read_marks() catches it.
 DenoiseMarks marks_of(const Json& json) {
   DenoiseMarks out;
   ProtocolMarks& p = out.protocol;
@@ -93,6 +103,7 @@ DenoiseMarks marks_of(const Json& json) {
   out.feet.contacts = json.at(12).get<std::size_t>();
   out.feet.skate_m_s = json.at(13).get<double>();
   out.feet.true_skate_m_s = json.at(14).get<double>();
+  // Elements 15 to 17 are the radii of trunk, arms and legs.
   for (std::size_t g = 0; g < out.radii.size(); ++g) out.radii[g] = radii_of(json.at(15 + g));
   for (std::size_t j = 0; j < out.joint_cm.size(); ++j)
     out.joint_cm[j] = number_of(json.at(18).at(j));
@@ -101,6 +112,7 @@ DenoiseMarks marks_of(const Json& json) {
   return out;
 }
 
+/// A line of the array is: take, person, plain marks, steadied marks.
 std::string written_marks(const std::vector<Marked>& all) {
   Json out = Json::array();
   for (const Marked& one : all) {
@@ -110,6 +122,7 @@ std::string written_marks(const std::vector<Marked>& all) {
 }
 
 /// The marks of a cached text; empty if it can't be read as marks.
+/// Empty means damaged or foreign: a text of marks always has at least one stretch.
 std::vector<Marked> read_marks(const std::string& text) {
   try {
     std::vector<Marked> out;
@@ -125,6 +138,7 @@ std::vector<Marked> read_marks(const std::string& text) {
 }
 
 /// Each take once, with its person, action and part.
+/// A take may be cut into several pairs by gaps. The first of them stands for the take.
 std::vector<FoldTake> takes_of(const Pairs& pairs) {
   std::vector<FoldTake> out;
   std::set<std::string> known;
@@ -137,18 +151,23 @@ std::vector<FoldTake> takes_of(const Pairs& pairs) {
 }
 
 /// The data and the marker for methods with the same joints.
+/// A marker belongs to one layout. Methods that are trained here share the data's own; a finished
+/// model may need another.
 struct Bench {
   Pairs pairs;
   DenoiseLayout layout;
   DenoiseMarker marker;
 };
 
+/// The marker takes what it needs from the pairs, which are moved afterwards.
 Result<Bench> bench_of(Pairs pairs, DenoiseLayout layout, MarkedIn marked_in) {
   DenoiseMarker marker = KA_TRY(DenoiseMarker::make(layout, pairs.all, marked_in));
   return Bench{std::move(pairs), std::move(layout), std::move(marker)};
 }
 
 /// The data, read once, and the space in which errors are marked.
+/// It lives as long as the comparison, and is shared by all trials. `windows` stays for models with
+/// other joints.
 struct BenchData {
   Windows windows;
   std::string input, truth;
@@ -158,11 +177,15 @@ struct BenchData {
 
 /// The data with the joints of a finished model, found by name. Fails if the rates differ by more
 /// than 1 %.
+/// A model that was trained at another rate would see motion too fast or too slow, so it is
+/// refused.
 Result<Bench> bench_of_model(const DenoiseLayout& layout, const BenchData& data) {
   if (std::abs(data.own.layout.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
     return Failure(Error{"--rate", 0, fmt::format("{:g} Hz, the model's", layout.rate_hz),
                          fmt::format("{:g}", data.own.layout.rate_hz)});
   }
+  // An object without stretches states only which joints are wanted, at which rate and with which
+  // parents.
   const Pairs joints{layout.inputs, layout.outputs, layout.rate_hz, layout.parents};
   return bench_of(KA_TRY(pairs_for(data.windows, data.input, data.truth, joints, least_rows)),
                   layout, data.marked_in);
@@ -170,15 +193,19 @@ Result<Bench> bench_of_model(const DenoiseLayout& layout, const BenchData& data)
 
 /// Marks each tested stretch twice: with the plain answer, and steadied in the same way for every
 /// method.
+/// `tested`: names of takes. Stretches of other takes belong to the training.
 Result<std::string> marks_on(const Bench& bench, const Answer& answer,
                              const std::vector<std::string>& tested) {
+  // The default steadying is used for every method, so only the answers differ.
   const Steadier steadier({}, bench.layout);
   std::vector<Marked> out;
   for (const Pair& pair : bench.pairs.all) {
     if (std::find(tested.begin(), tested.end(), pair.take) == tested.end()) continue;
+    // The plain answer is marked before it is moved into the steadier.
     Denoised plain = answer(pair.input);
     Marked one{pair.take, pair.subject, {}};
     one.marks[0] = bench.marker.marks_of(pair, plain.positions, plain.spread);
+    // steadied() calls the method again for the mirror image.
     const Denoised steadied = steadier.steadied(answer, pair.input, std::move(plain));
     one.marks[1] = bench.marker.marks_of(pair, steadied.positions, steadied.spread);
     out.push_back(std::move(one));
@@ -189,6 +216,7 @@ Result<std::string> marks_on(const Bench& bench, const Answer& answer,
 /// Marks a method, or a finished model. A model with other joints than the data's is marked on its
 /// own joints.
 Result<std::string> marks_of_trial(const Trial& trial, const BenchData& data, Call& call) {
+  // A method of the list: make_answer() fits it, or has it trained by kinalign-learn.
   if (trial.model.empty()) {
     const Answer answer =
         KA_TRY(make_answer({data.own.layout, data.own.pairs.all, trial.training}, call));
@@ -198,15 +226,20 @@ Result<std::string> marks_of_trial(const Trial& trial, const BenchData& data, Ca
       KA_TRY(read_whole(call.surroundings.files, trial.model, most_model_bytes));
   const DenoiseLayout layout = KA_TRY(read_denoise_model(bytes, trial.model)).layout;
   const Answer answer = KA_TRY(answer_of_model(bytes, trial.model));
+  // The common case needs no new pairs: the model has the joints of the data, in the same order.
   if (layout.inputs == data.own.layout.inputs && layout.outputs == data.own.layout.outputs) {
     return marks_on(data.own, answer, trial.tested);
   }
   return marks_on(KA_TRY(bench_of_model(layout, data)), answer, trial.tested);
 }
 
+/// Stretches that are summed up to one value of the table. The pointers lead into the vector of the
+/// caller.
 using Group = std::vector<const Marked*>;
 
 /// The marks by fold; if there is a single fold, by person.
+/// With several folds each value is one fold's. A single fold would give one value and no
+/// deviation, so its people become the values.
 std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
                                        const std::vector<std::vector<Marked>>& marks) {
   std::map<std::string, Group> out;
@@ -218,9 +251,11 @@ std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
   return out;
 }
 
+/// The key of a joint's column in the second table: "WristLeft_cm".
 std::string joint_key(std::size_t joint) { return std::string(shared_joints[joint]) + "_cm"; }
 
 /// Adds the means of the columns of the paper's table 9.
+/// Each stretch has the same weight here, unlike in the benchmark, where frames are weighted.
 void add_table_nine(const std::string& name, const Group& group, std::size_t which,
                     MethodMarks& out) {
   Mean position, bone, smooth;
@@ -237,9 +272,11 @@ void add_table_nine(const std::string& name, const Group& group, std::size_t whi
 
 /// Adds the means of a group. `which`: the index in Marked::marks. Skating is weighted by the
 /// frames in which feet stand.
+/// A mark that no stretch of the group has leaves no value, so the table has an empty cell.
 void add_group(const std::string& name, const Group& group, std::size_t which, MethodMarks& out) {
   std::vector<ProtocolMarks> marks;
   double skate = 0.0, contacts = 0.0;
+  // Radii of all parts of the body are added up, and kept for each part as well.
   RadiusMarks radii;
   Mean hands, lag, amplitude;
   std::array<Mean, shared_joint_count> joints{};
@@ -251,6 +288,7 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
       radii.add(m.radii[g]);
       out.radii[std::string(radius_groups[g])].add(m.radii[g]);
     }
+    // A stretch without this mark counts neither as zero nor in the number of values.
     const auto add = [](const std::optional<double>& value, Mean& to) {
       if (value) to.add(*value);
     };
@@ -258,10 +296,13 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
     add(m.lag_ms, lag);
     add(m.amplitude, amplitude);
     for (std::size_t j = 0; j < joints.size(); ++j) add(m.joint_cm[j], joints[j]);
+    // 100 turns metres into centimetres. Only frames in which a foot stands by the truth can show
+    // skating.
     const auto standing = static_cast<double>(m.feet.contacts);
     skate += 100.0 * m.feet.skate_m_s * standing;
     contacts += standing;
   }
+  // protocol_row() makes the means of the common protocol; its jitter is the ratio of two means.
   const ProtocolMeans row = protocol_row(marks);
   const auto put = [&](const std::string& key, const std::optional<double>& value) {
     if (value) out.marks[key][name].add(*value);
@@ -272,6 +313,8 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   put("constancy_cm", row.constancy_cm);
   put("acceleration_mm", row.acceleration_mm);
   put("jitter", row.jitter);
+  // Without stated radii there is no share to report: a share of 0 % would mean that every error is
+  // too large.
   if (radii.cells > 0) {
     put("covered_percent", 100.0 * radii.covered());
     put("radius_cm", 100.0 * radii.mean_radius_m());
@@ -285,15 +328,19 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
 }
 
 /// Makes two rows for a method: its plain answers, and its steadied ones.
+/// Rows keep the order of `which`, so index 0 is plain and 1 is steadied.
 std::vector<MethodMarks> sum_up(const std::string& name, const std::vector<FoldMarks>& folds) {
   std::vector<std::vector<Marked>> marks;
   for (const FoldMarks& fold : folds) {
     marks.emplace_back();
+    // Several seeds give several texts. All their stretches go into the same group and are
+    // averaged.
     for (const std::string& text : fold.texts) {
       for (Marked& one : read_marks(text)) marks.back().push_back(std::move(one));
     }
   }
   const auto groups = groups_of(folds, marks);
+  // No group means that no text could be read.
   if (groups.empty()) return {};
   std::vector<MethodMarks> out{{name, ""}, {name, "steadied"}};
   for (const auto& [who, group] : groups) {
@@ -314,6 +361,7 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
   DenoiseLayout layout = KA_TRY(eval_layout(pairs));
   const MarkedIn marked_in = o.own_root ? MarkedIn::own_root : MarkedIn::space;
   Bench own = KA_TRY(bench_of(std::move(pairs), std::move(layout), marked_in));
+  // The functions below need the data after this function has returned, so they share it.
   const auto data = std::make_shared<BenchData>(
       BenchData{std::move(windows), input, o.truth, marked_in, std::move(own)});
   Comparison out;
@@ -334,9 +382,12 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                  {"table_9_position_cm2", "E_p, cm²", 1},
                  {"table_9_bone_cm", "E_b, cm", 2},
                  {"table_9_smooth_cm", "E_s, cm", 3}};
+  // The joints make a second table: the first one would become too wide.
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     out.joints.push_back({joint_key(j), std::string(shared_joints[j]), 1});
   }
+  // The paper's split and the folds of people give values that are people. All other folds are
+  // averaged by fold.
   const bool by_people = !o.split.empty() || o.folds == "people" || o.folds == "split";
   out.over = by_people ? "people" : "folds";
   out.mark = [data](const Trial& trial, Call& call) { return marks_of_trial(trial, *data, call); };

@@ -22,6 +22,7 @@ namespace kinalign {
 
 namespace {
 
+/// A broken model gives NaN. A BVH with "nan" could not be read by any other program.
 bool is_finite(const Clip& clip) {
   const auto is_number = [](double value) { return std::isfinite(value); };
   const ClipFrames& frames = clip.frames;
@@ -31,6 +32,7 @@ bool is_finite(const Clip& clip) {
 
 /// The statures that --body accepts, m.
 constexpr double least_stature_m = 0.5, most_stature_m = 2.6;
+// A BVH larger than this is refused.
 constexpr std::uint64_t most_body_bytes = std::uint64_t{1} << 28U;
 
 /// The stature that the text states, m. Absent if the text is not one number.
@@ -38,9 +40,12 @@ std::optional<double> stature_in(const std::string& words) {
   double out = 0.0;
   const char* end = words.data() + words.size();
   const auto [rest, fault] = std::from_chars(words.data(), end, out);
+  // The whole text must be a number: "1.75m" may be the name of a file.
   return fault == std::errc() && rest == end ? std::optional(out) : std::nullopt;
 }
 
+/// Each warning has a line of its own, after the summary. Names in warnings come from files, so
+/// they are made harmless.
 std::string with_warnings(std::string text, const AboutAnswer& about) {
   for (const AboutAnswer& warning : about.at("warnings")) {
     text += fmt::format("warning  {}\n", harmless(warning.get<std::string>()));
@@ -62,6 +67,7 @@ Field body_flag(std::string& words, const std::string& otherwise) {
 }
 
 Result<void> check_body(const std::string& words) {
+  // A file's name is accepted as it is; it is opened when the model is known.
   if (words.empty() || words.ends_with(".bvh")) return {};
   const auto stature = stature_in(words);
   if (stature && *stature >= least_stature_m && *stature <= most_stature_m) return {};
@@ -74,8 +80,10 @@ Result<void> check_body(const std::string& words) {
 Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Skeleton& body,
                                               Call& call) {
   if (words.empty()) return std::optional<Skeleton>{};
+  // All bones are scaled by one factor, so the model's proportions stay.
   if (const auto stature = stature_in(words)) return scaled(body, *stature / stature_of(body));
   const std::string text = KA_TRY(read_whole(call.surroundings.files, words, most_body_bytes));
+  // Only lengths are taken from the BVH.
   auto own = with_lengths_of(body, KA_TRY(read_bvh(text, words, {})).clip.skeleton);
   if (own) return std::optional(std::move(*own));
   Error error = own.error();
@@ -97,12 +105,15 @@ Result<AboutAnswer> in_child(const std::string& in,
                              const std::function<Result<AboutAnswer>()>& work) {
   const auto as_text = [&]() -> Result<std::string> { return KA_TRY(work()).dump(); };
   AboutAnswer about =
+      // A child process that read a damaged take may send anything. Text that is no object is an
+      // error.
       AboutAnswer::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), as_text)), nullptr, false);
   if (about.is_object()) return about;
   return Failure(Error{in, 0, "a take that can be read", "an unreadable answer"});
 }
 
 Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, Call& call) {
+  // The check is made before the file is created, so an existing file stays.
   if (!is_finite(clip)) {
     return Failure(Error{model, 0, "a model with finite answers", "NaN or infinite values"});
   }
@@ -116,11 +127,14 @@ Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, C
 Result<void> keep_free(const Call& call) {
   const Common& common = call.common;
   if (common.out.empty()) return {};
+  // The file is created and destroyed without a commit, which leaves no trace but tests name and
+  // permissions.
   (void)KA_TRY(OutputFile::create(call.surroundings.files, common.out, common.overwrite()));
   return {};
 }
 
 void print_live(std::string text, const AboutAnswer& about, Call& call) {
+  // "event" comes first, as in all other lines of a live run.
   AboutAnswer event{{"event", "ended"}};
   event.update(about);
   call.console.print(with_warnings(std::move(text), about));

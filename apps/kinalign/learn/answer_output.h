@@ -15,10 +15,14 @@
 
 namespace kinalign {
 
+/// The facts about an answer. The same object is the JSON of --json and the source of the printed
+/// lines, so both always agree.
 using AboutAnswer = nlohmann::ordered_json;
 
 /// Returns the result of `work`, which runs in a child process, so a damaged take can crash only
 /// the child. Errors name the take `in`.
+/// Only the JSON comes back from the child. A file that `work` writes stays, so the child may write
+/// the answer itself.
 Result<AboutAnswer> in_child(const std::string& in,
                              const std::function<Result<AboutAnswer>()>& work);
 
@@ -41,6 +45,7 @@ Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, C
 
 /// Fails before a live run starts if the file to be written at its end can't be created. Leaves no
 /// file.
+/// A live run may last for hours. A name that can't be written must fail at its start.
 Result<void> keep_free(const Call& call);
 
 /// Prints `text`, a line for each warning, and the JSON.

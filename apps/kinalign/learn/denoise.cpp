@@ -37,6 +37,7 @@ using Json = nlohmann::ordered_json;
 constexpr double longest_gap_s = 0.2;     // samples further apart are not interpolated
 constexpr double longest_unseen_s = 2.0;  // a joint missing for longer gets a warning
 
+/// The options of `kinalign denoise`. `in` is empty in a live run.
 struct Denoise {
   std::vector<std::string> in;
   std::string model, stream;
@@ -65,10 +66,12 @@ Usage describe_denoise(Denoise& o) {
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     KA_TRY(check(o.live, o.in));
+    // Projection optimises the whole motion at once, which a live run does not have.
     if (!o.live.live.empty() && o.project) {
       return Failure(
           Error{"--project", 0, "a file or a take, because it needs the whole motion", "--live"});
     }
+    // A live run sends its frames as it goes, so a file is optional. TRC is not offered there.
     if (!o.live.live.empty() && (common.out.empty() || common.out.ends_with(".bvh"))) return {};
     if (!o.live.live.empty()) {
       return Failure(Error{"-o", 0, "-o FILE.bvh, with --live", shown(common.out)});
@@ -81,6 +84,7 @@ Usage describe_denoise(Denoise& o) {
 }
 
 /// The denoised joints with their input, and the JSON about them.
+/// Input [T,Jin] and answer [T,Jout] have the same T frames on the model's grid.
 struct Cleaned {
   EvenFrames input;
   Denoised answer;
@@ -95,6 +99,7 @@ double mean_of(const std::vector<double>& values) {
 
 /// The distances, m, by which the model moved joints that the Kinect tracked. An output joint is
 /// compared with the input joint of the same name.
+/// This measure of the model's work needs no truth.
 std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
   std::vector<double> out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
@@ -102,6 +107,7 @@ std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
   for (std::size_t t = 0; t < cleaned.input.body.frames(); ++t) {
     for (std::size_t j = 0; j < joints; ++j) {
       const auto from = index_of(model.layout.inputs, names[j]);
+      // 2 is the state "tracked". A joint that the Kinect only guessed is expected to be moved far.
       if (!from || cleaned.input.body.seen[t * in + *from] != 2) continue;
       const float* a = &cleaned.input.body.positions[(t * in + *from) * 3];
       const float* b = &cleaned.answer.positions[(t * joints + j) * 3];
@@ -118,6 +124,8 @@ std::vector<double> spread_of_seen(const DenoiseModel& model, const Cleaned& cle
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
   const auto stands = inputs_of_outputs(model.layout);
   for (std::size_t i = 0; i < cleaned.answer.spread.size(); ++i) {
+    // Entry i is joint i % joints of frame i / joints. `stands` gives the input joint that stands
+    // for it.
     const std::size_t seen = i / joints * in + stands[i % joints];
     if (cleaned.input.body.seen[seen] != 0) {
       out.push_back(static_cast<double>(cleaned.answer.spread[i]));
@@ -129,11 +137,13 @@ std::vector<double> spread_of_seen(const DenoiseModel& model, const Cleaned& cle
 /// The input joints that were missing for `longest_unseen_s` or longer, each with its longest time,
 /// s.
 Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
+  // An object keeps the names of joints as its keys, in the order of the layout.
   Json out = Json::object();
   const std::size_t joints = model.layout.inputs.size();
   for (std::size_t j = 0; j < joints; ++j) {
     std::size_t run = 0, longest = 0;
     for (std::size_t t = 0; t < input.body.frames(); ++t) {
+      // A frame with the joint ends the stretch; the longest one is kept.
       run = input.body.seen[t * joints + j] == 0 ? run + 1 : 0;
       longest = std::max(longest, run);
     }
@@ -149,6 +159,7 @@ constexpr std::size_t most_named = 4;
 /// One warning for all joints that were missing for the same time.
 std::vector<std::string> missing_warnings(const Json& long_missing) {
   std::map<std::string, std::vector<std::string>> joints;
+  // Joints that vanish together, such as a whole leg behind a table, get one line.
   for (const auto& [joint, seconds] : long_missing.items()) {
     joints[fmt::format("{:.1f}", seconds.get<double>())].push_back(harmless(joint));
   }
@@ -164,6 +175,7 @@ std::vector<std::string> missing_warnings(const Json& long_missing) {
 }
 
 /// The JSON about an answer. `warnings`: those about the input.
+/// Shares are fractions from 0 to 1 over all input cells [T,Jin]; distances are in centimetres.
 Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string& stream,
            std::vector<std::string> warnings) {
   const auto& seen = cleaned.input.body.seen;
@@ -184,6 +196,7 @@ Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string&
   }
   out["warnings"] = std::move(warnings);
   const std::vector<double> spread = spread_of_seen(model, cleaned);
+  // radius_90 turns a standard deviation per axis into the radius that contains 90 % of the errors.
   if (!spread.empty()) out["radius_90_cm"] = 100.0 * radius_90 * mean_of(spread);
   return out;
 }
@@ -196,9 +209,12 @@ struct SeenJoints {
 };
 
 /// Brings the joints to the model's grid. Errors name the file `in`.
+/// `points` is passed as a result, so takes and other files are handled in one expression.
 Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> points,
                                const std::string& in) {
   const NamedPoints named = KA_TRY(std::move(points));
+  // The joints are renamed to the Kinect's names first, since layouts of files name them
+  // differently.
   auto frames = even_frames(layout.inputs, kinect_names(named.joints), named.frames,
                             {layout.rate_hz, longest_gap_s});
   if (frames) {
@@ -213,6 +229,8 @@ Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> 
 /// Does the same for a take, which is read in a child process.
 Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::string& in,
                                        const std::string& stream, Call& call) {
+  // The child sends positions and states as a SafeTensors file, which is far more compact than
+  // JSON.
   const auto work = [&]() -> Result<std::string> {
     const SeenJoints seen =
         KA_TRY(seen_joints(layout, points_of_take(call.surroundings.files, in, stream), in));
@@ -232,6 +250,7 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::s
   out.frames.start = utc_time(std::stoll(answer_file.metadata["start_ns"]));
   Json::parse(answer_file.metadata["warnings"]).get_to(out.warnings);
   out.frames.rate_hz = layout.rate_hz;
+  // The layout is known here, so the child does not repeat it.
   out.frames.body.joints = layout.inputs.size();
   out.frames.body.positions = std::move(answer_file.tensors["positions"].values);
   const auto& seen = answer_file.tensors["seen"].values;
@@ -241,11 +260,14 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::s
 
 /// The model's answer, projected onto constraints, then steadied like every answer. `path`: the
 /// model's file.
+/// The projection is computed by kinalign-learn, because it needs gradients of the network.
 Result<Denoised> clean_with_constraints(const DenoiseModel& model, const std::string& path,
                                         const JointFrames& body, Json& about, Call& call) {
   const auto projected = KA_TRY(projected_answers(path, model.layout, {body}, call));
   about["projected"] = {{"feet_cm", {projected.before.feet_cm, projected.after.feet_cm}},
                         {"bone_cm", {projected.before.bone_cm, projected.after.bone_cm}}};
+  // Projected answers exist for the body and its mirror image, which are all that the steadier asks
+  // for.
   const Steadier steadier(model.steadying, model.layout);
   return steadier.steadied(projected.answer, body, projected.answer(body));
 }
@@ -257,10 +279,12 @@ Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Clean
   const std::size_t joints = model.layout.outputs.size(), frames = cleaned.input.body.frames();
   PointFrames points;
   for (std::size_t t = 0; t < frames; ++t) {
+    // Each stamp is computed from the first one, so rounding does not add up.
     const double ns = static_cast<double>(t) * 1e9 / cleaned.input.rate_hz;
     points.stamps.push_back(cleaned.input.start + Duration(std::llround(ns)));
   }
   points.positions.assign(cleaned.answer.positions.begin(), cleaned.answer.positions.end());
+  // The model answers every joint in every frame, so all of them count as tracked.
   points.state.assign(frames * joints, Tracking::tracked);
   TrcWriter writer =
       KA_TRY(TrcWriter::begin({model.layout.outputs, cleaned.input.rate_hz, frames,
@@ -276,6 +300,7 @@ Result<void> write_skeleton(FileSystem& files, const DenoiseModel& model, const 
                             const Common& common) {
   OutputFile file = KA_TRY(OutputFile::create(files, common.out, common.overwrite()));
   const DenoiseLayout& layout = model.layout;
+  // A BVH has rotations and constant bones. Positions are turned into them here.
   Clip clip = KA_TRY(skeleton_of_points({layout.outputs, layout.parents}, cleaned.answer.positions,
                                         cleaned.input.start, layout.rate_hz));
   KA_TRY(write_bvh(bvh_from_clip(std::move(clip), 1.0 / layout.rate_hz),
@@ -302,6 +327,7 @@ void print(const Json& about, const std::string& out, Call& call) {
   text += fmt::format("seen     {:.1f} % missing, {:.1f} % inferred\n",
                       100.0 * about.at("missing").get<double>(),
                       100.0 * about.at("inferred").get<double>());
+  // The member is missing if the model states no spread.
   if (about.contains("radius_90_cm")) {
     text += fmt::format(
         "sure     9 of 10 visible joints lie within {:.1f} cm, if the data is like the training "
@@ -309,6 +335,7 @@ void print(const Json& about, const std::string& out, Call& call) {
         about.at("radius_90_cm").get<double>());
   }
   if (about.contains("projected")) {
+    // Index 0 is the value before the projection, 1 the value after it.
     const auto value_of = [&](const char* what, std::size_t i) {
       return about.at("projected").at(what).at(i).get<double>();
     };
@@ -330,8 +357,10 @@ Result<SeenJoints> seen_joints_of_file(const DenoiseLayout& layout, const Denois
 }
 
 /// Denoises the samples that a running record receives. Writes a file if -o names one.
+/// The clip grows during the run and is written at its end, also after Ctrl-C.
 Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
   const LiveJob job{o.live, "", o.stream, {}};
+  // The output is tested before the run starts.
   KA_TRY(keep_free(call));
   Clip clip;
   const Json about = KA_TRY(run_live_denoise(denoiser, job, clip, call));
@@ -340,6 +369,7 @@ Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
     KA_TRY(write_answer(std::move(clip), denoiser.model().layout.rate_hz, o.model, call));
     call.console.wrote(out);
   }
+  // Progress lines end with the run; this summary is the last output.
   print_live(
       fmt::format("{}: {} frames at {:g} Hz, {} joints\nseen     {:.1f} % missing, {:.1f} % "
                   "inferred\n",
@@ -355,14 +385,17 @@ Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
 /// Denoises one file and writes the result. The exit code is 1 if there were warnings.
 Result<int> run_denoise(Denoise& o, Call& call) {
   FileSystem& files = call.surroundings.files;
+  // The shipped model is the default, so the verb works without any flag.
   o.model = KA_TRY(model_named(o.model, "denoise"));
   const std::string bytes = KA_TRY(read_whole(files, o.model, most_model_bytes));
+  // make() checks the whole model, so a wrong file fails before any input is read.
   Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, o.model))));
   if (!o.live.live.empty()) return clean_live(denoiser, o, call);
   KA_TRY(keep_inputs(call.common.out, o.in));
   const DenoiseModel& model = denoiser.model();
   SeenJoints seen = KA_TRY(seen_joints_of_file(model.layout, o, call));
   Cleaned cleaned{std::move(seen.frames), {}, Json::object()};
+  // The members about the projection are kept apart, since about() makes a new object.
   Json of_projection = Json::object();
   cleaned.answer =
       o.project

@@ -18,9 +18,11 @@ namespace {
 constexpr std::string_view projects = "+project";
 
 /// An answer without a model: the base joints of the filtered input.
+/// The returned function refers to `layout`, which must outlive it.
 Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrames&)>& filter) {
   return [&layout, filter](const JointFrames& body) {
     JointFrames copy = body;
+    // A filter needs a value in every frame, so missing joints are filled first.
     fill_missing(copy, false);
     filter(copy);
     return Denoised{base_joints(layout, std::move(copy)), {}};
@@ -28,6 +30,7 @@ Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrame
 }
 
 /// The pairs of the takes that the method learns from.
+/// Takes are chosen by name: a take may have several pairs, and all of them are on the same side.
 std::vector<const Pair*> learnt_of(const EvalTask& task) {
   std::vector<const Pair*> out;
   for (const Pair& pair : task.pairs) {
@@ -39,6 +42,7 @@ std::vector<const Pair*> learnt_of(const EvalTask& task) {
 
 /// The inputs of the takes that the method does not learn from; projection computes their answers
 /// ahead.
+/// A tested take is any other than the learnt ones, also those that only stop the training.
 std::vector<JointFrames> tested_of(const EvalTask& task) {
   std::vector<JointFrames> out;
   for (const Pair& pair : task.pairs) {
@@ -54,6 +58,7 @@ std::vector<JointFrames> tested_of(const EvalTask& task) {
 
 /// Methods without training first, then the trained ones; those with a hidden space also with
 /// projection.
+/// The names are written on the command line and in tables, so they must not change.
 const std::vector<EvalMethod>& eval_methods() {
   static const std::vector<EvalMethod> all = [] {
     std::vector<EvalMethod> out{{"raw", "the Kinect as it is"},
@@ -87,6 +92,7 @@ std::string trained_part(const std::string& method) {
   return method.ends_with(projects) ? method.substr(0, method.size() - projects.size()) : method;
 }
 
+// The layout decides which joints are compared. It is the same for every method of a run.
 Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
   DenoiseLayout out =
       KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz, pairs.parents));
@@ -101,6 +107,8 @@ Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
 Result<Answer> trained_answer(const std::string& method, const std::string& file,
                               const DenoiseLayout& layout, const std::vector<JointFrames>& bodies,
                               Call& call) {
+  // Projected answers are computed for all bodies in one run, since starting kinalign-learn takes a
+  // second.
   if (method.ends_with(projects)) {
     return KA_TRY(projected_answers(file, layout, bodies, call)).answer;
   }
@@ -109,14 +117,18 @@ Result<Answer> trained_answer(const std::string& method, const std::string& file
 
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name) {
   auto denoiser =
+      // A Denoiser can't be copied into a function, so the function shares it. It must be used by
+      // one thread at a time.
       std::make_shared<Denoiser>(KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, name)))));
   return Answer([denoiser](const JointFrames& body) { return denoiser->answer(body); });
 }
 
+// Each branch returns a function of one body. The fitted ones share their coefficients.
 Result<Answer> make_answer(const EvalTask& task, Call& call) {
   const std::string& method = task.training.method;
   const DenoiseLayout& layout = task.layout;
   const double rate = layout.rate_hz;
+  // "raw" is the baseline: its errors are those of the Kinect itself.
   if (method == "raw") return filtered(layout, [](JointFrames&) {});
   if (method == "hold") return filtered(layout, [rate](JointFrames& body) { hold(body, rate); });
   if (method == "savgol") {
@@ -131,10 +143,12 @@ Result<Answer> make_answer(const EvalTask& task, Call& call) {
     return filtered(layout, [rate](JointFrames& body) { kalman_smooth({}, body, rate); });
   }
   if (method == "offset" || method == "offset+kalman") {
+    // Offset and ridge learn from the same takes as the networks, so the comparison is fair.
     const auto fit = std::make_shared<MeanOffset>(layout, learnt_of(task));
     const bool smoothed = method != "offset";
     return Answer([fit, smoothed, &layout, rate](const JointFrames& body) {
       JointFrames copy = body;
+      // The filter comes before the offset, as the method's name says.
       if (smoothed) kalman_smooth({}, copy, rate);
       return Denoised{fit->clean(layout, copy), {}};
     });
@@ -145,6 +159,7 @@ Result<Answer> make_answer(const EvalTask& task, Call& call) {
       return Denoised{fit->clean(layout, body), {}};
     });
   }
+  // Every other name is that of a trained method; the parser has refused unknown ones.
   TrainingWanted wanted = task.training;
   wanted.method = trained_part(method);
   const std::string model = KA_TRY(trained_model(wanted, call));

@@ -17,6 +17,8 @@ struct EvalMethod {
   std::string name, summary;
   bool trained = false;  // by kinalign-learn, from the pairs
 };
+/// The order is that of tables and help pages. The list is made once and lives as long as the
+/// program.
 const std::vector<EvalMethod>& eval_methods();
 
 /// True for methods that kinalign-learn trains.
@@ -35,6 +37,8 @@ struct EvalTask {
 };
 
 /// Fits or trains the method of `task.training`. `task.layout` and `task.pairs` must live longer.
+/// A method in closed form is fitted in this call. A network is trained, unless its model file
+/// exists, which may take hours.
 Result<Answer> make_answer(const EvalTask& task, Call& call);
 
 /// The answer of a method whose trained part is the model in `file`. `bodies`: the inputs that it

@@ -29,6 +29,7 @@ constexpr double most_unsure_deg = 10.0;  // a node's heading, 1 sigma; more giv
 constexpr double most_turned_deg = 40.0;  // a heading correction by the Kinect; more means a node
                                           // worn elsewhere
 
+/// The options of `kinalign fuse`. `kinect` and `nodes` are names of streams.
 struct FuseWords {
   std::vector<std::string> in;
   std::string model, kinect, nodes, body;
@@ -64,6 +65,7 @@ Usage describe_fuse(FuseWords& o) {
     KA_TRY(check(o.worn));
     KA_TRY(check_body(o.body));
     KA_TRY(check(o.live, o.in));
+    // A live run waits for the T-pose for a limited time only, so --tpose is checked against it.
     if (!o.live.live.empty()) KA_TRY(live_options(o.worn));
     if (!o.live.live.empty() && common.out.empty()) return {};
     if (common.out.ends_with(".bvh")) return {};
@@ -78,11 +80,13 @@ void add_heading_warnings(const std::vector<std::string>& names,
                           const std::vector<HeadingState>& states, Json& about) {
   Json found = Json::object();
   for (std::size_t n = 0; n < names.size(); ++n) {
+    // `states` is [T,N], frame after frame; the last row has the corrections after the whole run.
     const HeadingState& last = states[states.size() - names.size() + n];
     const double degrees = 180.0 / std::numbers::pi;
     const double spread = degrees * static_cast<double>(last.spread);
     const double turned = degrees * static_cast<double>(last.yaw);
     found[names[n]] = {{"turned_deg", turned}, {"spread_deg", spread}};
+    // A node without samples has a heading without meaning and already has its own warning.
     const bool is_there = about.at("nodes").at(names[n]).at("valid").get<double>() > 0.0;
     if (is_there && std::abs(turned) > most_turned_deg && spread <= most_unsure_deg) {
       about["warnings"].push_back(
@@ -90,6 +94,7 @@ void add_heading_warnings(const std::vector<std::string>& names,
                       "with another node, or worn in another orientation?",
                       names[n], turned));
     }
+    // An uncertain heading is only reported. The node stays in use.
     if (!is_there || spread <= most_unsure_deg) continue;
     about["warnings"].push_back(
         fmt::format("{}: its heading is uncertain by the Kinect (± {:.0f} deg)", names[n], spread));
@@ -102,11 +107,13 @@ void add_heading_warnings(const std::vector<std::string>& names,
 Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call& call) {
   const FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
   const PoseLayout& layout = fuser.model().layout.nodes;
+  // The flag has priority over the Kinect's measurement, and this over the model's mean.
   const auto own = KA_TRY(body_of_words(o.body, fuser.model().body.skeleton, call));
   fuser.use_body(own ? *own : given.body);
   Json about = about_fused(fuser.model(), given);
   const std::string by = given.is_sized ? "the Kinect" : "the model";
   about["body"] = about_body(fuser.model().body.skeleton, own ? "--body" : by);
+  // The headings are computed once and used twice: for the warnings and for the clip.
   const auto headings = fuser.headings(given.input);
   add_heading_warnings(layout.nodes, headings, about);
   KA_TRY(
@@ -116,6 +123,7 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
 
 /// The stream, or its error with `flag` in place of --stream: this verb chooses each device's
 /// stream by its own flag.
+/// Readers of streams name --stream, which this verb does not have.
 template <class Stream>
 Result<Stream> by_flag(Result<Stream> stream, const std::string& flag) {
   if (stream) return stream;
@@ -130,6 +138,7 @@ Result<Stream> by_flag(Result<Stream> stream, const std::string& flag) {
 Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNodes> nodes,
                         const FuseWords& o, Call& call) {
   BothDevices both;
+  // Both readers ran already. If both failed, the error of the nodes is reported.
   both.nodes = KA_TRY(by_flag(std::move(nodes), "--nodes"));
   both.kinect = KA_TRY(by_flag(std::move(kinect), "--kinect"));
   auto about = fuse_into(fuser, std::move(both), o, call);
@@ -138,6 +147,7 @@ Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNo
 }
 
 /// Does the same for a take, in a child process.
+/// The child reads, fuses and writes the file. Only the JSON about it comes back.
 Result<Json> fuse_take(Fuser& fuser, const FuseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& in = o.in.front();
@@ -172,6 +182,7 @@ Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
   job.worn = KA_TRY(live_options(o.worn));
   KA_TRY(keep_free(call));
   Clip clip;
+  // A live run uses the model's body unless --body gives another.
   if (const auto own = KA_TRY(body_of_words(o.body, fuser.model().body.skeleton, call))) {
     fuser.use_body(*own);
   }
@@ -194,6 +205,8 @@ Result<int> run_fuse(FuseWords& o, Call& call) {
   if (!o.live.live.empty()) return fuse_live(fuser, o, call);
   const std::string& in = o.in.front();
   KA_TRY(keep_inputs(call.common.out, o.in));
+  // HDF5 is read in a child. All other formats have readers of kinalign, which are safe in this
+  // process.
   const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
   const Json about = KA_TRY(is_take ? fuse_take(fuser, o, call)
                                     : fuse_named(fuser, points_of_file(in, o.kinect, call),

@@ -18,6 +18,8 @@ namespace {
 constexpr double longest_kinect_gap_s = 0.2;  // samples further apart are not interpolated
 
 /// The grid from the first stamp of either device to the last one.
+/// A stretch with only one of both devices belongs to the grid, too: the model answers it from that
+/// device alone.
 EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double rate_hz) {
   Time first = both.kinect.frames.stamps.front(), last = both.kinect.frames.stamps.back();
   for (const auto& node : choice) {
@@ -29,6 +31,8 @@ EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double 
   return span_of(first, last, rate_hz);
 }
 
+/// `value`: 0 missing, 1 inferred, 2 tracked. The maximum keeps an empty array from dividing by
+/// zero.
 double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t value) {
   return static_cast<double>(std::count(seen.begin(), seen.end(), value)) /
          static_cast<double>(std::max<std::size_t>(seen.size(), 1));
@@ -39,6 +43,7 @@ double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t value) {
 Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn) {
   const FuseLayout& layout = model.layout;
   FusedInput out;
+  // The choice is made before the nodes are moved from: the grid needs the stamps of their tracks.
   const NodeChoice choice = KA_TRY(choose(layout.nodes, both.nodes));
   if (both.kinect.frames.stamps.size() < 2) {
     return Failure(Error{"", 0, "a Kinect with at least two frames", "fewer frames"});
@@ -46,6 +51,7 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
   const EvenSpan span = span_of_both(both, choice, layout.nodes.rate_hz);
   out.start = span.start;
   out.kinect = both.kinect.stream;
+  // Only the names are kept. The tracks are large and move into the calibration.
   out.nodes = {both.nodes.stream, both.nodes.names, {}, {}};
   out.posed = KA_TRY(
       calibrated_nodes(layout.nodes, model.body.skeleton, std::move(both.nodes), worn, span));
@@ -55,6 +61,8 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
                          {layout.nodes.rate_hz, longest_kinect_gap_s, span}));
   out.warnings = warnings_of(both.kinect, seen);
   out.input.kinect = std::move(seen.body);
+  // The world of the nodes has another heading than the Kinect's. The seconds in which both see the
+  // person show the angle between them.
   const auto yaw = shared_heading(layout, out.input);
   if (!yaw) {
     return Failure(Error{"", 0,
@@ -62,6 +70,8 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
                          "no such second (denoise and pose use one device alone)"});
   }
   turn_world(out.input.nodes, *yaw);
+  // All bones that are seen well give the length of the person's legs (kinect_size.h). Its ratio to
+  // the model's legs scales the whole body.
   const double mean = leg_length(model.body.skeleton);
   const auto legs = legs_by_kinect(layout.joints, out.input.kinect);
   out.is_sized = legs.has_value() && mean > 0.0;
@@ -80,6 +90,8 @@ nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& giv
                              {"method", model.facts.method},
                              {"missing", share_of(seen, 0)},
                              {"inferred", share_of(seen, 1)}};
+  // The members of the nodes come after those of both devices; "warnings" is among them and must
+  // exist before the next line.
   out.update(about_nodes(layout, given.posed, given.input.nodes, given.nodes));
   for (const std::string& warning : given.warnings) out["warnings"].push_back(warning);
   return out;

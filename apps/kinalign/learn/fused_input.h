@@ -22,6 +22,8 @@ struct BothDevices {
 };
 
 /// The input of a network, and its sources.
+/// Both devices have the same grid of T frames. Orientations of nodes and positions of the Kinect
+/// are in one world with one heading.
 struct FusedInput {
   FuseInput input;
   Time start{};

@@ -20,6 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The options of `kinalign model export`.
 struct Export {
   std::vector<std::string> model;
   std::string network = "net";
@@ -49,11 +50,14 @@ struct Parts {
 };
 
 /// A linear map of each channel: y = factor x + offset.
+/// Standardising the input and scaling the answer are such maps. They become layers, so the ONNX
+/// file is complete.
 struct Scaling {
   std::vector<float> factor, offset;
 };
 
 /// Adds the scaling as a linear layer: a diagonal weight matrix and a bias.
+/// n is the number of channels; the weights are [n,n].
 void put_scaling(const Scaling& scaling, const std::string& path,
                  std::map<std::string, Tensor>& out) {
   const std::size_t n = scaling.factor.size();
@@ -67,12 +71,14 @@ void put_scaling(const Scaling& scaling, const std::string& path,
 Parts scaled(const Parts& network, const Scaling& before, const Scaling& after) {
   Parts out{network.architecture, {}};
   auto& layers = out.architecture.layers;
+  // The numbers of layers in tensor names shift by one, since a layer is put in front.
   layers.insert(layers.begin(), {.kind = LayerKind::linear, .out = before.factor.size()});
   layers.push_back({.kind = LayerKind::linear, .out = after.factor.size()});
   for (const auto& [name, tensor] : network.tensors) {  // "3.1.0.weight" is now "4.1.0.weight"
     const std::size_t dot = name.find('.');
     out.tensors[std::to_string(std::stoul(name.substr(0, dot)) + 1) + name.substr(dot)] = tensor;
   }
+  // Layer 0 is the new first one, and the last index is the new last one.
   put_scaling(before, "0", out.tensors);
   put_scaling(after, std::to_string(layers.size() - 1), out.tensors);
   return out;
@@ -89,6 +95,7 @@ Parts parts_of(const Architecture& architecture, const std::map<std::string, Ten
 }
 
 /// The scaling from raw channels to mean 0 and deviation 1.
+/// (x - mean) / scale, written as factor and offset.
 Scaling standardising(const std::vector<float>& mean, const std::vector<float>& scale) {
   Scaling out;
   for (std::size_t c = 0; c < mean.size(); ++c) {
@@ -99,11 +106,13 @@ Scaling standardising(const std::vector<float>& mean, const std::vector<float>& 
 }
 
 /// The network from raw features to corrections in metres and logarithms of centimetres.
+/// The last channels, the logarithms of the spread, are not scaled.
 Parts whole_network(const DenoiseModel& model) {
   Scaling after;
   after.factor.assign(model.layout.answers(), static_cast<float>(model.answer_scale));
   after.offset = model.answer_mean;
   if (model.states_spread) {
+    // One channel for each output joint follows the three coordinates of all of them.
     after.factor.resize(after.factor.size() + model.layout.outputs.size(), 1.0F);
     after.offset.resize(after.factor.size(), 0.0F);
   }
@@ -113,10 +122,12 @@ Parts whole_network(const DenoiseModel& model) {
 
 /// The scaling that adds the identity's six numbers to each bone's rotation: networks answer the
 /// difference from it.
+/// The six numbers are the first two columns of the rotation matrix.
 Scaling onto_identity(std::size_t bones) {
   Scaling out;
   out.factor.assign(6 * bones, 1.0F);
   for (std::size_t b = 0; b < bones; ++b) {
+    // An answer of zeros therefore stands for the identity.
     out.offset.insert(out.offset.end(), six_of_identity.begin(), six_of_identity.end());
   }
   return out;
@@ -128,9 +139,11 @@ std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool s
   const DenoiseLayout& layout = model.layout;
   Json bases = Json::array();
   for (const int base : layout.bases) {
+    // A joint without a base has null.
     bases.push_back(base < 0 ? Json() : Json(layout.inputs[static_cast<std::size_t>(base)]));
   }
   std::string output = "positions of the output joints in the body's frame, m";
+  // The second network continues the answer of the first one; it has positions on both sides.
   if (!second) {
     output = "what is added to the smoothed base joint of each output joint, m";
     if (model.states_spread) output += "; then ln of each joint's standard deviation per axis, cm";
@@ -157,6 +170,7 @@ struct Exported {
 
 Result<Exported> exported_denoise(const std::string& bytes, const std::string& path, bool second) {
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
+  // The model is built once to check it, and then dropped.
   KA_TRY(check_usable(Denoiser::make(model), path));
   if (second && !model.second) {
     return Failure(Error{path, 0, "a second network", "none"});
@@ -166,6 +180,7 @@ Result<Exported> exported_denoise(const std::string& bytes, const std::string& p
 }
 
 /// The metadata of models for poses and fusion.
+/// The description of the channels is too long for metadata, so it names the page.
 std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const PoseLayout& layout,
                                                  const std::string& output) {
   return {{"kinalign.task", facts.task},
@@ -196,7 +211,9 @@ Result<Exported> exported_pose(const std::string& bytes, const std::string& path
 Result<Exported> exported_fuse(const std::string& bytes, const std::string& path) {
   const FuseModel model = KA_TRY(read_fuse_model(bytes, path));
   KA_TRY(check_usable(Fuser::make(model), path));
+  // The bones are followed by the root's rotation, hence + 1.
   Scaling after = onto_identity(model.layout.nodes.bones.size() + 1);
+  // resize() adds the three channels of the place with their own factor.
   after.factor.resize(model.layout.answers(), fuse_place_unit_m);
   after.offset.resize(model.layout.answers(), 0.0F);
   Exported out{scaled(parts_of(model.architecture, model.tensors, "net"),
@@ -229,6 +246,7 @@ Result<int> run_export(Export& o, Call& call) {
   const std::string bytes = KA_TRY(read_whole(files, in, most_model_bytes));
   const Exported whole = KA_TRY(exported(bytes, in, o.network));
   const Parts& parts = whole.parts;
+  // No prefix: the tensors have the names of this file's layers already.
   const OnnxOptions options{.prefix = "", .metadata = whole.metadata};
   KA_TRY(write_whole(files, out, KA_TRY(onnx_of(parts.architecture, parts.tensors, options)),
                      call.common.overwrite()));

@@ -14,10 +14,12 @@ namespace kinalign {
 Result<Input> open_motion(const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   const Progress progress = call.console.progress();
+  // Only a recording needs more than open_input(): its manifest is made from its survey.
   if (KA_TRY(kind_of_file(files, path)) != FileKind::recording) {
     return open_input(files, path, StreamFlags{}, progress);
   }
   const auto source =
+      // Devices::heard also fits the devices' clocks, since the samples are read.
       KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard, {}, progress));
   Input out;
   out.manifest = KA_TRY(recorded_manifest(source->survey(), path));
@@ -31,6 +33,7 @@ Result<Input> open_motion(const std::string& path, Call& call) {
 std::vector<std::string> warnings_of(const RecordedStream& stream) {
   std::vector<std::string> out;
   for (const Finding& one : all_findings(stream)) {
+    // Notes are of no use in a summary of a few lines.
     if (one.severity < Severity::warning) continue;
     out.push_back(to_string(one.what) + ": " + one.meaning +
                   (one.repair.empty() ? "" : "; " + one.repair));

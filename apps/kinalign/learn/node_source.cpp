@@ -29,6 +29,8 @@ void add_known(std::string& all, const std::string& name) {
 }
 
 /// n samples of S nodes. An empty array was not measured.
+/// The references lead into a block of a reader or a slab of a take. [n,S] is the shape of all
+/// arrays.
 struct NodeBlock {
   const std::vector<Time>& stamps;
   const std::vector<double>&orientation, &acceleration, &angular_velocity;
@@ -48,10 +50,14 @@ void append_numbers(const std::vector<double>& from, std::size_t i, std::size_t 
 Result<void> append_block(const NodeBlock& block, std::size_t first, NamedNodes& out) {
   if (block.stamps.empty()) return {};
   const std::size_t nodes = block.valid.size() / block.stamps.size();
+  // i counts samples frame by frame: sample i belongs to node i % S and to stamp i / S.
   for (std::size_t i = 0; i < block.valid.size(); ++i) {
     NodeTrack& track = out.tracks[first + i % nodes];
     const Time stamp = block.stamps[i / nodes];
+    // Stamps of each track must rise strictly, since resampling searches them. A repeated stamp is
+    // dropped.
     if (block.valid[i] == 0 || (!track.stamps.empty() && stamp <= track.stamps.back())) continue;
+    // The product overestimates the total, but needs no extra counter.
     if (track.stamps.size() * out.tracks.size() > most_samples) {
       return Failure(Error{"", 0, "a stream that fits into memory", "a longer stream"});
     }
@@ -72,6 +78,7 @@ void add_tracks(const std::vector<std::string>& names, const ImuContent& content
     out.tracks.emplace_back();
     out.tracks.back().gravity = content.gravity;
   }
+  // `worn` has one entry for each of `names`, so all arrays of `out` stay of one length.
   out.worn.insert(out.worn.end(), worn.begin(), worn.end());
 }
 
@@ -83,6 +90,7 @@ std::vector<std::optional<Quat>> worn_by(const StreamOptions& options,
   for (const std::string& name : names) {
     out.emplace_back();
     const auto stated = options.mounting.find(name);
+    // Four numbers are a quaternion w,x,y,z. Any other length means that no mounting is stated.
     if (stated == options.mounting.end() || stated->second.size() != 4) continue;
     // In a T-pose the bone's axes are the world's.
     out.back() = is_applied ? Quat::Identity() : quat(stated->second, 0).normalized().conjugate();
@@ -100,6 +108,7 @@ Result<std::size_t> node_group_of(const TakeHeader& header, const std::string& p
     if (!std::holds_alternative<ImuGroup>(group.kind)) continue;
     add_known(known, group.name);
     if (!wanted.empty() && group.name != wanted) continue;
+    // A second group makes the choice unclear, unless the user named one.
     if (found) return no_nodes(path, wanted, known);
     found = g;
   }
@@ -116,6 +125,7 @@ Result<std::vector<const RecordedStream*>> node_streams(const Recording& recordi
   bool one_name = true;
   for (const RecordedStream& one : recording.streams) {
     if (!std::holds_alternative<ImuInput>(one.data)) continue;
+    // Streams of one name that follow each other are listed once.
     if (out.empty() || out.back()->name != one.name) add_known(known, one.name);
     if (!wanted.empty() && one.name != wanted) continue;
     one_name = one_name && (out.empty() || out.back()->name == one.name);
@@ -131,6 +141,8 @@ Result<void> read_nodes(const RecordedStream& stream, const ImuInput& input, std
   const auto pass = KA_TRY(input.passes());
   ImuSamples block;
   while (KA_TRY(pass(block))) {
+    // Every stream has its own clock, so only the take's clock makes stamps of several devices
+    // comparable.
     for (Time& stamp : block.stamps) stamp = take_time(stream.clock, stamp);
     KA_TRY(append_block(
         {block.stamps, block.orientation, block.acceleration, block.angular_velocity, block.valid},
@@ -152,6 +164,8 @@ Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) {
     auto& rows = std::get<ImuRows>(slab.rows[wanted]);
+    // A take may have turned all nodes into the space of the root's node. The model needs each node
+    // in its own space.
     if (!group.root_node.empty()) bring_from_root(group, rows);
     KA_TRY(append_block(
         {slab.stamps, rows.orientation, rows.acceleration, rows.angular_velocity, rows.valid}, 0,
@@ -167,6 +181,7 @@ Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& str
   NamedNodes out{streams.front()->name, {}, {}, {}};
   for (const RecordedStream* one : streams) {
     const auto& nodes = std::get<ImuInput>(one->data);
+    // The tracks of this stream are those from `first` on.
     const std::size_t first = out.tracks.size();
     const StreamOptions options =
         input.manifest ? options_of(*input.manifest, one->name) : StreamOptions{};

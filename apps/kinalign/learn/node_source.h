@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// All arrays have one entry for each of the S nodes, in the same order. The tracks have their own
+/// stamps, since nodes do not sample together.
 struct NamedNodes {
   std::string stream;
   std::vector<std::string> names;         // [S]
@@ -26,6 +28,8 @@ struct NamedNodes {
 /// their own space. Takes may be read only in a child process (guarded.h).
 Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
                                  const std::string& stream);
+/// The same for any file that is no take. Several streams of that name (one for each device) are
+/// joined.
 Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& stream, Call& call);
 
 }  // namespace kinalign

@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t most_values = std::size_t{1} << 29U;  // frames x joints, for memory
 
+/// `known` lists the streams that could be named. The flag is shown only if no name was given.
 Failure no_stream(const std::string& path, const std::string& wanted, const std::string& known) {
   const std::string expected = wanted.empty() ? "one stream of joints (--stream NAME)"
                                               : "a stream of joints \"" + wanted + "\"";
@@ -33,6 +34,7 @@ void add_name(std::string& all, const std::string& name) {
 Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
                     const std::vector<double>& positions, const std::vector<Tracking>& state) {
   const std::size_t joints = out.joints.size();
+  // The product is the number of cells. Positions need three doubles for each of them.
   if ((out.frames.size() + stamps.size()) * joints > most_values) {
     return Failure(Error{"", 0, "a stream that fits into memory", "a longer stream"});
   }
@@ -42,6 +44,7 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
       continue;
     }
     out.frames.stamps.push_back(stamps[t]);
+    // row and count are in cells; positions have three numbers for each cell.
     const auto row = static_cast<std::ptrdiff_t>(t * joints),
                count = static_cast<std::ptrdiff_t>(joints);
     out.frames.positions.insert(out.frames.positions.end(), positions.begin() + 3 * row,
@@ -54,6 +57,7 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
 
 /// States for a skeleton, which has none of its own: each joint is tracked in valid rows and
 /// missing in others.
+/// `valid` [T]; empty: all rows are valid.
 std::vector<Tracking> all_tracked(std::size_t rows, std::size_t joints,
                                   const std::vector<std::uint8_t>& valid) {
   std::vector<Tracking> out(rows * joints, Tracking::tracked);
@@ -63,6 +67,7 @@ std::vector<Tracking> all_tracked(std::size_t rows, std::size_t joints,
   return out;
 }
 
+/// A state counts only if its cell is valid.
 std::vector<Tracking> where_valid(const PointRows& rows) {
   std::vector<Tracking> out = rows.state;
   for (std::size_t i = 0; i < out.size() && i < rows.valid.size(); ++i) {
@@ -80,6 +85,7 @@ Result<std::size_t> group_of(const TakeHeader& header, const std::string& path,
     const TakeGroup& group = header.groups[g];
     if (std::holds_alternative<ImuGroup>(group.kind)) continue;
     add_name(known, group.name);
+    // A name may select a skeleton too. Without a name only groups of points count.
     if (wanted.empty() ? std::holds_alternative<PointGroup>(group.kind) : group.name == wanted) {
       if (found) return no_stream(path, wanted, known);
       found = g;
@@ -111,6 +117,7 @@ Result<void> read_clip(const TimeModel& clock, const ClipInput& input, NamedPoin
     for (Time& stamp : stamps) stamp = take_time(clock, stamp);
     const ClipRows rows = own_rows(input.skeleton, std::move(block));
     KA_TRY(append(out, stamps, rows.positions, all_tracked(stamps.size(), out.joints.size(), {})));
+    // The block was moved from. A new one makes its state defined before the next pass fills it.
     block = {};
   }
   return {};
@@ -130,6 +137,7 @@ Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
   }
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) {
+    // The group's kind is the same in every slab, so one of both branches is always taken.
     if (const auto* rows = std::get_if<PointRows>(&slab.rows[wanted])) {
       KA_TRY(append(out, slab.stamps, rows->positions, where_valid(*rows)));
     } else if (const auto* clip = std::get_if<ClipRows>(&slab.rows[wanted])) {
@@ -149,6 +157,7 @@ Result<NamedPoints> points_of_file(const std::string& path, const std::string& s
   for (const RecordedStream& one : input.recording.streams) {
     if (std::holds_alternative<ImuInput>(one.data)) continue;
     add_name(known, one.name);
+    // A file with a single stream needs no name, whatever its kind is.
     const bool fits = stream.empty() ? input.recording.streams.size() == 1 ||
                                            std::holds_alternative<PointInput>(one.data)
                                      : one.name == stream;
@@ -173,6 +182,7 @@ std::vector<std::string> warnings_of(const NamedPoints& points, const EvenFrames
     out.push_back(fmt::format("{} frames are left out: their stamps repeat or step back",
                               grouped(points.left_out)));
   }
+  // These two warnings are about the person: something else was taken for a joint, or for the body.
   if (frames.far > 0) {
     out.push_back(fmt::format("{} joints lie more than 1.6 m from the root and count as missing",
                               grouped(frames.far)));

@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// The whole stream in memory: T frames of J joints. Stamps are on the take's clock.
 struct NamedPoints {
   std::string stream;
   std::vector<std::string> joints;

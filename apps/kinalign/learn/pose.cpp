@@ -24,6 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The options of `kinalign pose`.
 struct PoseWords {
   std::vector<std::string> in;
   std::string model, stream, body;
@@ -64,6 +65,7 @@ Json body_of_answer(const PoseModel& model, const PoseWords& o) {
   return about_body(model.body.skeleton, o.body.empty() ? "the model" : "--body");
 }
 
+/// Reads and checks the model, and sets the bones of --body before the first answer.
 Result<PoseSolver> solver_of(const std::string& path, const PoseWords& o, Call& call) {
   const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_model_bytes));
   PoseSolver out = KA_TRY(PoseSolver::make(KA_TRY(read_pose_model(bytes, path))));
@@ -72,6 +74,7 @@ Result<PoseSolver> solver_of(const std::string& path, const PoseWords& o, Call& 
   return out;
 }
 
+/// A single sample has no duration, so such a node counts as absent.
 bool has_head(const NamedNodes& nodes) {
   const auto head = node_at(nodes.names, "head");
   return head && nodes.tracks[*head].stamps.size() > 1;
@@ -85,6 +88,8 @@ Result<std::string> model_for(const NamedNodes& nodes, const PoseWords& o) {
 
 /// Solves the pose and writes it. The model depends on the stream's nodes, so it is loaded after
 /// them.
+/// The order is: choose the model, calibrate, solve, write. `nodes` is moved from, so its names are
+/// kept first.
 Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
   const std::string path = KA_TRY(model_for(nodes, o));
   PoseSolver solver = KA_TRY(solver_of(path, o, call));
@@ -93,6 +98,7 @@ Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
   const PosedNodes posed =
       KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, std::move(nodes), o.worn));
   const NodeFrames calibrated = on_bones(posed.calibration, posed.even.worn);
+  // The model's path is in the JSON, because it was chosen by the data.
   Json about{{"stream", names.stream},          {"frames", calibrated.frames()},
              {"rate_hz", model.layout.rate_hz}, {"joints", model.body.skeleton.joints()},
              {"method", model.facts.method},    {"model", path},
@@ -125,6 +131,7 @@ std::string pose_text(const Json& about, const std::string& out) {
 
 /// Solves the samples that a running record receives. Writes a file if -o names one.
 Result<int> solve_live(const PoseWords& o, Call& call) {
+  // The nodes of a live run are not known yet, so the model without a head is the default.
   const std::string path = KA_TRY(model_named(o.model, "pose"));
   PoseSolver solver = KA_TRY(solver_of(path, o, call));
   LiveJob job{o.live, o.stream, "", {}};
@@ -147,6 +154,7 @@ Result<int> run_pose(PoseWords& o, Call& call) {
   if (!o.live.live.empty()) return solve_live(o, call);
   const std::string& in = o.in.front();
   KA_TRY(keep_inputs(call.common.out, o.in));
+  // Only HDF5 needs a child process.
   const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
   const Json about = KA_TRY(is_take ? solve_take(o, call)
                                     : solve_named(nodes_of_file(in, o.stream, call), o, call));

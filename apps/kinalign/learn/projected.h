@@ -13,6 +13,7 @@ namespace kinalign {
 
 /// The distance of motions from their constraints, mean of all bodies: the moves of standing feet
 /// from frame to frame, and the deviations of bones from their usual length.
+/// Both values are measured without the truth, so they can be printed for any motion.
 struct ConstraintGaps {
   double feet_cm = 0.0, bone_cm = 0.0;
 };

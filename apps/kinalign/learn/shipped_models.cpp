@@ -7,6 +7,8 @@ namespace kinalign {
 
 std::string program_folder() {
   std::error_code fault;
+  // The link leads to the real file, also if the program was started through a link in another
+  // folder.
   return std::filesystem::read_symlink("/proc/self/exe", fault).parent_path();
 }
 
@@ -24,8 +26,11 @@ Result<std::string> shipped_model(const std::string& name) {
 Result<std::string> model_named(const std::string& given, const std::string& usual) {
   if (given.empty()) return shipped_model(usual);
   std::error_code fault;
+  // "." or "/" is in every path of a model. A bare word may still be a file, which wins.
   const bool is_name = given.find_first_of("./") == std::string::npos;
   if (!is_name || std::filesystem::exists(given, fault)) return given;
+  // An unknown name is returned unchanged. Reading it then gives "no such file" with the user's
+  // word.
   return shipped_model(given).value_or(given);
 }
 

@@ -15,6 +15,8 @@ Result<std::string> shipped_model(const std::string& name);
 
 /// The model that --model names: a file, or the name of a shipped model ("pose_head") if no file
 /// has that name. `usual`: the shipped model if `given` is empty.
+/// A name has neither '.' nor '/'. Anything else is returned as it is, so that reading it gives the
+/// error.
 Result<std::string> model_named(const std::string& given, const std::string& usual);
 
 /// The folder of this program.

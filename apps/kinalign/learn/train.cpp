@@ -29,6 +29,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+/// The options of `kinalign train`. An empty text or a 0 stands for the method's default.
 struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
@@ -119,6 +120,7 @@ Usage describe_train(Train& o) {
 }
 
 /// The folder of a run, in the same folder as its model: "m.training" for "m.safetensors".
+/// Everything that a run writes besides the model is there: job, log, curves, checkpoint, lock.
 std::string run_folder(const std::string& model) {
   return model.substr(0, model.rfind('.')) + ".training";
 }
@@ -140,10 +142,12 @@ Result<std::string> hash_of(FileSystem& files, const std::string& path) {
 Json job_of(const Train& o, const std::string& windows, const std::string& hash,
             const std::string& from_hash, Call& call) {
   const std::string folder = run_folder(call.common.out);
+  // Defaults are left out of the job.
   Json options{{"seed", o.seed}};
   if (o.steps > 0) options["steps"] = o.steps;
   if (o.patience > 0) options.update({{"patience", o.patience}, {"judge_every", 100}});
   Json job{{"schema", "kinalign.training_job/1"}, {"method", o.method.front()}};
+  // A method may have no rough stream: nodes and a Kinect are then simulated from the mocap.
   if (!input_of(o).empty()) job["input"] = input_of(o);
   job["truth"] = o.truth;
   job["options"] = options;
@@ -156,6 +160,7 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   identity.update(job.dump());
   identity.update(hash);
   job["identity"] = identity.hex();  // the same wherever the files lie
+  // Members from here on do not belong to the identity: they say where files lie and how to run.
   if (!o.from.empty()) job["from"] = o.from;
   job["windows"] = windows;
   job["out"] = call.common.out;
@@ -167,6 +172,7 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
 }
 
 /// The processes of one training, and those of them that run here.
+/// Process 0 waits at address and port for all others. A training of one process needs neither.
 struct Places {
   std::size_t first = 0, here = 1, all = 1;  // ranks first ... first + here of `all`
   std::string address, interface {};         // process 0's; empty if it is alone
@@ -175,6 +181,7 @@ struct Places {
   bool is_first() const { return first == 0; }
 };
 
+// The port is used if MASTER_PORT is empty.
 constexpr std::int64_t usual_port = 29500;  // PyTorch's default
 
 Result<std::int64_t> port_of(const std::string& text) {
@@ -192,6 +199,7 @@ Result<Places> places_of(const Train& o, Call& call) {
   const auto& variable = call.surroundings.variable;
   const BuildShare step = KA_TRY(step_share_of(variable));
   const auto processes = static_cast<std::size_t>(o.processes);
+  // Neither a cluster nor --processes: one process trains alone.
   if (step.size == 1 && processes == 1) return Places{};
   if (step.size == 1) return Places{0, processes, processes, "127.0.0.1", "", KA_TRY(free_port())};
   const std::string address = variable("MASTER_ADDR");
@@ -201,7 +209,11 @@ Result<Places> places_of(const Train& o, Call& call) {
                          "the address of the first process's machine in the environment",
                          "no address in " + who});
   }
+  // The cluster decides how many processes there are. Both numbers together could contradict each
+  // other.
   if (processes > 1) return Failure(Error{"--processes", 0, "1 in each process of a cluster", who});
+  // Each process would cut its own windows, and cutting them at the same time into one folder would
+  // clash.
   if (o.windows.empty()) {
     return Failure(
         Error{"--data", 0, "a file of windows (--windows) that all processes read", who});
@@ -215,8 +227,10 @@ Result<Places> places_of(const Train& o, Call& call) {
 }
 
 /// Writes a job file for each process that runs here, and returns their names.
+/// The job files differ only in their place. They share windows, output and identity.
 Result<std::vector<std::string>> write_jobs(Json job, const Places& places, Call& call) {
   const std::string folder = run_folder(call.common.out);
+  // The threads are shared among the processes of this machine.
   job["threads"] = std::max<std::size_t>(call.jobs / places.here, 1);
   std::vector<std::string> out;
   for (std::size_t rank = places.first; rank < places.first + places.here; ++rank) {
@@ -234,6 +248,7 @@ Result<std::vector<std::string>> write_jobs(Json job, const Places& places, Call
 }
 
 /// `last`: the last line of kinalign-learn.
+/// The judgement is there only if the windows have a validation part.
 void print_trained(const Train& o, const Json& last, Call& call) {
   std::string text =
       fmt::format("{}: trained, loss {:.4g}", o.method.front(), last.value("loss", 0.0));
@@ -247,6 +262,8 @@ void print_trained(const Train& o, const Json& last, Call& call) {
 }
 
 /// Prints the files that the other machine needs, and the command to run there.
+/// The jobs have relative paths as the user typed them, so the files must lie in the same places
+/// there.
 void print_prepared(const Train& o, const std::vector<std::string>& jobs,
                     const std::string& windows, Call& call) {
   std::string text = harmless(windows) + ": windows\n";
@@ -268,6 +285,7 @@ Result<std::string> windows_of(const Train& o, const std::string& folder) {
                              .input = input_of(o),
                              .truth = o.truth,
                              .rate_hz = o.rate_hz};
+  // The windows are cut into the folder of the run, which the lock protects.
   KA_TRY(cut_windows(wanted, method_of(o).task, file));
   return file;
 }
@@ -275,6 +293,7 @@ Result<std::string> windows_of(const Train& o, const std::string& folder) {
 /// Runs kinalign-learn on the jobs and returns its last line. Removes all job files but the first
 /// process's.
 Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
+  // Only the first process reports. The others do the same steps at the same time.
   const WorkerWatch watch{.progress = call.console.progress(),
                           .warn = [&](const std::string& text) {
                             call.console.note("kinalign train: warning: " + harmless(text));
@@ -289,12 +308,15 @@ Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
 
 /// Holds a lock on the folder, so that no other training uses it. The system frees the lock when
 /// this program ends, even if it crashes.
+/// The lock is of the open file (flock), so a file that was left by a crash does not block the next
+/// run. Invariant: path_ is set only while the lock is held.
 class FolderLock {
  public:
   static Result<FolderLock> take(const std::string& folder) {
     std::string path = folder + "/lock";
     const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
     FolderLock out(file);
+    // LOCK_NB: a second training is refused at once and does not wait.
     if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) {
       out.path_ = std::move(path);
       return out;
@@ -308,6 +330,7 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock() {
+    // The name is removed before the lock is freed. Only the holder does this.
     if (!path_.empty()) ::unlink(path_.c_str());
     if (file_ >= 0) ::close(file_);
   }
@@ -323,6 +346,7 @@ Result<std::optional<FolderLock>> open_folder(const Train& o, const std::string&
                                               const Places& places, Call& call) {
   KA_TRY(make_folders(folder));
   std::optional<FolderLock> out;
+  // Other processes of the same training must not lock it: they share the folder.
   if (places.is_first()) out.emplace(KA_TRY(FolderLock::take(folder)));
   std::error_code fault;
   if (o.resume && !fs::exists(folder + "/checkpoint.safetensors", fault)) {
@@ -338,6 +362,7 @@ Result<std::vector<std::string>> jobs_of(Train& o, const std::string& windows, c
   FileSystem& files = call.surroundings.files;
   if (!o.from.empty()) o.from = KA_TRY(model_named(o.from, ""));
   const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
+  // The hash is of the file's bytes, so a job is the same on every machine that has this file.
   const std::string hash = KA_TRY(hash_of(files, windows));
   return write_jobs(job_of(o, windows, hash, from_hash, call), places, call);
 }
@@ -347,6 +372,7 @@ Result<std::vector<std::string>> jobs_of(Train& o, const std::string& windows, c
 Result<int> run_train(Train& o, Call& call) {
   const std::string& out = call.common.out;
   std::error_code fault;
+  // The check comes first: a training may take days.
   if (fs::exists(out, fault) && !call.common.force) {
     return Failure(
         Error{out, 0, "no file of that name (--force overwrites)", "a file of that name"});
@@ -361,7 +387,9 @@ Result<int> run_train(Train& o, Call& call) {
     return 0;
   }
   const Json last = KA_TRY(run_jobs(jobs, call));
+  // The model is written by process 0 of the training. The other starters of a cluster end quietly.
   if (!places.is_first()) return 0;
+  // Windows that the user gave are never removed.
   if (o.windows.empty()) fs::remove(windows, fault);
   call.console.wrote(out);
   print_trained(o, last, call);

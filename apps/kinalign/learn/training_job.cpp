@@ -20,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double pose_windows_hz = 60.0;  // the windows' rate; nodes are simulated from them
 
+/// One row for each value of Learns, in the order of the enum: what_it_does() uses it as an index.
 struct TaskWords {
   Learns task;
   std::string_view name, does;
@@ -30,6 +31,7 @@ constexpr std::array<TaskWords, 3> task_words{
      {Learns::fuse, "fuse", "computes a pose from a Kinect and nodes"}}};
 
 /// The members that every job has.
+/// `learn` and `judge` are names of takes. Members with defaults are left out.
 Json begun_job(const TrainingWanted& wanted, Call& call) {
   Json out{{"schema", "kinalign.training_job/1"},
            {"method", wanted.method},
@@ -54,10 +56,12 @@ std::optional<Learns> learns_of(const std::string& task) {
   return std::nullopt;
 }
 
+// The words follow a method's name: "cnn, which cleans a Kinect".
 std::string what_it_does(Learns task) {
   return std::string(task_words[static_cast<std::size_t>(task)].does);
 }
 
+/// The names are those of kinalign-learn. `summary` says where a method was published.
 const std::vector<TrainedMethod>& trained_methods() {
   static const std::vector<TrainedMethod> all{
       {"refine", "ours", Learns::denoise},
@@ -114,6 +118,7 @@ Field nodes_field(std::string& nodes) {
           "NAME,NAME,..."};
 }
 
+/// A flag without effect is wrong use: a user would believe that it had one.
 Result<void> check_task_flags(const TrainedMethod& method, const Sources& given) {
   if (method.task == Learns::denoise && given.count("nodes") > 0) {
     return Failure(Error{"--nodes", 0, "a method for poses or for fusion", method.name});
@@ -142,6 +147,7 @@ Result<void> check_task_flags(const TrainedMethod& method, const Sources& given)
 
 Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::string& file) {
   const bool is_denoise = task == Learns::denoise;
+  // The lengths are in rows; windows do not overlap, because the step is the length.
   const std::string length = is_denoise ? "32" : "64";
   const double rate_hz = is_denoise ? wanted.rate_hz : pose_windows_hz;
   std::vector<std::string> words{
@@ -151,10 +157,13 @@ Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::st
       "--stream", wanted.truth};
   if (!wanted.input.empty()) words.insert(words.end(), {"--stream", wanted.input});
   if (!wanted.split.empty()) words.insert(words.end(), {"--split", wanted.split});
+  // A bad take would teach the model its faults, so it is left out unless the user says otherwise.
   words.insert(words.end(), {"--where", wanted.where.empty() ? "verdict <> 'bad'" : wanted.where});
   const Ended ended = KA_TRY(run_own_process(words));
   if (ended.code == 0) return {};
   std::string why = ended.complaint;  // "kinalign dataset windows: ..."
+  // The error of the child begins with its own name, which would confuse users of `train` and
+  // `eval`.
   if (const auto end = why.find(": "); end != std::string::npos) why = why.substr(end + 2);
   while (!why.empty() && why.back() == '\n') why.pop_back();
   return Failure(Error{wanted.data, 0, "a data set to cut windows from", why});
@@ -163,6 +172,8 @@ Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::st
 Result<std::string> trained_model(const TrainingWanted& wanted, Call& call) {
   const std::string model = wanted.folder + "/model.safetensors";
   std::error_code fault;
+  // The name of the folder depends on everything that the model depends on, so an existing model is
+  // the right one.
   if (std::filesystem::exists(model, fault)) return model;
   KA_TRY(make_folders(wanted.folder));
   Json options{{"seed", wanted.seed}};
@@ -171,6 +182,8 @@ Result<std::string> trained_model(const TrainingWanted& wanted, Call& call) {
   job.update({{"out", model},
               {"log", wanted.folder + "/log.csv"},
               {"checkpoint", wanted.folder + "/checkpoint.safetensors"},
+              // A checkpoint that was left by a stopped training is used, since the folder belongs
+              // to this training alone.
               {"resume", true},
               {"options", options}});
   const std::string file = wanted.folder + "/job.json";
@@ -184,6 +197,7 @@ Result<std::vector<std::string>> rows_of_model(const TrainingWanted& wanted,
   KA_TRY(make_folders(wanted.folder));
   Json job = begun_job(wanted, call);
   job["evaluate"] = model;
+  // The job has another name than that of the training, which is kept.
   const std::string file = wanted.folder + "/marks.json";
   KA_TRY(write_whole(call.surroundings.files, file, job.dump(1), Overwrite::yes));
   std::vector<std::string> out;
@@ -192,6 +206,7 @@ Result<std::vector<std::string>> rows_of_model(const TrainingWanted& wanted,
   return out;
 }
 
+// The text "" gives one empty name.
 std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> out{""};
   for (const char c : text) {

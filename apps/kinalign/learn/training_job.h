@@ -13,6 +13,7 @@ namespace kinalign {
 
 /// The task of a method: clean a Kinect, answer nodes with a pose, or answer both devices with a
 /// pose.
+/// The word of a task is in models and jobs; learns_of() and what_it_does() translate it.
 enum class Learns : std::uint8_t { denoise, pose, fuse };
 
 /// The task by the word in a model's file, such as "denoise". Absent for another word.
@@ -20,6 +21,8 @@ std::optional<Learns> learns_of(const std::string& task);
 /// The task in words: "cleans a Kinect".
 std::string what_it_does(Learns task);
 
+/// A method of kinalign-learn. kinalign itself knows no network: it only checks flags and passes
+/// the name on.
 struct TrainedMethod {
   std::string name, summary;
   Learns task = Learns::denoise;
@@ -39,6 +42,8 @@ Field nodes_field(std::string& nodes);
 Result<void> check_task_flags(const TrainedMethod& method, const Sources& given);
 
 /// The windows to be cut from a data set.
+/// The flags of `train` and `eval` that choose data. cut_windows() starts `kinalign dataset
+/// windows` with them.
 struct WindowsWanted {
   std::string data, split;    // empty split: all takes are trained on
   std::string where;          // empty: takes whose verdict is not bad
@@ -61,6 +66,7 @@ struct TrainingWanted {
 };
 /// The file of the model. Trains it if the file does not exist; a training that was stopped goes
 /// on.
+/// The folder belongs to one training: its name is made from everything that the result depends on.
 Result<std::string> trained_model(const TrainingWanted& wanted, Call& call);
 
 /// The rows that kinalign-learn prints about a model for poses or fusion, a JSON object each. The

@@ -26,10 +26,13 @@ namespace kinalign {
 namespace {
 
 /// Output without a line's end is limited to this number of bytes.
+/// A line of the worker is a JSON object of some hundred bytes. A longer text is no output of
+/// kinalign-learn.
 constexpr std::size_t longest_line = std::size_t{1} << 20U;
 
 /// The path of kinalign-learn: in the program's folder when installed, in a sibling folder in the
 /// build tree.
+/// The search goes by folders and never by PATH.
 Result<std::string> worker_program() {
   const std::filesystem::path own = program_folder();
   for (const auto& file : {own / "kinalign-learn", own / "../kinalign-learn/kinalign-learn"}) {
@@ -41,6 +44,7 @@ Result<std::string> worker_program() {
 }
 
 /// One process of kinalign-learn.
+/// Invariant: `out` is open as long as the child may run. wait_for() closes it and sets `code`.
 struct Child {
   pid_t id = 0;
   int out = -1;            // its stdout; -1 after its end
@@ -54,6 +58,8 @@ struct Child {
 /// come as JSON on stdout.
 Result<Child> start(const std::string& program, const std::string& job) {
   std::array<int, 2> ends{};
+  // O_CLOEXEC keeps the pipes of one child out of the next one. Otherwise the end of a pipe would
+  // never be seen.
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     return Failure(Error{"", 0, "a pipe to a child process", std::strerror(errno)});
   }
@@ -69,6 +75,8 @@ Result<Child> start(const std::string& program, const std::string& job) {
   const int fault =
       ::posix_spawn(&out.id, program.c_str(), &actions, nullptr, words.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
+  // The parent's copy of the writing end must be closed, so that the end of the output is the end
+  // of the child.
   ::close(ends[1]);
   if (fault == 0) return out;
   ::close(ends[0]);
@@ -92,11 +100,14 @@ std::vector<std::string> read_lines(Child& child) {
   const ssize_t got = ::read(child.out, buffer.data(), buffer.size());
   if (got < 0 && errno == EINTR) return {};
   std::vector<std::string> out;
+  // 0 is the end of the output. A line that is too long ends the reading as well; the child then
+  // fails on its closed pipe.
   if (got <= 0 || child.held.size() > longest_line) {
     wait_for(child);
     return out;
   }
   child.held.append(buffer.data(), static_cast<std::size_t>(got));
+  // One read may have several lines, or a part of one. The rest waits in `held`.
   for (std::size_t end = child.held.find('\n'); end != std::string::npos;
        end = child.held.find('\n')) {
     out.push_back(child.held.substr(0, end));
@@ -110,6 +121,8 @@ Error reported_error(const nlohmann::json& error) {
 }
 
 /// All processes of one job.
+/// All processes of a training wait for each other in every step. If one fails, the others would
+/// wait for ever, so they are ended.
 class Workers {
  public:
   explicit Workers(const WorkerWatch& watch) : watch_(watch) {}
@@ -133,15 +146,19 @@ class Workers {
   void run() {
     std::optional<Clock::time_point> failed;
     while (poll_all()) {
+      // `code` is 0 as long as a child runs, too, so only ended children count.
       const bool fails = std::any_of(children_.begin(), children_.end(),
                                      [](const Child& one) { return one.code != 0; });
       if (!fails && !stopped_) continue;
       if (!failed) failed = Clock::now();
       const auto since = Clock::now() - *failed;
+      // A child that lost its partner ends by itself within the grace. A signal would hide its own
+      // report.
       if (since > grace) end_all(since > 2 * grace ? SIGKILL : SIGTERM);
     }
   }
 
+  // The order of the tests matters: a cancel also makes children fail, but is no failure of theirs.
   Result<std::string> result() const {
     if (stopped_) return Failure(interruption());
     if (const Child* child = first_to_fail()) return Failure(error_of(*child));
@@ -160,12 +177,14 @@ class Workers {
   bool poll_all() {
     std::vector<pollfd> waits;
     std::vector<Child*> whose;
+    // A child whose output has ended has been waited for, so it needs no poll.
     for (Child& child : children_) {
       if (child.out < 0) continue;
       waits.push_back({child.out, POLLIN, 0});
       whose.push_back(&child);
     }
     if (waits.empty()) return false;
+    // A timeout or a signal is no end. The caller checks its clock and calls again.
     if (::poll(waits.data(), waits.size(), 200) <= 0) return true;
     for (std::size_t i = 0; i < waits.size(); ++i) {
       if (waits[i].revents == 0) continue;
@@ -177,6 +196,7 @@ class Workers {
   // Handles one line of JSON: a warning, a progress report, a row or the result. Only the first
   // child's lines are reported.
   void take(Child& child, const std::string& line) {
+    // Text of libraries on stdout is no JSON. It is ignored.
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object()) return;
     const bool is_watched = &child == &children_.front();
@@ -184,12 +204,15 @@ class Workers {
       if (watch_.warn && is_watched) watch_.warn(json.value("warning", ""));
       return;
     }
+    // The last object of a child is its result or its error.
     child.last = line;
     if (!is_watched) return;
+    // A progress report has "done". Every other object is a row, also the result.
     if (!json.contains("done")) {
       if (watch_.row && !json.contains("error")) watch_.row(line);
       return;
     }
+    // After a cancel, late reports must not start the progress line again.
     if (stopped_) return;
     stopped_ = !go_on(watch_.progress, json.value("what", ""), json.value("done", std::uint64_t{0}),
                       json.value("total", std::uint64_t{0}));
@@ -197,6 +220,7 @@ class Workers {
   }
 
   void end_all(int signal) {
+    // A child without output has been waited for. Its id may belong to another process by now.
     for (Child& child : children_) {
       if (child.out < 0) continue;
       ::kill(child.id, signal);
@@ -210,6 +234,8 @@ class Workers {
     const Child* out = nullptr;
     for (const Child& child : children_) {
       if (child.code == 0) continue;
+      // Signals of this program and the loss of a partner are consequences. The cause is a child
+      // that failed by itself.
       const bool by_itself = !child.was_ended && child.code != lost_another;
       if (out == nullptr || (by_itself && out->code == lost_another) ||
           (by_itself && out->was_ended)) {
@@ -222,6 +248,7 @@ class Workers {
   // The error that the child reported, else its exit code or signal.
   Error error_of(const Child& child) const {
     const auto json = nlohmann::json::parse(child.last, nullptr, false);
+    // The error that the child wrote has a file and an expectation. It is better than an exit code.
     if (json.is_object() && json.contains("error")) return reported_error(json.at("error"));
     std::string who = "kinalign-learn";
     if (children_.size() > 1) {
@@ -243,6 +270,7 @@ class Workers {
 Result<std::string> run_workers(const std::vector<std::string>& job_files,
                                 const WorkerWatch& watch) {
   const std::string program = KA_TRY(worker_program());
+  // The destructor kills the children that were started if a later one can't be.
   Workers workers(watch);
   for (const std::string& file : job_files) KA_TRY(workers.add(program, file));
   workers.run();
@@ -253,12 +281,14 @@ Result<std::uint16_t> free_port() {
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
+  // Port 0 of bind() lets the system choose. Closing the socket frees the port for the worker.
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t length = sizeof address;
   const bool found =
       socket >= 0 &&
       ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
       ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &length) == 0;
+  // errno is kept before close() may change it.
   const std::string fault = std::strerror(errno);
   if (socket >= 0) ::close(socket);
   if (found) return ntohs(address.sin_port);

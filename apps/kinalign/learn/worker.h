@@ -13,6 +13,7 @@
 namespace kinalign {
 
 /// The callbacks for the output of a running kinalign-learn.
+/// All callbacks are called by the thread that runs the worker, while its output is read.
 struct WorkerWatch {
   Progress progress{};
   std::function<void(const std::string& warning)> warn{};  // empty: warnings are dropped
@@ -30,6 +31,8 @@ Result<std::string> run_workers(const std::vector<std::string>& job_files,
                                 const WorkerWatch& watch);
 
 /// A free TCP port of this machine's loopback.
+/// The port is free when the function returns. Another program could take it before the workers do,
+/// which is unlikely but not excluded.
 Result<std::uint16_t> free_port();
 
 }  // namespace kinalign

@@ -19,6 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double longest_lost_s = 2.0;  // a node lost for longer gets a warning
+// A node at rest measures gravity only. Calibration takes gravity out; the norm of the rest is
+// compared with this limit.
 constexpr double most_left_m_s2 = 3.0;  // left of a resting node's acceleration
 /// A sample repeated for longer gives a warning.
 constexpr double longest_frozen_s = 1.0;
@@ -38,15 +40,19 @@ Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
 }
 
 /// The frames of the T-pose: the wanted seconds, else the first second in which no node turns.
+/// The T-pose is a stretch of frames in which the person stands still with the arms to the sides.
+/// It fixes how each node lies on its bone.
 Result<ChosenTPose> choose_t_pose(const std::string& wanted, const WornFrames& worn,
                                   double rate_hz) {
   ChosenTPose out;
   if (const auto seconds = KA_TRY(t_pose_seconds(wanted))) {
     const double frames = static_cast<double>(worn.frames());
+    // The ends are rounded inwards, so that no frame lies outside of the stated seconds.
     out.frames.first =
         static_cast<std::size_t>(std::min(std::ceil(seconds->from * rate_hz), frames));
     const auto end =
         static_cast<std::size_t>(std::min(std::floor(seconds->to * rate_hz) + 1.0, frames));
+    // A stretch beyond the data has no frame. The error states how long the data is.
     if (end <= out.frames.first) {
       return Failure(Error{"--tpose", 0,
                            fmt::format("seconds within 0 to {:.1f}", frames / rate_hz),
@@ -74,6 +80,7 @@ struct NodePresence {
 };
 
 /// Counts the frames in which the node is valid.
+/// Frames are those of the grid. The longest run of invalid ones is the longest loss.
 NodePresence presence_of(const NodeFrames& nodes, std::size_t node, double rate_hz) {
   std::size_t run = 0, longest = 0, valid = 0;
   for (std::size_t t = 0; t < nodes.frames(); ++t) {
@@ -87,6 +94,8 @@ NodePresence presence_of(const NodeFrames& nodes, std::size_t node, double rate_
 }
 
 /// The most serious warning about a node; empty if there is none.
+/// The order is from "no data" to "worn in another way". Only the first warning that applies is
+/// returned.
 std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::size_t node,
                        const NodePresence& presence) {
   const std::string& name = layout.nodes[node];
@@ -97,6 +106,8 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
     return fmt::format("{} is missing for {:.1f} s: during this time its limb is a guess", name,
                        presence.longest_lost_s);
   }
+  // If nodes are not worn as described, their tilt is found by calibration and says nothing about a
+  // mistake.
   const bool is_checked =
       posed.calibration.worn_as_told || posed.calibration.headings == Headings::mounting;
   if (!is_checked || worn->tilt_deg <= most_tilt_deg) return "";
@@ -111,6 +122,8 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
 }
 
 /// The longest time for which a node repeats one sample, s.
+/// A node that sends its last sample again and again seems alive. Equal numbers in every digit do
+/// not occur otherwise.
 double frozen_s(const NodeTrack& track) {
   std::int64_t longest = 0;
   std::size_t first = 0;
@@ -120,6 +133,7 @@ double frozen_s(const NodeTrack& track) {
                       now - static_cast<std::ptrdiff_t>(width));
   };
   for (std::size_t i = 1; i < track.stamps.size(); ++i) {
+    // `first` is the first sample of the present run of equal ones.
     if (!is_same(track.orientation, 4, i) || !is_same(track.acceleration, 3, i)) first = i;
     longest = std::max(longest, to_ns(track.stamps[i]) - to_ns(track.stamps[first]));
   }
@@ -128,6 +142,7 @@ double frozen_s(const NodeTrack& track) {
 
 /// The time, s, at the start or the end of a stream in which other nodes send and the root's node
 /// does not.
+/// The root's node is the last of the layout. Without it no other node can be placed.
 double lost_with_root_s(const std::vector<NodeTrack>& tracks) {
   std::int64_t out = 0;
   const auto& root = tracks.back().stamps;
@@ -141,6 +156,8 @@ double lost_with_root_s(const std::vector<NodeTrack>& tracks) {
 
 /// Warnings about samples that repeat and, if the root's node bounds the frames, about times
 /// without it.
+/// A grid from outside (a Kinect's) goes on without the root's node, so the second warning would be
+/// wrong there.
 std::vector<std::string> sample_warnings(const PoseLayout& layout,
                                          const std::vector<NodeTrack>& tracks, bool root_bounds) {
   std::vector<std::string> out;
@@ -172,6 +189,8 @@ std::string restless_nodes(const PoseLayout& layout, const NodeCalibration& cali
 
 /// Warnings about nodes that are worn in each other's place, and about headings that are not
 /// shared. `headings`: the value of --heading.
+/// Two nodes that were swapped both tilt far, while the others fit. Two arms alone may simply have
+/// hung down.
 std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibration& calibration,
                                      const std::string& headings) {
   std::string names, tilts;
@@ -192,6 +211,7 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
                   " m/s2 in the T-pose are not gravity: the unit of the accelerations, gravity in "
                   "them, or the order of the quaternion's numbers is wrong");
   }
+  // With --heading shared or mounting, the user has stated how nodes are worn.
   if (headings == "auto" && as_described >= 2 && off >= 2 && !arms_alone) {
     out.push_back(names + " are worn " + tilts +
                   " deg away from the orientation in docs/pose.md, the others are as described "
@@ -207,6 +227,8 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
   return out;
 }
 
+/// The line says where the headings come from: from each node's mounting, or from one that is
+/// shared.
 std::string heading_line(const Json& about) {
   if (about.at("headings") == "mounting") return "one per node, by its mounting";
   return about.at("facing") == "arms" ? "one for all nodes, by the arms coming down"
@@ -215,6 +237,7 @@ std::string heading_line(const Json& about) {
 
 /// The printed line about the T-pose: its seconds, the fastest turn and, where they are checked,
 /// the tilts of the forearms.
+/// The forearms are shown because hanging arms are the usual mistake in a T-pose.
 std::string t_pose_line(const Json& about) {
   const Json& t_pose = about.at("t_pose");
   std::string out = fmt::format("{:.1f} to {:.1f} s{}, no node turned faster than {:.0f} deg/s",
@@ -260,6 +283,7 @@ Result<LiveWornOptions> live_options(const WornWords& o) {
   LiveWornOptions out;
   out.t_pose = KA_TRY(t_pose_seconds(o.t_pose));
   if (out.t_pose && out.t_pose->to > LiveWorn::most_waiting_s) {
+    // A live run keeps the frames before its T-pose for a minute only.
     return Failure(Error{"--tpose", 0, "a T-pose within the first minute", shown(o.t_pose)});
   }
   if (o.headings == "shared") out.headings = Headings::shared;
@@ -267,15 +291,19 @@ Result<LiveWornOptions> live_options(const WornWords& o) {
   return out;
 }
 
+/// The root's node is the last of the layout. The others are leaves, of which two are enough for a
+/// pose.
 Result<NodeChoice> choose(const PoseLayout& layout, const NamedNodes& nodes) {
   NodeChoice out;
   std::size_t leaves = 0;
   for (const std::string& wanted : layout.nodes) {
     out.push_back(node_at(nodes.names, wanted));
+    // Two samples are the least that can be interpolated.
     if (out.back() && nodes.tracks[*out.back()].stamps.size() < 2) out.back().reset();
     if (out.back() && wanted != layout.nodes.back()) ++leaves;
   }
   if (out.back() && leaves >= 2) return out;
+  // The error lists both the wanted and the existing nodes, since a wrong name is the usual cause.
   std::string wanted, found;
   for (std::size_t n = 0; n < layout.leaves(); ++n)
     wanted += (n == 0 ? "" : ", ") + layout.nodes[n];
@@ -296,17 +324,21 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
   const NodeChoice& choice = out.choice;
   std::vector<NodeTrack> tracks(layout.nodes.size());
   CalibrationOptions options;
+  // options.worn and tracks have one entry for each node of the model, also for absent ones.
   for (std::size_t n = 0; n < choice.size(); ++n) {
     options.worn.emplace_back();
     if (!choice[n]) continue;
     tracks[n] = std::move(nodes.tracks[*choice[n]]);
     options.worn.back() = nodes.worn[*choice[n]];
+    // complete() computes what a track lacks, such as angular velocity from orientations.
     KA_TRY(complete(tracks[n]));
   }
   const auto warn = [&out](const std::vector<std::string>& more) {
     out.warnings.insert(out.warnings.end(), more.begin(), more.end());
   };
   warn(nodes.warnings);
+  // Samples are judged before they are resampled: on the grid, repeated samples look like real
+  // ones.
   warn(sample_warnings(layout, tracks, !span));
   out.even = KA_TRY(even_nodes(tracks, layout.rate_hz, span));
   out.t_pose = KA_TRY(choose_t_pose(o.t_pose, out.even.worn, layout.rate_hz));
@@ -314,6 +346,7 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
   if (o.headings == "shared") options.headings = Headings::shared;
   if (o.headings == "mounting") options.headings = Headings::mounting;
   out.calibration = KA_TRY(calibrate(layout, body, out.even.worn, options));
+  // Calibration tells how nodes were worn, so its warnings come last.
   warn(warnings_of(layout, out.calibration, o.headings));
   return out;
 }
@@ -323,6 +356,7 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
   const NodeChoice& choice = posed.choice;
   Json each = Json::object(), warnings = Json::array();
   double valid = 0.0;
+  // A T-pose with motion gives a wrong calibration of every node. The warning is about all of them.
   const double fastest = fastest_turn_deg(posed.even.worn, posed.t_pose.frames);
   if (fastest > most_turn_deg_s) {
     warnings.push_back(fmt::format(
@@ -331,6 +365,7 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const NodePresence presence = presence_of(nodes, n, layout.rate_hz);
     const auto& worn = posed.calibration.nodes[n];
+    // "called" is the node's name in the stream; null if the stream lacks it.
     each[layout.nodes[n]] = {{"called", choice[n] ? Json(named.names[*choice[n]]) : Json()},
                              {"valid", presence.valid},
                              {"tilt_deg", worn ? Json(worn->tilt_deg) : Json()}};
@@ -338,6 +373,7 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
     const std::string warning = warning_of(posed, layout, n, presence);
     if (!warning.empty()) warnings.push_back(warning);
   }
+  // Warnings of single nodes come first, then those about all of them.
   for (const std::string& warning : posed.warnings) warnings.push_back(warning);
   const NodeCalibration& calibration = posed.calibration;
   return {{"valid", valid},

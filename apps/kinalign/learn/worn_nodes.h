@@ -15,6 +15,7 @@
 
 namespace kinalign {
 
+/// The words of --tpose ("START,END", empty: find it) and --heading (auto, shared, mounting).
 struct WornWords {
   std::string t_pose, headings = "auto";
 };
@@ -41,6 +42,8 @@ struct ChosenTPose {
 };
 
 /// The nodes on the model's grid, calibrated.
+/// The result of calibrated_nodes(). `even` has one row for each frame of the grid; on_bones()
+/// applies `calibration` to it.
 struct PosedNodes {
   NodeChoice choice;
   EvenNodes even;

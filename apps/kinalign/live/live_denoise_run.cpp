@@ -19,10 +19,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The same limit as for files (denoise.cpp), so both give the same warnings.
 constexpr double longest_unseen_s = 2.0;  // a joint missing for longer gets a warning
 
 /// Runs `denoise --live`: puts the Kinect's frames on the model's grid and answers each frame once
 /// its later frames have come.
+/// Invariant: made_ >= answered_. The difference is at most the look-ahead.
 class LiveDenoiseRun {
  public:
   LiveDenoiseRun(Denoiser& denoiser, const LiveJob& job, LiveSession& session)
@@ -35,6 +37,7 @@ class LiveDenoiseRun {
         unseen_(model_.layout.inputs.size()) {}
 
   void begin() {
+    // The first line of JSON has all that a program must know before the frames.
     session_.report("waiting for the Kinect's frames", Json{{"event", "started"},
                                                             {"method", model_.facts.method},
                                                             {"rate_hz", model_.layout.rate_hz},
@@ -44,23 +47,28 @@ class LiveDenoiseRun {
   // Answers frames as soon as they are ready. Fails if two Kinects send and none was chosen.
   Result<void> take(const LiveData& data) {
     for (const LiveKinectRow& row : data.rows) {
+      // The choice must come first: a second Kinect would be mixed into the first one's rows.
       KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
       if (row.kinect->stream != stream_) continue;
       joints_.add(row.row, row.arrival);
+      // Frames are made after every row, so the arrival of this row is the one that they needed.
       KA_TRY(advance(row.arrival));
     }
+    // A frame may also become ready because time passed: a Kinect that is silent is not waited for.
     if (session_.stream().now()) KA_TRY(advance(*session_.stream().now()));
     return check_live_frames(answered_);
   }
 
   // The status that a person reads: what is waited for, or frames and latency.
   std::string status() const {
+    // begin() is absent before the first row.
     if (!joints_.begin()) return "waiting for the Kinect's frames";
     return fmt::format("{} frames; {}", answered_, session_.latency_text());
   }
 
   // Answers the rest of the frames after the stream's end, without latencies.
   Result<void> finish() {
+    // The rest needs no arrival, so it has no latency.
     while (joints_.begin() && time_of(made_) <= *joints_.newest()) {
       KA_TRY(make_frame(std::nullopt));
     }
@@ -73,9 +81,12 @@ class LiveDenoiseRun {
   Result<Json> answer(Clip& clip) const {
     if (answered_ == 0) return no_live_frames(status());
     const std::size_t frames = answered_ - std::min(answered_ - 1, behind_newest_);
+    // The cleaner keeps all answers until now, before bones get their length. Here they get one
+    // length over the whole run.
     std::vector<float> whole = cleaner_.whole();
     whole.resize(whole.size() / answered_ * frames);
     clip = KA_TRY(skeleton(whole, *joints_.begin()));
+    // The maximum keeps a run without joints from dividing by zero.
     const double all =
         static_cast<double>(std::max<std::size_t>(seen_[0] + seen_[1] + seen_[2], 1));
     Json missing = Json::object();
@@ -105,6 +116,7 @@ class LiveDenoiseRun {
  private:
   // The stamp of a frame of the grid, which begins at the Kinect's first row.
   Time time_of(std::size_t frame) const {
+    // The time is computed from the first frame, so rounding does not add up.
     const double ns = static_cast<double>(frame) * 1e9 / model_.layout.rate_hz;
     return *joints_.begin() + Duration(std::llround(ns));
   }
@@ -125,6 +137,7 @@ class LiveDenoiseRun {
   Result<void> make_frame(std::optional<Time> needed) {
     const JointFrames frame = joints_.frame(time_of(made_++));
     count(frame);
+    // The cleaner answers the frame that lies look_ahead() frames back.
     if (const auto joints = cleaner_.step(frame)) return take_answer(*joints, needed);
     return {};
   }
@@ -133,7 +146,9 @@ class LiveDenoiseRun {
   /// come: a file would end there.
   void count(const JointFrames& frame) {
     ++behind_newest_;
+    // Such a frame may still turn out to be inside of the recording.
     if (time_of(made_ - 1) > *joints_.newest()) return;
+    // The frames in between had no row of their own, so every joint was missing in them.
     const std::size_t lost = behind_newest_ - 1;
     behind_newest_ = 0;
     for (std::size_t j = 0; j < unseen_.size(); ++j) {
@@ -147,6 +162,7 @@ class LiveDenoiseRun {
 
   // Prints an answered frame, and the skeleton before the first one.
   Result<void> take_answer(const std::vector<float>& joints, std::optional<Time> needed) {
+    // The skeleton of one frame has the bone lengths of that moment.
     const Clip one = KA_TRY(skeleton(joints, time_of(answered_)));
     if (answered_ == 0) {
       session_.report("", Json{{"event", "skeleton"},
@@ -180,6 +196,7 @@ Result<Json> run_live_denoise(Denoiser& denoiser, const LiveJob& job, Clip& clip
   LiveSession session = KA_TRY(LiveSession::open(job.words, call));
   LiveDenoiseRun run(denoiser, job, session);
   run.begin();
+  // The lambdas refer to `run`, which outlives the session's loop.
   KA_TRY(session.run(
       {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
   KA_TRY(run.finish());

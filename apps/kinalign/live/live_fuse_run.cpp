@@ -19,6 +19,8 @@ using Json = nlohmann::ordered_json;
 
 /// Runs `fuse --live`: calibrates the nodes by a T-pose, then gives frames of nodes and Kinect to
 /// the fuser.
+/// Each frame passes three stages: made (worn_), given to the fuser (pending_), answered (poses_
+/// and answered_). pending_ has exactly the frames that the fuser has not answered.
 class LiveFuseRun {
  public:
   LiveFuseRun(Fuser& fuser, const LiveJob& job, LiveSession& session)
@@ -44,12 +46,15 @@ class LiveFuseRun {
 
   // Takes marks, Kinect rows and samples of nodes, and answers the frames that are ready.
   Result<void> take(const LiveData& data) {
+    // Marks come first: a mark calibrates with samples that are there already.
     for (const LiveMark& mark : data.marks) report_.take(mark);
     for (const LiveKinectRow& row : data.rows) {
       KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
       if (row.kinect->stream == stream_) joints_.add(row.row, row.arrival);
     }
     for (const LiveNodeSample& sample : data.samples) KA_TRY(report_.add(sample));
+    // All samples of the piece are in, so one call answers all of its frames in one run of the
+    // network.
     if (session_.stream().now()) advance(*session_.stream().now());
     return check_live_frames(poses_.size());
   }
@@ -68,6 +73,7 @@ class LiveFuseRun {
   void finish() {
     std::vector<LiveWornFrame> ready;
     std::vector<FusedFramePose> answered;
+    // The last frames are made before the fuser is finished, which then answers all of them.
     worn_.finish(ready);
     for (const LiveWornFrame& frame : ready) take_frame(frame);
     fuser_.finish(answered);
@@ -75,6 +81,8 @@ class LiveFuseRun {
   }
 
   // The whole answer as a clip and as JSON.
+  // The length of the file is that of a run on a recorded file: it ends with the root's last
+  // sample.
   Result<Json> answer(Clip& clip) {
     if (poses_.empty()) return no_live_frames(status());
     std::vector<Turn> rotations;
@@ -88,6 +96,7 @@ class LiveFuseRun {
       root.push_back(poses_[t].root);
     }
     clip = {model_.body.skeleton,
+            // Every frame was answered with the same body, so the clip has one skeleton.
             clip_frames(model_.body, rotations, root, nodes_.rate_hz, answered_.front().stamp)};
     for (std::size_t t = 0; t < root.size(); ++t) put_place(poses_[t], t, clip.frames);
     return about(root.size());
@@ -104,10 +113,14 @@ class LiveFuseRun {
   void advance(Time now) {
     std::vector<LiveWornFrame> ready;
     std::vector<FusedFramePose> answered;
+    // A frame is ready if the nodes have it and the Kinect need not be waited for.
     worn_.advance(
         now, [&](Time time) { return joints_.is_ready(time, now); }, ready);
     bool waited = report_.report_t_pose();
+    // A new calibration turns each node against its bone, so headings that were found before no
+    // longer hold.
     if (waited) fuser_.begin_headings();
+    // The state before this call decides: the frames that waited for the turn are answered in it.
     const bool was_turned = fuser_.is_turned();
     for (const LiveWornFrame& frame : ready) take_frame(frame);
     fuser_.answer(answered);
@@ -123,14 +136,17 @@ class LiveFuseRun {
     FuseInput input{frame.nodes, joints_.frame(frame.stamp)};
     for (const std::uint8_t seen : input.kinect.seen) ++seen_[seen];
     pending_.push_back({frame.stamp, frame.nodes.valid});
+    // The fuser drops its oldest waiting frame if both devices are not seen together in time.
     const std::size_t forgotten = fuser_.forgotten();
     fuser_.add(input);
     if (fuser_.forgotten() == forgotten) return;
+    // The frames of the fuser's window stand first in pending_. The dropped frame is the next one.
     pending_.erase(pending_.begin() + static_cast<std::ptrdiff_t>(fuser_.unanswered()));
   }
 
   // Prints an answered frame and stores it for the file.
   void take_answer(FusedFramePose pose, std::optional<Time> needed) {
+    // Answers come in the order of the frames, so the first pending frame is the one.
     Pending pending = std::move(pending_.front());
     pending_.pop_front();
     ClipFrames one = clip_frames(model_.body, pose.rotations, std::span(&pose.root, 1),
@@ -158,6 +174,7 @@ class LiveFuseRun {
     Json found = Json::object();
     const double degrees = 180.0 / std::numbers::pi;
     for (std::size_t n = 0; n < nodes_.nodes.size(); ++n) {
+      // These are the corrections at the newest answer.
       const HeadingState& state = fuser_.headings()[n];
       found[nodes_.nodes[n]] = {{"turned_deg", degrees * static_cast<double>(state.yaw)},
                                 {"spread_deg", degrees * static_cast<double>(state.spread)}};

@@ -12,6 +12,8 @@
 
 namespace kinalign {
 
+/// Invariant: once a node of the layout has a sender, it keeps this sender until the end of the
+/// run.
 class LiveNodeNames {
  public:
   /// `stream`: the stream of the nodes; empty: the first stream that sends any.
@@ -35,6 +37,7 @@ class LiveNodeNames {
   std::string stream_;
   bool is_chosen_;
   std::vector<std::string> called_, others_;
+  // The key is the channel's address, which is valid as long as the stream object.
   std::map<const RawChannel*, std::optional<std::size_t>> found_;
 };
 

@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Runs `pose --live`: calibrates the nodes by a T-pose, then solves frame by frame.
+/// LivePose solves; this class connects it with the stream, the reports and the final clip.
 class LivePoseRun {
  public:
   LivePoseRun(const PoseSolver& solver, const LiveJob& job, LiveSession& session)
@@ -34,10 +35,13 @@ class LivePoseRun {
 
   // Takes marks and samples, and answers the frames that are ready.
   Result<void> take(const LiveData& data) {
+    // A mark in the same piece must calibrate before the samples that follow it.
     for (const LiveMark& mark : data.marks) report_.take(mark);
     for (const LiveNodeSample& sample : data.samples) {
+      // Only samples of the model's nodes can complete a frame.
       if (KA_TRY(report_.add(sample))) advance(sample.arrival);
     }
+    // Time that passes can make a frame ready although a node is silent.
     if (session_.stream().now()) advance(*session_.stream().now());
     return check_live_frames(frames_.size());
   }
@@ -58,6 +62,8 @@ class LivePoseRun {
   }
 
   // The whole answer as a clip and as JSON.
+  // Frames after the root's last sample were answered, but a run on the recorded file would not
+  // have them.
   Result<Json> answer(Clip& clip) {
     if (frames_.empty()) return no_live_frames(report_.waits_for());
     std::vector<Turn> rotations;
@@ -85,6 +91,8 @@ class LivePoseRun {
   void advance(Time now) {
     std::vector<LivePoseFrame> answered;
     pose_.advance(now, answered);
+    // The frames of this call waited for the T-pose, so their latency would be the person's and not
+    // the program's.
     const bool waited = report_.report_t_pose();
     for (LivePoseFrame& frame : answered) {
       take_answer(std::move(frame), waited ? std::nullopt : std::optional(now));

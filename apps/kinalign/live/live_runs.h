@@ -19,6 +19,7 @@ namespace kinalign {
 /// The frames that an answer waits for without --look-ahead.
 inline constexpr std::size_t usual_look_ahead = 2;
 
+/// The words of one live run. `worn` is used by pose and fuse, `kinect` by denoise and fuse.
 struct LiveJob {
   LiveWords words;
   std::string nodes, kinect;  // streams; empty: the first that sends any

@@ -28,12 +28,15 @@ constexpr Duration one_turn = 100ms;          // how long a turn waits for data
 constexpr Duration between_statuses = 500ms;  // between two updates of the status on a terminal
 constexpr Duration most_quiet = 5s;           // record sends at least one message each second
 
+// The recording's facts have the name of its host. The comparison tells whether both programs share
+// a clock.
 std::string own_host() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 /// Appends rows of `width` numbers: "[[0.10000,0.90000,0.00000],...]".
+/// Five decimals of a metre are a hundredth of a millimetre.
 void append_rows(std::string& out, std::span<const double> numbers, std::size_t width) {
   out += '[';
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -80,6 +83,7 @@ Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::s
 }
 
 Result<LiveSession> LiveSession::open(const LiveWords& words, Call& call) {
+  // A viewer that stops reading must not stop the run.
   call.console.never_wait();
   (void)call.console.progress();  // from here on Ctrl-C is only noted
   std::optional<LiveDatagrams> datagrams;
@@ -103,10 +107,14 @@ LiveSession::LiveSession(LiveConnection connection, std::optional<LiveDatagrams>
 /// The anchor of the recording links both clocks of this machine.
 Time LiveSession::now() {
   const HostTime raw = clocks_->raw();
+  // On the machine of record the raw clock is the same, so the axis of the stamps can be read
+  // directly.
   if (is_own_host_.value_or(false)) {
     const ClockPair& anchor = stream_->facts()->anchor;
     return anchor.utc + (raw - anchor.raw);
   }
+  // On another machine only arrivals are known. The time on the network is therefore not part of
+  // the latency.
   return stream_->now().value_or(Time{}) + (raw - piece_came_);
 }
 
@@ -118,11 +126,13 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
     is_quiet_ = false;
     LiveData data;
     KA_TRY(stream_->take(connection_.bytes(), data));
+    // The host is known after the first records of the stream. It is compared once.
     if (!is_own_host_ && stream_->facts()) is_own_host_ = stream_->facts()->host == own_host();
     KA_TRY(work.take(data));
     call_->console.flush();
   }
   const HostTime now = clocks_->raw();
+  // A connection that was quiet is checked after every turn without data.
   if (came == LiveConnection::Came::nothing) KA_TRY(report_quiet(now - piece_came_));
   if (now >= next_status_ && call_->console.shows()) {
     next_status_ = now + between_statuses;
@@ -137,6 +147,8 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
 Result<void> LiveSession::report_quiet(Duration silence) {
   if (is_quiet_ || silence <= most_quiet) return {};
   is_quiet_ = true;
+  // A program that accepts the connection and sends nothing is not record. Waiting longer would not
+  // help.
   if (!stream_->now()) {
     return Failure(
         Error{"--live", 0, "the stream of kinalign record --live-port", "no data for 5 s"});
@@ -149,6 +161,7 @@ Result<void> LiveSession::report_quiet(Duration silence) {
 Result<void> LiveSession::run(const LiveWork& work) {
   while (!interrupted() && KA_TRY(turn(work))) {
   }
+  // Ctrl-C is no break, and a stream that record closed is complete.
   broke_ = !interrupted() && !stream_->closed();
   if (broke_ && !stream_->now()) {
     return Failure(Error{"--live", 0, "the stream of kinalign record --live-port",
@@ -159,11 +172,13 @@ Result<void> LiveSession::run(const LiveWork& work) {
 
 void LiveSession::report_frame(const Skeleton& skeleton, const ClipFrames& one,
                                std::optional<Time> needed) {
+  // The text is made only if someone gets it: it costs more than the rest of the report.
   if (call_->console.prints_json() || datagrams_) {
     const std::string text = frame_json(skeleton, one);
     call_->console.print_json(text);
     if (datagrams_) datagrams_->send(text);
   }
+  // A frame that waited for the person, not for the program, has no latency.
   if (!needed) return;
   const Time answered = now();
   latency_.add(answered - *needed, answered - one.stamps.front());
@@ -184,6 +199,7 @@ std::string LiveSession::latency_text() const {
 }
 
 void LiveSession::describe(Json& about) const {
+  // The percentiles are over the whole run; latency_text() has those of the newest frames.
   about["latency_ms"] = {{"frames", latency_.frames()},
                          {"after_arrival_p50", latency_.after_arrival_ms(0.5)},
                          {"after_arrival_p99", latency_.after_arrival_ms(0.99)},

@@ -23,6 +23,7 @@ namespace kinalign {
 inline constexpr std::size_t most_live_frames = 1'000'000;
 
 /// Fails if a run has reached the most frames.
+/// A clip is written only at the end, so all frames stay in memory until then.
 Result<void> check_live_frames(std::size_t frames);
 /// The failure of a run without an answered frame. `waited_for`: the status at its end.
 Failure no_live_frames(const std::string& waited_for);
@@ -38,6 +39,8 @@ struct LiveWork {
   std::function<std::string()> status;
 };
 
+/// One thread does everything: it reads a piece, answers the frames that it completes, and prints
+/// them.
 class LiveSession {
  public:
   /// Connects. `words`: after check().
@@ -74,6 +77,7 @@ class LiveSession {
   LiveConnection connection_;
   std::optional<LiveDatagrams> datagrams_;
   Call* call_;
+  // A pointer, because the session is moved once and a stream can't be.
   std::unique_ptr<LiveStream> stream_;
   std::unique_ptr<SystemClocks> clocks_;
   std::optional<bool> is_own_host_;  // record runs on this machine; absent: not known yet

@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// The socket never blocks. Data that this program does not read in time are dropped by record and
+/// counted as lost messages.
 class LiveConnection {
  public:
   /// Waits at most five seconds. Fails if no server listens there.
@@ -35,6 +37,7 @@ class LiveConnection {
 };
 
 /// Datagrams to one address. A datagram that no program receives is lost.
+/// A lost frame is not repeated: the next one follows at once.
 class LiveDatagrams {
  public:
   static Result<LiveDatagrams> open(const Endpoint& to);

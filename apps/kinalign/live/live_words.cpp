@@ -11,6 +11,7 @@ constexpr const char* own_machine = "127.0.0.1";
 
 bool parse_port(std::string_view text, std::uint16_t& port) {
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
+  // Port 0 means "any" to the system, so it can't be a destination.
   return fault == std::errc{} && end == text.data() + text.size() && port != 0;
 }
 
@@ -48,6 +49,7 @@ std::vector<Field> live_flags(LiveWords& o) {
 }
 
 Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag) {
+  // The last colon separates the port, since an IPv6 address has colons of its own.
   const std::size_t colon = text.rfind(':');
   Endpoint out{own_machine, 0};
   if (colon != std::string::npos) out.host = without_brackets(text.substr(0, colon));

@@ -11,6 +11,7 @@
 
 namespace kinalign {
 
+/// The values of the flags. The other two flags are legal only with `live`.
 struct LiveWords {
   std::string live;                        // "[HOST:]PORT" of record --live-port; empty: not live
   std::string send;                        // "HOST:PORT" for a datagram of each frame; empty: none

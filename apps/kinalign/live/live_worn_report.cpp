@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr double longest_lost_s = 2.0;  // a node lost for longer gets a warning
 
 /// The sample in the form that calibration uses, with a normalised orientation.
+/// Numbers of a packet are floats; calibration computes in double.
 NodeReadings readings_of(const LiveNodeSample& one) {
   const NodeSample& sample = one.sample;
   NodeReadings out{one.stamp, one.arrival, {}, {}, {}, true};
@@ -30,6 +31,7 @@ NodeReadings readings_of(const LiveNodeSample& one) {
   }
   if (sample.has_acceleration) {
     out.acceleration = vector(sample.acceleration);
+    // A device that removes gravity itself can't show how it is tilted; calibration must know that.
     out.gravity = sample.gravity_included;
   }
   if (sample.has_angular_velocity) out.angular_velocity = vector(sample.angular_velocity);
@@ -59,8 +61,11 @@ Result<bool> LiveWornReport::add(const LiveNodeSample& sample) {
 }
 
 void LiveWornReport::take(const LiveMark& mark) {
+  // Marks of other kinds begin and end takes of the recorder.
   if (mark.mark.mark.kind != Mark::Kind::t_pose) return;
+  // A new mark is a new attempt, so the same refusal is reported again.
   refusal_.clear();
+  // The grid begins with the root's first sample. A mark before it has no frame.
   if (!worn_->nodes().begin())
     return report_refusal("the mark came before the first sample of " + layout_->nodes.back());
   worn_->mark_t_pose(mark.at);
@@ -79,6 +84,7 @@ void LiveWornReport::report_refusal(const std::string& why) {
 
 bool LiveWornReport::report_t_pose() {
   if (const auto why = worn_->take_refusal()) report_refusal(*why);
+  // The first frame identifies a calibration: a new T-pose has another one.
   if (!worn_->calibration() || worn_->calibration()->first == reported_) return false;
   reported_ = worn_->calibration()->first;
   refusal_.clear();
@@ -97,9 +103,12 @@ void LiveWornReport::watch(const std::vector<std::uint8_t>& valid) {
     const std::string& name = layout_->nodes[n];
     const std::size_t before = missing_[n];
     missing_[n] = valid[n] != 0 ? 0 : before + 1;
+    // Equality reports the loss once, in the frame in which it reaches the limit.
     if (missing_[n] == longest) {
       session_->report(name + " has been missing for 2 s: its limb is a guess",
                        Json{{"event", "node_missing"}, {"node", name}});
+      // A node that was switched off has a new heading after its start, which only a new T-pose can
+      // find.
     } else if (missing_[n] == 0 && before >= longest) {
       session_->report(name + " sends again; if it was switched off, mark a new T-pose",
                        Json{{"event", "node_back"}, {"node", name}});
@@ -118,6 +127,7 @@ void LiveWornReport::count(const std::vector<std::uint8_t>& valid) {
 }
 
 std::string LiveWornReport::waits_for() const {
+  // begin() is absent until the root's node has sent.
   if (!worn_->nodes().begin()) return "waiting for the nodes: " + names_.text();
   if (worn_->calibration()) return "";
   return fmt::format("waiting for a T-pose without motion ({}){}", names_.text(),
@@ -154,12 +164,14 @@ Json LiveWornReport::about() const {
   }
   Json out{{"valid", valid}, {"nodes", std::move(nodes)}};
   out.update(calibration());
+  // Late samples came after their frame was made.
   out["late_samples"] = worn_->nodes().late();
   const double fastest = worn_->calibration()->fastest_deg_s;
   if (fastest > most_turn_deg_s) {
     warnings.push_back(fmt::format(
         "a node turned at {:.0f} deg/s in the T-pose: the person did not hold still", fastest));
   }
+  // A node that the model does not use is often one whose place is missing in lab.toml.
   for (const std::string& other : names_.others()) {
     warnings.push_back(other + " is not a node of the model: state in lab.toml where it is worn");
   }
@@ -172,6 +184,8 @@ std::string LiveWornReport::warning_of(std::size_t node) const {
   const std::string& name = layout_->nodes[node];
   const Presence& one = presence_[node];
   const double lost_s = static_cast<double>(one.longest) / layout_->rate_hz;
+  // A node without samples and a node without samples in the T-pose look alike in the answer. The
+  // user has to mend different things.
   if (one.valid == 0 && !worn_->nodes().has_samples(node)) {
     return name + " has no samples: its limb is a guess";
   }

@@ -15,6 +15,8 @@
 
 namespace kinalign {
 
+/// The grid and the calibration are LiveWorn's; this class adds names and words. Invariant: each
+/// change (T-pose, loss, return) is reported once.
 class LiveWornReport {
  public:
   /// All arguments must live longer. `stream`: the stream of the nodes; empty: the first that sends
@@ -33,6 +35,7 @@ class LiveWornReport {
   bool report_t_pose();
   /// Called for each answered frame, with the validity of the nodes [N]. Reports a node that is
   /// missing for long, and its return.
+  /// It tells a person in the room what to do while the run lasts; count() is for the summary.
   void watch(const std::vector<std::uint8_t>& valid);
   /// Counts a frame of the result.
   void count(const std::vector<std::uint8_t>& valid);
@@ -45,6 +48,7 @@ class LiveWornReport {
 
  private:
   /// The frames in which a node was valid, and its longest loss.
+  /// The unit is a frame of the result.
   struct Presence {
     std::size_t valid = 0, lost = 0, longest = 0;  // frames; lost: until now
   };

@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// `session` is new in each run, so a host does not mix this run with an earlier one.
 struct LiveCameraOptions {
   std::uint64_t seed = 1;
   std::uint32_t session = 0;
@@ -21,6 +22,9 @@ struct LiveCameraOptions {
   double length_s = 0.0;  // the motion's, s
 };
 
+/// Three schedules run side by side: frames by the sensor's ticks, hellos once a second, pings five
+/// times a second. Hellos and pings end with the motion. Invariant: frame_ is the next frame that
+/// was not sent.
 class LiveCamera {
  public:
   LiveCamera(const Rehearsal& rehearsal, const LiveCameraOptions& options, ClockReader& clock,
@@ -44,6 +48,7 @@ class LiveCamera {
   void send_ping();
   bool send(const KinectMessage& message);
   KinectOrigin origin(std::uint32_t& sequence) const { return {1, session_, sequence++}; }
+  // The program's clock in units of 100 ns, as it stands in messages.
   std::int64_t sender_ticks(HostTime t) const;
 
   const Rehearsal& rehearsal_;

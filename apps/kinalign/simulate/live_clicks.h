@@ -14,6 +14,7 @@
 
 namespace kinalign {
 
+/// Two clicks, each sent twice. Invariant: calls_[0] to calls_[sent_ - 1] were sent.
 class LiveClicks {
  public:
   /// `run`: differs in each run, so that its marks are not taken for repeats of an earlier run's.

@@ -13,6 +13,9 @@
 
 namespace kinalign {
 
+/// A fate is drawn for each datagram when it is put: lost, delayed, or duplicated. The queue sorts
+/// by arrival, so datagrams may overtake each other as on a real radio. The limit of waiting
+/// datagrams bounds the memory.
 class LiveLink {
  public:
   LiveLink(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz)

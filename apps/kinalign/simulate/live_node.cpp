@@ -10,6 +10,7 @@ namespace {
 
 constexpr double frame_rate_hz = 15.0;  // the firmware's
 
+/// All other settings are the firmware's defaults.
 NodeSettings settings_of(const LiveNodeOptions& options) {
   NodeSettings settings;
   settings.node_id = options.id;
@@ -27,6 +28,7 @@ LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, Cl
       start_(options.start),
       counter_(node.seed, options.length_s),
       socket_(std::move(socket)),
+      // The same seed in both directions is no mistake: `way` separates their random numbers.
       up_({.link = options.link}, node.seed, Way::up, frame_rate_hz),
       down_({.link = options.link}, node.seed, Way::down, frame_rate_hz) {
   if (options.clockless) {
@@ -41,11 +43,14 @@ LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, Cl
 /// does not shift it.
 void LiveNode::work() {
   std::array<std::uint8_t, max_node_datagram> room{};
+  // Datagrams of the host enter the simulated radio first. The node receives them when they leave
+  // it.
   while (const std::size_t size = socket_.receive(room)) {
     down_.put(clock_.raw(), std::span(room).first(size));
   }
   auto* counting = std::get_if<Node>(&node_);
   auto* clockless = std::get_if<ClocklessNode>(&node_);
+  // Samples are taken before poll(), which puts them into frames.
   sampling_ = true;
   while (sample_due(counter_at(clock_.raw()))) {
     if (counting != nullptr) counting->tick(1);
@@ -55,11 +60,14 @@ void LiveNode::work() {
   sampling_ = false;
   if (counting != nullptr) counting->poll();
   if (clockless != nullptr) clockless->poll();
+  // The radio's delay is over: the datagram now goes to the host over the real network.
   while (const auto datagram = up_.take(clock_.raw())) (void)socket_.send(*datagram);
 }
 
 /// The earliest time at which work() has something to do.
 HostTime LiveNode::next() const {
+  // Three kinds of work can come next: a datagram that arrives, the firmware's own work, and a
+  // sample.
   const std::uint64_t now_us = counter_at(clock_.raw());
   HostTime next = std::min(up_.next(), down_.next());
   if (const auto* counting = std::get_if<Node>(&node_)) {
@@ -98,6 +106,8 @@ HostTime LiveNode::host_at(std::uint64_t counter_us) const {
 }
 
 std::uint64_t LiveNode::counter_us() {
+  // During a sample the firmware reads the counter, and it must read the time for which the sample
+  // was made.
   return sampling_ ? samples_.samples[next_sample_].counter_us : counter_at(clock_.raw());
 }
 
@@ -106,6 +116,7 @@ bool LiveNode::read_imu(NodeSample& sample) {
   return true;
 }
 
+// The simulated radio always accepts. A loss is found only at its end.
 bool LiveNode::send(std::span<const std::uint8_t> datagram) {
   up_.put(clock_.raw(), datagram);
   return true;

@@ -32,6 +32,8 @@ struct LiveNodeCounts {
   std::uint64_t answered = 0;           // answers of the host that reached the node
 };
 
+/// The functions of Board are called by the node's logic, inside of work(). Invariant: next_sample_
+/// counts the samples that were taken.
 class LiveNode final : public Board {
  public:
   LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, ClockReader& clock,
@@ -62,6 +64,7 @@ class LiveNode final : public Board {
     return next_sample_ < samples_.samples.size() &&
            samples_.samples[next_sample_].counter_us <= now_us;
   }
+  // Both directions of the counter's clock: from the host's time, and back.
   std::uint64_t counter_at(HostTime t) const;
   HostTime host_at(std::uint64_t counter_us) const;
 
@@ -70,7 +73,9 @@ class LiveNode final : public Board {
   HostTime start_;
   SimulatedClock counter_;
   LiveSocket socket_;
+  // up_ leads to the host, down_ to the node.
   LiveLink up_, down_;
+  // Empty only during construction; then one of both kinds for the whole life.
   std::variant<std::monostate, Node, ClocklessNode> node_;
   /// The next sample to take.
   std::size_t next_sample_ = 0;

@@ -17,6 +17,7 @@ constexpr Duration behind = 500ms,
                                           // longest wait between two calls of go_on
 
 Duration duration(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
+// Noitom's stream has a fixed number of joints.
 constexpr std::size_t noitom_joints = 59;
 
 /// The present time on both clocks, plus `wait`. The raw clock is read before and after UTC; the
@@ -37,6 +38,7 @@ LiveTraffic LiveCounts::all() const {
 }
 
 Result<LiveSockets> open_live(const LiveOptions& options, std::size_t nodes) {
+  // All sockets are opened before the first datagram, so a fault leaves no half-started run.
   LiveSockets sockets{KA_TRY(LiveSocket::connected_to(options.to, options.mocap_port)),
                       KA_TRY(LiveSocket::connected_to(options.to, options.kinect_port)),
                       KA_TRY(LiveSocket::connected_to(options.to, options.marks_port)),
@@ -69,6 +71,7 @@ LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
       rehearsal,
       LiveCameraOptions{options.seed, static_cast<std::uint32_t>(run), start, motion.length_s},
       clock, std::move(sockets.kinect));
+  // The marks have the run in their ids, the Kinect in its session, the nodes in their boot ids.
   clicks_ = std::make_unique<LiveClicks>(rehearsal.mocap, run, start, std::move(sockets.clicks));
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     LiveNodeOptions node{.id = static_cast<std::uint32_t>(n + 1),
@@ -77,6 +80,7 @@ LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
                          .clockless = options.clockless,
                          .start = start,
                          .length_s = motion.length_s};
+    // A node keeps references to its samples, which belong to the rehearsal.
     nodes_.push_back(
         std::make_unique<LiveNode>(rehearsal.nodes[n], node, clock, std::move(sockets.nodes[n])));
   }
@@ -91,12 +95,14 @@ double LiveRehearsal::run(const std::function<bool()>& go_on) {
     wait(std::min(start_.raw, clock_->raw() + longest_wait));
   }
   for (HostTime now = clock_->raw(); now < end; now = clock_->raw()) {
+    // A run that was stopped reports how much of the motion was sent.
     if (!go_on()) return std::min(seconds(now - start_.raw), length_s_);
     suit_->work(now);
     camera_->work();
     clicks_->work(now);
     for (const auto& node : nodes_) node->work();
     HostTime next =
+        // The loop sleeps until the earliest work of any device.
         std::min({end, now + longest_wait, suit_->next(), camera_->next(), clicks_->next()});
     for (const auto& node : nodes_) next = std::min(next, node->next());
     wait(next);
@@ -106,11 +112,13 @@ double LiveRehearsal::run(const std::function<bool()>& go_on) {
 
 /// Waits until that time or until a datagram arrives.
 void LiveRehearsal::wait(HostTime until) const {
+  // The suit and the clicks get no answers that matter, so their sockets are not waited for.
   std::vector<pollfd> received{{camera_->fd(), POLLIN, 0}};
   for (const auto& node : nodes_) received.push_back({node->fd(), POLLIN, 0});
   const Duration left = std::max(until - clock_->raw(), Duration::zero());
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
   const timespec timeout{whole.count(), (left - whole).count()};
+  // ppoll() has nanoseconds; poll() would round to milliseconds.
   ::ppoll(received.data(), received.size(), &timeout, nullptr);
 }
 
@@ -136,6 +144,8 @@ LiveCounts LiveRehearsal::counts() const {
 /// The truth of a live rehearsal, with stamps on the axes of the devices.
 TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start,
                          std::optional<double> clockless_hz) {
+  // In a file all stamps begin with the recording. In a stream they begin with the device's own
+  // count.
   TrueRecording truth = truth_of(rehearsal, motion, start.utc);
   truth.host = TrueHost{start.raw.time_since_epoch().count(), to_ns(start.utc)};
   // Moves the stamps of a file, which the host made, to the device's own axis.
@@ -144,10 +154,13 @@ TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const
     const std::int64_t shift = first - clock.stamps_ns.front();
     for (std::int64_t& stamp : clock.stamps_ns) stamp += shift;
   };
+  // A device tick of the Kinect has 100 ns, a node's counter 1 us.
   if (!rehearsal.ticks.empty()) begin_at(truth.kinect.clock, 100 * rehearsal.ticks.front().device);
   for (std::size_t n = 0; n < truth.nodes.size(); ++n) {
     const SimulatedNode& node = rehearsal.nodes[n];
     if (clockless_hz) {
+      // A node without a counter has no clock. Its stamp is the number of the request times the
+      // step.
       truth.nodes[n].clock = {};
       for (std::size_t i = 0; i < node.truth.times.size(); ++i) {
         truth.nodes[n].clock.stamps_ns.push_back(

@@ -36,6 +36,7 @@ struct LiveCounts {
 };
 
 /// A socket for each device. Opening it sends nothing.
+/// The sockets are opened before any file is made, so that a missing route is found first.
 struct LiveSockets {
   LiveSocket mocap, kinect, clicks;
   std::vector<LiveSocket> nodes;
@@ -48,6 +49,8 @@ Result<LiveSockets> open_live(const LiveOptions& options, std::size_t nodes);
 /// error.
 Result<void> check_live(const Motion& motion, const std::string& name);
 
+/// The devices share nothing but the motion and the clock, as real ones would. Pointers, because a
+/// node can't be moved: its logic refers to it.
 class LiveRehearsal {
  public:
   /// Begins options.begin_in_s from now. `motion` and `rehearsal` must live longer.

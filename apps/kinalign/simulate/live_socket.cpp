@@ -25,9 +25,11 @@ Result<void> check_live_address(const std::string& host) {
 }
 
 Result<LiveSocket> LiveSocket::connected_to(const std::string& host, std::uint16_t port) {
+  // The check is repeated here, so the address below is never null.
   KA_TRY(check_live_address(host));
   const FoundAddress address = find_address(host, port, SOCK_DGRAM);
   LiveSocket made(::socket(address->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  // A connected UDP socket receives from its peer only, and learns of ICMP refusals.
   if (made.fd_ < 0 || ::connect(made.fd_, address->ai_addr, address->ai_addrlen) != 0) {
     return Failure(Error{"--to", 0, "a network route to " + host + " port " + std::to_string(port),
                          std::strerror(errno)});
@@ -49,6 +51,7 @@ LiveSocket::~LiveSocket() {
 /// Reads and counts a pending refusal (ICMP: no program listens there). The kernel keeps it in the
 /// socket, and the next send or receive would fail with it and do nothing else.
 void LiveSocket::read_refusal() {
+  // Reading SO_ERROR also clears it.
   int refusal = 0;
   socklen_t size = sizeof refusal;
   const bool asked = ::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &refusal, &size) == 0;
@@ -67,6 +70,7 @@ bool LiveSocket::send(std::span<const std::uint8_t> datagram) {
 std::size_t LiveSocket::receive(std::span<std::uint8_t> room) {
   read_refusal();
   const ssize_t size = ::recv(fd_, room.data(), room.size(), 0);
+  // A negative size means that nothing has come.
   if (size < 0) return 0;
   ++traffic_.received;
   return static_cast<std::size_t>(size);

@@ -23,6 +23,7 @@ struct LiveTraffic {
 /// Fails if `host` is not a numeric address of IPv4 or IPv6; names are not looked up.
 Result<void> check_live_address(const std::string& host);
 
+/// Each device has a socket of its own, so the host sees each as a sender with its own port.
 class LiveSocket {
  public:
   /// A socket on a port that the system chooses. `host`: a numeric address, IPv4 or IPv6. Fails if
@@ -46,6 +47,7 @@ class LiveSocket {
 
  private:
   explicit LiveSocket(int fd) : fd_(fd) {}
+  // The kernel keeps at most one refusal for each socket, so several of them may count as one.
   void read_refusal();
 
   int fd_ = -1;

@@ -21,6 +21,7 @@ LiveSuit::LiveSuit(const Motion& motion, const MocapRun& run, std::uint64_t seed
 }
 
 void LiveSuit::work(HostTime now) {
+  // Several frames may be due after a long sleep. All of them are sent, since a suit skips none.
   while (next_ <= now) {
     worst_late_ = std::max(worst_late_, now - next_);
     if (socket_.send(datagram())) ++sent_;
@@ -35,12 +36,15 @@ void LiveSuit::plan() {
     next_ = HostTime::max();
     return;
   }
+  // A frame leaves after the delay of the suit's program. The delay is drawn from the frame's
+  // number.
   const double s = run_.frame_s(frame_) + program_delay_s(random_, frame_);
   next_ = start_ + Duration{static_cast<std::int64_t>(s * 1e9)};
 }
 
 /// The next frame as Noitom's binary stream, with the positions of all joints.
 std::vector<std::uint8_t> LiveSuit::datagram() {
+  // The pose is taken at the measured time and not at the time of sending.
   motion_.pose_at(run_.frame_s(frame_), pose_);
   const std::size_t joints = motion_.skeleton.joints();
   std::vector<double> positions(3 * joints), rotations(4 * joints), row;

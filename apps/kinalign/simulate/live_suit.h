@@ -17,6 +17,7 @@ inline double program_delay_s(const RandomStream& random, std::uint64_t frame) {
   return 0.002 + random.exponential(frame, 0, 0.001);
 }
 
+/// It knows no clock but the host's: the stream has no stamps, only frame numbers.
 class LiveSuit {
  public:
   LiveSuit(const Motion& motion, const MocapRun& run, std::uint64_t seed, HostTime start,

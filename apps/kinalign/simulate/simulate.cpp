@@ -21,11 +21,13 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view built_in = "built-in";
+// A rehearsal of an hour is the longest; a BVH larger than most_bvh is refused.
 constexpr double usual_s = 60.0, most_s = 3600.0;
 constexpr std::size_t most_bvh = std::size_t{256} << 20;
 // Simulated recordings begin at this time, so that the same seed gives the same bytes.
 constexpr std::int64_t start_ns = 1'790'000'000'000'000'000;
 
+/// The options of `kinalign simulate`. The flags from `to` on belong to --live.
 struct Simulate {
   std::vector<std::string> motion;
   std::int64_t seed = 1;
@@ -65,6 +67,7 @@ Result<void> check_simulate(const Simulate& o, const Common& common, const Sourc
   if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
   if (o.live) {
     KA_TRY(check_live_address(o.to));
+    // Files have no ports, so ports are checked for live runs only.
     KA_TRY(check_live_ports(o));
     return refuse(
         given, "node_stamps",
@@ -125,10 +128,12 @@ Result<Motion> motion_of(const Simulate& o, Call& call) {
     return built_in_motion(
         {.length_s = o.seconds.value_or(usual_s), .seed = static_cast<std::uint64_t>(o.seed)});
   }
+  // A mistyped "built-in" would be reported as a missing file, so a suggestion is added.
   call.console.if_it_fails([near = suggestion(name, {std::string(built_in)})](const Error&) {
     return near.empty() ? std::vector<std::string>{} : std::vector<std::string>{near};
   });
   const std::string text = KA_TRY(read_whole(call.surroundings.files, name, most_bvh));
+  // The suggestion must not appear below errors of a file that was read.
   call.console.if_it_fails({});
   const BvhFile file = KA_TRY(read_bvh(text, name, {}));
   auto motion = kinalign::motion_of(file.clip);
@@ -140,6 +145,7 @@ Result<Motion> motion_of(const Simulate& o, Call& call) {
 /// Adds to a truth the members that only the verb knows.
 TrueRecording named(TrueRecording truth, const Simulate& o) {
   truth.seed = static_cast<std::uint64_t>(o.seed);
+  // The truth holds only the file's name, so it is the same in every folder.
   truth.motion = o.motion.front() == built_in ? built_in : file_name(o.motion.front());
   truth.motion_file = "motion.bvh";
   return truth;
@@ -160,6 +166,7 @@ Result<int> write_files(const Job& job, Call& call) {
   const NodeStamps stamps = o.node_stamps == "own" ? NodeStamps::own : NodeStamps::arrival;
   KA_TRY(write_devices(job.folder, job.rehearsal, job.motion, {.stamps = stamps}, truth));
   KA_TRY(write_truth(job.folder, truth));
+  // The folder is complete from here on.
   call.console.if_it_fails({});
   print_files({truth, job.rehearsal, job.folder.path, o.seconds}, call.console);
   return done;
@@ -172,6 +179,7 @@ LiveOptions live_options(const Simulate& o) {
           .kinect_port = static_cast<std::uint16_t>(o.kinect_port),
           .node_port = static_cast<std::uint16_t>(o.node_port),
           .marks_port = static_cast<std::uint16_t>(o.marks_port),
+          // The letters A to G are the values of Link in this order.
           .link = static_cast<Link>(o.link.front() - 'A'),
           .seed = static_cast<std::uint64_t>(o.seed),
           .begin_in_s = o.begin_in,
@@ -193,11 +201,13 @@ Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   KA_TRY(write_lab(job.folder, options, job.rehearsal));
   std::optional<double> clockless_hz;
   if (o.clockless) clockless_hz = static_cast<double>(o.node_rate);
+  // `align` needs the rate of nodes without a counter, since they send no stamps.
   KA_TRY(write_live_manifest(job.folder, job.rehearsal, clockless_hz));
   SystemClocks clock;
   LiveRehearsal live(job.motion, job.rehearsal, options, clock, std::move(sockets));
   TrueRecording truth = named(live_truth(job.rehearsal, job.motion, live.start(), clockless_hz), o);
   truth.link = o.link;
+  // The truth is known before the first datagram is sent: it depends on the start only.
   KA_TRY(write_truth(job.folder, truth));
   call.console.if_it_fails({});
   print_start({truth, job.rehearsal, job.folder.path, o.seconds}, options, call.console);
@@ -205,8 +215,10 @@ Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   sent.length_s = job.motion.length_s;
   sent.sent_s = live.run([] { return !interrupted(); });
   sent.counts = live.counts();
+  // The recorder may have written into another folder. The next step in the text depends on it.
   sent.recorded_there = is_there(job.folder.files, job.folder.path + "/" + live_take_name);
   print_end(sent, call.console);
+  // Exit codes: stopped by Ctrl-C, 1 if no program answered, else 0.
   if (!sent.whole()) return stopped;
   return sent.unanswered() ? findings : done;
 }
@@ -216,6 +228,7 @@ Result<int> run(Simulate& o, Call& call) {
   const std::string& name = o.motion.front();
   const Motion motion = KA_TRY(motion_of(o, call));
   call.console.if_it_fails([](const Error&) {
+    // The advice is for check_live() only: files accept any skeleton that can be simulated.
     return std::vector<std::string>{"without --live the motion can be simulated into files"};
   });
   if (o.live) KA_TRY(check_live(motion, name));
@@ -230,14 +243,18 @@ Result<int> run(Simulate& o, Call& call) {
                                     "ip route get " + to + " shows this machine's route to it"};
   });
   std::optional<LiveSockets> sockets;
+  // The sockets are opened before the folder is made.
   if (o.live) sockets = KA_TRY(open_live(live_options(o), rehearsal->nodes.size()));
   call.console.if_it_fails({});
   const RehearsalFolder folder{call.surroundings.files, call.common.out};
+  // An existing folder is refused, so no file of another simulation can be mixed in.
   KA_TRY(make_new_folder(folder.path));
+  // From here on a failure leaves files behind, so the advice changes.
   call.console.if_it_fails([path = folder.path](const Error&) {
     return std::vector<std::string>{path + " is incomplete: delete it"};
   });
   KA_TRY(make_new_folder(folder.path + "/truth"));
+  // The motion belongs to the truth of both ways, live and files.
   KA_TRY(write_motion(folder, motion));
   const Job job{o, folder, motion, *rehearsal};
   return sockets ? send_live(job, *std::move(sockets), call) : write_files(job, call);

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double motion_rate_hz = 120.0;
 constexpr int bvh_decimals = 6;
+// The link of the stamps by arrival. Its mean delay is stated in the manifest, as a user would
+// measure it.
 constexpr Link arrival_link = Link::paper;
 constexpr double arrival_delay_ms = 33.2;  // mean delay of that link: time-sync.md 3.4
 
@@ -26,6 +28,7 @@ Result<void> write_clip(const RehearsalFolder& folder, const std::string& name,
   constexpr std::size_t block = 1024;
   OutputFile out =
       KA_TRY(OutputFile::create(folder.files, folder.path + "/" + name, Overwrite::no));
+  // All joints get position channels.
   const BvhChannels channels(motion.skeleton, BvhChannels::Positions::of_all);
   BvhHierarchy hierarchy = channels.hierarchy(run.frames, 1.0 / run.rate_hz);
   // With nine decimals an hour's last frame is right within 0.1 ms.
@@ -51,6 +54,7 @@ Result<void> write_text(const RehearsalFolder& folder, const std::string& name,
   return out.commit();
 }
 
+/// A text file that is committed by the caller when its rows are complete.
 Result<TextOut> table(const RehearsalFolder& folder, const std::string& name) {
   return TextOut::create(folder.files, folder.path + "/" + name, Overwrite::no);
 }
@@ -60,6 +64,8 @@ std::string node_file_name(const std::string& node) { return "imu_" + node + ".c
 /// The half-interval of a device's clock after that time, rounded up to hundredths of a
 /// millisecond.
 double interval_ms(double length_s) {
+  // 1e5 and 100 turn seconds into hundredths of a millisecond. The first constant term is the error
+  // at the start, the second keeps exact values from being rounded up.
   return std::ceil(1e5 * (most_drift * length_s + 1e-5) - 1e-6) / 100.0;
 }
 
@@ -76,12 +82,14 @@ Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   Manifest manifest;
   manifest.subject = fmt::format("simulated_{}", truth.seed);
   manifest.action = truth.motion;
+  // The suit gives the grid of the take.
   manifest.align.reference = "mocap";
 
   StreamOptions mocap = stream_of("mocap", {{"mocap.bvh", ""}});
   mocap.start_ns = truth.mocap.start_click_ns;
   mocap.end_ns = truth.mocap.stop_click_ns;
   mocap.click_latency_ms = std::round(1e5 * click_latency_s) / 100.0;
+  // The BVH has no time of day. The clicks on its program are all that is known of it.
   manifest.streams.push_back(mocap);
 
   if (devices.kinect) {
@@ -89,6 +97,7 @@ Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
     kinect.interval_ms = interval_ms(truth.length_s);
     manifest.streams.push_back(kinect);
     manifest.spaces["kinect"].method = "fit";
+    // The Kinect's space is fitted to the suit's.
   }
   if (!devices.nodes) return manifest;
 
@@ -98,6 +107,7 @@ Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   }
   imu.root_node = "waist";
   if (devices.stamps == NodeStamps::arrival) {
+    // Arrival is later than measurement. The offset takes out the mean of the delay.
     imu.offset_ms = -arrival_delay_ms;
   } else {
     imu.interval_ms = interval_ms(truth.length_s);
@@ -114,6 +124,7 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     const SimulatedNode& node = rehearsal.nodes[n];
     TextOut out = KA_TRY(table(folder, node_file_name(node.mounting.node_name)));
+    // Exactly one of three files is written for each node.
     if (stamps == NodeStamps::own) {
       KA_TRY(write_node(node_file(node, zero), out));
     } else if (stamps == NodeStamps::received) {
@@ -125,6 +136,7 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
     }
     KA_TRY(out.commit());
   }
+  // The truth names the link only if it shaped the stamps or the losses.
   if (stamps != NodeStamps::own) truth.link = letter(arrival_link);
   return {};
 }
@@ -133,6 +145,7 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
 
 Result<void> write_motion(const RehearsalFolder& folder, const Motion& motion) {
   MocapRun all{.rate_hz = motion_rate_hz};
+  // The last frame lies at the end of the motion or just before it; 1e-6 covers rounding.
   all.frames = static_cast<std::size_t>(motion.length_s * motion_rate_hz + 1e-6) + 1;
   return write_clip(folder, "truth/motion.bvh", motion, all);
 }
@@ -144,6 +157,7 @@ Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion
 Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options,
                        const Rehearsal& rehearsal) {
   std::string nodes;
+  // The ids count from 1, like the ids in the datagrams.
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     nodes += fmt::format("{}\"{}\" = \"{}\"", n == 0 ? "" : ", ", n + 1,
                          rehearsal.nodes[n].mounting.node_name);
@@ -176,6 +190,7 @@ Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal&
   const std::string take = live_take_name;
   Manifest manifest;
   manifest.streams = {stream_of("mocap", {{take, ""}}), stream_of("kinect", {{take, ""}}),
+                      // The three streams lie in one recording, so all of them name the same file.
                       stream_of("imu", {})};
   StreamOptions& imu = manifest.streams.back();
   for (const SimulatedNode& node : rehearsal.nodes) {
@@ -202,6 +217,7 @@ Result<void> write_devices(const RehearsalFolder& folder, const Rehearsal& rehea
     KA_TRY(kinect.commit());
   }
   if (devices.nodes) {
+    // The truth may not contain nodes that nobody recorded.
     KA_TRY(write_nodes(folder, rehearsal, devices.stamps, truth));
   } else {
     truth.nodes.clear();

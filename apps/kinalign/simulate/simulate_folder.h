@@ -14,6 +14,7 @@ namespace kinalign {
 
 /// The stamps of nodes' samples: by each node's own clock, or by their arrival over a link.
 /// `received`: by the node's own clock, without the samples that the link loses.
+/// `received` is used by `benchmark twin`, whose takes have the losses of the paper's radio.
 enum class NodeStamps { own, arrival, received };
 
 /// The devices that recorded together with the suit.
@@ -22,6 +23,7 @@ struct DeviceChoice {
   bool kinect = true, nodes = true;
 };
 
+/// All writers below make new files in this folder and never replace one.
 struct RehearsalFolder {
   FileSystem& files;
   std::string path;  // exists, and contains a folder truth/

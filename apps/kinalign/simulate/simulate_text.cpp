@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr double same_s = 0.005;  // lengths are printed in hundredths of a second
 
 /// The members about a rehearsal that files and live runs share.
+/// Counts come from the rehearsal: all that was made, also what a link loses later.
 Json json_of(const RehearsalSummary& summary) {
   std::uint64_t samples = 0;
   for (const SimulatedNode& node : summary.rehearsal.nodes) samples += node.samples.size();
@@ -34,6 +35,7 @@ std::string head_lines(const RehearsalSummary& summary) {
   const TrueRecording& truth = summary.truth;
   std::string text = fmt::format("{}: {} of {}, seed {}\n", summary.folder,
                                  duration_text(truth.length_s), truth.motion, truth.seed);
+  // The difference must be visible in the printed lengths.
   if (summary.asked_s && *summary.asked_s > truth.length_s + same_s) {
     text += fmt::format("  note    {} is shorter than --seconds asks for ({})\n", truth.motion,
                         duration_text(*summary.asked_s));
@@ -77,6 +79,7 @@ std::string no_reply_line(const SentRehearsal& sent) {
   bool taken = false;
   for (const Port& port : ports_of(sent)) {
     ports += fmt::format("{}{} {}", ports.empty() ? "" : ", ", port.name, port.number);
+    // If every datagram was refused, no program listens. Otherwise only the replies are missing.
     taken = taken || port.traffic.refused < port.traffic.sent;
   }
   return fmt::format(
@@ -112,6 +115,7 @@ void print_start(const RehearsalSummary& summary, const LiveOptions& options, Co
   json["start_raw_ns"] = summary.truth.host->raw_ns;
   json["start_utc_ns"] = summary.truth.host->utc_ns;
   console.print_json(json_text(json));
+  // The line must appear before the sending begins, since a program may wait for it.
   console.flush();
 }
 
@@ -128,6 +132,7 @@ SentText sent_text(const SentRehearsal& sent) {
                            grouped(counts.replies), 1e3 * seconds(counts.worst_late));
   text.no_reply = refused_line(sent);
   // A rehearsal that was stopped at once can't have got an answer yet.
+  // Without an answer there is no next step: the recording would be empty.
   const bool judged = sent.whole() || counts.all().refused > 0;
   if (sent.unanswered() && judged) text.no_reply += no_reply_line(sent);
   if (!sent.whole() || sent.unanswered()) return text;
@@ -154,6 +159,8 @@ void print_end(const SentRehearsal& sent, Console& console) {
                                     {"mocap_frames", counts.mocap_frames},
                                     {"kinect_frames", counts.kinect_frames},
                                     {"node_frames", counts.node_frames},
+                                    // "replies" are those that reached nodes through the simulated
+                                    // radio; "heard" counts all datagrams at the sockets.
                                     {"node_samples", counts.node_samples},
                                     {"replies", counts.replies},
                                     {"datagrams", counts.all().sent},

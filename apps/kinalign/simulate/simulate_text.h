@@ -10,6 +10,7 @@
 
 namespace kinalign {
 
+/// The references must live as long as the summary.
 struct RehearsalSummary {
   const TrueRecording& truth;
   const Rehearsal& rehearsal;
@@ -23,6 +24,7 @@ void print_files(const RehearsalSummary& summary, Console& console);
 /// Reports the rehearsal before it is sent, so that the recorder can be started.
 void print_start(const RehearsalSummary& summary, const LiveOptions& options, Console& console);
 
+/// The end of a live rehearsal. The exit code of the verb depends on whole() and unanswered().
 struct SentRehearsal {
   LiveCounts counts{};
   LiveOptions options{};

@@ -25,6 +25,9 @@ struct LabKeyFile {
 /// Prints a message of a server that runs for days, on stderr with date and time.
 void print_live(Console& console, std::string_view what);
 
+/// Lives as long as the server and is called from its only thread. Faults and events are printed
+/// once, so a log of many days stays readable. The printer never waits for the reader of its
+/// output.
 class NodePrinter {
  public:
   /// `lab`: the key that the receiver has.
@@ -33,6 +36,7 @@ class NodePrinter {
 
   /// Called several times a second. Returns a short status: "3 nodes, 2 locked".
   std::string operator()();
+  /// The last call: what every node's state was when the server stopped.
   void print_end();
 
  private:
@@ -40,6 +44,8 @@ class NodePrinter {
 
   void print_events();
   void print_status();
+  // A lab may change its key while nodes are running. The server takes the new key without a
+  // restart.
   void look_at_key();
   void print_key_trouble(const std::string& trouble);
 
@@ -51,6 +57,7 @@ class NodePrinter {
   LabKeyFile lab_;
   ClockEventLines clock_lines_;
   std::string key_trouble_;  // the fault that was reported and still lasts
+  // The schedule advances by whole seconds, so a late call does not shift those after it.
   Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
   int counts_in_s_ = 10;
 };

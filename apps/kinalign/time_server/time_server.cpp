@@ -21,6 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// The options of `kinalign time-server`. An absent local_stratum or node_port turns that service
+/// off.
 struct TimeServerFlags {
   std::int64_t port = 123;
   std::vector<std::string> listen, exempt;
@@ -28,6 +30,8 @@ struct TimeServerFlags {
   std::string lab_key;
 };
 
+/// Networks or single addresses, as --exempt gives them. parse_network() knows no flag, so the
+/// error gets its name here.
 Result<std::vector<AddressBlock>> networks_of(const std::vector<std::string>& texts) {
   std::vector<AddressBlock> networks;
   for (const std::string& text : texts) {
@@ -44,8 +48,10 @@ Result<void> check_pair(const std::string& one, const std::string& other) {
   if (one == other) {
     return Failure(Error{"--listen", 0, "each address once", one + " twice"});
   }
+  // An IPv4 address and an IPv6 address never cover each other.
   if (is_ipv6_text(one) != is_ipv6_text(other)) return {};
   for (const auto& [all, part] : {std::pair{one, other}, std::pair{other, one}}) {
+    // "0.0.0.0" and "::" include every address of their family.
     if (!is_any_address(all)) continue;
     return Failure(Error{"--listen", 0, "no address that " + all + " already includes", part});
   }
@@ -55,6 +61,7 @@ Result<void> check_pair(const std::string& one, const std::string& other) {
 /// The addresses in the system's spelling.
 Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& texts) {
   std::vector<std::string> addresses;
+  // One address has several spellings, above all in IPv6. Only equal spellings can be compared.
   for (const std::string& text : texts) {
     const auto address = spelt_address(text);
     if (!address) return Failure(Error{"--listen", 0, "an IPv4 or IPv6 address", shown(text)});
@@ -66,6 +73,7 @@ Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& te
 
 /// Checks flags that exclude or need each other.
 Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
+  // Both calls are for their errors: a wrong address is wrong use, before any socket is opened.
   KA_TRY(addresses_of(o.listen));
   KA_TRY(networks_of(o.exempt));
   if (given.contains("lab_key") && o.lab_key.empty()) {  // an unset shell variable is not "no key"
@@ -74,6 +82,7 @@ Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
   if (!o.node_port && !o.lab_key.empty()) {
     return Failure(Error{"--lab-key", 0, "--node-port as well", "no --node-port"});
   }
+  // Port 0 asks the system for a free port, so two zeros are different ports.
   if (o.node_port == o.port && o.port != 0) {
     return Failure(Error{"--node-port", 0, "a port other than that of --port",
                          fmt::format("port {} for both", o.port)});
@@ -106,6 +115,7 @@ Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
   options.port = static_cast<std::uint16_t>(flags.port);
   if (flags.local_stratum) options.local_stratum = static_cast<std::uint8_t>(*flags.local_stratum);
   options.exempt = KA_TRY(networks_of(flags.exempt));
+  // The secret is new for each start. It is never stored.
   options.key = KA_TRY(new_secret());
   return options;
 }
@@ -120,12 +130,15 @@ Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {
   LabKeyFile lab{flags.lab_key, std::nullopt};
   if (lab.path.empty()) return lab;
   FileSystem& files = call.surroundings.files;
+  // The advice is for the key file only; the caller sets the next one for the port.
   call.console.if_it_fails(key_advice);
   lab.key = KA_TRY(read_lab_key(files, lab.path));
   return lab;
 }
 
 /// The receiver of nodes; absent without --node-port.
+/// The receiver has the addresses of --listen and its own port. Its secret and the lab's key are
+/// separate: the secret lives only as long as the process.
 Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
                                                const std::optional<LabKey>& lab_key,
                                                ClockReader& clocks) {
@@ -142,6 +155,7 @@ Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
 ServedPort served_port(const TimeServer& server, const std::optional<NodeReceiver>& nodes,
                        const TimeServerFlags& flags) {
   ServedPort served;
+  // With port 0 only the open sockets know the port that clients must use.
   for (const UdpSocket& socket : server.sockets()) served.addresses.push_back(socket.address());
   served.reachable = reachable_at(flags.listen, own_addresses());
   served.port = server.sockets().front().port();
@@ -151,6 +165,8 @@ ServedPort served_port(const TimeServer& server, const std::optional<NodeReceive
 }
 
 /// Reports changes while the server runs.
+/// The server calls it four times a second. It remembers what was printed, so each line reports a
+/// change. All references must outlive it.
 class ServerPrinter {
  public:
   ServerPrinter(const TimeServer& server, std::optional<NodePrinter>& nodes, Console& console)
@@ -183,6 +199,7 @@ class ServerPrinter {
 
   void print_clock() {
     const NtpServerState& now = server_.state();
+    // Other members of the state, such as the dispersion, change at every moment and are no news.
     if (now.leap == printed_.leap && now.stratum == printed_.stratum) return;
     printed_ = now;
     print_live(console_, "the clock is now " + clock_text(now));
@@ -191,6 +208,8 @@ class ServerPrinter {
   }
   /// Reports nodes at the NTP port once; the count goes on.
   void print_misdirected() {
+    // A node at the NTP port gets no useful answer. One warning is enough to find the wrong
+    // setting.
     if (misdirected_printed_ || server_.counts()[NtpOutcome::from_node] == 0) return;
     misdirected_printed_ = true;
     print_live(console_,
@@ -208,6 +227,7 @@ class ServerPrinter {
   }
   void print_counts() {
     constexpr double every_s = 10;
+    // The n-th line is due n times 10 s after the start, so lines do not drift.
     if (elapsed_s() < every_s * (counts_printed_ + 1)) return;
     ++counts_printed_;
     console_.print_json(counts_json(server_.counts(), "counts", elapsed_s()));
@@ -227,17 +247,22 @@ class ServerPrinter {
 
 Result<int> run(TimeServerFlags& o, Call& call) {
   Console& console = call.console;
+  // A blocked reader of standard output must not delay answers to clients.
   console.never_wait();
   o.listen = KA_TRY(addresses_of(o.listen));
   const LabKeyFile lab = KA_TRY(read_key_file(o, call));
+  // The advice follows the step that comes next, since each port has its own flag.
   console.if_it_fails(advice_on_port("--port", o.port));
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
   console.if_it_fails(advice_on_port("--node-port", o.node_port.value_or(0)));
   SystemClocks clocks;
+  // The receiver is opened after the server. If it fails, no client was served yet.
   auto nodes = KA_TRY(open_nodes(o, lab.key, clocks));
   const ServedPort served = served_port(server, nodes, o);
   console.print(harmless(start_lines(served, server.state())));
   console.print_json(start_json(served, server.state()));
+  // The leap indicator tells clients not to follow this server. The user must learn that at the
+  // start.
   if (server.state().leap == NtpLeap::unsynchronised) {
     console.note(
         "kinalign time-server: warning: this machine's clock is not synchronised, so clients will "
@@ -247,6 +272,7 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   std::optional<NodePrinter> node_printer;
   if (nodes) node_printer.emplace(*nodes, console, call.surroundings.files, lab);
   ServerPrinter printer(server, node_printer, console);
+  // serve() returns after Ctrl-C. The nodes' port is served first, since it also stamps data.
   server.serve([&printer] { return printer(); }, nodes ? &*nodes : nullptr);
   printer.print_end();
   return 0;

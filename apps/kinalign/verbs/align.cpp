@@ -47,9 +47,13 @@ Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& 
   }
   if (quick) {
     KA_TRY(refuse_alone(o.quick, given));
+    // The manifest is made here for its errors only: a wrong NAME=FILE must be wrong use (exit code
+    // 2), before any file is opened.
     KA_TRY(quick_manifest(o.quick));
   }
   const auto rotations = given.find("rotations");
+  // The settings may name another method of rotations. Only two flags of one command line
+  // contradict each other.
   if (o.slerp && rotations != given.end() && rotations->second == Source::flag) {
     return Failure(Error{"--slerp", 0, "--rotations or --slerp", "both"});
   }
@@ -91,6 +95,7 @@ Result<Error> no_recording(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   const std::string_view head = KA_TRY(file.next());
   if (head.empty()) return unknown_file(path, head);
+  // The extension .mcap promises a recording, so a file with other content gets its own message.
   if (path.ends_with(".mcap")) {
     return Error{
         path, 0,
@@ -114,6 +119,8 @@ Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.manifest.front();
   if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
+    // The recording stays open: open_files() reads its streams from it instead of opening and
+    // surveying it again.
     wanted.recording = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard,
                                                     {}, call.console.progress()));
     manifest = KA_TRY(recorded_manifest(wanted.recording->survey(), path));
@@ -122,6 +129,8 @@ Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
   }
   if (!path.ends_with(".toml")) return Failure(KA_TRY(no_recording(files, path)));
   manifest = KA_TRY(load_manifest(files, path, o.options));
+  // A value from the environment or a flag overrides the manifest. A value from a settings file
+  // does not: it only fills keys that the manifest lacks.
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
   return wanted;
 }
@@ -133,6 +142,8 @@ Result<ToAlign> wanted_of(AlignVerb& o, const Call& call) {
 }
 
 /// Checks --reference, which needs the names of the manifest's streams.
+/// A reference from a settings file is not checked here, because it may be meant for other
+/// recordings.
 Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const Sources& given) {
   const auto source = given.find("reference");
   if (source == given.end() || source->second != Source::flag) return {};
@@ -142,6 +153,8 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
   if (std::find(names.begin(), names.end(), wanted) == names.end()) {
     return Failure(Error{"--reference", 0, "a stream: " + any_of(names), shown(wanted)});
   }
+  // Quick flags fit the Kinect into the mocap's space by default. If the Kinect is the reference
+  // itself, there is nothing to fit it to.
   const auto moved = manifest.spaces.find(wanted);
   if (o.manifest.empty() && moved != manifest.spaces.end() && moved->second.method != "none") {
     return Failure(Error{"--reference", 0,
@@ -153,6 +166,8 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
 
 /// Advice for a skeleton or points that do not overlap the other streams in time: the start with
 /// which both would begin together.
+/// Only a stream whose absolute time was set by hand can be moved: one with a fixed step (a BVH) or
+/// points. `first` to `last` is the span that all other streams share.
 std::string start_advice(const AlignVerb& o, const Recording& recording, const Manifest& manifest) {
   for (const RecordedStream& s : recording.streams) {
     Time first = Time::min(), last = Time::max();
@@ -163,6 +178,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     }
     const Time own = first_of(s);
     const bool apart = own > last || last_of(s) < first;
+    // Stamps outside of the legal range, and the start values of `first` and `last`, would overflow
+    // in the sums below.
     const auto near = [](Time t) {
       return to_ns(t) > -largest_stamp_ns && to_ns(t) < largest_stamp_ns;
     };
@@ -170,6 +187,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     const bool quick = o.manifest.empty();
     const bool placed = s.step_ns || std::holds_alternative<PointInput>(s.data);
     if (!placed || !apart || first > last || !is_known || (quick && s.name != "mocap")) continue;
+    // The stream begins later than its start_ns by a constant latency. The advice keeps that
+    // latency: start_ns moves by the same amount as the first frame.
     const std::int64_t start =
         s.step_ns ? options_of(manifest, s.name).start_ns.value_or(0) : to_ns(s.survey.first);
     const std::int64_t latency = to_ns(own) - start;
@@ -182,6 +201,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
 }
 
 /// The lines after an error. `path`: the manifest's path; empty if there is none.
+/// An error without a file comes from the flags. An error with a line comes from an input, and
+/// `check` may know more about that file.
 std::vector<std::string> advice(const std::string& path, const Error& error) {
   std::vector<std::string> lines{"nothing was written"};
   const bool named = !path.empty() && error.file == path;
@@ -204,6 +225,8 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
 }
 
 /// Opens all files. Files given by flags are checked for their kind.
+/// A recording that is open already is used again. `base` is the folder to which the manifest's
+/// paths are relative.
 Result<Recording> open_files(const AlignVerb& o, const ToAlign& wanted, const std::string& base,
                              Call& call) {
   Recording recording =
@@ -223,14 +246,21 @@ Result<int> run(AlignVerb& o, Call& call) {
   call.console.if_it_fails([path](const Error& error) { return advice(path, error); });
   ToAlign wanted = KA_TRY(wanted_of(o, call));
   Manifest& manifest = wanted.manifest;
+  // The paths of flags are relative to the current folder. Those of a manifest are relative to the
+  // manifest's folder.
   const std::string base =
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
+  // --dry-run aligns in full and prints the same report, but has no file to write.
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
   KA_TRY(keep_inputs(out, with_siblings(call.surroundings.files, files_named(manifest, base))));
+  // A stream's name can be checked only after the manifest was read. It is wrong use all the same,
+  // so the exit code is 2.
   for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
     if (!use) return call.console.refuse(use.error());
   }
+  // The advice changes once the streams are open: only now is it known how far their spans lie
+  // apart.
   const Recording recording = KA_TRY(open_files(o, wanted, base, call));
   call.console.if_it_fails(
       [path, start = start_advice(o, recording, manifest)](const Error& error) {
@@ -239,6 +269,7 @@ Result<int> run(AlignVerb& o, Call& call) {
         if (apart && !start.empty()) lines.push_back(start);
         return lines;
       });
+  // Errors of the plan name no file. The manifest is the one place where the user can mend them.
   const auto placed = [&path](Error error) {
     if (error.file.empty()) error.file = path;
     return error;

@@ -18,6 +18,8 @@ struct TakeTarget {
 };
 
 /// Aligns a recording and writes the take.
+/// HDF5 is only written here, so no child process is needed. If alignment fails, no file is created
+/// or replaced.
 Result<AlignmentReport> align_to_file(const Call& call, const Recording& recording,
                                       const Manifest& manifest, const TakeTarget& target);
 

@@ -27,6 +27,7 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign check`. Flags of a stream apply to every file in `files`.
 struct Check {
   std::vector<std::string> files;
   StreamFlags stream;
@@ -40,6 +41,7 @@ Usage describe_check(Check& o) {
                         &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    // The call is for its error: a wrong --select is wrong use.
     KA_TRY(o.stream.stream({}));
     return {};
   };
@@ -47,11 +49,14 @@ Usage describe_check(Check& o) {
 }
 
 /// Reads every row of a take and returns its report. Runs in the child process.
+/// The rows themselves are not judged again: the report in the take holds the findings of
+/// alignment.
 Result<std::string> read_through(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   TakeSlab slab;
   std::uint64_t rows = 0;
   while (KA_TRY(reader.next(slab))) rows += slab.stamps.size();
+  // The rows that were read must be as many as the header says.
   if (rows != reader.header().frames) {
     return Failure(
         Error{path, 0, fmt::format("{} rows", reader.header().frames), std::to_string(rows)});
@@ -60,6 +65,8 @@ Result<std::string> read_through(FileSystem& files, const std::string& path) {
 }
 
 /// Problems that alignment would report before it reads a sample: joints, nodes, the common span.
+/// Runs the first part of alignment, which needs no samples. An error there is one finding, since
+/// the other files are to be checked too.
 Findings check_plan(const std::string& path, const Input& input) {
   const auto judged = [&input]() -> Result<Findings> {
     const AlignPlan plan = KA_TRY(plan_alignment(input.recording, *input.manifest));
@@ -68,6 +75,7 @@ Findings check_plan(const std::string& path, const Input& input) {
   }();
   if (judged) return *judged;
   Error error = judged.error();
+  // The plan's errors are about the manifest unless they name a stream's file.
   if (error.file.empty()) error.file = path;
   const std::string repair = name_advice(error);
   return {
@@ -90,6 +98,7 @@ struct Checked {
 Result<Checked> check_take(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   KA_TRY(check_flags(o, path, nullptr, call));
+  // A damaged take can crash HDF5, so it is read in a child process that returns the report's JSON.
   const std::string report =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
   Checked out{KA_TRY(report_findings(report, path))};
@@ -102,6 +111,8 @@ Result<Checked> check_take(const Check& o, const std::string& path, Call& call) 
 
 /// Replaces a file's name in the findings by the path that the user typed. A take names inputs
 /// relative to the manifest.
+/// Readers name a file by its last part. Without a manifest, the user must find the word that was
+/// typed.
 void name_as_typed(const std::string& path, const RecordedStream& stream, Findings& findings) {
   for (Finding& finding : findings) {
     if (finding.what.file == stream.files.front().name) finding.what.file = path;
@@ -112,6 +123,7 @@ void name_as_typed(const std::string& path, const RecordedStream& stream, Findin
 Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
   KA_TRY(check_flags(o, path, nullptr, call));
   FileSystem& files = call.surroundings.files;
+  // Checking reads no streams of a recording, so the clocks are not fitted.
   const auto recording = KA_TRY(RecordingSource::open(
       files, path, RecordingSource::Devices::unheard, {}, call.console.progress()));
   Checked out{judge_survey(path, recording->survey())};
@@ -126,6 +138,8 @@ Result<Checked> check_xdf(const Check& o, const std::string& path, Call& call) {
 }
 
 /// A note about a stream's file whose ending is that of another format.
+/// The content decides how a file is read. The wrong extension would mislead the next user or
+/// another program.
 Findings judge_name(const std::string& path, const RecordedStream& stream) {
   const bool misnamed = path.ends_with(".mcap") || path.ends_with(".xdf") || path.ends_with(".h5");
   if (!misnamed) return {};
@@ -139,6 +153,8 @@ Findings judge_name(const std::string& path, const RecordedStream& stream) {
 /// Reads all streams in parallel. The findings are about stamps, arrivals and values.
 Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   const Recording& recording = input.recording;
+  // The reference keeps its stamps and the others are resampled, so their steps are judged
+  // differently.
   const std::string reference = input.manifest ? reference_name(recording, *input.manifest) : "";
   const auto options = [&](const RecordedStream& stream) -> const StreamOptions& {
     return input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
@@ -149,6 +165,7 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   for (const RecordedStream& stream : recording.streams) {
     call.console.detail(harmless(read_as(stream)));
   }
+  // arrivals_of() reads each stream once, in parallel. The loop below only judges what it found.
   const std::vector<Arrivals> arrivals = KA_TRY(arrivals_of(
       recording.streams,
       [&](const RecordedStream& s) { return taken_step(s, options(s), role(s)); },
@@ -156,6 +173,7 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   Findings out;
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     const RecordedStream& stream = recording.streams[i];
+    // Findings of a file that several streams share are listed at its first stream only.
     if (const SharedFile* file = newly_read_file(recording, i)) append(out, file->findings);
     Findings found = all_findings(stream);
     append(found, judge_stamps(stream, options(stream)));
@@ -169,13 +187,18 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
 /// Checks a stream's file, or a manifest with all of its streams.
 Result<Checked> check_input(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
+  // A manifest takes no flags of a stream. This is known before the file is read, and a manifest
+  // can be long to read.
   if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
   Checked out;
+  // The summary counts the files behind a manifest, and not the manifest itself.
   if (input.manifest) out.files = files_named(*input.manifest, "").size();
   append(out.findings, KA_TRY(check_streams(o, input, call)));
   if (input.manifest) {
+    // The findings about streams come first, since one of them may be the cause of a plan that
+    // fails.
     append(out.findings, check_plan(path, input));
   } else {
     append(out.findings, judge_name(path, input.recording.streams.front()));
@@ -188,6 +211,7 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
 Result<Checked> check_folder(const Check& o, const std::string& path, Call& call) {
   namespace fs = std::filesystem;
   KA_TRY(check_flags(o, path, nullptr, call));
+  // Both kinds of folder may hold takes, but only `dataset verify` knows the catalogue.
   if (fs::exists(path + "/dataset.toml")) {
     return Failure(Error{path, 0, "kinalign dataset verify for a data set", "kinalign check"});
   }
@@ -197,11 +221,14 @@ Result<Checked> check_folder(const Check& o, const std::string& path, Call& call
                          "a directory", ErrorKind::directory});
   }
   Checked out{check_bids(listing), listing.paths.size()};
+  // The listing has paths relative to the folder. A finding must name a path that the user can
+  // open.
   for (Finding& finding : out.findings) finding.what.file = path + "/" + finding.what.file;
   return out;
 }
 
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
+  // A directory can't be opened as a file, so it is recognised before the kind of a file is read.
   if (std::filesystem::is_directory(path)) return check_folder(o, path, call);
   switch (KA_TRY(kind_of_file(call.surroundings.files, path))) {
     case FileKind::recording:
@@ -219,6 +246,8 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
   return check_input(o, path, call);
 }
 
+/// Checks all files and prints one list of findings. The worst case decides the exit code: 3 if a
+/// file can't be used.
 Result<int> run(Check& o, Call& call) {
   Findings all;
   std::size_t files = 0;
@@ -228,6 +257,8 @@ Result<int> run(Check& o, Call& call) {
     if (found) {
       append(all, found->findings);
       files += found->files;
+      // A single file that can't be read is an error of the verb. Wrong use and Ctrl-C end the
+      // whole run.
     } else if (o.files.size() == 1 || call.console.refused() || interrupted()) {
       return Failure(std::move(found).error());
     } else {  // an unreadable file must not hide problems of the others

@@ -7,6 +7,7 @@ namespace kinalign {
 
 namespace {
 
+/// One word: the shell. Its legal values stand in the usage, so they are completed too.
 struct Completion {
   std::vector<std::string> shell;
 };
@@ -18,6 +19,7 @@ Usage describe(Completion& o) {
 }
 
 Result<int> run(Completion& o, Call& call) {
+  // The script is complete: it lists all verbs and flags and does not call kinalign when it runs.
   call.console.put(completion_script(o.shell.front(), call.verbs));
   return 0;
 }

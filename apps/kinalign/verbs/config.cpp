@@ -15,6 +15,7 @@ namespace kinalign {
 
 namespace {
 
+/// `config` has no options of its own; make_verb() needs a type.
 struct Config {};
 
 /// A setting in force: its verb, name and value, and the place that sets it.
@@ -33,6 +34,8 @@ std::string whence(const std::string& name, Source source, const std::vector<Set
   return source == Source::flag ? flag_of(name) : "standard";
 }
 
+/// Appends the fields with their values and places. A field that is missing in `sources` has its
+/// default.
 void list(const Fields& fields, const std::string& verb, const Sources& sources,
           const std::vector<SettingsFile>& files, std::vector<InForce>& all) {
   for (const Field& field : fields) {
@@ -47,8 +50,12 @@ Result<void> list_verb(const Verb& verb, const Call& call, const std::vector<Set
                        std::vector<InForce>& all) {
   Result<void> result;
   describe_verb(verb, [&](const Usage& usage) {
+    // The real call has set only the options of `config`. Each other verb's settings are therefore
+    // applied here, to a new set of its options.
     const Settable settable{verb.page, usage.settings, {}};
     Sources sources;
+    // The order is that of a real call: files from the weakest to the strongest, then the
+    // environment. apply_settings() keeps values of stronger sources.
     result = [&]() -> Result<void> {
       for (const SettingsFile& file : files) {
         KA_TRY(apply_settings(file, settable, call.verbs, sources));
@@ -65,6 +72,8 @@ Result<std::vector<InForce>> all_in_force(const Call& call) {
   const auto files =
       KA_TRY(parse_settings(KA_TRY(find_settings(call.surroundings, call.common.config))));
   std::vector<InForce> all;
+  // common_fields() needs a page to choose from. This page takes `jobs`, so the list holds
+  // everything that a settings file may set for all verbs.
   Common common = call.common;
   Fields everywhere = common_fields(
       common, {.name = "", .summary = "", .text = "", .examples = {}, .common = {"jobs"}});
@@ -76,6 +85,7 @@ Result<std::vector<InForce>> all_in_force(const Call& call) {
 
 /// Prints all settings in aligned columns, or as JSON.
 Result<int> run(Config&, Call& call) {
+  // Two passes: the columns can be aligned only if the widest name and value are known.
   const auto all = KA_TRY(all_in_force(call));
   auto settings = nlohmann::ordered_json::array();
   std::size_t name_width = 0;

@@ -28,6 +28,7 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign convert`. The parser guarantees one word in each of both lists.
 struct Convert {
   std::vector<std::string> from, to;  // one of each
   bool store_double = false;          // 8-byte numbers in an NPZ
@@ -43,6 +44,7 @@ Usage describe_convert(Convert& o) {
   usage.flags = o.stream.fields();
   usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    // The extension alone decides the format, so an unknown one must not be guessed.
     const std::string& to = o.to.front();
     if (!to.ends_with(".npz") && !to.ends_with(".bvh") && !to.ends_with(".mcap")) {
       return Failure(Error{to, 0, "a name that ends in .npz, .bvh or .mcap", "another extension"});
@@ -56,6 +58,7 @@ Usage describe_convert(Convert& o) {
   return usage;
 }
 
+/// One conversion: from one file to one new file. `files` is the call's and must outlive the job.
 struct Job {
   FileSystem& files;
   std::string from, to;
@@ -64,12 +67,16 @@ struct Job {
 };
 
 /// The rows of a stream in the form that a take stores.
+/// The overloads below give the three kinds of streams one shape, so write_rows() and
+/// stream_to_npz() are written once.
 ClipRows rows_of(const ClipInput& input, ClipFrames& block) {
   return own_rows(input.skeleton, std::move(block));
 }
 
 PointRows rows_of(const PointInput&, PointFrames& block) { return own_rows(std::move(block)); }
 
+// The last member, the distance of samples from raw ones, stays empty: rows as recorded were not
+// resampled.
 ImuRows rows_of(const ImuInput&, ImuSamples& block) {
   return {std::move(block.orientation),
           std::move(block.acceleration),
@@ -83,6 +90,8 @@ PointGroup group_of(const PointInput& input) { return {input.joint_names}; }
 ImuGroup group_of(const ImuInput& input) { return {input.node_names, input.content, ""}; }
 
 /// Writes all rows of a stream to an NPZ, block by block.
+/// The lengths of an NPZ's arrays are fixed before the first row. `frames` is the survey's count
+/// and the end of the progress.
 template <class Input, class Frames>
 Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::uint64_t frames,
                         const Progress& progress, TakeNpzWriter& writer) {
@@ -93,6 +102,7 @@ Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::u
     slab.stamps = block.stamps;
     slab.rows = {rows_of(input, block)};
     KA_TRY(writer.append(slab));
+    // `first` is the number of the slab's first row in the whole file.
     slab.first += slab.stamps.size();
     if (!go_on(progress, "converting", slab.first, frames)) return Failure(interruption());
   }
@@ -102,6 +112,8 @@ Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::u
 /// Writes one stream's file as an NPZ. The stream's own names are kept without a prefix.
 Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const Progress& progress) {
   TakeHeader header;
+  // The survey counted all rows when the file was opened, so the arrays' lengths are known in
+  // advance.
   header.frames = stream.survey.samples;
   header.parameters.align.store_double = job.store_double;
   return std::visit(
@@ -117,6 +129,8 @@ Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const P
 /// Runs `write(sink)` into a new file and returns its findings.
 template <class Write>
 Result<Findings> put_bvh(const Job& job, const Write& write) {
+  // The file gets its name at commit(). A failed conversion therefore leaves an existing file as it
+  // was.
   OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
   Findings findings = KA_TRY(write([&out](std::string_view text) { return out.write(text); }));
   KA_TRY(out.commit());
@@ -129,6 +143,7 @@ Result<Findings> put_bvh(const Job& job, const Write& write) {
 Result<void> take_to_npz(const Job& job) {
   TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
   TakeHeader header = reader.header();
+  // A take that stores 8-byte numbers keeps them; --double only widens.
   if (job.store_double) header.parameters.align.store_double = true;
   auto writer =
       KA_TRY(TakeNpzWriter::create(job.files, job.to, job.overwrite, header, NpzNames::by_stream));
@@ -139,6 +154,7 @@ Result<void> take_to_npz(const Job& job) {
 
 /// Converts a take in a child process, which returns its findings as a report's JSON.
 Result<Findings> convert_in_child(const Job& job) {
+  // Only text comes back from a child, so findings travel as the JSON of a report.
   const auto work = [&job]() -> Result<std::string> {
     Findings findings;
     if (job.to.ends_with(".npz")) {
@@ -160,11 +176,13 @@ Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& c
 
 Result<Findings> convert_take(const Job& job, const Convert& o, Call& call) {
   KA_TRY(check_flags(o, nullptr, call));
+  // Only a child process may read a take, because a damaged one can crash HDF5.
   if (!job.to.ends_with(".mcap")) return convert_in_child(job);
   return call.console.refuse(
       Error{job.to, 0, "a name that ends in .npz or .bvh, for a take", "another extension"});
 }
 
+/// The findings of a file that several streams share appear once, at the first of these streams.
 Findings findings_of(const Recording& recording) {
   Findings all;
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
@@ -179,6 +197,7 @@ Findings findings_of(const Recording& recording) {
 /// marks.
 Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call) {
   const Progress progress = call.console.progress();
+  // The devices of a recording have no common grid of stamps. Only `align` can make arrays of them.
   if (!job.to.ends_with(".mcap")) {
     return call.console.refuse(
         Error{job.to, 0, "a name that ends in .mcap, for a recording",
@@ -188,6 +207,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
   const auto source = KA_TRY(
       RecordingSource::open(job.files, job.from, RecordingSource::Devices::heard, {}, progress));
   const Manifest manifest = KA_TRY(recorded_manifest(source->survey(), job.from));
+  // One device that can't be read must not keep the others from being shown. It becomes a warning.
   const OpenedInPart opened = KA_TRY(open_what_can_be(
       job.files, manifest, std::string(folder(job.from)), {progress, call.jobs, source}));
   KA_TRY(
@@ -202,6 +222,7 @@ Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
     return call.console.refuse(
         Error{job.to, 0, "a name that ends in .mcap, for an XDF file", "another extension"});
   }
+  // An XDF describes its own streams, so no flag of a stream applies.
   KA_TRY(check_flags(o, nullptr, call));
   return KA_TRY(show_xdf(job.files, job.from, job.to, job.overwrite, call.console.progress()))
       .findings;
@@ -213,6 +234,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   const RecordedStream& stream = input.recording.streams.front();
   KA_TRY(check_flags(o, &stream, call));
   call.console.detail(harmless(read_as(stream)));
+  // BVH to BVH copies the text's values, so no number is rounded on its way through a clip.
   if (job.to.ends_with(".bvh")) {
     return put_bvh(job, [&](const TextSink& sink) {
       return copy_bvh(job.files, job.from, sink, call.console.progress());
@@ -224,6 +246,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   } else {
     KA_TRY(stream_to_npz(job, stream, call.console.progress()));
   }
+  // The recording has one stream, and `findings` holds those of its file as well.
   return stream.findings;
 }
 
@@ -252,6 +275,8 @@ Result<int> run(Convert& o, Call& call) {
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
                 o.store_double};
+  // The parts of a recording lie next to it under derived names. The new file must not take one of
+  // them.
   KA_TRY(keep_inputs(job.to, with_siblings(call.surroundings.files, {job.from})));
   const Findings findings = KA_TRY(convert(job, o, call));
   call.console.wrote(job.to);

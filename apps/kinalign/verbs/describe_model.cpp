@@ -22,12 +22,17 @@ namespace kinalign {
 
 namespace {
 
+// An ordered object prints its members in the order of this file, so the same model gives the same
+// bytes.
 using Json = nlohmann::ordered_json;
 
+/// A line of the description: the name is padded to 12 columns, so that all values start in the
+/// same column.
 std::string line(std::string_view name, const std::string& value) {
   return fmt::format("  {:<12}{}\n", name, value);
 }
 
+/// "1 joint", "22 joints". Numbers are grouped by thousands.
 std::string counted(std::size_t n, std::string_view word) {
   return fmt::format("{} {}{}", grouped(n), word, n == 1 ? "" : "s");
 }
@@ -46,6 +51,8 @@ std::size_t parameters_of(const Architecture& architecture) {
 /// A layer in words: "conv 128, kernel 5, dilation 2, causal".
 std::string layer_text(const Layer& layer) {
   const LayerKind kind = layer.kind;
+  // A row of the table of layer kinds tells which members a kind uses. The other members hold
+  // defaults and are not shown.
   std::string text(row_of(kind).name);
   if (uses(kind, member_out)) text += fmt::format(" {}", layer.out);
   if (uses(kind, member_kernel)) text += fmt::format(", kernel {}", layer.kernel);
@@ -59,6 +66,8 @@ std::string layer_text(const Layer& layer) {
 }
 
 /// The layers, one a line; branches stand below their layer, indented.
+/// Branches are networks of their own, whose outputs the layer joins. An empty branch passes its
+/// input on unchanged.
 std::string layer_lines(const std::vector<Layer>& layers, std::size_t indent) {
   std::string text;
   for (const Layer& layer : layers) {
@@ -72,6 +81,7 @@ std::string layer_lines(const std::vector<Layer>& layers, std::size_t indent) {
   return text;
 }
 
+/// An absent number stands for an unlimited view, for example of a recurrent layer.
 std::string frames_text(const std::optional<std::size_t>& frames, std::string_view way) {
   return frames ? fmt::format("{} {}", *frames, way) : fmt::format("all {}", way);
 }
@@ -79,6 +89,8 @@ std::string frames_text(const std::optional<std::size_t>& frames, std::string_vi
 /// A network in words: "net: 147 in, 84 out, 166,228 parameters; a frame sees 17 before and 17
 /// after it".
 std::string network_lines(const std::string& name, const Architecture& architecture) {
+  // "before" and "after" decide whether the model can run live: frames after the current one delay
+  // its output.
   const std::string about =
       fmt::format("{}: {} in, {} out, {}; a frame sees {} and {} it", name, architecture.inputs,
                   outputs(architecture), counted(parameters_of(architecture), "parameter"),
@@ -87,16 +99,19 @@ std::string network_lines(const std::string& name, const Architecture& architect
   return line("network", about) + layer_lines(architecture.layers, 14);
 }
 
+/// Unlimited is null in JSON; zero would mean that no other frame is seen.
 Json frames_json(const std::optional<std::size_t>& frames) {
   return frames ? Json(*frames) : Json();
 }
 
+/// A window of 0 or 1 frames changes nothing.
 std::string smoothing_text(const Smoothing& how) {
   if (how.window < 2) return "no smoothing";
   return fmt::format("smoothed over {} frames (order {}{})", how.window, how.order,
                      how.causal ? ", causal" : "");
 }
 
+/// Names from a model's file are passed through shown(), since they may hold any text.
 std::string joint_lines(std::string_view name, const std::vector<std::string>& joints) {
   std::string names;
   for (const std::string& joint : joints) names += (names.empty() ? "" : ", ") + shown(joint);
@@ -108,11 +123,14 @@ std::string joint_lines(std::string_view name, const std::vector<std::string>& j
 std::string text_of(const Json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_string()) return "";
+  // A line end in a citation would break the columns.
   std::string text = found->get<std::string>();
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
+/// Empty if the member is no number. Numbers in the training's JSON may have been written by any
+/// program.
 std::string number_of(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? fmt::format("{:g}", found->get<double>())
@@ -123,6 +141,8 @@ std::string number_of(const Json& object, const char* key) {
 /// of the model.
 std::string data_lines(const Json& data) {
   std::string text;
+  // `data` should be an array of objects. Anything else is skipped: the description must not fail
+  // on it.
   for (const Json& one : data.is_array() ? data : Json::array()) {
     if (!one.is_object()) continue;
     std::string about = text_of(one, "name");
@@ -145,12 +165,15 @@ std::string training_lines(const Json& training) {
     if (!value.empty()) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", key, value);
   }
   if (!how.empty()) text += line("training", how);
+  // "from" is set if training continued from another model. The licences of that model's data apply
+  // too, so they are listed as well.
   const auto from = training.find("from");
   if (from == training.end() || !from->is_object()) return text;
   return text + line("continued", "from a model of the same method") +
          data_lines(from->value("data", Json::array()));
 }
 
+/// One line for each metric. The value is printed as its JSON, since metrics are free in form.
 std::string metric_lines(const Json& metrics) {
   std::string text;
   for (const auto& [name, value] : metrics.items()) {
@@ -159,6 +182,8 @@ std::string metric_lines(const Json& metrics) {
   return text;
 }
 
+/// An object of a text that may be damaged: the parser is told to throw nothing, and any other
+/// result becomes {}.
 Json parsed_object(const std::string& text) {
   Json out = Json::parse(text, nullptr, false);
   return out.is_object() ? out : Json::object();
@@ -178,9 +203,12 @@ Json smoothing_json(const Smoothing& how) {
 }
 
 /// The height of a body at rest, m, from its lowest joint to its highest.
+/// The sum of the offsets along y from the root. Rotations do not matter: at rest all of them are
+/// the identity.
 double height_at_rest(const Skeleton& skeleton) {
   std::vector<double> heights;
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
+    // Parents stand before their children, so a parent's height is already known.
     const int parent = skeleton.parents[j];
     heights.push_back(parent < 0 ? 0.0
                                  : heights[static_cast<std::size_t>(parent)] +
@@ -190,6 +218,7 @@ double height_at_rest(const Skeleton& skeleton) {
   return *high - *low;
 }
 
+/// The names are those of the file format (docs/formats/model.md).
 std::string_view channels_name(PoseInputs inputs) {
   return inputs == PoseInputs::dip ? "dip" : "ours";
 }
@@ -299,18 +328,24 @@ Json facts_json(const std::string& path, std::string_view bytes, const ModelFact
 }
 
 /// A model as text and as JSON. `text` and `members`: the parts that depend on its task.
+/// The order is that of the text: facts, then the task's part, then training and metrics.
 Description described(const std::string& path, std::string_view bytes, const ModelFacts& facts,
                       const std::string& text, const Json& members) {
   const Json training = parsed_object(facts.training), metrics = parsed_object(facts.metrics);
   Json json = facts_json(path, bytes, facts);
+  // update() keeps the order of the first call, so the common members come first in each task's
+  // JSON.
   json.update(members);
   json.update({{"training", training}, {"metrics", metrics}});
   return {path + "\n" + text + training_lines(training) + metric_lines(metrics), json_text(json)};
 }
 
+/// Reads, describes and then builds the model as its verb would. A model that can't be used fails
+/// although it could be described.
 Result<Description> describe_pose_model(const std::string& path, std::string_view bytes) {
   PoseModel model = KA_TRY(read_pose_model(bytes, path));
   Description out = described(path, bytes, model.facts, pose_text(model), pose_json(model));
+  // make() takes the model over, so the description is made before it.
   KA_TRY(check_usable(PoseSolver::make(std::move(model)), path));
   return out;
 }
@@ -332,6 +367,7 @@ Result<Description> describe_denoise_model(const std::string& path, std::string_
 }  // namespace
 
 Result<Description> describe_model(const std::string& path, std::string_view bytes) {
+  // The task decides the reader. A model of any other task is read as one that cleans skeletons.
   const std::string task = KA_TRY(task_of_model(bytes, path));
   if (task == "pose") return describe_pose_model(path, bytes);
   return task == "fuse" ? describe_fuse_model(path, bytes) : describe_denoise_model(path, bytes);

@@ -10,6 +10,8 @@
 namespace kinalign {
 
 /// A larger model's file is refused.
+/// `info` reads the whole file into memory, so the length of a file that only looks like a model
+/// must be limited.
 inline constexpr std::size_t most_model_bytes = std::size_t{1} << 30U;
 
 /// Describes a model. `bytes`: the whole file. Fails if it is no model of kinalign, or one that

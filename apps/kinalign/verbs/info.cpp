@@ -14,6 +14,8 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign info`. A stream's flags are needed for files that do not say how to
+/// read them, such as a table without a known layout.
 struct Info {
   std::vector<std::string> file;
   StreamFlags stream;
@@ -31,6 +33,7 @@ Usage describe_info(Info& o) {
                         "info reads one file; kinalign check reads several"}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    // The call is for its error: a wrong --select is wrong use, before the file is opened.
     KA_TRY(o.stream.stream({}));
     return {};
   };
@@ -42,10 +45,12 @@ Result<Description> describe_input(const Info& o, Call& call, const std::string&
                                    Names names) {
   const Input input =
       KA_TRY(open_input(call.surroundings.files, path, o.stream, call.console.progress()));
+  // Only the open stream tells which flags its reader uses.
   if (!input.manifest) {
     auto used = o.stream.check_use(path, &input.recording.streams.front(), call.sources);
     if (!used) return call.console.refuse(std::move(used).error());
   }
+  // Some findings are known only after the last row, for example those about values.
   KA_TRY(read_through(input.recording, call.console.progress()));
   return describe_recording(path, input.recording, names);
 }
@@ -65,12 +70,14 @@ Result<Description> describe(const Info& o, Call& call) {
   switch (kind) {
     case FileKind::recording: {
       const auto source = KA_TRY(
+          // Devices::unheard skips fitting the clocks: the survey needs none of them.
           RecordingSource::open(files, path, RecordingSource::Devices::unheard, {}, progress));
       return describe_survey(path, source->survey(), source->parts());
     }
     case FileKind::xdf:
       return describe_xdf(path, KA_TRY(survey_xdf(files, path, progress)), names);
     case FileKind::take:
+      // describe_take() reads HDF5 in a child process.
       return describe_take(files, path, names);
     case FileKind::model:
       return describe_model(path, KA_TRY(read_whole(files, path, most_model_bytes)));
@@ -84,6 +91,7 @@ Result<Description> describe(const Info& o, Call& call) {
 
 Result<int> run(Info& o, Call& call) {
   const Description found = KA_TRY(describe(o, call));
+  // Names in files can hold control characters, which a terminal would obey.
   call.console.print(harmless(found.text));
   call.console.print_json(found.json);
   return 0;

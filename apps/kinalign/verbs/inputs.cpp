@@ -22,6 +22,7 @@ namespace kinalign {
 Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
                                                        std::string_view expected) {
   const auto equals = text.find('=');
+  // An empty name or value is a typing error in every flag of this form, so both are refused.
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
     return Failure(Error{"", 0, std::string(expected), "'" + shown(text) + "'"});
   }
@@ -30,12 +31,15 @@ Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
 
 Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
                                const AlignOptions& unsaid) {
+  // A manifest is written by hand and short. The limit refuses a wrong file before it fills the
+  // memory.
   constexpr std::size_t longest = std::size_t{1} << 20;
   const std::string text = KA_TRY(read_whole(files, path, longest));
   return read_manifest(text, path, unsaid);
 }
 
 Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::string& path) {
+  // This error names the cause. A manifest without streams would not.
   if (survey.messages == 0) {
     return Failure(Error{path, 0, "a recording in which a message can be read", "none"});
   }
@@ -51,6 +55,8 @@ Fields StreamFlags::fields() {
   constexpr std::array<std::string_view, 7> of_alignment{
       "clock", "offset_ms", "drift_ppm", "interval_ms", "root_node", "mounting", "select"};
   Fields out = describe(options);
+  // `describe` gives the options in one list for the manifest and for flags, so a new option is a
+  // flag at once.
   std::erase_if(out, [&](const Field& field) {
     return std::find(of_alignment.begin(), of_alignment.end(), field.name) != of_alignment.end();
   });
@@ -63,6 +69,8 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
   for (const auto& [name, source] : given) {
     const auto is = [&name = name](std::string_view other) { return name == other; };
     if (source != Source::flag) continue;
+    // A manifest, a take or a recording states how its streams are read. Every flag of a stream is
+    // then refused.
     if (stream == nullptr) {
       StreamFlags mine;
       const Fields own = mine.fields();
@@ -71,6 +79,8 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
       return Failure(Error{flag_of(name), 0, "a stream's own file",
                            shown(path) + ", which already states this"});
     }
+    // A stream's own kind decides which options its reader ignores. An ignored flag is wrong use,
+    // not a silent no-op.
     const auto useless = useless_options(*stream);
     if (std::none_of(useless.begin(), useless.end(), is)) continue;
     return Failure(Error{flag_of(name), 0, "a file that can use this flag",
@@ -81,6 +91,7 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
 
 Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths) const {
   StreamOptions out = options;
+  // The name appears in messages and in arrays of an NPZ.
   if (out.name.empty()) out.name = "stream";
   for (const std::string& path : paths) out.files.push_back({path, ""});
   for (const std::string& one : select) {
@@ -98,6 +109,7 @@ Result<Input> open_input(FileSystem& files, const std::string& path, const Strea
                          const Progress& progress) {
   Input input;
   if (path.ends_with(".toml")) {
+    // Paths in a manifest are relative to its own folder, not to the current one.
     input.manifest = KA_TRY(load_manifest(files, path));
     input.recording =
         KA_TRY(open_recording(files, *input.manifest, std::string(folder(path)), {progress}));
@@ -116,6 +128,8 @@ int code_of(const Findings& findings) {
 }
 
 Result<void> check_take_name(const std::string& out) {
+  // The new take is HDF5 under any name. These three endings would promise a file that other
+  // programs can't open.
   for (const std::string_view ending : {".npz", ".csv", ".bvh"}) {
     if (!out.ends_with(ending)) continue;
     return Failure(Error{
@@ -134,6 +148,8 @@ std::string name_advice(const Error& error) {
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b) {
   InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));
+  // Both files come in pieces whose ends need not meet. Only the common length of both rests is
+  // compared in a turn.
   std::string_view p, q;  // the unread rest of both pieces, whose lengths may differ
   for (std::uint64_t at = 0;;) {
     if (p.empty()) p = KA_TRY(one.next());
@@ -143,6 +159,7 @@ Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const s
     const auto differ = std::mismatch(p.begin(), p.begin() + both, q.begin());
     const auto same = static_cast<std::size_t>(differ.first - p.begin());
     at += same;
+    // `both` is 0 if exactly one file has ended: the shorter file is a prefix of the longer one.
     if (same < both || both == 0) return std::optional(at);
     p.remove_prefix(both);
     q.remove_prefix(both);
@@ -151,6 +168,8 @@ Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const s
 
 Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
+    // same_file() follows links and compares the files themselves, so another spelling of the path
+    // is found too.
     if (same_file(out, input)) {
       return Failure(Error{out, 0, "a name other than those of the input files",
                            "'" + shown(file_name(input)) + "', an input file"});
@@ -168,6 +187,7 @@ std::string place_of(const std::string& path) {
   const std::filesystem::path whole = std::filesystem::absolute(path, fault);
   if (fault) return path;  // the current folder was removed
   const auto parent = std::filesystem::canonical(whole.parent_path(), fault);
+  // The file's own name is not resolved: a link's name, not its target, is what the take states.
   return ((fault ? whole.parent_path().lexically_normal() : parent) / whole.filename()).string();
 }
 
@@ -177,6 +197,7 @@ std::string from_here(const std::string& folder) {
   const auto here = std::filesystem::canonical(".", fault);
   if (fault) return folder;
   const std::string near = std::filesystem::path(folder).lexically_relative(here).string();
+  // The result ends in '/', so that it can be put in front of a name.
   if (near.empty() || near == ".") return near.empty() ? folder : "";
   return near.ends_with('/') ? near : near + "/";
 }
@@ -186,11 +207,14 @@ std::string from_here(const std::string& folder) {
 std::string cut_common_folder(Manifest& manifest) {
   const std::vector<std::string*> paths = paths_in(manifest);
   if (paths.empty()) return "";
+  // A relative result is wanted only if the user typed relative paths everywhere. Messages then
+  // show what was typed.
   const bool relative = std::none_of(
       paths.begin(), paths.end(), [](const std::string* path) { return path->starts_with('/'); });
   for (std::string* path : paths) *path = place_of(*path);
   std::string common(folder(*paths.front()));
   for (const std::string* path : paths) {
+    // The common part ends at a '/', so "take1/" and "take10/" share only their parent.
     while (!path->starts_with(common)) {
       common.pop_back();
       common = folder(common);

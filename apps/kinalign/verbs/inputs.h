@@ -24,6 +24,7 @@ Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
 
 /// The options of a single stream as flags: those members of describe(StreamOptions) that its
 /// reader uses, and --select COLUMN=VALUE.
+/// The flag values live in this structure, so it must outlive the Fields that fields() returns.
 struct StreamFlags {
   StreamOptions options;
   std::vector<std::string> select;  // COLUMN=VALUE
@@ -45,6 +46,8 @@ Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
 Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::string& path);
 
 /// The recording of a manifest, or of a single stream's file.
+/// The result of open_input(). Its streams read their files through the FileSystem of the call,
+/// which must outlive it.
 struct Input {
   Recording recording;
   std::optional<Manifest> manifest;  // absent for a single stream's file

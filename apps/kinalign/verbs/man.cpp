@@ -7,11 +7,14 @@ namespace kinalign {
 
 namespace {
 
+/// `man` has no options. The page is made from the same descriptions as --help, so both always
+/// agree.
 struct Man {};
 
 Usage describe(Man&) { return {}; }
 
 Result<int> run(Man&, Call& call) {
+  // put() ignores --quiet: the page is the result itself.
   call.console.put(man_page(call.verbs));
   return 0;
 }

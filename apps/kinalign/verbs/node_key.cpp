@@ -9,12 +9,15 @@ namespace kinalign {
 
 namespace {
 
+/// Either new_lab_key is set, or both others. An absent `node` differs from node 0, which is a
+/// legal id.
 struct NodeKeyFlags {
   std::string new_lab_key, lab_key;
   std::optional<std::int64_t> node;
 };
 
 /// Refuses an empty file name, which an unset shell variable gives.
+/// `given` tells an empty value from a flag that was not given.
 Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
   const bool drawn = given.contains("new_lab_key") && o.new_lab_key.empty();
   const bool read = given.contains("lab_key") && o.lab_key.empty();
@@ -68,16 +71,20 @@ Usage describe_node_key(NodeKeyFlags& o) {
 /// Makes the lab's key, or derives a node's key from it and prints or writes it.
 Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
   FileSystem& files = call.surroundings.files;
+  // write_key() never replaces a file, because a node whose key is lost must be flashed again.
   if (!o.new_lab_key.empty()) {
     KA_TRY(write_key(files, o.new_lab_key, KA_TRY(new_lab_key())));
     call.console.print(o.new_lab_key + ": a new lab key; keep a copy in a safe place\n");
     return 0;
   }
+  // The advice is about the lab's key file only. It is removed after reading, so a full disk does
+  // not get it.
   call.console.if_it_fails(key_advice);
   const LabKey lab = KA_TRY(read_lab_key(files, o.lab_key));
   call.console.if_it_fails({});
   const MacKey key = node_key(lab, static_cast<std::uint32_t>(*o.node));
   if (call.common.out.empty()) {
+    // The key goes to stdout by put(), so that --quiet can't swallow it and a script can read it.
     call.console.put(key_text(key) + "\n");
     return 0;
   }

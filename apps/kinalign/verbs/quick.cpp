@@ -21,6 +21,8 @@ struct Twin {
   std::string_view flag, key, needs;
 };
 
+// The order of the table is that of the error messages: the first flag that does not fit is
+// reported.
 constexpr std::array<Twin, 15> twins{
     {{"mocap", "file in [stream.mocap]", ""},
      {"kinect", "file in [stream.kinect]", ""},
@@ -38,11 +40,15 @@ constexpr std::array<Twin, 15> twins{
      {"rotation_y_deg", "rotation_y_deg in [space.kinect]", "kinect"},
      {"joint", "joints in [space.kinect]", "kinect"}}};
 
+/// True only for the command line: a setting from a file or the environment never contradicts a
+/// manifest.
 bool is_given(std::string_view flag, const Sources& given) {
   const auto found = given.find(std::string(flag));
   return found != given.end() && found->second == Source::flag;
 }
 
+/// Splits a flag's NAME=VALUE. The error's file becomes the flag, so the message begins with the
+/// word that the user typed.
 Result<std::pair<std::string, std::string>> pair_of(const std::string& flag,
                                                     const std::string& text,
                                                     std::string_view expected) {
@@ -69,6 +75,8 @@ Result<SpaceOptions> space_of(const QuickFlags& flags) {
   SpaceOptions space = flags.space;
   for (const std::string& joint : flags.joints) {
     const auto pair = KA_TRY(pair_of("--joint", joint, "KINECT=MOCAP"));
+    // Only the Kinect's side must be unique. Two joints of the Kinect may correspond to one joint
+    // of the mocap.
     if (!space.joints.insert(pair).second) {
       return Failure(
           Error{"--joint", 0, "each joint of the Kinect once", shown(pair.first) + " twice"});
@@ -80,6 +88,8 @@ Result<SpaceOptions> space_of(const QuickFlags& flags) {
 /// All nodes make one stream, "imu", with a file for each.
 Result<StreamOptions> nodes_of(const QuickFlags& flags) {
   StreamOptions nodes;
+  // The name "imu" is fixed, unlike the names of --points: alignment puts all nodes into one group
+  // of the take.
   nodes.name = "imu";
   nodes.layout = flags.imu_layout;
   nodes.root_node = flags.root_node;
@@ -91,6 +101,7 @@ Result<StreamOptions> nodes_of(const QuickFlags& flags) {
 }
 
 /// The kinds of streams, as indices of RecordedStream::data.
+/// A variant's index is compared instead of its type, because one flag may allow two kinds.
 constexpr std::size_t clip = 0, points = 1, nodes = 2;
 
 /// The kind of content that a flag's file must have. `expected`: its name in messages.
@@ -101,8 +112,11 @@ struct Wanted {
 };
 
 /// The files of all flags, in the order in which quick_manifest() lists them.
+/// The order must be that of quick_manifest(): check_kinds() pairs the flags with streams by their
+/// position.
 std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
   const std::vector<std::size_t> bodies{clip, points};
+  // A mocap file may be a skeleton or points. A Kinect is never a skeleton.
   std::vector<Wanted> out{{"--mocap", flags.mocap, bodies, "a skeleton's file or points"}};
   if (!flags.kinect.empty()) out.push_back({"--kinect", flags.kinect, {points}, "points"});
   const auto add = [&out](const std::string& flag, const std::string& pair,
@@ -151,6 +165,8 @@ Fields QuickFlags::fields() {
 Result<void> refuse_with_input(const std::string& path, const Sources& given) {
   for (const Twin& twin : twins) {
     if (!is_given(twin.flag, given)) continue;
+    // A recording has streams already, so the advice is to write a recording.toml that combines it
+    // with further files.
     if (path.ends_with(".mcap")) {
       const std::string key(twin.key.substr(0, twin.key.find('.')));
       return Failure(Error{flag_of(twin.flag), 0,
@@ -166,11 +182,15 @@ Result<void> refuse_with_input(const std::string& path, const Sources& given) {
 
 Result<void> refuse_alone(const QuickFlags& flags, const Sources& given) {
   for (const Twin& twin : twins) {
+    // An empty `needs` marks a flag that stands alone. The check for --mocap itself is in
+    // check_use() of align.cpp.
     if (!is_given(twin.flag, given) || twin.needs.empty() || is_given(twin.needs, given)) continue;
     return Failure(Error{flag_of(twin.flag), 0,
                          flag_of(twin.needs) + ", to which this flag applies",
                          "no " + flag_of(twin.needs)});
   }
+  // The remaining two rules depend on a value and not only on a flag's presence, so the table can't
+  // state them.
   if (is_given("rotation_y_deg", given) && flags.space.method != "paper") {
     return Failure(Error{"--rotation-y-deg", 0, "--space paper, to which this flag applies",
                          "--space " + flags.space.method});
@@ -184,6 +204,7 @@ Result<void> refuse_alone(const QuickFlags& flags, const Sources& given) {
 
 Result<Manifest> quick_manifest(const QuickFlags& flags) {
   Manifest manifest;
+  // The copy of the options carries the layout and, for mocap, start, unit and axis.
   const auto add = [&manifest](StreamOptions stream, std::string name, std::string file) {
     stream.name = std::move(name);
     stream.files = {{std::move(file), ""}};
@@ -194,6 +215,8 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
   kinect.layout = flags.kinect_layout;
   if (!flags.kinect.empty()) {
     add(kinect, "kinect", flags.kinect);
+    // The space is set only for a Kinect: a transform of a stream that does not exist is an error
+    // of the manifest.
     manifest.spaces["kinect"] = KA_TRY(space_of(flags));
   }
   for (const std::string& one : flags.points) {
@@ -209,6 +232,7 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
 
 Result<void> check_kinds(const QuickFlags& flags, const Recording& recording) {
   const std::vector<Wanted> wanted = wanted_kinds(flags);
+  // Opening makes one stream for each file of nodes, so both lists have the same order and length.
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const RecordedStream& stream = recording.streams[i];
     const auto& kinds = wanted[i].kinds;

@@ -12,6 +12,9 @@
 
 namespace kinalign {
 
+/// The values of these flags. quick_manifest() turns them into the manifest that a recording.toml
+/// would give, so alignment knows only manifests. The order of its streams is mocap, kinect,
+/// points, imu.
 struct QuickFlags {
   std::string mocap, kinect;
   std::vector<std::string> points;  // NAME=FILE

@@ -21,6 +21,7 @@ namespace kinalign {
 
 namespace {
 
+/// The options of `kinalign rebuild`: --inputs, and either -o or --verify.
 struct Rebuild {
   std::vector<std::string> take;
   std::string inputs;
@@ -37,6 +38,8 @@ Usage describe_rebuild(Rebuild& o) {
     if (o.inputs.empty()) {
       return Failure(Error{"--inputs", 0, "the folder of the take's inputs", "none"});
     }
+    // Exactly one of -o and --verify is allowed. The condition is true if both or neither are
+    // given.
     if (o.verify != common.out.empty()) {
       return Failure(Error{"-o", 0, "either the new take's file name or --verify",
                            o.verify ? "both" : "neither"});
@@ -49,6 +52,8 @@ Usage describe_rebuild(Rebuild& o) {
 
 /// The result of --verify. Without difference and failure: the take was made again with the same
 /// bytes.
+/// The members are set by compare(): at most one of `difference` and `failure`; `changed` explains
+/// either.
 struct Comparison {
   std::optional<std::uint64_t> difference;  // the first byte that differs
   std::optional<Error> failure;             // the reason why the take can't be made again
@@ -62,15 +67,20 @@ Result<Comparison> compare(const std::string& take, const Result<Recording>& rec
                            const Origin& origin, Call& call) {
   Comparison out;
   if (!recording) {
+    // Ctrl-C also makes opening fail. It must end the verb and must not be reported as a
+    // difference.
     if (interrupted()) return Failure(recording.error());
     out.failure = recording.error();
     return out;
   }
   out.changed = changed_inputs(origin, *recording);
+  // The take is made as a file, not in memory, because HDF5's bytes are what is compared.
   const Scratch scratch = KA_TRY(Scratch::make());
   const std::string again = scratch.name() + "/take.h5";
   auto made = align_to_file(call, *recording, origin.parameters, {again, Overwrite::no});
   if (!made) {
+    // A full disk of the temporary folder says nothing about the take, so it is an error of the
+    // verb.
     const bool ours = interrupted() || made.error().file.starts_with(scratch.name());
     if (ours) return Failure(std::move(made).error());
     out.failure = std::move(made).error();
@@ -80,6 +90,7 @@ Result<Comparison> compare(const std::string& take, const Result<Recording>& rec
   return out;
 }
 
+/// A line for both outputs. The name comes from the take, so it is made harmless for a terminal.
 std::string changed_line(const std::string& name) {
   return harmless(name + " is not the file that the take was made from");
 }
@@ -91,6 +102,8 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
                               {"software", origin.software},
                               {"changed_inputs", found.changed}};
   std::string text = fmt::format("{}: all bytes are equal\n", take);
+  // `difference` and `failure` never stand together, since a take that was not made again can't be
+  // compared.
   if (found.difference) {
     text = fmt::format("{}: bytes differ from byte {} on\n", take, *found.difference);
     json["first_difference"] = *found.difference;
@@ -100,6 +113,8 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
     json["failure"] = to_string(*found.failure);
   }
   for (const std::string& name : found.changed) text += "  " + changed_line(name) + "\n";
+  // Equal inputs leave two explanations: the take's file was edited, or the other version of the
+  // program computes differently.
   if (found.difference && found.changed.empty()) {
     text += fmt::format(
         "  the inputs are the same; the take was changed, or this version differs from {}\n",
@@ -114,6 +129,8 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
 Result<int> write_again(const Recording& recording, const Origin& origin, Call& call) {
   const std::string& out = call.common.out;
   const std::vector<std::string> changed = changed_inputs(origin, recording);
+  // The rebuilt take is written all the same: the user may have mended an input on purpose. The
+  // exit code is 1.
   for (const std::string& name : changed) {
     call.console.note("kinalign rebuild: warning: " + changed_line(name));
   }
@@ -126,6 +143,8 @@ Result<int> write_again(const Recording& recording, const Origin& origin, Call& 
   return changed.empty() ? code_of(report.findings) : 1;
 }
 
+/// Reads the origin, checks the inputs, and then compares or writes. The order matters: nothing is
+/// opened for writing before all inputs are known.
 Result<int> run(Rebuild& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& take = o.take.front();
@@ -142,6 +161,7 @@ Result<int> run(Rebuild& o, Call& call) {
                         count, take)};
       });
   // A missing input is an error, not a difference: the comparison would say nothing about the take.
+  // The files are closed again at once: this loop only finds a missing file before the work begins.
   for (const std::string& input : inputs) KA_TRY(InputFile::open(files, input));
   Result<Recording> recording =
       open_recording(files, origin.parameters, base, {call.console.progress(), call.jobs});

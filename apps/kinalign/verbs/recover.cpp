@@ -30,6 +30,7 @@ Usage describe_recover(Recover& o) {
       {"FILE",
        "a recording's file, read with all other parts in its folder; or several, in any order",
        &o.files, 1, SIZE_MAX}};
+  // The name of the new file is never guessed: the old files lie in the same folder and must stay.
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new file's name", "none"});
     return {};
@@ -39,6 +40,8 @@ Usage describe_recover(Recover& o) {
 
 /// The first lines of the text: the messages in the new file, and those of the old files that are
 /// not in it.
+/// Shows how much of the recording survived. `missing` is a lower bound, since only counted or
+/// numbered messages can be known to be missing.
 std::string head_line(const std::string& out, const Recovered& done) {
   const std::string of =
       done.missing > 0 ? " of at least " + grouped(done.messages + done.missing) : "";
@@ -62,11 +65,15 @@ Result<int> run(Recover& o, Call& call) {
     return std::vector<std::string>{"nothing was written; the old files are as they were"};
   });
   const std::string& out = call.common.out;
+  // recover_recording() refuses the named files and their siblings too. This check gives the same
+  // message as other verbs.
   KA_TRY(keep_inputs(out, o.files));
   const Recovered done = KA_TRY(recover_recording(
       call.surroundings.files, o.files, out, call.common.overwrite(), call.console.progress()));
   call.console.wrote(out);
   std::string text = head_line(out, done);
+  // The next three lines appear only if there is something to say. A recording that only lacked its
+  // index prints one line.
   if (done.unchecked > 0) {
     text +=
         fmt::format("  {} of them have no checksum (a truncated end, or a writer that made none)\n",
@@ -88,6 +95,7 @@ Result<int> run(Recover& o, Call& call) {
       {"missing", done.missing},
       {"skipped_bytes", done.skipped},
       {"findings", nlohmann::ordered_json::parse(findings_json(done.findings))}}));
+  // Missing and nameless messages count as findings even if no finding tells of them.
   return std::max(code_of(done.findings), done.missing + done.nameless > 0 ? 1 : 0);
 }
 

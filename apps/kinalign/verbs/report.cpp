@@ -27,9 +27,13 @@ namespace kinalign {
 namespace {
 
 /// The length of the part for which the page shows raw samples.
+/// The page shows raw samples for a limited part of a take. Everything else is drawn from the
+/// take's rows.
 constexpr double detail_length_s = 60.0;
 constexpr double no_detail_s = -1.0;  // not given: the verb chooses the place
 
+/// The options of `kinalign report`. `inputs` is empty unless the flag is given; the take's own
+/// folder is then tried.
 struct Report {
   std::vector<std::string> take;
   std::string inputs;
@@ -51,6 +55,7 @@ Usage describe_report(Report& o) {
        &o.detail_s, no_detail_s, 1e9},
       {"open", "show the page with xdg-open", &o.open}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
+    // The extension is required so that a browser opens the file as a page.
     if (common.out.ends_with(".html") || common.out.ends_with(".htm")) return {};
     return Failure(Error{"-o", 0, "the page's file name, as in -o take.html",
                          common.out.empty() ? "none" : shown(common.out)});
@@ -59,6 +64,8 @@ Usage describe_report(Report& o) {
 }
 
 // ---- in a child process: everything that reads HDF5
+// The functions of this part return text, because only text crosses the border between the
+// processes.
 
 /// Calls use(reader, report) on the take.
 template <class Use>
@@ -79,10 +86,12 @@ Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& repo
     if (std::holds_alternative<ImuGroup>(group.kind)) out["nodes"].push_back(group.name);
   }
   const double length = seconds(report.end - report.begin);
+  // A short take fits into the detail as a whole, and a take without points has no gap to look for.
   if (length <= detail_length_s || out["points"].empty()) return json_text(out);
   LongestGap gap;
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) gap.add(slab);
+  // The middle of the longest gap becomes the middle of the detail, as far as the take reaches.
   const double begin = gap.middle_s().value_or(0.0) - 0.5 * detail_length_s;
   out["begin_s"] = std::clamp(begin, 0.0, length - detail_length_s);
   return json_text(out);
@@ -91,12 +100,15 @@ Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& repo
 /// One line of JSON about the page, then the page.
 Result<std::string> page_text(const std::string& path, TakeReader& reader,
                               const AlignmentReport& report, const TakeFigureOptions& options) {
+  // The first pass is over before this function runs: outline_json() needs its own reader.
   TakeFigures figures(reader.header(), report, options);
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) figures.add(slab);
   TakePage page = figures.finish();
   page.file = file_name(path);
   page.software = reader.software();
+  // The printed summary needs three facts of the page. They go ahead of the HTML as one line, so
+  // that one text carries both.
   nlohmann::ordered_json about{{"verdicts", nlohmann::ordered_json::array()},
                                {"worst", nlohmann::ordered_json::array()},
                                {"stride", page.stride}};
@@ -114,6 +126,8 @@ Result<std::string> page_text(const std::string& path, TakeReader& reader,
 }
 
 // ---- the raw samples of figures 4, 11 and 12
+// The take holds resampled rows only. Raw samples come from the inputs, which other readers than
+// HDF5 read, so no child is needed.
 
 /// The facts about a take that the reading of raw samples needs.
 struct Outline {
@@ -122,12 +136,16 @@ struct Outline {
   std::vector<std::string> points, nodes;  // names of streams
 };
 
+/// Empty if the inputs were not found or the take has no points and no nodes. The page then omits
+/// these figures.
 struct RawSamples {
   std::vector<RawPoints> points;
   std::vector<RawNode> nodes;
   bool empty() const { return points.empty() && nodes.empty(); }
 };
 
+/// Reads the outline in a child process. `wanted_s`: the value of --detail-s; negative if the verb
+/// chooses the place.
 Result<Outline> outline_of(FileSystem& files, const std::string& path, double wanted_s) {
   const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] {
     return with_take(files, path, [](TakeReader& reader, const AlignmentReport& report) {
@@ -148,6 +166,8 @@ Result<Outline> outline_of(FileSystem& files, const std::string& path, double wa
 }
 
 /// The samples of a stream of points within the detail, with stamps on the take's axis.
+/// The whole stream is read, because a pass can only begin at the front. Only the detail is kept in
+/// memory.
 Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outline) {
   const auto& input = std::get<PointInput>(stream.data);
   const std::size_t joints = input.joint_names.size();
@@ -161,6 +181,7 @@ Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outlin
       const double s = seconds(at - outline.begin);
       if (s < outline.detail_begin_s || s > end_s) continue;
       out.frames.stamps.push_back(at);
+      // `places` and `states` point to the joints of frame t: [T,J,3] m and [T,J].
       const auto cell = static_cast<std::ptrdiff_t>(t * joints);
       const auto count = static_cast<std::ptrdiff_t>(joints);
       const auto places = block.positions.begin() + 3 * cell;
@@ -173,6 +194,7 @@ Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outlin
 }
 
 /// The samples of each node of a stream within the detail, with stamps on the take's axis.
+/// Rows of nodes are [T,N]: sample i belongs to stamp i / N and to node i % N.
 Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outline& outline) {
   const auto& input = std::get<ImuInput>(stream.data);
   const std::size_t worn = input.node_names.size();
@@ -185,10 +207,12 @@ Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outli
     for (std::size_t sample = 0; sample < block.valid.size(); ++sample) {
       const Time at = take_time(stream.clock, block.stamps[sample / worn]);
       const double s = seconds(at - outline.begin);
+      // An invalid sample is a gap. The figure leaves it out rather than drawing zeros.
       if (block.valid[sample] == 0 || s < outline.detail_begin_s || s > end_s) continue;
       RawNode& node = out[sample % worn];
       node.stamps.push_back(at);
       const auto put = [sample](const std::vector<double>& from, std::vector<double>& to) {
+        // A device without gyroscope or accelerometer has an empty array.
         if (from.empty()) return;
         const auto begin = from.begin() + static_cast<std::ptrdiff_t>(3 * sample);
         to.insert(to.end(), begin, begin + 3);
@@ -205,6 +229,8 @@ Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outli
 Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& outline,
                             const std::string& base) {
   Manifest manifest = origin.parameters;
+  // Streams that are drawn from the take alone (skeletons) are removed, so their files need not be
+  // there.
   std::erase_if(manifest.streams, [&outline](const StreamOptions& stream) {
     const auto has = [&stream](const std::vector<std::string>& names) {
       return std::find(names.begin(), names.end(), stream.name) != names.end();
@@ -214,12 +240,15 @@ Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& out
   RawSamples out;
   if (manifest.streams.empty()) return out;
   FileSystem& files = call.surroundings.files;
+  // Opening each file first gives an error that names the missing file. The recording would be
+  // surveyed before that.
   for (const std::string& file : files_named(manifest, base)) {
     KA_TRY(InputFile::open(files, file));
   }
   const Recording recording =
       KA_TRY(open_recording(files, manifest, base, {call.console.progress(), call.jobs}));
   const std::vector<std::string> changed = changed_inputs(origin, recording);
+  // The samples of a changed input are not those that the take was made from, so none are shown.
   if (!changed.empty()) {
     return Failure(Error{changed.front(), 0, "the file that the take was made from", "another"});
   }
@@ -235,6 +264,7 @@ Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& out
 
 // ---- the verb
 
+/// Megabytes of 10^6 bytes, as file managers show them.
 std::string size_text(std::size_t bytes) {
   return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
 }
@@ -245,6 +275,7 @@ std::string summary_text(const std::string& out, std::size_t bytes,
   std::string streams;
   for (const auto& verdict : about["verdicts"]) {
     const auto quality = verdict["quality"].get<std::string>();
+    // The colours match the severities: bad as an error, anything between as a warning.
     const Colour colour =
         quality == "good" ? Colour::good : (quality == "bad" ? Colour::bad : Colour::warning);
     streams += (streams.empty() ? "" : ", ") + harmless(verdict["stream"].get<std::string>()) +
@@ -262,9 +293,12 @@ std::string summary_text(const std::string& out, std::size_t bytes,
 /// Opens the page with xdg-open. If that fails, it is only noted: the page is written already.
 void show(const std::string& out, Call& call) {
   std::string program = "xdg-open", path = out;
+  // posix_spawn takes char*, so the words are copies that may be written to.
   char* words[] = {program.data(), path.data(), nullptr};
   posix_spawn_file_actions_t quiet;
   ::posix_spawn_file_actions_init(&quiet);
+  // The viewer must not read the terminal's input, nor write its own messages between the lines of
+  // this program.
   for (const int fd : {0, 1, 2}) {
     ::posix_spawn_file_actions_addopen(&quiet, fd, "/dev/null", O_RDWR, 0);
   }
@@ -272,6 +306,7 @@ void show(const std::string& out, Call& call) {
   const int failed = ::posix_spawnp(&child, program.c_str(), &quiet, nullptr, words, environ);
   ::posix_spawn_file_actions_destroy(&quiet);
   int status = 0;
+  // The exit status of xdg-open is the only sign that the page could not be shown.
   if (failed != 0 || ::waitpid(child, &status, 0) < 0 || status != 0) {
     call.console.note(harmless("kinalign report: xdg-open could not show " + out));
   }
@@ -286,12 +321,14 @@ struct Written {
 /// Makes the page in a child process and writes it.
 Result<Written> write_page(const std::string& take, const TakeFigureOptions& options, Call& call) {
   FileSystem& files = call.surroundings.files;
+  // The output is created before the long work: a name that exists already fails at once.
   OutputFile out = KA_TRY(OutputFile::create(files, call.common.out, call.common.overwrite()));
   const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(take), [&] {
     return with_take(files, take, [&](TakeReader& reader, const AlignmentReport& report) {
       return page_text(take, reader, report, options);
     });
   }));
+  // json_text() makes one line, so the first line end separates the JSON from the page.
   const std::size_t line = text.find('\n');
   const std::string_view html = std::string_view(text).substr(line + 1);
   Written written{html.size(), nlohmann::ordered_json::parse(text.substr(0, line))};
@@ -309,6 +346,7 @@ int say(const Written& written, bool has_raw, Call& call) {
   json.update(written.about);
   json["raw_samples"] = has_raw;
   call.console.print_json(json_text(json));
+  // A bad stream gives exit code 1. Warnings alone give 0, because a page shows them in any case.
   const auto& verdicts = written.about["verdicts"];
   const bool any_bad = std::any_of(verdicts.begin(), verdicts.end(),
                                    [](const auto& verdict) { return verdict["quality"] == "bad"; });
@@ -320,6 +358,8 @@ int say(const Written& written, bool has_raw, Call& call) {
 Result<RawSamples> find_raw(const Report& o, Call& call, const Origin& origin,
                             const Outline& outline, const std::string& base) {
   auto raw = read_raw(call, origin, outline, base);
+  // With --inputs the user asked for raw samples, so their absence is an error. Ctrl-C is an error
+  // in both cases.
   const bool optional = o.inputs.empty() && !interrupted();
   if (!raw && optional) return RawSamples{};
   return raw;
@@ -329,6 +369,7 @@ Result<RawSamples> find_raw(const Report& o, Call& call, const Origin& origin,
 Result<int> run(Report& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& take = o.take.front();
+  // The JSON's schema is report_page, since kinalign.report is the report inside a take.
   call.console.name_json("report_page");
   if (KA_TRY(kind_of_file(files, take)) != FileKind::take) {
     return call.console.refuse(
@@ -340,6 +381,7 @@ Result<int> run(Report& o, Call& call) {
   std::string base = o.inputs.empty() ? std::string(folder(take)) : o.inputs;
   if (!base.empty() && !base.ends_with('/')) base += '/';
   std::vector<std::string> inputs = files_named(origin.parameters, base);
+  // The take is an input of its page, so -o must not name it.
   inputs.push_back(take);
   KA_TRY(keep_inputs(call.common.out, inputs));
   const Outline outline = KA_TRY(outline_of(files, take, o.detail_s));

@@ -27,10 +27,13 @@ class Scratch {
     }
     return Scratch(std::move(name));
   }
+  // The object that was moved from has an empty name, so its destructor removes nothing.
   Scratch(Scratch&& other) noexcept : name_(std::exchange(other.name_, {})) {}
   Scratch& operator=(Scratch&&) = delete;
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
+  // Errors of the removal are ignored: nothing can be done about them here, and the result is
+  // complete.
   ~Scratch() {
     std::error_code ignored;
     if (!name_.empty()) std::filesystem::remove_all(name_, ignored);

@@ -17,6 +17,7 @@ namespace kinalign {
 namespace {
 
 /// The take's software, parameters and input hashes as JSON. Runs in the child process.
+/// HDF5 can crash on a damaged file, so only plain text crosses from the child to this process.
 Result<std::string> origin_json(FileSystem& files, const std::string& path) {
   const TakeReader reader = KA_TRY(TakeReader::open(files, path));
   nlohmann::json out{{"software", reader.software()},
@@ -31,6 +32,7 @@ Result<std::string> origin_json(FileSystem& files, const std::string& path) {
 }  // namespace
 
 Result<Origin> origin_of(FileSystem& files, const std::string& path) {
+  // blame() makes the error for a crash: it names the take, not the library.
   const std::string text =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); }));
   try {  // a child process that read a damaged file is not trusted
@@ -39,6 +41,7 @@ Result<Origin> origin_of(FileSystem& files, const std::string& path) {
     origin.software = json.at("software").get<std::string>();
     origin.parameters = KA_TRY(parse_parameters_json(json.at("parameters").get<std::string>()));
     for (const auto& file : json.at("files")) {
+      // The length is not in the JSON: changed_inputs() compares hashes, which decide alone.
       origin.files.push_back({file.at(0).get<std::string>(), file.at(1).get<std::string>(), 0});
     }
     return origin;
@@ -48,6 +51,8 @@ Result<Origin> origin_of(FileSystem& files, const std::string& path) {
 }
 
 std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording) {
+  // A file that several streams read is listed once. A file is the same only under the same name,
+  // so swapped files are found too.
   std::vector<std::string> changed;
   for (const RecordedStream& stream : recording.streams) {
     for (const InputFacts& file : stream.files) {

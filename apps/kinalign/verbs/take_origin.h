@@ -11,6 +11,8 @@
 
 namespace kinalign {
 
+/// The part of a take's header that tells how it was made. `rebuild` aligns again by it; `report`
+/// reads the raw samples by it.
 struct Origin {
   std::string software;
   Manifest parameters;
