@@ -36,14 +36,14 @@ def advice_names_the_flag_of_the_port_that_failed(folder):
     assert done.returncode == 3 and done.stderr.decode().endswith(advice), done
     done = kinalign("time-server", "--port", 0, "--listen", "192.0.2.77")
     assert done.returncode == 3 and b"found no network interface with this address" in done.stderr, done
-    assert b"ip -brief address" in done.stderr and b"--listen takes one" in done.stderr, done
+    assert b"ip -brief address" in done.stderr and b"--listen accepts these addresses" in done.stderr, done
     node_key = folder / "node7.key"
     node_key.write_text("ab" * 16 + "\n")
     node_key.chmod(0o600)
     for key, found in ((node_key, "found 32 digits, a node's key"), (folder / "nope.key", "No such file or directory")):
         done = kinalign("time-server", "--port", 0, "--node-port", 0, "--lab-key", key)
         assert done.returncode == 3 and found in done.stderr.decode(), done
-        advice = "--lab-key takes the lab's own file" if key is node_key else "--new-lab-key FILE makes one, where"
+        advice = "--lab-key needs the lab's own key file" if key is node_key else "--new-lab-key FILE makes the lab's key, if"
         assert advice in done.stderr.decode(), done
     done = kinalign("time-server", "--port", 0, "--node-port", 0, "--lab-key", "")
     assert done.returncode == 2 and b"--lab-key: expected a file's name, found nothing" in done.stderr, done
