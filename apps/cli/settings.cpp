@@ -24,7 +24,7 @@ Failure no_table(const Value& value) {
   if (value.path.starts_with("stream.") || value.path.starts_with("space.")) {
     return at(value,
               Error{"", 0, "settings, or a lab's devices",
-                    "[" + shown(value.path) + "] of a manifest, which is for kinalign align"});
+                    "[" + shown(value.path) + "], which belongs in a manifest for kinalign align"});
   }
   const bool in_list = value.path == value.key;  // [[device]]
   return at(value, Error{"", 0,

@@ -300,7 +300,7 @@ class Verifier {
       report(Severity::error, one.name,
              one.name.ends_with(".toml") ? "the raw file that the take was made from: " + one.path
                                          : "bytes with SHA-256 " + one.sha256.substr(0, 12) + "...",
-             facts ? facts->sha256.substr(0, 12) + "..." : facts.error().found);
+             facts ? "SHA-256 " + facts->sha256.substr(0, 12) + "..." : facts.error().found);
     });
     // Takes are counted, whatever was found in them.
     out_.takes = takes_.size();

@@ -151,7 +151,7 @@ def an_id_that_nobody_has_is_an_error_and_a_flag_without_effect_is_wrong_use(fol
     assert back == verdicts[::-1], back
     for words in (("--columns", "name"), ("--sort", "name"), ("--limit", "1")):
         ran = kinalign("dataset", "query", data, "select name from takes", *words)
-        assert ran.returncode == 2 and f"{words[0]}: expected it only with a condition" in law(ran, ("dataset", "query")), ran
+        assert ran.returncode == 2 and f"{words[0]}: expected this flag only with a condition" in law(ran, ("dataset", "query")), ran
         answer("query", data, "frames > 0", *words)
     text = (data / "dataset.toml").read_text()
     (data / "dataset.toml").write_text(text.replace("[subject.03]", "[subject.99]"))

@@ -43,7 +43,7 @@ class TextServer:
 def a_clock_beyond_the_assumptions_is_named_once_and_in_the_summary(_):
     with TextServer() as server:
         ended(start_node(BUILD, server.node_port, 7, "--seconds", 10, "--drift-ppm", 300))
-    keeps = "its clock keeps contradicting the assumptions (more than 100 ppm off, or asleep)"
+    keeps = "its clock keeps contradicting the assumptions (drift above 100 ppm, or the node sleeps)"
     assert len(server.told) <= 8, server.told
     assert [keeps in line for line in server.told] == [False] * (len(server.told) - 1) + [True], server.told
     assert f"not locked: {keeps}" in server.said, server.said

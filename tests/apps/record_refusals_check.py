@@ -106,7 +106,7 @@ def a_port_that_is_taken_is_told_with_its_device_and_what_takes_another(folder):
                 f"{name}: expected a {place}, found a port that another program uses",
                 f"ss {ss} 'sport = :{port}' shows which program uses it, perhaps another kinalign; {remedy} sets another port"]
     said = refusal(3, folder, "--device", "mocap=noitom:udp:192.0.2.77:7012")
-    assert said[1] == ("ip -brief address shows this machine's; --device mocap=noitom:udp:ADDRESS:PORT accepts these addresses"), said
+    assert said[1] == ("ip -brief address shows this machine's addresses; --device mocap=noitom:udp:ADDRESS:PORT accepts any of them"), said
 
 
 @case
@@ -129,7 +129,7 @@ def what_is_wrong_in_a_lab_is_told_with_its_line_and_the_page_that_shows_the_key
                         ":3: expected settings, or a lab's device as [device.mocap], found [devices.mocap]"),
                        ("[device.mocap]\nprt = 1\n", ":2: expected a key of [device.mocap] (nearest: port), found \"prt\""),
                        ('[align]\ngap_ms = 50\n[space.kinect]\nmethod = "fit"\n',
-                        ":3: expected settings, or a lab's devices, found [space.kinect] of a manifest, which is for kinalign align"),
+                        ":3: expected settings, or a lab's devices, found [space.kinect], which belongs in a manifest for kinalign align"),
                        ('[device.a]\nprotocol = "nodes"\nport = 0\nnodes = { "1" = "2" }\n',
                         ":1: expected the name of a place, such as waist: a number may be another node's id, found 2 of node 1"),
                        ("[device]\nport = 1\n",

@@ -252,14 +252,14 @@ def streams_that_miss_each_other_are_answered_with_the_start_that_joins_them(fol
     (folder / "kinect.csv").write_text(samples.kinect(4, start))
     begin = ("align", "--mocap", folder / "mocap.bvh", "--kinect", folder / "kinect.csv", "-o", folder / "t.h5")
     _, err = done_with(3, *begin)
-    assert f"  --start-ns {start} moves the first frame of mocap to the begin of the others: correct only if all started at the same time\n" in err, err
+    assert f"  --start-ns {start} moves the first frame of mocap to the start of the others: correct only if all started at the same time\n" in err, err
     done_with(0, *begin, "--start-ns", start, "--space", "none")
     (folder / "imu.csv").write_text(samples.imu(4, start))
     manifest.write_text(samples.manifest().replace("start_ns = 0", "start_ns = 5\nclick_latency_ms = 1"))
     _, err = done_with(3, "align", manifest, "-o", folder / "u.h5")
     assert "imu imu " in err, err
     said = f"start_ns = {start - 1_000_000} in [stream.mocap]"
-    assert f"  {said} moves the first frame of mocap to the begin of the others: correct only if all started at the same time\n" in err, err
+    assert f"  {said} moves the first frame of mocap to the start of the others: correct only if all started at the same time\n" in err, err
     manifest.write_text(manifest.read_text().replace("start_ns = 5", f"start_ns = {start - 1_000_000}"))
     done_with(0, "align", manifest, "-o", folder / "u.h5")
 
@@ -271,7 +271,7 @@ def the_start_that_joins_points_counts_the_offset_that_moves_them(folder):
     manifest.write_text('[stream.optical]\nfile = "kinect.csv"\noffset_ms = 5000\n[stream.kinect]\nfile = "later.csv"\n')
     _, err = done_with(3, "align", manifest, "-o", folder / "t.h5")
     said = "start_ns = 85000000000 in [stream.optical]"
-    assert f"  {said} moves the first frame of optical to the begin of the others: correct only if all started at the same time\n" in err, err
+    assert f"  {said} moves the first frame of optical to the start of the others: correct only if all started at the same time\n" in err, err
     manifest.write_text(manifest.read_text().replace("offset_ms", "start_ns = 85000000000\noffset_ms"))
     done_with(0, "align", manifest, "-o", folder / "t.h5")
 

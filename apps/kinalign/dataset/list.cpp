@@ -210,7 +210,7 @@ Result<void> check_query(const Query& o, const Sources& given) {
                                    std::pair("limit", "--limit")}) {
     if (!given.contains(name)) continue;
     return Failure(
-        Error{flag, 0, "it only with a condition: a whole SELECT has its own", "a SELECT"});
+        Error{flag, 0, "this flag only with a condition: a whole SELECT has its own", "a SELECT"});
   }
   return {};
 }

@@ -21,8 +21,8 @@ std::vector<std::string> port_advice(const Error& error, const WantedPort& wante
             " sets a port from 1024 on, which needs no root rights, if all senders can use it"};
   }
   if (error.kind == ErrorKind::address_elsewhere) {
-    return {"ip -brief address shows this machine's; " + wanted.address_from +
-            " accepts these addresses"};
+    return {"ip -brief address shows this machine's addresses; " + wanted.address_from +
+            " accepts any of them"};
   }
   return {};
 }

@@ -48,8 +48,9 @@ std::string ClockEventLines::line(std::size_t stream, std::uint32_t node_id,
     clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
     if (clock.contradicts) {
       return fmt::format(
-          "{}: warning: {}, so nothing of it is certified; its steps are reported again after a "
-          "quiet minute",
+          "{}: warning: {}, so none of its stamps are certified; its steps are reported again "
+          "after "
+          "a minute without steps",
           names_.name(node_id), contradiction);
     }
   }

@@ -20,7 +20,7 @@ namespace kinalign {
 /// The reason printed for a clock that contradicts the assumptions, after "node 7: " or "not
 /// locked: ".
 inline constexpr std::string_view contradiction =
-    "its clock keeps contradicting the assumptions (more than 100 ppm off, or asleep)";
+    "its clock keeps contradicting the assumptions (drift above 100 ppm, or the node sleeps)";
 
 class ClockEventLines {
  public:

@@ -266,7 +266,8 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   if (server.state().leap == NtpLeap::unsynchronised) {
     console.note(
         "kinalign time-server: warning: this machine's clock is not synchronised, so clients will "
-        "not follow it; if the lab has no other clock, use --local-stratum 10");
+        "not follow it; if the lab has no other clock, --local-stratum 10 makes "
+        "them follow this one, right or wrong");
   }
   console.flush();
   std::optional<NodePrinter> node_printer;

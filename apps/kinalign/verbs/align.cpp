@@ -195,7 +195,7 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
     return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " moves the first frame of " +
            shown(s.name) +
-           " to the begin of the others: correct only if all started at the same time";
+           " to the start of the others: correct only if all started at the same time";
   }
   return "";
 }

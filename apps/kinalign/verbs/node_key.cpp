@@ -74,7 +74,7 @@ Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
   // write_key() never replaces a file, because a node whose key is lost must be flashed again.
   if (!o.new_lab_key.empty()) {
     KA_TRY(write_key(files, o.new_lab_key, KA_TRY(new_lab_key())));
-    call.console.print(o.new_lab_key + ": a new lab key; keep a copy in a safe place\n");
+    call.console.print(o.new_lab_key + ": a new lab key; keep a copy where only you can read it\n");
     return 0;
   }
   // The advice is about the lab's key file only. It is removed after reading, so a full disk does

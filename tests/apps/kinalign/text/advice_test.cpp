@@ -38,6 +38,6 @@ TEST_CASE("a port that can't be opened has advice by what stands in the way") {
               "--port sets a port from 1024 on, which needs no root rights, if all senders can use "
               "it"});
   CHECK(port_advice(of(ErrorKind::address_elsewhere), udp) ==
-        Lines{"ip -brief address shows this machine's; --listen accepts these addresses"});
+        Lines{"ip -brief address shows this machine's addresses; --listen accepts any of them"});
   CHECK(port_advice(of(ErrorKind::other), udp).empty());
 }

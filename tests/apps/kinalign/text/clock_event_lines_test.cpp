@@ -26,8 +26,10 @@ Lines step(ClockEventLines& clocks, double s) {
 
 const std::string stepped = "node 7: warning: its counter stepped by at least 500.000 ms";
 const std::string keeps =
-    "node 7: warning: its clock keeps contradicting the assumptions (more than 100 ppm off, or "
-    "asleep), so nothing of it is certified; its steps are reported again after a quiet minute";
+    "node 7: warning: its clock keeps contradicting the assumptions (drift above 100 ppm, or the "
+    "node sleeps), so none of its stamps are certified; its steps are reported again after a "
+    "minute "
+    "without steps";
 
 std::string withdrawn(const std::string& s) {
   return "node 7: warning: the stamps of " + s + " s are no longer certified";
