@@ -11,6 +11,7 @@
 namespace kinalign {
 
 /// A port that the program wants to open, and the flags or settings that name it.
+/// The flag names stand in the advice, since the user must know what to change.
 struct WantedPort {
   std::uint16_t port = 0;
   std::string port_from;     // the flag or setting: "--port"
@@ -22,6 +23,7 @@ struct WantedPort {
 std::vector<std::string> port_advice(const Error& error, const WantedPort& wanted);
 
 /// Advice if --lab-key could not be read.
+/// A key that other users can read gets no advice here: the error itself says what to do.
 std::vector<std::string> key_advice(const Error& error);
 
 }  // namespace kinalign

@@ -34,17 +34,22 @@ bool is_trouble(EventKind kind) {
 // cause withdraws the same stretch again; only the first withdrawal has a line.
 std::string ClockEventLines::line(std::size_t stream, std::uint32_t node_id,
                                   const ClockEvent& event, HostTime now) {
+  // The entry is made with the first event of a stream.
   Clock& clock = clocks_[stream];
   if (clock.node_id != node_id) clock = {};
   clock.node_id = node_id;
   if (!is_trouble(event.kind)) return "";
+  // The old state is judged before this event is noted: a minute without trouble ends it.
   clock.contradicts = contradicts(stream, node_id, now);
   clock.troubled = now;
+  // While a clock contradicts the assumptions, its events are only noted as the latest trouble.
   if (clock.contradicts) return "";
   if (is_step(event.kind)) {
+    // The oldest of the three steps is dropped.
     std::rotate(clock.steps.begin(), clock.steps.begin() + 1, clock.steps.end());
     clock.steps.back() = event.end;
     const HostTime first = clock.steps.front();
+    // An array that is not full yet has a minimum time in front.
     clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
     if (clock.contradicts) {
       return fmt::format(
@@ -57,6 +62,7 @@ std::string ClockEventLines::line(std::size_t stream, std::uint32_t node_id,
   if (event.kind == EventKind::withdrawn) {
     const HostTime printed = clock.withdrawn;
     clock.withdrawn = std::max(printed, event.end);
+    // This stretch was printed already.
     if (event.begin < printed) return "";
   }
   return event_text(event, node_id, names_);

@@ -22,6 +22,9 @@ namespace kinalign {
 inline constexpr std::string_view contradiction =
     "its clock keeps contradicting the assumptions (drift above 100 ppm, or the node sleeps)";
 
+/// Programs get every event; people get a line only if it says something new. A clock that steps
+/// again and again would otherwise fill the screen. Invariant: `steps` has the last three steps in
+/// their order, the newest one last.
 class ClockEventLines {
  public:
   explicit ClockEventLines(NodeNames names = {}) : names_(std::move(names)) {}

@@ -14,6 +14,7 @@ std::string counted(std::uint64_t count, std::string_view one, std::string_view 
 
 std::string size_text(std::uint64_t bytes) {
   const auto size = static_cast<double>(bytes);
+  // Below 1 MB whole kilobytes are exact enough.
   return size < 1e6 ? fmt::format("{:.0f} kB", 1e-3 * size) : fmt::format("{:.1f} MB", 1e-6 * size);
 }
 

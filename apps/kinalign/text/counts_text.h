@@ -13,6 +13,7 @@ std::string counted(std::uint64_t count, std::string_view one);
 /// "1 person", "3 people".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 /// "85 kB", "1.6 MB".
+/// Sizes are decimal (1 kB = 1000 bytes), as disks are sold and file managers show them.
 std::string size_text(std::uint64_t bytes);
 
 }  // namespace kinalign

@@ -39,6 +39,7 @@ Contents contents(const Skeleton& skeleton) {
       skeleton.joint_names};
 }
 
+// Points have no skeleton, so the names of joints are all that is known.
 Contents contents(const std::vector<std::string>& joints) {
   return {"points", counted(joints.size(), "joint"), joints};
 }
@@ -49,12 +50,14 @@ Contents contents(const ImuGroup& group) {
   const ImuContent& content = group.content;
   std::string parts = counted(group.node_names.size(), "node") + ":";
   if (content.orientation) parts += " orientation,";
+  // Quantities that were not measured are left out.
   if (content.acceleration) {
     parts += content.gravity ? " acceleration with gravity" : " acceleration without gravity";
     if (content.gravity && !group.root_node.empty()) parts += " in " + group.root_node + " only";
     parts += ",";
   }
   if (content.angular_velocity) parts += " angular velocity,";
+  // The last comma belongs to no further word.
   parts.pop_back();
   return {"imu", parts, group.node_names};
 }
@@ -65,6 +68,7 @@ Contents contents_of(const RecordedStream& stream) {
     return contents(points->joint_names);
   }
   const auto& imu = std::get<ImuInput>(stream.data);
+  // A stream of nodes has no root: the take's group is made with an empty one.
   return contents({imu.node_names, imu.content, ""});
 }
 
@@ -84,6 +88,8 @@ Json files_json(const std::vector<InputFacts>& files) {
   return out;
 }
 
+// A stream of a fixed step (a BVH) has its rate by definition. For all others the median step
+// counts, which gaps do not change.
 double rate_hz(const RecordedStream& s) {
   const double step = s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns));
   return step > 0.0 ? 1e9 / step : 0.0;
@@ -97,7 +103,9 @@ double seconds_of(const StampSurvey& survey) {
 /// with bursts or gaps.
 std::string mean_rate_text(const RecordedStream& s) {
   const double length = seconds_of(s.survey), rate = rate_hz(s);
+  // The condition is also false for a length that is no number.
   if (!(length > 0.0)) return "";
+  // kept() counts the samples whose stamps rise. n samples span n - 1 steps.
   const double mean = static_cast<double>(s.survey.kept() - 1) / length;
   return std::abs(mean - rate) < 0.1 * rate ? ""
                                             : fmt::format(" ({:.4g} over the whole stream)", mean);
@@ -106,6 +114,7 @@ std::string mean_rate_text(const RecordedStream& s) {
 /// The lines about a stream: samples, rate, first and last stamp, names, and stamps that do not
 /// rise.
 std::string stream_lines(const RecordedStream& s, const Contents& c, Names names) {
+  // A file of one node is called by the node; its kind adds nothing.
   const bool one_node = c.kind == "imu" && c.names.size() == 1;
   const std::string who = one_node ? shown(c.names.front().get<std::string>()) : c.kind;
   std::string line = fmt::format("  {:<8} {} ({}): {} samples over {:.3f} s at {:.4g} Hz{}; {}\n",
@@ -115,9 +124,11 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
     line += fmt::format("           from {} to {} ns{}\n", to_ns(first_of(s)), to_ns(last_of(s)),
                         s.counted ? ", counted at that rate" : "");
   }
+  // Names of nodes are few and important, so they are always shown.
   if (names == Names::yes || (c.kind == "imu" && !one_node)) {
     line += name_lines(c.names.get<std::vector<std::string>>());
   }
+  // The difference counts samples that alignment can't use.
   if (s.survey.kept() < s.survey.samples) {
     line += fmt::format("           {} stamps repeat, {} step back, {} jump ahead\n",
                         s.survey.duplicates, s.survey.backward, s.survey.ahead);
@@ -126,6 +137,7 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
 }
 
 /// The JSON about a stream.
+/// A program may depend on each of the keys.
 Json stream_json(const RecordedStream& s, const Contents& c, const Findings& findings) {
   return {{"name", s.name},
           {"kind", c.kind},
@@ -145,6 +157,7 @@ Json stream_json(const RecordedStream& s, const Contents& c, const Findings& fin
 
 /// Everything about a take as one JSON text. Runs in the child process.
 Result<std::string> take_facts(FileSystem& files, const std::string& path) {
+  // HDF5 is used from here on. Only text leaves this process.
   const TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const TakeHeader& header = reader.header();
   Json out{{"file", path},
@@ -162,6 +175,7 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
                               {"names", c.names},
                               {"files", files_json(group.files)}});
   }
+  // The report is stored as text in the take. It may be damaged although HDF5 could read it.
   out["report"] = Json::parse(KA_TRY(reader.report_json()), nullptr, false);
   if (out["report"].is_discarded()) {
     return Failure(Error{path, 0, "a report as JSON", "text that is not JSON"});
@@ -193,6 +207,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     const RecordedStream& s = recording.streams[i];
     const Contents c = contents_of(s);
+    // Findings of a file belong to its first stream, so each of them is counted once.
     const SharedFile* file = newly_read_file(recording, i);
     Findings found = file == nullptr ? Findings{} : file->findings;
     append(found, all_findings(s));
@@ -200,6 +215,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
     text += stream_lines(s, c, names);
     findings += found.size();
   }
+  // Findings are only counted here: `check` explains them and their repair.
   if (findings > 0) {
     text += fmt::format("  {} finding{}: see kinalign check {}\n", findings,
                         findings == 1 ? "" : "s", path);
@@ -213,11 +229,13 @@ Result<Description> describe_take(FileSystem& files, const std::string& path, Na
   return Description{take_text(json, names), json};
 }
 
+// stable_sort keeps the order of the file among findings of one severity.
 std::string finding_lines(Findings findings, const Console& console) {
   std::stable_sort(findings.begin(), findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
   std::string text;
   for (const Finding& finding : findings) {
+    // 8 columns hold the longest word, "warning".
     const std::string word = fmt::format("{:<8}", to_string(finding.severity));
     text += console.paint(colour_of(finding.severity), word) + " ";
     text += harmless(to_string(finding.what) + "\n         " + finding.meaning + "\n");

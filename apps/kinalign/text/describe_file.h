@@ -12,6 +12,7 @@
 
 namespace kinalign {
 
+/// Both members describe the same content. The text is made harmless when it is printed.
 struct Description {
   std::string text;  // lines
   std::string json;  // an object
@@ -38,6 +39,7 @@ std::string read_as(const RecordedStream& stream);
 Result<Description> describe_take(FileSystem& files, const std::string& path, Names names);
 
 /// The file and the expectation for an error about a take that HDF5 can't read.
+/// The same words for every verb, so a damaged take gives the same message everywhere.
 Error blame(const std::string& path);
 
 /// The findings as lines, the most severe first: "warning walk.bvh:12: expected ...". Control

@@ -24,6 +24,7 @@ double seconds_of(const ChannelSurvey& channel) {
 /// The mean rate over the whole channel, Hz; 0 for a single message.
 double rate_of(const ChannelSurvey& channel) {
   const double s = seconds_of(channel);
+  // The channel spans n - 1 intervals.
   return s > 0.0 ? static_cast<double>(channel.messages - 1) / s : 0.0;
 }
 
@@ -39,6 +40,8 @@ Json json_of(const ChannelSurvey& channel) {
 }
 
 /// The log time of the first message, ns.
+/// It is the origin of the times of marks. Channels of definitions have no messages and are
+/// skipped.
 std::uint64_t first_of(const RecordingSurvey& survey) {
   std::uint64_t first = UINT64_MAX;
   for (const ChannelSurvey& channel : survey.channels) {
@@ -48,6 +51,7 @@ std::uint64_t first_of(const RecordingSurvey& survey) {
 }
 
 std::string mark_text(const RecordedMark& mark, double at_s) {
+  // A mark may state its latency, for example between a click and the first frame.
   const std::string latency = mark.mark.latency ? fmt::format(", {:g} ms before its effect",
                                                               1e3 * seconds(*mark.mark.latency))
                                                 : "";
@@ -55,6 +59,7 @@ std::string mark_text(const RecordedMark& mark, double at_s) {
 }
 
 /// Adds the marks, and the counts of senders and ports that the recorder wrote.
+/// The recorder writes both as JSON, so the text is parsed and passed on unchanged.
 void add_told(const RecordingSurvey& survey, Json& json) {
   json["marks"] = json["senders"] = json["ports"] = Json::array();
   for (const auto& [mark, log_time] : survey.marks) {
@@ -83,7 +88,9 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
   if (survey.facts && survey.facts->part > 1) {
     line("part", fmt::format("{} of {}", survey.facts->part, survey.facts->first));
   }
+  // parts[0] is the file itself. The others are sibling files that continue it.
   for (std::size_t k = 1; k < parts.size(); ++k) line("goes on in", parts[k].path);
+  // `truncated` lists the files that lack an index.
   line("state", survey.truncated.empty() ? "whole" : "truncated: no index at its end");
   line("messages", grouped(survey.messages));
   line("size", fmt::format("{:.1f} MB", static_cast<double>(survey.bytes) / 1e6));
@@ -100,12 +107,14 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
   }
   for (const CountedPort& one : survey.ports) {
     const std::string lost = loss_of(one.counts, frames_lost(one.stream, survey.senders));
+    // Ports without a loss are left out.
     if (!lost.empty()) line("port", one.stream + ": " + lost);
   }
   const std::uint64_t first = first_of(survey);
   for (const auto& [mark, log_time] : survey.marks) {
     line("mark", mark_text(mark, static_cast<double>(log_time - first) / 1e9));
   }
+  // A recording with thousands of marks is described by its first ones.
   if (survey.more_marks > 0) line("marks", grouped(survey.more_marks) + " more, not shown");
   return text;
 }
@@ -125,6 +134,7 @@ Json json_of(const std::string& path, const RecordingSurvey& survey, const Recor
     json["part"] = survey.facts->part;
   }
   for (std::size_t k = 1; k < parts.size(); ++k) json["goes_on_in"].push_back(parts[k].path);
+  // Only a recording that was ended properly knows how many messages were dropped.
   if (survey.end) json["dropped"] = survey.end->dropped;
   for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
   add_told(survey, json);

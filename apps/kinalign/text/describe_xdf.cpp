@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Senders state a nominal rate, which may be wrong. Both are shown, since only the stamps show the
+/// real one.
 std::string rate_text(const XdfStreamSurvey& one) {
   const double nominal = one.stream.nominal_rate_hz;
   std::string text = nominal > 0.0 ? fmt::format("{:.6g} Hz nominal", nominal) : "irregular";
@@ -26,12 +28,15 @@ std::string rate_text(const XdfStreamSurvey& one) {
 std::string stamps_text(const XdfStreamSurvey& one) {
   std::string text = fmt::format("{:.6f} to {:.6f} s, {:.1f} s of the sender's clock", *one.first,
                                  *one.last, *one.last - *one.first);
+  // LSL leaves out stamps that follow from the rate; the reader fills them in.
   if (one.deduced > 0) text += fmt::format("; {} deduced by the rate", grouped(one.deduced));
   return text;
 }
 
 /// The clock of a stream's sender: offset, drift and largest residual of the last line. A reset
 /// clock has several lines.
+/// LSL measures the offset between sender and recorder every few seconds. A line through these
+/// offsets is the clock.
 std::string stream_clock_text(const XdfStreamSurvey& one) {
   if (one.clock.empty()) return "no clock offsets";
   double residual = 0.0;
@@ -41,6 +46,7 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
       fmt::format("{} clock offset{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
                   grouped(one.clock_offsets), one.clock_offsets == 1 ? "" : "s", last.offset,
                   1e6 * last.slope, 1e3 * residual);
+  // n lines mean n - 1 resets.
   if (one.clock.size() > 1) text += fmt::format("; restarted {} times", one.clock.size() - 1);
   return text;
 }
@@ -58,6 +64,7 @@ std::string stream_lines(const XdfStreamSurvey& one, Names names) {
                              grouped(one.samples), rate_text(one)));
   if (one.first) line("  stamps", stamps_text(one));
   line("  clock", stream_clock_text(one));
+  // An EEG has up to hundreds of channels, so they are listed only if asked for.
   if (names == Names::no) return text;
   for (const XdfChannel& channel : s.channels) {
     line("  channel", fmt::format("{}{}", shown(channel.label),
@@ -66,6 +73,7 @@ std::string stream_lines(const XdfStreamSurvey& one, Names names) {
   return text;
 }
 
+/// A missing value is null in JSON.
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 /// The JSON about a stream, with a line for each piece of its clock.
@@ -130,17 +138,20 @@ Description describe_xdf(const std::string& path, const XdfSurvey& survey, Names
 namespace {
 
 /// Collects the findings about the streams of one file.
+/// Severity: a warning if stamps can't be used as they are, a note if only the user should know.
 class Judge {
  public:
   Judge(const std::string& path, Findings& out) : path_(path), out_(out) {}
 
   void judge(const XdfStreamSurvey& one) {
     const std::string stream = fmt::format(" of stream '{}'", shown(one.stream.name));
+    // A stream without samples has no further faults, so the function ends.
     if (one.samples == 0) {
       say(Severity::note, "samples" + stream, "none",
           "this stream was recorded, but its sender sent no samples");
       return;
     }
+    // A stamp that is no number, or too large to be a time, gives no time.
     if (one.timeless > 0) {
       say(Severity::warning, "stamps below 1e15" + stream, grouped(one.timeless) + " other stamps",
           "these samples have no time");
@@ -151,6 +162,7 @@ class Judge {
                       one.largest_step_back_s),
           "the sender's clock was set back, or samples arrived out of order");
     }
+    // NaN is the usual mark of a missing value, so it is no fault.
     if (one.no_numbers > 0) {
       say(Severity::note, "finite values" + stream,
           grouped(one.no_numbers) + " NaN or infinite values",
@@ -161,6 +173,8 @@ class Judge {
 
  private:
   void judge_clock(const XdfStreamSurvey& one, const std::string& stream) {
+    // Without offsets nothing relates both clocks. Taking them as one is right if both ran on one
+    // machine.
     if (one.clock.empty()) {
       say(Severity::note, "clock offsets" + stream, "none",
           "its stamps are treated as stamps of the recorder's clock");
@@ -183,6 +197,7 @@ class Judge {
 }  // namespace
 
 Findings judge_xdf(const std::string& path, const XdfSurvey& survey) {
+  // The findings of the reader come first.
   Findings findings = survey.findings;
   Judge judge(path, findings);
   for (const XdfStreamSurvey& one : survey.streams) judge.judge(one);

@@ -28,12 +28,14 @@ std::string name_of(const std::string& beginning, const RecordingSurvey& survey)
 }
 
 /// The topic prefixes of devices that the lab requires and of which the file has no message.
+/// `expected` is from the lab in the recording. Names of nodes contain their id: "imu/7".
 std::vector<std::string> unheard(const RecordingSurvey& survey) {
   std::vector<std::string> names;
   for (const auto& [name, required] : survey.expected) {
     const std::string begins = "/" + name + "/";  // for nodes: of any node
     const bool heard =
         std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
+          // A definition without messages does not count.
           return one.channel.topic.starts_with(begins) && one.messages > 0;
         });
     if (!heard && required) names.push_back(name);
@@ -44,17 +46,22 @@ std::vector<std::string> unheard(const RecordingSurvey& survey) {
 /// The messages of a topic that the recorder counted and that are neither in the file nor missing
 /// between two that are. Only the first part of a recording can be checked: the counts of later
 /// parts begin with the recording, not with the file.
+/// The recorder counts messages before they are written, so its counts also cover what the disk
+/// lost.
 std::uint64_t uncovered(const CountedSender& counted, const RecordingSurvey& survey) {
   std::uint64_t known = 0;
   for (const ChannelSurvey& channel : survey.channels) {
     if (channel.channel.topic == counted.topic) known += channel.messages + channel.missing;
   }
+  // Without the recorder's facts the file is not one of record.
   const bool whole = survey.facts && survey.facts->part == 1;
   return whole && counted.counts.messages > known ? counted.counts.messages - known : 0;
 }
 
 /// Errors for messages that reached the recorder and are not in the file. A gap in the recorder's
 /// own numbering shows them; at the ends of a topic the counts do.
+/// Both findings can't be about the same messages: uncovered() subtracts those that are missing in
+/// between.
 Findings gone(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   const auto tell = [&](std::string expected, std::uint64_t lacks) {
@@ -76,11 +83,14 @@ Findings gone(const std::string& path, const RecordingSurvey& survey) {
 }
 
 /// Notes by the devices' own numbers: frames that never reached the recorder, and restarts.
+/// These losses happened before the recorder, on the network or in the device. They are notes,
+/// since nothing can be repaired.
 Findings numbered(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   for (const CountedSender& one : survey.senders) {
     const SequenceCounts& order = one.counts.order;
     if (order.lost > 0) {
+      // The share is over all numbers that the sender gave.
       const std::uint64_t came = frames_or_messages(one.counts);
       findings.push_back(
           {Severity::note,
@@ -102,6 +112,7 @@ Findings numbered(const std::string& path, const RecordingSurvey& survey) {
 
 /// The warning about data that reached a device's port and could not be recorded.
 Finding port_loss(const std::string& path, const CountedPort& port, const std::string& lost) {
+  // `lost` is the text of loss_of().
   return {Severity::warning,
           {path, 0, "everything that came to the port of " + port.stream, lost},
           "these reached the recording machine and are not in it",
@@ -148,12 +159,14 @@ bool is_of_marks(const CountedPort& port) {
 Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   for (const CountedPort& one : survey.ports) {
+    // `sifted` is true for ports of nodes, where a filter of the kernel drops what is no frame.
     if (one.counts.sifted) {
       if (one.counts.refused > 0) findings.push_back(no_nodes(path, one));
       const std::uint64_t came = strays(one.counts, frames_lost(one.stream, survey.senders));
       if (came > 0) findings.push_back(strays_at(path, one, came));
       continue;
     }
+    // The copy allows the count of refused marks to be taken out: it has a note of its own.
     CountedPort of_device = one;
     if (is_of_marks(one)) {
       if (one.counts.refused > 0) findings.push_back(no_marks(path, one));
@@ -167,6 +180,7 @@ Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
 
 /// The text about datagrams at the port of a device of which nothing was recorded. Empty if none
 /// came.
+/// It tells a device at the wrong port from one that is switched off.
 std::string came_unheard(const std::string& device, const RecordingSurvey& survey) {
   const bool heard = std::any_of(survey.senders.begin(), survey.senders.end(),
                                  [&](const CountedSender& one) { return one.stream == device; });
@@ -180,6 +194,7 @@ std::string came_unheard(const std::string& device, const RecordingSurvey& surve
 Findings lacking(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   for (const std::string& name : unheard(survey)) {
+    // The part before '/' is the device; ports belong to devices.
     const std::string came = came_unheard(name.substr(0, name.find('/')), survey);
     findings.push_back(
         {Severity::warning,
@@ -194,6 +209,8 @@ Findings lacking(const std::string& path, const RecordingSurvey& survey) {
 }
 
 /// The warning about a suit over UDP: pieces of its frames do not state the frame they belong to.
+/// UDP splits long frames into datagrams. If some are lost or mixed, the frame can't be put
+/// together.
 Finding hardly_read(const std::string& path, const std::string& name, const SenderCounts& counts) {
   return {Severity::warning,
           {path, 0, "frames that can be read in what " + name + " sent",
@@ -206,11 +223,13 @@ Finding hardly_read(const std::string& path, const std::string& name, const Send
 /// frames are refused, or no skeleton is known.
 Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
+  // A set names each stream once, although it may have had several senders.
   std::set<std::string> without_skeleton;
   for (const CountedSender& one : survey.senders) {
     const auto channel =
         std::find_if(survey.channels.begin(), survey.channels.end(),
                      [&](const ChannelSurvey& known) { return known.channel.topic == one.topic; });
+    // A sender without a channel has no message in this file.
     if (channel == survey.channels.end()) continue;
     const std::string& protocol = channel->channel.message_encoding;
     if (speaks_another_protocol(protocol, one.counts)) {
@@ -222,12 +241,14 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
            "see which port and protocol the device sends to"});
     }
     const auto known = find_recorded_protocol(protocol);
+    // Only protocols that are decoded count frames.
     if (!known || one.counts.frames == 0) continue;
     const ProtocolRow& row = row_of(*known);
     if (row.losses == LossNumbers::frame_heads && are_many(one.counts.refused) &&
         one.counts.refused > one.counts.frames) {
       findings.push_back(hardly_read(path, name_of(one, survey), one.counts));
     }
+    // The recorder attaches the BVH of a suit under the name of its device.
     const auto& names = survey.attachments;
     const bool has_body = std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();
     if (row.needs_skeleton && !has_body) without_skeleton.insert(one.stream);
@@ -243,6 +264,7 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
 }
 
 /// A name for the recovered file that differs from the damaged one's.
+/// The advice must work as written, so it must not overwrite the damaged file.
 std::string new_name(const std::string& path) {
   return path == "whole.mcap" ? "recovered.mcap" : "whole.mcap";
 }
@@ -250,6 +272,7 @@ std::string new_name(const std::string& path) {
 }  // namespace
 
 Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
+  // Findings of reading the file come first: they may explain all others.
   Findings findings = survey.findings;
   for (const std::string& file : survey.truncated) {
     findings.push_back({Severity::warning,
@@ -261,6 +284,7 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
   }
   append(findings, judge_end(path, survey.facts.has_value(), survey.ending));
   if (!survey.steps.empty()) {
+    // Several steps are one finding. The largest one shows how bad it was.
     const WallClockStep& worst = *std::max_element(
         survey.steps.begin(), survey.steps.end(), [](const auto& a, const auto& b) {
           return std::chrono::abs(a.by) < std::chrono::abs(b.by);
@@ -272,6 +296,7 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                         "UTC in it is the clock's of the beginning; time differences are right",
                         "let the machine's clock be set before recording: docs/time_server.md"});
   }
+  // The numbers that this check needs are only in a recording of kinalign.
   if (survey.facts) append(findings, gone(path, survey));
   if (survey.more_marks > 0) {
     findings.push_back({Severity::note,
@@ -280,6 +305,7 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                         "alignment leaves them out",
                         ""});
   }
+  // The count is in the end record. It is an error: these data existed and are lost.
   if (survey.end && survey.end->dropped > 0) {
     findings.push_back({Severity::error,
                         {path, 0, "every message that reached the recorder",

@@ -45,12 +45,15 @@ const char* name_of(ClockEvent::Kind kind) {
   return "";
 }
 
+/// The three kinds are suspended, backwards and wall_stepped.
 const char* name_of(HostClockEvent::Kind kind) {
   if (kind == HostClockEvent::Kind::suspended) return "suspended";
   return kind == HostClockEvent::Kind::backwards ? "backwards" : "wall_stepped";
 }
 
 /// The event in words, without the node's name.
+/// Sentences begin with the verb, since the node's name comes before them. "warning:" marks what
+/// needs an action.
 std::string what_happened(const NodeEvent& event, const NodeNames& names) {
   using Kind = NodeEvent::Kind;
   switch (event.kind) {
@@ -59,6 +62,7 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
     case Kind::started:
       return "restarted";
     case Kind::restarted:
+      // A boot id tells the host that the counter began anew. An old one mixes two lives of a node.
       return "warning: restarted with its old boot id; its firmware must choose a new boot id at "
              "each start";
     case Kind::twins:
@@ -79,6 +83,7 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
     case Kind::too_many:
       return fmt::format("warning: ignored, because {} nodes are connected already",
                          NodeTable::most_streams);
+    // wrong_key needs more than the kind, so it has a function of its own.
     case Kind::wrong_key:
       break;  // see wrong_key_text()
   }
@@ -89,6 +94,7 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
 /// have sent the frame.
 std::string wrong_key_text(const NodeEvent& event, const NodeNames& names) {
   const bool no_key = event.refusal == NodeRefusal::no_key;
+  // The three causes need three different actions.
   const char* what = no_key ? "frames with a MAC, but no --lab-key was given"
                      : event.refusal == NodeRefusal::no_mac ? "frames without a MAC"
                                                             : "frames signed with another key";
@@ -111,6 +117,7 @@ std::string event_text(const NodeEvent& event, const NodeNames& names) {
 }
 
 std::string event_json(const NodeEvent& event) {
+  // The keys are the same for all kinds; a kind adds those that it has.
   Json json{{"event", "node_event"},
             {"kind", kinalign::name_of(event.kind)},
             {"warning", is_warning(event.kind)}};
@@ -130,6 +137,7 @@ std::string event_json(const NodeEvent& event) {
 std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names) {
   using Kind = ClockEvent::Kind;
   const auto says = [&](const std::string& what) { return names.name(node_id) + ": " + what; };
+  // Without a size the step was found by a contradiction and not by a measurement.
   const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // the direction is not always known
   if (event.kind == Kind::step && !event.by) {
     return says("warning: its counter stepped, or its drift changes faster than assumed");
@@ -151,6 +159,7 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id, const Nod
                     by_ms));
   }
   if (event.kind == Kind::settled) return says("its counter runs evenly again");
+  // The kinds without a line are of use to programs only.
   return event.kind == Kind::relaxed ? says("its drift may change faster than assumed") : "";
 }
 
@@ -163,6 +172,7 @@ std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_
   return json_text(json);
 }
 
+/// Events of this machine concern all nodes at once.
 std::string event_text(const HostClockEvent& event) {
   using Kind = HostClockEvent::Kind;
   if (event.kind == Kind::suspended) {

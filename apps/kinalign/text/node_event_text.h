@@ -16,6 +16,7 @@
 namespace kinalign {
 
 /// "node 7: two nodes have this id (192.168.7.21:4000)"; no line end.
+/// `names` gives the places of lab.toml; without it a node is called by its id.
 std::string event_text(const NodeEvent& event, const NodeNames& names = {});
 std::string event_json(const NodeEvent& event);
 

@@ -7,6 +7,7 @@
 
 namespace kinalign {
 
+// A sender that is no node is called by its device.
 std::string sender_name(const std::string& stream, const std::string& node,
                         const std::string& place) {
   if (node.empty()) return stream;
@@ -15,6 +16,7 @@ std::string sender_name(const std::string& stream, const std::string& node,
 
 std::string sender_name(const std::string& stream, const std::string& node,
                         const RecordingSurvey& survey) {
+  // Places are found by "stream/node", as the recording states them.
   const auto place = survey.places.find(stream + "/" + node);
   return sender_name(stream, node, place == survey.places.end() ? "" : place->second);
 }
@@ -32,6 +34,7 @@ std::string NodeNames::short_name(std::uint32_t id) const {
 
 NodeNames node_names(const Lab& lab) {
   const auto nodes =
+      // A lab has at most one device of nodes, which stands for all of them.
       std::find_if(lab.devices.begin(), lab.devices.end(), [](const DeviceOptions& device) {
         const auto protocol = find_protocol(device.protocol);
         return protocol && row_of(*protocol).has_node_ids;

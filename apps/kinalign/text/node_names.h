@@ -22,6 +22,7 @@ std::string sender_name(const std::string& stream, const std::string& node,
 /// "mocap from 192.168.7.5:51234", "imu waist from 192.168.7.21:4000"
 std::string name_of(const CountedSender& sender, const RecordingSurvey& survey);
 
+/// The names of one device's nodes. A node without a place is called by its id.
 struct NodeNames {
   std::string device = "node";                  // the name if there is no lab file
   std::map<std::string, std::string> places{};  // by id: "7" gives "waist"

@@ -19,12 +19,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Milliseconds for people and for JSON.
 double ms(Duration d) { return 1e3 * seconds(d); }
 
+/// Certified: the true time lies inside of the stated interval if the assumptions about clocks
+/// hold.
 bool is_certified(const NodeStatus& status) {
   return status.stamp && status.stamp->certainty == Certainty::certified;
 }
 
+/// The words are values in JSON.
 const char* certainty_name(Certainty certainty) {
   if (certainty == Certainty::certified) return "certified";
   return certainty == Certainty::one_sided ? "one_sided" : "doubtful";
@@ -42,6 +46,8 @@ std::string pace_text(const NodeStatus& status, const ClockPair& now) {
   return status.rate_hz ? fmt::format("{:.1f}/s", *status.rate_hz) : "first frame";
 }
 
+/// The cause is found from the kind of stamp: no reply at all, one direction only, or a
+/// contradiction.
 std::string_view why_not_locked(const NodeStatus& status) {
   if (!status.stamp) return "no reply of this server has reached it";
   if (status.stamp->certainty == Certainty::one_sided) return "too few exchanges";
@@ -57,6 +63,7 @@ std::string words(NodeRefusal refusal) {
 
 /// Adds the members about the clock: drift, round trip, and the latest stamp with its certified
 /// interval.
+/// Must not be called before the node has a counter value.
 void add_clock(Json& json, const NodeStatus& status) {
   json["counter_ns"] = status.n->time_since_epoch().count();
   json["drift_ppm"] = 1e6 * status.drift;
@@ -66,6 +73,7 @@ void add_clock(Json& json, const NodeStatus& status) {
   const ClockStamp& stamp = *status.stamp;
   json["certainty"] = certainty_name(stamp.certainty);
   json["time_ns"] = json_ns(stamp.time);
+  // A one-sided stamp has only one end of the interval.
   if (stamp.earliest) json["earliest_ns"] = json_ns(*stamp.earliest);
   if (stamp.latest) json["latest_ns"] = json_ns(*stamp.latest);
   json["assumptions"] = to_string(stamp.assumptions);
@@ -79,15 +87,19 @@ std::string address_text(const NodeAddress& address) {
 
 std::string status_text(const NodeStatus& status, const ClockPair& now, std::string_view why) {
   std::string text = fmt::format("node {}  {}", status.node_id, pace_text(status, now));
+  // The share is over all frames by the node's own numbers.
   const std::string lost = share_text(status.lost, status.lost + status.accepted);
   if (!lost.empty()) text += ", " + lost + " lost";
   if (is_certified(status)) {
+    // A certified stamp has both ends.
     const Duration whole = *status.stamp->latest - *status.stamp->earliest;
     text += fmt::format(", ± {:.2f} ms, drift {:+.1f} ± {:.1f} ppm", ms(whole) / 2,
                         1e6 * status.drift, 1e6 * status.drift_deviation);
+    // A node without a counter value has nothing to lock to.
   } else if (status.n) {
     text += fmt::format(", not locked: {}", why.empty() ? why_not_locked(status) : why);
   }
+  // A clockless node has no counter, so only the mean delay is known.
   if (status.mean_way) text += fmt::format(", no counter: d {:.1f} ms", ms(*status.mean_way));
   if (has_round_trip(status)) text += fmt::format(", round trip {:.2f} ms", ms(*status.round_trip));
   if (status.battery_mv) text += fmt::format(", {:.2f} V", 1e-3 * *status.battery_mv);
@@ -106,6 +118,7 @@ std::string status_json(const NodeStatus& status) {
             {"lives", status.sessions},
             {"accepted", status.accepted},
             {"lost", status.lost},
+            // After a change of the key, this shows the nodes that still have to be flashed.
             {"old_key", status.old_key}};
   if (status.rate_hz) json["rate_hz"] = *status.rate_hz;
   if (status.battery_mv) json["battery_mv"] = *status.battery_mv;
@@ -117,6 +130,7 @@ std::string status_json(const NodeStatus& status) {
 
 std::string nodes_text(const std::vector<NodeStatus>& all) {
   if (all.empty()) return "";
+  // A node that is silent may have been locked when it stopped. It does not count.
   const auto is_locked = [](const auto& s) { return !s.silent && is_certified(s); };
   const auto locked = std::count_if(all.begin(), all.end(), is_locked);
   const auto silent = std::count_if(all.begin(), all.end(), [](const auto& s) { return s.silent; });
@@ -133,6 +147,7 @@ std::string pair_json(const ClockPair& pair) {
 
 std::string refused_text(const NodeCounts& counts) {
   std::string text;
+  // 0 is "not refused".
   for (std::size_t i = 1; i < node_refusals; ++i) {
     const auto refusal = static_cast<NodeRefusal>(i);
     if (counts.refusals[refusal] == 0) continue;
@@ -143,6 +158,7 @@ std::string refused_text(const NodeCounts& counts) {
 
 /// Groups the stated ids by the cause of the refusal. Ids are what a frame states; they are not
 /// proved.
+/// A set sorts the ids and names each once.
 std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts,
                                      const NodeNames& names) {
   std::map<NodeRefusal, std::set<std::uint32_t>> claimed;
@@ -152,6 +168,7 @@ std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCoun
   for (const auto& [refusal, ids] : claimed) {
     std::vector<std::string> who;
     for (const std::uint32_t id : ids) who.push_back(names.short_name(id));
+    // The list of claims is limited; further senders are only counted.
     const char* others = refused.others(refusal) ? " and others" : "";
     lines.push_back(fmt::format("{}: senders that call themselves {} {}{} ({} frames)",
                                 words(refusal), names.device, fmt::join(who, ", "), others,
@@ -161,6 +178,7 @@ std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCoun
 }
 
 std::string refused_lines(const NodeReceiver& receiver, const NodeNames& names) {
+  // Nothing is printed if nothing was refused.
   const std::string refused = refused_text(receiver.counts());
   std::string lines = refused.empty() ? "" : "  refused  " + refused + "\n";
   for (const std::string& line : claims_text(receiver.refused_nodes(), receiver.counts(), names)) {
@@ -172,6 +190,7 @@ std::string refused_lines(const NodeReceiver& receiver, const NodeNames& names) 
 /// Counts every datagram once in "received"; the other members say what became of it.
 std::string node_counts_json(const NodeReceiver& receiver) {
   const NodeCounts& counts = receiver.counts();
+  // Datagrams that were left out before the verdict are part of "received", so all members add up.
   Json json{
       {"event", "node_counts"},
       {"received", counts.verdicts.total() + receiver.not_unicast() + receiver.from_port_0()}};

@@ -20,6 +20,8 @@ inline std::int64_t json_ns(HostTime t) { return t.time_since_epoch().count(); }
 /// "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V"; for
 /// a silent node "node 7  silent since 2026-11-22T17:38:23Z, …". `why`: the reason why the node is
 /// not locked, if more is known than its stamp says.
+/// One line per node, so a table of nodes can be made of these lines. Parts that are not known are
+/// left out.
 std::string status_text(const NodeStatus& status, const ClockPair& now, std::string_view why = {});
 std::string status_json(const NodeStatus& status);
 /// "3 nodes, 2 locked, 1 silent". A silent node does not count as locked, whatever its last frame

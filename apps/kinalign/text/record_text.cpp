@@ -21,6 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The names of the device's nodes that have a place and have never sent.
+/// `nodes` of the device has id and place; the stream states the id.
 std::vector<std::string> unseen_nodes(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names;
   for (const auto& node : device.nodes) {  // clang 14 can't hand a structured binding on
@@ -45,6 +46,8 @@ PortCounts counts_of(const DeviceOptions& device, const LabStatus& status) {
 }
 
 /// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
+/// The kernel's filter drops foreign datagrams at a nodes' port, and a full socket drops frames.
+/// The numbers of the lost frames tell how many are surely foreign.
 std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
   if (!counts.sifted) return "dropped by the kernel";
   const std::uint64_t least = strays(counts, frames_lost);
@@ -55,12 +58,14 @@ std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
 
 /// The text about a device from which nothing has come yet.
 std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
+  // `links` counts connections, so it is 0 for UDP.
   const bool linked = counts.links > 0;
   const auto transport = find_transport(device.transport);
   if (transport == Transport::tcp) {
     return fmt::format("{} {}:{} yet", linked ? "nothing has come from" : "no connection to",
                        device.address, port);
   }
+  // The device connects to this program: it may not have been started.
   if (transport == Transport::tcp_listen && !linked) {
     return fmt::format("nobody has connected to port {} yet", port);
   }
@@ -79,11 +84,13 @@ const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStat
   const NodeStatus* found = nullptr;
   for (const NodeStatus& node : nodes) {
     if (std::to_string(node.node_id) != stream.node) continue;
+    // Two nodes of one id are recorded separately. The one that sent last is shown.
     if (found == nullptr || node.last_arrival > found->last_arrival) found = &node;
   }
   return found;
 }
 
+// A node's clock comes from its receiver, any other sender's from its stream.
 std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus* node) {
   if (node == nullptr) return stream.clock;
   if (!node->n || !node->stamp) return std::nullopt;
@@ -92,6 +99,7 @@ std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus
 
 std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names = unseen_nodes(device, status);
+  // Nodes without places are unknown in advance, so the device stands for them.
   if (names.empty() && !is_seen(device, status)) names.push_back(device.name);
   return names;
 }
@@ -102,6 +110,7 @@ std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
                                     std::pair(counts.refused, std::string("refused, not recorded")),
                                     std::pair(counts.cut, std::string("cut")),
                                     std::pair(counts.unsent, std::string("answers not sent"))}) {
+    // A count of 0 has no words.
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
   }
   return text;
@@ -109,6 +118,7 @@ std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
 
 std::string unusable_data(const PortCounts& counts, const std::string& to) {
   const std::uint64_t came = counts.dropped + counts.refused;
+  // Only a nodes' port is sifted, so only there can datagrams be foreign.
   if (!counts.sifted || came == 0) return "";
   return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
                      counts.refused == 0 ? "a frame of nodes" : "was let in");
@@ -133,6 +143,7 @@ std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status) {
     const std::uint16_t port = status.port_numbers.at(device.name);
     const PortCounts counts = counts_of(device, status);
     std::string what;
+    // The reason is about the whole port, so it is used only if no sender of the device is known.
     if (!is_seen(device, status)) what = unusable_data(counts, fmt::format("to port {}", port));
     if (what.empty()) what = status.ended ? "nothing came" : nothing_yet(device, counts, port);
     for (const std::string& name : unseen(device, status)) {
@@ -152,11 +163,14 @@ std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
     for (const StreamStatus& stream : status.streams) {
       if (stream.stream != device.name) continue;
       const bool silent = is_silent(stream, status.now);
+      // A restarted program has another port and is another sender, so one live sender is enough.
       alive = alive || !silent;
+      // A node with a place is required by itself.
       if (silent && !stream.place.empty()) names.push_back(name_of(stream));
     }
     const auto nodes = unseen_nodes(device, status);
     names.insert(names.end(), nodes.begin(), nodes.end());
+    // A device with stated nodes is missing if a node is; without nodes it is missing as a whole.
     if (!alive && device.nodes.empty()) names.push_back(device.name);
   }
   return names;
@@ -166,6 +180,7 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
   std::vector<StreamStatus> newest;
   for (const StreamStatus& stream : streams) {
     const auto same = std::find_if(newest.begin(), newest.end(), [&](const StreamStatus& other) {
+      // A reconnecting device has a new sender of the same name each time.
       return other.stream == stream.stream && other.sender == stream.sender &&
              other.node == stream.node;
     });
@@ -182,6 +197,7 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
 std::string counts_text(const SenderCounts& counts) {
   std::string text =
       fmt::format("{} messages, {:.1f} MB", grouped(counts.messages), megabytes(counts.bytes));
+  // The first count is separated by a semicolon, all others by commas.
   std::string_view between = "; ";
   for (const auto& [count, what] :
        {std::pair(counts.order.lost, "lost"), std::pair(counts.order.late, "late"),
@@ -212,6 +228,7 @@ std::string port_line(const std::string& name, const PortCounts& counts,
 /// removed from it.
 Json json_of(const StreamStatus& stream, const LabStatus& status) {
   Json json = Json::parse(
+      // The JSON of the recording's counts is the base, so both have the same members.
       to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));
   if (!stream.place.empty()) json["place"] = stream.place;
   json["rate_hz"] = stream.rate_hz;
@@ -228,6 +245,7 @@ Json json_of(const StreamStatus& stream, const LabStatus& status) {
   if (node == nullptr) return json;
   Json clock = Json::parse(status_json(*node));
   for (const char* said_above :
+       // These members are about the stream and stand in the object already.
        {"event", "stream", "node_id", "address", "accepted", "lost", "rate_hz", "battery_mv"}) {
     clock.erase(said_above);
   }

@@ -19,9 +19,11 @@
 namespace kinalign {
 
 /// A sender is silent if nothing came from it for this time.
+/// The table, the lines and the JSON use the same limit.
 inline constexpr Duration silent_after = std::chrono::seconds(2);
 
 /// A lab at one moment.
+/// Everything about a lab that the table, the lines and the JSON of record show.
 struct LabStatus {
   HostTime now{}, begun{};  // begun: when its ports were opened
   std::vector<StreamStatus> streams;
@@ -56,6 +58,7 @@ std::uint64_t frames_lost(const std::string& device, const std::vector<Sender>& 
 
 /// "181 datagrams came to port 6969, none a frame of nodes": for a nodes' port to which something
 /// came, though no node has sent. Empty if nothing came. `to`: "to port 6969".
+/// It tells a wrong port or protocol from a device that is switched off.
 std::string unusable_data(const PortCounts& counts, const std::string& to);
 
 /// The device's nodes that have places and sent nothing; the device itself if nothing came from it.

@@ -16,6 +16,7 @@ namespace kinalign {
 namespace {
 
 /// The streams of the report with one name: a device, or all nodes.
+/// Nodes of one device are many streams in the report. The summary shows them as one.
 struct Group {
   StreamReport sum;                 // the sums over all parts
   std::vector<StreamReport> parts;  // one, or one for each node's file
@@ -33,6 +34,7 @@ void add(Group& group, const StreamReport& s) {
   sum.inferred += s.inferred;
   sum.bridged += s.bridged;
   sum.unsure += s.unsure;
+  // One unknown part makes the whole unknown: the summary must not look better than the worst node.
   if (!s.worst_interval_ns) {
     sum.worst_interval_ns.reset();
   } else if (sum.worst_interval_ns) {
@@ -47,6 +49,7 @@ void add(Group& group, const StreamReport& s) {
 std::vector<Group> groups_of(const AlignmentReport& report) {
   std::vector<Group> groups;
   for (const StreamReport& s : report.streams) {
+    // A new name begins a new group. 0 is the neutral value for the maximum.
     if (groups.empty() || groups.back().sum.stream != s.stream) {
       Group group;
       group.sum.stream = s.stream;
@@ -72,6 +75,7 @@ std::uint64_t harm(const StreamReport& s) { return s.invalid + s.bridged; }
 /// ", worst node: wrist_left" if the nodes differ in `measure`.
 template <class Measure>
 std::string worst_node(const Group& group, Measure measure) {
+  // Equal nodes have no worst one.
   const auto less = [measure](const auto& a, const auto& b) { return measure(a) < measure(b); };
   const auto [least, most] = std::minmax_element(group.parts.begin(), group.parts.end(), less);
   if (measure(*least) == measure(*most)) return "";
@@ -84,6 +88,7 @@ std::string time_text(const Group& group, const Console& console) {
   if (group.sum.unsure > 0) {
     sure += ", " + share_text(group.sum.unsure, group.sum.samples) + " unknown";
   }
+  // The colour is that of a warning: without an interval nobody knows how far the times are off.
   if (!known || group.sum.unsure > 0) sure = console.paint(Colour::warning, sure);
   return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
 }
@@ -95,6 +100,7 @@ std::string time_line(std::vector<Group> groups, const std::string& reference,
                    [](const Group& a, const Group& b) { return doubt(a.sum) > doubt(b.sum); });
   std::string text;
   for (const Group& group : groups) {
+    // The reference defines the grid, so its time has no error against it.
     if (group.sum.stream == reference) continue;
     text += (text.empty() ? "  time   " : "   ") + time_text(group, console);
   }
@@ -106,6 +112,7 @@ std::string time_line(std::vector<Group> groups, const std::string& reference,
 std::string space_line(const SpaceReport& s) {
   const Eigen::AngleAxisd turn(s.transform.rotation);
   std::string how = "root onto root in every frame";
+  // The three methods of moving a stream: per frame (paper), fitted, or given.
   if (s.method == "fit") how = "fitted once per take";
   if (s.method == "given") how = "as given";
   std::string text =
@@ -113,6 +120,7 @@ std::string space_line(const SpaceReport& s) {
                   harmless(s.stream), harmless(s.onto), 100.0 * s.after_m, 100.0 * s.before_m,
                   turn.angle() * 180.0 / std::numbers::pi, how);
   if (!s.joints.empty()) {
+    // The report lists the joints with the largest residual first.
     const JointResidual& worst = s.joints.front();
     text +=
         fmt::format("; worst joint: {} {:.1f} cm", harmless(worst.joint), 100.0 * worst.after_m);
@@ -123,6 +131,7 @@ std::string space_line(const SpaceReport& s) {
 /// The line about a stream's gaps and doubtful samples. Empty if there are none.
 std::string gap_line(const Group& group) {
   const StreamReport& s = group.sum;
+  // A stream without a fault has no line, which keeps the summary short.
   if (s.gaps == 0 && harm(s) == 0 && s.inferred == 0) return "";
   std::vector<std::string> parts;
   if (s.gaps > 0) {
@@ -136,6 +145,7 @@ std::string gap_line(const Group& group) {
   share(s.inferred, "inferred");
   share(s.bridged, "interpolated over loss");
   std::string text = "  gaps   " + harmless(s.stream);
+  // The first part follows a space, all others a comma.
   for (const std::string& one : parts) text += (&one == parts.data() ? " " : ", ") + one;
   return text + worst_node(group, harm) + "\n";
 }
@@ -143,6 +153,8 @@ std::string gap_line(const Group& group) {
 /// The lines about gaps, the stream with the largest share of doubtful samples first.
 std::string gap_lines(std::vector<Group> groups) {
   const auto part = [](const Group& g) {
+    // The share decides and not the count, since streams have different rates. The maximum avoids a
+    // division by zero.
     return static_cast<double>(harm(g.sum)) / std::max(1.0, static_cast<double>(g.sum.samples));
   };
   std::stable_sort(groups.begin(), groups.end(),
@@ -154,6 +166,7 @@ std::string gap_lines(std::vector<Group> groups) {
 
 /// The most severe findings, a line each. Longer lists are left to `kinalign info`.
 std::string note_lines(const Findings& findings, const Console& console) {
+  // The list is expected to be sorted by severity.
   constexpr std::size_t most = 5;
   std::string text;
   for (std::size_t k = 0; k < std::min(most, findings.size()); ++k) {
@@ -181,6 +194,7 @@ std::string summary(const AlignmentReport& report, const std::string& out, const
   for (const SpaceReport& s : report.spaces) text += space_line(s);
   text += gap_lines(groups);
   text += note_lines(report.findings, console);
+  // The full report is in the take.
   if (!out.empty()) text += fmt::format("  see    kinalign info {}\n", harmless(out));
   return text;
 }

@@ -21,10 +21,12 @@ namespace kinalign {
 
 namespace {
 
+// The order is that of NTP's leap indicator, 0 to 3 (RFC 5905).
 constexpr std::array<std::string_view, 4> leap_names{"none", "insert", "delete", "unsynchronised"};
 
 std::string_view name_of(NtpLeap leap) { return leap_names[static_cast<std::size_t>(leap)]; }
 
+/// A reference id is shown like an IPv4 address, as NTP programs do.
 std::string reference_text(std::uint32_t id) {
   return fmt::format("{}.{}.{}.{}", id >> 24, id >> 16 & 0xff, id >> 8 & 0xff, id & 0xff);
 }
@@ -33,11 +35,13 @@ nlohmann::ordered_json state_json(const NtpServerState& state) {
   return {{"leap", name_of(state.leap)},
           {"stratum", state.stratum},
           {"reference_id", reference_text(state.reference_id)},
+          // Delays are in milliseconds. The precision is a power of two, in seconds.
           {"root_delay_ms", 1e3 * seconds(state.root_delay)},
           {"root_dispersion_ms", 1e3 * seconds(state.root_dispersion)},
           {"precision_log2_s", state.precision}};
 }
 
+/// "event" comes first, so a program can decide by the first member.
 nlohmann::ordered_json event_json(const std::string& event, const nlohmann::ordered_json& more) {
   nlohmann::ordered_json json{{"event", event}};
   json.update(more);
@@ -45,8 +49,10 @@ nlohmann::ordered_json event_json(const std::string& event, const nlohmann::orde
 }
 
 /// The settings that clients need.
+/// Lines to copy into the settings of a client. Without a known address the word ADDRESS stands in.
 std::string client_lines(const ServedPort& served) {
   const std::string host = served.reachable.empty() ? "ADDRESS" : served.reachable.front();
+  // Most small clients can't set a port.
   if (served.port != 123) {
     return fmt::format(
         "  clients  chrony: server {} port {} iburst\n"
@@ -68,17 +74,20 @@ std::string node_lines(const ServedPort& served) {
 }  // namespace
 
 std::string clock_text(const NtpServerState& state) {
+  // This state comes first, since all other members then mean nothing.
   if (state.leap == NtpLeap::unsynchronised) {
     return "not synchronised and no reference: clients will not follow it";
   }
   const std::string leap =
       state.leap == NtpLeap::none ? "" : ", a leap second at the end of the day (UTC)";
+  // --local-stratum makes the machine the reference of the lab.
   if (state.reference_id == local_reference_id) {
     return fmt::format("not synchronised: this machine is the reference, stratum {}{}",
                        state.stratum, leap);
   }
   const Duration most = state.root_dispersion + state.root_delay / 2;  // RFC 5905: root distance
   const double ms = 1e3 * seconds(most);
+  // Below 0.1 ms microseconds are easier to read.
   const std::string within =
       ms < 0.1 ? fmt::format("{:.0f} us", 1e3 * ms) : fmt::format("{:.1f} ms", ms);
   return fmt::format("synchronised within {}, stratum {}{}", within, state.stratum, leap);
@@ -98,6 +107,7 @@ std::string start_json(const ServedPort& served, const NtpServerState& state) {
   nlohmann::ordered_json json = event_json(
       "started",
       {{"addresses", served.addresses}, {"port", served.port}, {"reachable", served.reachable}});
+  // Both members exist only if nodes are served.
   if (served.node_port) {
     json["node_port"] = *served.node_port;
     json["node_keys"] = served.keyed;
@@ -111,6 +121,7 @@ std::string clock_json(const NtpServerState& state) {
 }
 
 std::string utc_text(Time t) {
+  // Fractions of a second are cut, as in the log of chronyd.
   const auto whole = std::chrono::floor<std::chrono::seconds>(t.time_since_epoch());
   return fmt::format("{:%FT%TZ}", fmt::gmtime(static_cast<std::time_t>(whole.count())));
 }
@@ -123,6 +134,7 @@ std::string counts_text(const NtpCounts& counts) {
   const std::uint64_t answered = counts[NtpOutcome::answered];
   std::string text =
       fmt::format("{} NTP request{} answered", grouped(answered), answered == 1 ? "" : "s");
+  // Outcome 0 is "answered", which is printed above.
   for (std::size_t i = 1; i < ntp_outcomes; ++i) {
     const auto outcome = static_cast<NtpOutcome>(i);
     std::string name(name_of(outcome));
@@ -134,6 +146,7 @@ std::string counts_text(const NtpCounts& counts) {
 
 std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s) {
   nlohmann::ordered_json json{{"event", event},
+                              // Three decimals are milliseconds.
                               {"elapsed_s", std::round(elapsed_s * 1e3) / 1e3},
                               {"received", counts.total()}};
   for (std::size_t i = 0; i < ntp_outcomes; ++i) {

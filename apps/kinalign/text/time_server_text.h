@@ -13,6 +13,7 @@
 namespace kinalign {
 
 /// The addresses and ports of the server.
+/// With port 0 the system chose the ports, so these are the real ones.
 struct ServedPort {
   std::vector<std::string> addresses;  // addresses that it listens on: "0.0.0.0", "::1"
   std::vector<std::string> reachable;  // addresses of this host, for clients
