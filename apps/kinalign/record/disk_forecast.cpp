@@ -23,6 +23,7 @@ std::string minutes_text(double minutes) {
 void DiskForecast::look(HostTime now, std::uint64_t written, std::uint64_t free) {
   constexpr Duration window = std::chrono::seconds(30);
   free_ = free;
+  // Old looks are removed after the new one is added, so the deque is never empty here.
   looks_.push_back({now, written});
   while (now - looks_.front().at > window) looks_.pop_front();
 }
@@ -30,10 +31,12 @@ void DiskForecast::look(HostTime now, std::uint64_t written, std::uint64_t free)
 std::optional<double> DiskForecast::minutes_left() const {
   constexpr double least_s = 2.0;  // a rate over less time is too inaccurate
   if (looks_.empty()) return std::nullopt;
+  // The rate is the difference of both ends over their time; the looks in between do not matter.
   const auto& [begin, written_before] = looks_.front();
   const auto& [end, written] = looks_.back();
   const double s = seconds(end - begin);
   if (s < least_s || written <= written_before) return std::nullopt;
+  // Within the reserve nothing is left.
   const double left = *free_ > reserve ? static_cast<double>(*free_ - reserve) : 0.0;
   return left * s / static_cast<double>(written - written_before) / 60.0;
 }
@@ -41,6 +44,8 @@ std::optional<double> DiskForecast::minutes_left() const {
 bool DiskForecast::take_warning() {
   const auto left = minutes_left();
   if (!left) return false;
+  // The loop finds the smallest step that has been reached. Steps that were skipped give one
+  // warning only.
   double step = warned_;
   for (const double minutes : std::array{10.0, 5.0, 2.0, 1.0}) {
     if (*left <= minutes) step = minutes;
@@ -53,6 +58,7 @@ bool DiskForecast::take_warning() {
 std::string disk_text(const DiskForecast& forecast, std::uint64_t bytes, const std::string& path) {
   const auto left = forecast.minutes_left();
   const auto free = forecast.free();
+  // The second member is in decimal gigabytes, as disks are sold.
   const std::string room = free ? fmt::format("{:.1f} GB", megabytes(*free) / 1e3) : "";
   std::string text = "disk  ";
   if (left) {

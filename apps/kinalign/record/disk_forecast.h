@@ -11,9 +11,12 @@
 
 namespace kinalign {
 
+/// Invariant: looks_ holds the looks of the last half minute in their order, so its ends give the
+/// rate.
 class DiskForecast {
  public:
   /// Bytes that stay free: for the rest of the recording, its index, and the machine's own needs.
+  /// A recording whose disk is quite full could not even write its index.
   static constexpr std::uint64_t reserve = std::uint64_t{64} << 20;
 
   /// Called about once a second. `written`: all bytes so far; `free`: the free bytes of the disk.

@@ -14,6 +14,8 @@
 namespace kinalign {
 
 /// The places that state the lab.
+/// A device may be stated in a file, by a flag, or in both. The flag then changes the device of the
+/// file.
 struct LabSources {
   std::string file;               // the file with tables [device.NAME]; empty: none
   std::set<std::string> by_flag;  // devices that a --device flag states

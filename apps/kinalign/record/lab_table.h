@@ -11,6 +11,7 @@
 namespace kinalign {
 
 /// A line of the table. `bad`: something required is missing, or something was lost.
+/// Layout is finished; the printer only adds colours.
 struct TableLine {
   std::string text;
   bool bad = false;
@@ -25,6 +26,7 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::s
 
 /// The table in `rows` lines. If there are more, bad lines come first, and the last line states the
 /// number of the others.
+/// The table must not be longer than the terminal, since lines that scroll away can't be erased.
 std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows);
 
 }  // namespace kinalign

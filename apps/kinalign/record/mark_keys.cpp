@@ -17,6 +17,8 @@ bool is_enter(char key) { return key == '\n' || key == '\r'; }
 
 /// Removes the last character, which may have several bytes (UTF-8).
 void erase_last(std::string& text) {
+  // Bytes 10xxxxxx continue a character. The loop stops at its first byte, which the next line
+  // removes.
   while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) {
     text.pop_back();
   }
@@ -36,11 +38,13 @@ std::optional<Mark::Kind> kind_of(char key) {
 std::string single_keys(std::string_view sent) {
   std::string keys;
   for (std::size_t i = 0; i < sent.size(); ++i) {
+    // The byte after Esc decides. An Esc at the end is the key itself.
     const char next = sent[i] == escape && i + 1 < sent.size() ? sent[i + 1] : '\0';
     if (next != '[' && next != 'O') {
       keys += sent[i];
       continue;
     }
+    // i stands on the last byte of the sequence afterwards, and the loop's ++i leaves it behind.
     i += 2;
     while (next == '[' && i < sent.size() && sent[i] >= 0x20 && sent[i] < 0x40) ++i;
   }
@@ -49,20 +53,25 @@ std::string single_keys(std::string_view sent) {
 
 std::optional<std::pair<Mark, HostTime>> MarkKeys::take(char key, HostTime now) {
   if (!text_) {
+    // Enter begins a text. It completes no mark yet.
     if (is_enter(key)) text_ = Text{"", now};
     const auto kind = kind_of(key);
     if (!kind) return std::nullopt;
     return std::pair(Mark{*kind, "", std::nullopt, ""}, now);
   }
   if (is_enter(key)) {
+    // The text ends whatever it holds: an empty or illegal one is dropped.
     const Text done = *std::exchange(text_, std::nullopt);
     if (done.text.empty() || !is_mark_text(done.text)) return std::nullopt;
+    // The stamp is that of the first Enter: the moment that the user wanted to mark, not the end of
+    // typing.
     return std::pair(Mark{Mark::Kind::text, done.text, std::nullopt, ""}, done.begun);
   }
   if (key == escape) {
     text_.reset();
   } else if (key == backspace || key == del) {
     erase_last(text_->text);
+    // Control characters may not stand in a mark. Bytes of UTF-8 are above 0x80 and pass.
   } else if ((static_cast<unsigned char>(key) >= 0x20 || key == '\t') &&
              text_->text.size() < most_text) {
     text_->text += key;
@@ -76,6 +85,7 @@ std::optional<std::string> MarkKeys::typed() const {
 
 Keyboard::Keyboard() {
   termios mode{};
+  // A program in the background that changed the terminal would be stopped by the system.
   const bool ours = ::isatty(STDIN_FILENO) != 0 && ::tcgetpgrp(STDIN_FILENO) == ::getpgrp() &&
                     ::tcgetattr(STDIN_FILENO, &mode) == 0;
   if (!ours) return;
@@ -95,10 +105,12 @@ std::optional<int> Keyboard::fd() const {
 }
 
 std::string Keyboard::read() {
+  // poll() keeps the read from waiting: without ICANON a read still waits for one byte.
   pollfd waiting{STDIN_FILENO, POLLIN, 0};
   if (!fd() || ::poll(&waiting, 1, 0) <= 0) return {};
   std::array<char, 64> keys{};
   const ssize_t got = ::read(STDIN_FILENO, keys.data(), keys.size());
+  // The mode can't be restored on a closed terminal.
   if (got <= 0) before_.reset();  // the terminal was closed
   return {keys.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))};
 }

@@ -21,6 +21,8 @@ inline constexpr const char* mark_keys_text =
 /// arrow (Esc and more), are left out.
 std::string single_keys(std::string_view sent);
 
+/// Two states: single keys are marks, or a text is being typed. In the second state s, e and t are
+/// letters.
 class MarkKeys {
  public:
   /// The mark that a key pressed at `now` completes, with its stamp; absent if it completes none.
@@ -38,6 +40,8 @@ class MarkKeys {
 
 /// The keys of this program's terminal one by one, not echoed. No keys come if stdin is no
 /// terminal, or if another program is in its foreground.
+/// The mode of the terminal is changed for the whole program, so it must be restored before the
+/// program ends in any way.
 class Keyboard {
  public:
   Keyboard();

@@ -37,6 +37,7 @@ Usage describe_record(RecordJob& o) {
        &o.live_port, 0.0, 65535.0}};
   for (const Field& field : describe(o.options)) usage.settings.push_back(field);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    // The checks here need no file. Those that need lab.toml are in session_options().
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
     if (common.out.ends_with(".mcap")) {
       return Failure(Error{"--out", 0,
@@ -53,6 +54,7 @@ Usage describe_record(RecordJob& o) {
     RecordJob flags = o;  // ports of marks are checked later, together with the devices of the file
     flags.marks_port.reset();
     flags.trigger_port.reset();
+    // The call is for its error: a wrong --device is wrong use.
     KA_TRY(lab_of(flags, {}));
     return {};
   };
@@ -63,18 +65,25 @@ Usage describe_record(RecordJob& o) {
 /// a recording in order.
 Result<int> run(RecordJob& o, Call& call) {
   Console& console = call.console;
+  // The order matters: outputs never wait, then signals are noted, then memory is taken, all before
+  // the first thread and socket.
   console.never_wait();
   take_every_signal();
   keep_memory(waiting_room);
   RecordingSession::Options options = KA_TRY(session_options(o, call));
   KA_TRY(make_folder(call.common.out));
+  // The ports of devices and the receiver of nodes have a reader of the clocks each.
   SystemClocks ports_clock, nodes_clock;
+  // Only opening ports can fail with the names of devices, so the advice is set for this call
+  // alone.
   console.if_it_fails(
       lab_port_advice(options.lab, sources_of(o, call), o.marks_port, o.trigger_port));
   const auto session = KA_TRY(RecordingSession::open(
       std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
   console.if_it_fails({});
+  // RecordRun lives only for this line. Its destructor restores the terminal.
   const int code = RecordRun(o, call, *session)();
+  // Live clients get the end of the stream after the last take is on the disk.
   session->end_live();
   take_signals();  // from here on a signal may end the program at once
   return code;

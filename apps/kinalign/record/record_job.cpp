@@ -27,12 +27,14 @@ namespace {
 /// setting in a file; then it names the file and line.
 Failure refuse_lab(Error error, Call& call) {
   for (const char* name : {"marks_port", "trigger_port"}) {
+    // A port for marks may come from a file. The user needs the place where it stands.
     if (error.file != flag_of(name)) continue;
     const SettingPlace place = setting_place("record", name, call);
     if (!place.file.empty()) error.file = place.file;
     error.line = place.line;
   }
   const bool in_file = error.line > 0;
+  // refuse() makes it wrong use, with exit code 2.
   Failure refused = call.console.refuse(std::move(error));
   if (in_file) {
     call.console.if_it_fails(
@@ -48,6 +50,7 @@ struct LabFile {
 };
 /// Reads the project's settings file, if there is one. Faults in its devices are wrong use.
 Result<LabFile> read_lab_file(Call& call) {
+  // A settings file is written by hand; a larger one is refused.
   constexpr std::size_t most_bytes = std::size_t{1} << 20;
   const std::string path = project_settings(call.surroundings, call.common.config);
   if (path.empty()) return LabFile{};
@@ -55,15 +58,19 @@ Result<LabFile> read_lab_file(Call& call) {
   auto devices = read_devices(lab.text, path);
   if (!devices) return refuse_lab(std::move(devices).error(), call);
   lab.devices = *std::move(devices);
+  // The text goes into the recording only if it describes the lab.
   if (lab.devices.empty()) lab.text.clear();
   return lab;
 }
 
+/// Empty if the system has no name. It becomes a fact of the recording.
 std::string host_name() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
+/// Some streams have rotations only. Without a skeleton they can be recorded but not shown or
+/// aligned.
 bool needs_skeleton(const DeviceOptions& device) {
   const auto protocol = find_protocol(device.protocol);
   return protocol && row_of(*protocol).needs_skeleton;
@@ -78,6 +85,7 @@ std::string without_skeleton(const std::string& device) {
 
 /// Reads the lab's key. The key of the nodes' device counts unless a flag or setting names another.
 /// `named`: the device's key of the settings file for the error; empty for a flag.
+/// The advice is for reading the key only, and is removed after it.
 Result<void> read_key(Call& call, const std::string& path, const std::string& named,
                       RecordingSession::Options& options) {
   call.console.if_it_fails([named](const Error& error) {
@@ -92,6 +100,7 @@ Result<void> read_key(Call& call, const std::string& path, const std::string& na
 
 Result<void> read_skeleton(Call& call, const DeviceOptions& device, const std::string& named,
                            RecordingSession::Options& options) {
+  // The error is about the BVH; the advice tells where it is named.
   call.console.if_it_fails([named](const Error&) { return std::vector<std::string>{named}; });
   options.skeletons[device.name] = KA_TRY(read_bvh_head(call.surroundings.files, device.skeleton));
   call.console.if_it_fails({});
@@ -101,6 +110,7 @@ Result<void> read_skeleton(Call& call, const DeviceOptions& device, const std::s
 /// Reads the files that the devices need besides lab.toml.
 Result<void> read_files(const RecordJob& job, Call& call, RecordingSession::Options& options) {
   const LabSources sources = sources_of(job, call);
+  // A flag or setting wins over the devices' own keys.
   if (!job.lab_key.empty()) KA_TRY(read_key(call, job.lab_key, "", options));
   for (const DeviceOptions& device : options.lab.devices) {
     if (!device.lab_key.empty() && job.lab_key.empty()) {
@@ -109,6 +119,7 @@ Result<void> read_files(const RecordJob& job, Call& call, RecordingSession::Opti
     if (!device.skeleton.empty()) {
       KA_TRY(read_skeleton(call, device, named_by("skeleton", device, sources), options));
     } else if (needs_skeleton(device)) {
+      // Recording goes on: a skeleton can still be given to `align`.
       call.console.note(without_skeleton(device.name));
     }
   }
@@ -124,6 +135,7 @@ std::optional<std::uint16_t> port_of(const std::optional<std::int64_t>& port) {
 Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file) {
   Lab lab{std::move(in_file), job.options};
   std::set<std::string> named;
+  // A flag names each device once. A device of the file may be changed by one flag.
   for (const std::string& text : job.devices) {
     const auto device = parse_device(text);
     if (!device) {
@@ -133,6 +145,7 @@ Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file) {
       return Failure(
           Error{"--device", 0, "devices of different names", shown(device->name) + " twice"});
     }
+    // come_from() changes the device of that name, or adds it.
     come_from(lab, *device);
   }
   KA_TRY(validate(lab));
@@ -143,6 +156,7 @@ Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file) {
 LabSources sources_of(const RecordJob& job, const Call& call) {
   LabSources sources{project_settings(call.surroundings, call.common.config), {}};
   for (const std::string& text : job.devices)
+    // parse_device() has accepted these texts before, so each has a '='.
     sources.by_flag.insert(text.substr(0, text.find('=')));
   return sources;
 }
@@ -157,6 +171,7 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
     return call.console.refuse(
         Error{"--device", 0, "at least one device, or a lab.toml for --config", "none"});
   }
+  // Nothing could ever start the take.
   if (job.wait && !job.marks_port && !job.trigger_port && ::isatty(STDIN_FILENO) == 0) {
     return call.console.refuse(
         Error{"--wait", 0, "--marks-port, --trigger-port or a keyboard for the start", "none"});
@@ -166,6 +181,7 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
   options.trigger_port = port_of(job.trigger_port);
   options.live_port = port_of(job.live_port);
   options.host = host_name();
+  // The secret is new for each run.
   options.desk.secret = KA_TRY(new_secret());
   KA_TRY(read_files(job, call, options));
   return options;

@@ -14,6 +14,8 @@
 
 namespace kinalign {
 
+/// The values of the flags and settings of `record`. `options` holds those that the library
+/// describes itself.
 struct RecordJob {
   std::string subject, action;
   std::vector<std::string> devices;
@@ -33,6 +35,7 @@ LabSources sources_of(const RecordJob& job, const Call& call);
 
 /// The options with all files read that the devices need. Problems of the lab are refused by the
 /// console (exit code 2).
+/// It opens no socket and writes no file, so a fault here leaves nothing behind.
 Result<RecordingSession::Options> session_options(const RecordJob& job, Call& call);
 
 }  // namespace kinalign

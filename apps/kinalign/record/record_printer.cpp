@@ -53,6 +53,7 @@ RecordPrinter::RecordPrinter(RecordingSession& session, Console& console)
       clock_lines_(names_),
       begun_(session.now()) {}
 
+// Every complaint goes to people and to programs, and is written at once.
 void RecordPrinter::complain(const std::string& text, const Json& event) {
   console_.complain(harmless("kinalign record: " + text));
   console_.print_json(json_text(event));
@@ -67,6 +68,7 @@ void RecordPrinter::print_waiting() {
 }
 
 /// Prints the oldest take's file once, as soon as it is begun.
+/// The file is begun by the disk's thread, so its name is known some time after the take's start.
 void RecordPrinter::print_start() {
   if (session_.takes().empty() || started_.lock() == session_.takes().front()) return;
   const DiskStatus disk = session_.takes().front()->disk.status();
@@ -95,6 +97,7 @@ void RecordPrinter::print(const ReceivedMark& received) {
 /// Prints events ten times a second, and the status and the table once a second.
 void RecordPrinter::look(const std::optional<std::string>& typed) {
   print_start();
+  // The first output is always that of the ports.
   if (!ports_printed_) return;
   for (const ReceivedMark& mark : session_.take_marks()) print(mark);
   const HostTime now = session_.now();
@@ -102,10 +105,12 @@ void RecordPrinter::look(const std::optional<std::string>& typed) {
   next_look_ = now + 100ms;
   print_events();
   const bool second = now >= next_second_;
+  // A text that is being typed is shown at once.
   if (!second && !(console_.shows() && typed)) return;
   const RecordStatus status = status_now(session_, begun_);
   if (second) {
     next_second_ = now + 1s;
+    // Without a take nothing is written, so there is no forecast.
     if (session_.recording()) look_at_disk(status);
     print_unseen(status.lab);
     print_silent(status.lab);
@@ -144,6 +149,7 @@ void RecordPrinter::print_node_events(NodeReceiver& nodes) {
 
 /// Prints lost messages at once, and then each time the number has doubled.
 void RecordPrinter::print_dropped(std::uint64_t dropped) {
+  // Doubling keeps a long fault from printing thousands of lines.
   if (dropped == 0 || dropped < 2 * dropped_) return;
   dropped_ = dropped;
   complain(fmt::format("{} messages lost: memory is full, and the disk does not take them",
@@ -155,6 +161,7 @@ void RecordPrinter::print_dropped(std::uint64_t dropped) {
 /// Updates the forecast of the disk, ends the take if the disk is full, and warns before. Bytes
 /// that still wait in memory count as written.
 void RecordPrinter::look_at_disk(const RecordStatus& status) {
+  // A new take begins with a new forecast and new counts.
   if (forecast_of_.lock() != session_.takes().back()) {
     forecast_of_ = session_.takes().back();
     forecast_ = {};
@@ -163,8 +170,10 @@ void RecordPrinter::look_at_disk(const RecordStatus& status) {
   const DiskStatus& disk = *status.disk;
   print_dropped(disk.dropped);
   if (!disk.free_bytes) return;
+  // Bytes that wait in memory will be on the disk soon, so they are taken from its free space.
   const std::uint64_t to_write = std::min(status.waiting_bytes, *disk.free_bytes);
   forecast_.look(status.lab.now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
+  // exchange() makes it a single message: the disk stays full until the take has ended.
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
     complain(fmt::format("the disk has {} MiB left; the take ends here, in order",
                          *forecast_.free() >> 20U),
@@ -201,8 +210,10 @@ void RecordPrinter::print_silent(const LabStatus& status) {
 
 void RecordPrinter::print(const Finding& finding) {
   std::string lines = finding_lines({finding}, console_);
+  // finding_lines() ends with a line end of its own.
   lines.pop_back();  // complain() adds the line end
   console_.complain(lines);
+  // A warning changes the exit code of the take.
   warned_ = warned_ || finding.severity != Severity::note;
   console_.print_json(json_text(Json{{"event", "finding"},
                                      {"severity", std::string(to_string(finding.severity))},
@@ -219,6 +230,7 @@ void RecordPrinter::print(const HostClockEvent& event) {
 void RecordPrinter::print(const PartFailure& failure) {
   const std::string why = to_string(failure.why);
   complain(
+      // Without a next file the part is kept in memory.
       why + ": " +
           (failure.next.empty() ? "kept in memory and tried again" : "goes on in " + failure.next),
       Json{{"event", "disk_failed"}, {"what", why}, {"goes_on_in", failure.next}});
@@ -257,6 +269,7 @@ std::string RecordPrinter::disk_line() const {
   if (session_.takes().empty()) return "waiting for a start";
   const DiskStatus oldest = session_.takes().front()->disk.status();
   if (session_.takes().front()->end && !oldest.finished && !oldest.paths.empty()) {
+    // The end of the last take may be written while the next one is recorded.
     return "disk  writes the end of " + oldest.paths.back();
   }
   const DiskStatus disk = session_.takes().back()->disk.status();
@@ -269,11 +282,13 @@ void RecordPrinter::show(const RecordStatus& status, const std::optional<std::st
   if (!console_.shows()) return;
   constexpr std::size_t below = 2;  // the disk's line and the line of keys
   std::vector<std::pair<std::string, Colour>> lines;
+  // The subtraction can't go below zero on a terminal of one line.
   const std::size_t rows = console_.rows() - std::min(below, console_.rows());
   for (const TableLine& line :
        fitted(lab_table(session_.lab(), status.lab, console_.columns()), rows)) {
     lines.emplace_back(harmless(line.text), line.bad ? Colour::bad : Colour::plain);
   }
+  // Ten minutes is the first step of the warnings.
   const auto left = forecast_.minutes_left();
   lines.emplace_back(harmless(disk_line()), left && *left < 10 ? Colour::bad : Colour::plain);
   lines.emplace_back(typed ? "text: " + harmless(*typed) : mark_keys_text, Colour::plain);
@@ -283,6 +298,7 @@ void RecordPrinter::show(const RecordStatus& status, const std::optional<std::st
 /// Prints the result of a take, or that it was given up before it had a file.
 RecordStatus RecordPrinter::print_end() {
   print_start();
+  // Events that came with the last turn belong to this take.
   print_events();
   RecordStatus status = status_at_end(session_, begun_);
   const DiskStatus& disk = *status.disk;

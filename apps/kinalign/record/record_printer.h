@@ -15,6 +15,8 @@
 
 namespace kinalign {
 
+/// Runs in the thread of the session. Lines are printed once for each change; the table and the
+/// JSON status once a second. Weak pointers tell takes apart without keeping them.
 class RecordPrinter {
  public:
   RecordPrinter(RecordingSession& session, Console& console);
@@ -37,6 +39,7 @@ class RecordPrinter {
   RecordStatus print_end();
 
   /// The disk has only its reserve left: the take has to end.
+  /// Never reset: a full disk ends the recording, not only the take.
   bool disk_full() const { return disk_full_; }
   /// True if a warning about unusable data was printed since the last call.
   bool take_warned() { return std::exchange(warned_, false); }

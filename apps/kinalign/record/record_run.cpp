@@ -25,6 +25,7 @@ constexpr Duration waiting_turn = 5ms;  // the same while the disk is waited for
 }  // namespace
 
 Result<void> make_folder(const std::string& folder) {
+  // The result is checked instead of the error: a folder that exists already is no fault.
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (std::error_code none; std::filesystem::is_directory(folder, none)) return {};
@@ -33,6 +34,7 @@ Result<void> make_folder(const std::string& folder) {
 }
 
 int RecordRun::operator()() {
+  // The path is found when a take begins, since the takes before it have taken their names by then.
   const auto free_path = [folder = call_.common.out, subject = job_.subject, action = job_.action] {
     (void)make_folder(folder);  // the folder may have been removed; if it can't be made, opening
                                 // the file fails
@@ -40,6 +42,7 @@ int RecordRun::operator()() {
   };
   const TakePlan plan{free_path, job_.subject, job_.action};
   using Starts = RecordingSession::Starts;
+  // Without --wait the take begins at once, without a mark.
   if (job_.wait) {
     session_.obey_marks(plan, job_.repeat ? Starts::each : Starts::next);
   } else {
@@ -48,11 +51,13 @@ int RecordRun::operator()() {
   std::size_t takes = 0;
   int worst = 0;
   std::vector<std::string> faulty;
+  // The oldest take is finished first, even if the next one has begun.
   for (; wait_for_take(); ++takes) {
     const std::shared_ptr<SessionTake> take = session_.takes().front();
     const int code = record(*take);
     session_.release_take();
     worst = std::max(worst, code);
+    // Without --repeat there is one take, whose code is that of the verb.
     if (!job_.repeat) return worst;
     const auto paths = take->disk.status().paths;
     if (code != 0) faulty.push_back(paths.empty() ? "one that never had a file" : paths.front());
@@ -67,13 +72,16 @@ int RecordRun::operator()() {
 
 /// One turn: receives for at most that time, handles keys and Ctrl-C, prints.
 void RecordRun::turn(Duration patience) {
+  // The keyboard is waited for together with the sockets, so a key ends the wait.
   session_.turn(patience, keyboard_.fd());
   for (const char key : single_keys(keyboard_.read())) {
     if (const auto pressed = keys_.take(key, session_.now())) {
+      // The stamp is the time at which the key was read.
       session_.mark({pressed->first, "keyboard", ""}, pressed->second);
     }
   }
   printer_.look(keys_.typed());
+  // take_every_signal() clears the noted signal, so a second Ctrl-C can be noticed.
   if (interrupted()) {
     take_every_signal();
     pressed_again_ = ends();
@@ -84,9 +92,11 @@ void RecordRun::turn(Duration patience) {
 
 /// Ends the take when its seconds are over or recording ends.
 void RecordRun::end_if_over() {
+  // Marks that start a take are ignored from here on.
   if (ends()) session_.obey_no_start();
   if (!session_.recording()) return;
   const HostTime begun = session_.takes().back()->begun;
+  // --seconds counts from the start of the newest take.
   const bool over = job_.seconds && seconds(session_.now() - begun) >= *job_.seconds;
   if (over || ends()) session_.stop();
 }
@@ -101,6 +111,7 @@ bool RecordRun::wait_for_take() {
 /// Records a take to its end and writes it. Returns its exit code.
 int RecordRun::record(SessionTake& take) {
   record_until_end(take);
+  // After a single take recording ends, whatever ended it.
   if (!job_.repeat) ends_ = true;
   write_rest(take);
   return exit_code(printer_.print_end());
@@ -111,8 +122,10 @@ int RecordRun::record(SessionTake& take) {
 void RecordRun::record_until_end(SessionTake& take) {
   const HostTime begun = session_.now();
   bool slow = false, refused = false;
+  // The copy of the status is taken anew after each turn, since the disk's threads change it.
   for (DiskStatus disk = take.disk.status(); !take.end && !disk.finished;
        disk = take.disk.status()) {
+    // A short turn notices soon that the file has begun.
     turn(disk.paths.empty() ? waiting_turn : one_turn);
     if (!disk.paths.empty()) continue;
     if (disk.refused && !std::exchange(refused, true)) {
@@ -122,6 +135,7 @@ void RecordRun::record_until_end(SessionTake& take) {
         take.disk.give_up();
       }
     }
+    // A disk that does not answer is reported once after 2 s.
     if (!refused && session_.now() - begun > 2s && !std::exchange(slow, true)) {
       printer_.print_slow_begin();
     }
@@ -139,6 +153,7 @@ void RecordRun::write_rest(SessionTake& take) {
     const HostTime now = session_.now();
     if (disk.refused && !refused) {
       refused = now;
+      // Only a Ctrl-C after the message counts, since the user did not know of the fault before.
       pressed_again_ = false;
       printer_.print_refused_end(*disk.refused, ends());
     } else if (!refused && now - begun > 2s && !std::exchange(slow, true)) {
@@ -147,6 +162,7 @@ void RecordRun::write_rest(SessionTake& take) {
     }
     turn(waiting_turn);
     const bool again = (refused || slow) && std::exchange(pressed_again_, false);
+    // A disk that hangs in the kernel can't be given up; only the process can end.
     if (again && !refused) leave();
     if (again || (refused && now - *refused > 30s)) take.disk.give_up();
   }
@@ -177,6 +193,7 @@ int RecordRun::exit_code(const RecordStatus& status) {
     call_.console.report(*disk.refused);
     return failed;
   }
+  // A second file means that the disk failed in between.
   const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !printer_.disk_full();
   return whole && status.missing.empty() && !warned ? 0 : 1;
 }

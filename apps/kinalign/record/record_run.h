@@ -13,6 +13,8 @@
 
 namespace kinalign {
 
+/// Invariant: the oldest take of the session is the one that is recorded or written here. It is
+/// released after its end was printed.
 class RecordRun {
  public:
   RecordRun(const RecordJob& job, Call& call, RecordingSession& session)
@@ -31,6 +33,7 @@ class RecordRun {
   void record_until_end(SessionTake& take);
   void write_rest(SessionTake& take);
   int exit_code(const RecordStatus& status);
+  // Ends the process without destructors; see the definition.
   [[noreturn]] void leave();
   void print_takes(std::size_t takes, std::vector<std::string> faulty, int worst);
 
@@ -40,6 +43,7 @@ class RecordRun {
   RecordPrinter printer_;
   Keyboard keyboard_;
   MarkKeys keys_;
+  // True after the first Ctrl-C, or after the only take. No new take begins then.
   bool ends_ = false;
   bool pressed_again_ = false;  // another Ctrl-C after the one that ended recording
 };

@@ -12,6 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The parts that both kinds of status have: ports, marks, live clients, bytes in memory.
 RecordStatus status_of(RecordingSession& session, LabStatus lab) {
   RecordStatus status;
   status.lab = std::move(lab);
@@ -30,18 +31,22 @@ RecordStatus status_now(RecordingSession& session, HostTime begun) {
   LabStatus lab{session.now(), begun, session.streams(), {}, session.port_counts()};
   if (session.nodes() != nullptr) lab.nodes = session.nodes()->status();
   RecordStatus status = status_of(session, std::move(lab));
+  // The newest take is the one that is recorded now.
   if (!session.takes().empty()) status.disk = session.takes().back()->disk.status();
   status.missing = missing(session.lab(), status.lab);
   return status;
 }
 
 RecordStatus status_at_end(RecordingSession& session, HostTime begun) {
+  // The oldest take is the one that has ended.
   const SessionTake& take = *session.takes().front();
   TakeEnd end = take.end.value_or(TakeEnd{});
+  // Senders of earlier takes have no message in this one.
   std::erase_if(end.streams, [](const StreamStatus& one) { return one.counts.messages == 0; });
   RecordStatus status = status_of(session, {end.at, begun, end.streams, end.nodes, end.ports});
   status.lab.ended = true;
   status.disk = take.disk.status();
+  // unseen() looks at all devices of a lab, so devices that are not required are taken out.
   Lab required = session.lab();
   std::erase_if(required.devices, [](const DeviceOptions& device) { return !device.required; });
   status.missing = unseen(required, status.lab);
@@ -50,6 +55,7 @@ RecordStatus status_at_end(RecordingSession& session, HostTime begun) {
 
 Json json_of(const RecordStatus& status) {
   Json json{{"missing", status.missing}, {"streams", Json::array()}};
+  // Without a take there is no disk to report.
   if (status.disk) {
     json["bytes"] = status.disk->bytes;
     json["dropped"] = status.disk->dropped;
@@ -61,6 +67,7 @@ Json json_of(const RecordStatus& status) {
     json["ports"][name] = Json::parse(to_json(CountedPort{name, counts}));
   }
   for (const auto& [name, counts] : status.mark_ports) {
+    // The ports of marks have the counts of other ports, and some of their own.
     json["ports"][name].update(Json{
         {"marks", counts.marks}, {"repeats", counts.repeats}, {"refused_for", counts.refused}});
   }

@@ -17,6 +17,8 @@
 
 namespace kinalign {
 
+/// A copy of everything at one moment, so a table and a JSON object of one second show the same
+/// numbers.
 struct RecordStatus {
   LabStatus lab;
   std::optional<DiskStatus> disk;    // absent if no take is in progress or being finished

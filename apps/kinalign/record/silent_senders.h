@@ -10,6 +10,7 @@
 
 namespace kinalign {
 
+/// Invariant: silent_ holds the senders whose last reported change was silence.
 class SilentSenders {
  public:
   struct Change {

@@ -12,6 +12,7 @@ namespace kinalign {
 namespace {
 
 /// The text with every character that may not stand in a file's name replaced by '-'.
+/// Subject and action may hold spaces, letters of any language and '/'.
 std::string in_name(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -25,11 +26,13 @@ std::string in_name(const std::string& text) {
 /// folder can't be listed.
 std::set<std::string> names_with_parts(const std::string& folder) {
   std::set<std::string> names;
+  // A folder that does not exist has no names that are taken.
   std::error_code fault;
   std::filesystem::directory_iterator entry(folder, fault);
   for (; !fault && entry != std::filesystem::directory_iterator(); entry.increment(fault)) {
     const std::string name = entry->path().filename().string();
     const std::size_t part = name.find(".part");
+    // A part may be left although its first file was moved away. Its name must not be used again.
     if (part != std::string::npos && name.ends_with(".mcap")) names.insert(name.substr(0, part));
   }
   return names;
@@ -46,8 +49,10 @@ std::string free_take_path(const std::string& folder, const std::string& subject
   if (name.empty()) name = "take_";
   const std::set<std::string> taken = names_with_parts(folder);
   for (int run = 1;; ++run) {
+    // Two digits sort well; numbers above 99 have more.
     const std::string numbered = fmt::format("{}{:02}", name, run);
     std::string path = fmt::format("{}/{}.mcap", folder, numbered);
+    // lstat() also finds a link that leads nowhere: its name is taken.
     struct stat status {};
     if (::lstat(path.c_str(), &status) != 0 && !taken.contains(numbered)) return path;
   }
