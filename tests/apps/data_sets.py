@@ -17,11 +17,11 @@ def shared(name):
 
 
 def done(*words, code=0, **how):
-    """A call that ends with this code, None for any that is no failure; its stdout."""
+    """A call that ends with this code, None for any that is no failure; its stdout, or its stderr where it failed."""
     ran = kinalign("dataset", *words, **how)
     said = law(ran, ("dataset", *words))
     assert ran.returncode == code or (code is None and ran.returncode < 2), said
-    return ran.stdout.decode()
+    return (ran.stdout if ran.returncode < 2 else ran.stderr).decode()
 
 
 def answer(*words, **how):
@@ -48,3 +48,18 @@ def contents(folder):
     """Hash of every file, but for the cache."""
     return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
             for p in sorted(folder.rglob("*")) if p.is_file() and ".kinalign" not in p.parts}
+
+
+def takes(data):
+    return sorted(p.name.removesuffix("_recording.toml") for p in data.glob("sub-*/*_recording.toml"))
+
+
+def small_bvh(folder, *names):
+    """One short BVH under many names."""
+    subprocess.run([DEMO, folder / "demo", "--seconds", "1", "--seed", "1"], check=True, capture_output=True)
+    bvh, = (folder / "demo").rglob("*.bvh")
+    for i, name in enumerate(names):
+        path = folder / "source" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(bvh.read_text() + "\n" * i)
+    return folder / "source"

@@ -1,60 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Published corpora become takes of a data set; archives of any kind stay in their folder.
-dataset_import_check.py BUILD_FOLDER [CASE...]"""
-import hashlib
+"""Published corpora become takes of a data set. dataset_import_check.py BUILD_FOLDER [CASE...]"""
 import importlib.util
-import io
-import json
-import os
 import pathlib
 import re
 import shutil
-import stat
-import struct
-import subprocess
 import sys
-import tarfile
-import zipfile
 
 import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import DEMO, Skip, case, kinalign, law, main
-from data_sets import SHARED, shared
-
-
-def said(*words, code=0, **how):
-    """A call that ends with this code: what it printed on stdout, or on stderr where it failed."""
-    ran = kinalign("dataset", *words, **how)
-    told = law(ran, ("dataset", *words))
-    assert ran.returncode == code, told
-    return (ran.stdout if code < 2 else ran.stderr).decode()
-
-
-def answer(*words, **how):
-    return json.loads(said(*words, "--json", **how))
-
-
-def contents(folder):
-    """Hash of every file, but for the cache."""
-    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
-            for p in sorted(folder.rglob("*")) if p.is_file() and ".kinalign" not in p.parts}
-
-
-def takes(data):
-    return sorted(p.name.removesuffix("_recording.toml") for p in data.glob("sub-*/*_recording.toml"))
-
-
-def small_bvh(folder, *names):
-    """One short BVH under many names."""
-    subprocess.run([DEMO, folder / "demo", "--seconds", "1", "--seed", "1"], check=True, capture_output=True)
-    bvh, = (folder / "demo").rglob("*.bvh")
-    for i, name in enumerate(names):
-        path = folder / "source" / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(bvh.read_text() + "\n" * i)
-    return folder / "source"
+from cases import Skip, case, kinalign, main
+from data_sets import SHARED, answer, contents, done, shared, small_bvh, takes
 
 
 @case
@@ -66,7 +23,7 @@ def a_folder_per_person_becomes_a_data_set_that_builds(folder):
     assert takes(folder / "set") == ["sub-01_task-motion_run-07", "sub-05_task-motion_run-01", "sub-anna_task-walk_run-02",
                                      "sub-anna_task-walk_run-03", "sub-bert_task-run_run-01"]
     assert answer("build", folder / "set")["made"] == 5
-    assert "no faults" in said("verify", folder / "set", "--deep")
+    assert "no faults" in done("verify", folder / "set", "--deep")
 
 
 @case
@@ -87,15 +44,15 @@ def the_same_import_said_again_adds_nothing_also_with_copies(folder):
 @case
 def what_a_user_wrote_into_dataset_toml_stays_as_it_is(folder):
     source = small_bvh(folder, "anna/walk.bvh")
-    said("init", folder / "set", "--name", "mine")
+    done("init", folder / "set", "--name", "mine")
     own = (folder / "set/dataset.toml").read_text() + "\n[subject.anna] # no consent yet\nsex = \"f\"\n"
     (folder / "set/dataset.toml").write_text(own)
-    said("import", folder / "set", source)
+    done("import", folder / "set", source)
     text = (folder / "set/dataset.toml").read_text()
     assert text.startswith(own) and text.count("[subject.anna]") == 1 and "[action.walk]" in text, text
     (folder / "set/dataset.toml").write_text("subject = { bert = { } }\n")
     before = contents(folder / "set")
-    assert "a file to which [subject.ID]" in said("import", folder / "set", source, code=3)
+    assert "a file to which [subject.ID]" in done("import", folder / "set", source, code=3)
     assert contents(folder / "set") == before
 
 
@@ -104,20 +61,20 @@ def a_new_data_set_gets_the_terms_of_the_corpus_and_one_with_people_keeps_its_ow
     packed = SHARED / "cmu"
     if not packed.exists():
         raise Skip("no shared/data")
-    said("init", folder / "new")
-    said("import", folder / "new", packed)
+    done("init", folder / "new")
+    done("import", folder / "new", packed)
     terms = (folder / "new/dataset.toml").read_text()
     assert 'licence = "free for all uses' in terms and "NSF EIA-0196217" in terms, terms[:600]
-    said("init", folder / "own", "--template", "hfut-mmd")
-    said("import", folder / "own", packed)
+    done("init", folder / "own", "--template", "hfut-mmd")
+    done("import", folder / "own", packed)
     assert 'licence = ""' in (folder / "own/dataset.toml").read_text()
 
 
 @case
 def a_folder_of_motion_in_another_unit_or_with_z_up_says_so_once(folder):
     source = small_bvh(folder, "anna/walk.bvh")
-    said("import", folder / "cm", source)
-    said("import", folder / "m", source, "--metres-per-unit", "1", "--up", "z")
+    done("import", folder / "cm", source)
+    done("import", folder / "m", source, "--metres-per-unit", "1", "--up", "z")
     heights = {}
     for name in ("cm", "m"):
         ran = kinalign("dataset", "build", folder / name)
@@ -150,11 +107,11 @@ def words_that_are_no_ids_become_such_and_stay_apart(folder):
 @case
 def files_that_say_nobody_need_a_subject(folder):
     source = small_bvh(folder, "walk.bvh", "down_1Char00.bvh")
-    err = said("import", folder / "set", source, code=3)
+    err = done("import", folder / "set", source, code=3)
     assert "--subject" in err and not (folder / "set").exists(), err
     assert answer("import", folder / "set", source, "--subject", "07")["added"] == 2
     assert takes(folder / "set") == ["sub-07_task-down_run-01", "sub-07_task-walk_run-01"]
-    said("import", folder / "two", source / "walk.bvh", "--subject", "07", "--action", "jump")
+    done("import", folder / "two", source / "walk.bvh", "--subject", "07", "--action", "jump")
     assert takes(folder / "two") == ["sub-07_task-jump_run-01"]
 
 
@@ -162,245 +119,13 @@ def files_that_say_nobody_need_a_subject(folder):
 def an_unknown_corpus_is_an_error_that_lists_the_known_ones(folder):
     (folder / "source").mkdir()
     (folder / "source/notes.txt").write_text("nothing")
-    err = said("import", folder / "set", folder / "source", code=3)
+    err = done("import", folder / "set", folder / "source", code=3)
     for kind in ("ui-prmd", "ui-prmd-joints", "cmu", "keraal", "kinectmultitrack", "ntu", "bids", "bvh", "c3d", "mvnx", "trc"):
         assert f"{kind} (" in err, err
     assert not (folder / "set").exists()
-    said("import", folder / "set", folder / "source", "--from", "nothing", code=2)
+    done("import", folder / "set", folder / "source", "--from", "nothing", code=2)
     small_bvh(folder, "anna/walk.bvh", "anna/walk.trc")
-    assert "--from" in said("import", folder / "set", folder / "source", code=3)
-
-
-def zipped(source, path, compression=zipfile.ZIP_DEFLATED):
-    with zipfile.ZipFile(path, "w", compression) as out:
-        for file in sorted(source.rglob("*")):
-            out.write(file, f"corpus/{file.relative_to(source)}")
-    return path
-
-
-def tarred(source, path, mode, form=tarfile.PAX_FORMAT):
-    with tarfile.open(path, mode, format=form) as out:
-        out.add(source, ".")
-    return path
-
-
-@case
-def archives_give_what_their_folder_gives(folder):
-    source = small_bvh(folder, "änne/walk.bvh", "bert/run_2.bvh", "bert/" + "long" * 40 + ".bvh")
-    said("import", folder / "plain", source)
-    archives = [zipped(source, folder / "a.zip"), zipped(source, folder / "stored.zip", zipfile.ZIP_STORED),
-                tarred(source, folder / "a.tar", "w"), tarred(source, folder / "a.tar.gz", "w:gz"),
-                tarred(source, folder / "a.tgz", "w:gz", tarfile.GNU_FORMAT)]
-    for archive in archives:
-        data = folder / ("from" + archive.name.replace(".", "_"))
-        made = answer("import", data, archive)
-        assert takes(data) == takes(folder / "plain"), (archive, takes(data), made)
-        unpacked = {p.name: p.read_bytes() for p in (data / "sourcedata").rglob("*.bvh")}
-        assert unpacked == {p.name: p.read_bytes() for p in source.rglob("*.bvh")}, archive
-        before = contents(data)
-        assert answer("import", data, archive)["added"] == 0
-        assert contents(data) == before
-    assert answer("build", data)["made"] == 3
-
-
-@case
-def unpacked_files_that_rm_removed_come_back_with_the_same_import(folder):
-    source = small_bvh(folder, "anna/walk.bvh", "bert/run_2.bvh", "bert/jump.bvh")
-    bids = shared("bids_motion")
-    archive = zipped(source, folder / "a.zip")
-    packed = zipped(bids, folder / "bids.zip")
-    for data, corpus in ((folder / "set", archive), (folder / "bids_set", packed)):
-        said("import", data, corpus)
-        before, all_takes = contents(data), takes(data)
-        dates = {p: p.stat().st_mtime_ns for p in (data / "sourcedata").rglob("*.*") if p.is_file()}
-        said("rm", data, all_takes[0], "--raw", "--yes")
-        assert contents(data) != before
-        assert answer("import", data, corpus)["added"] == 1
-        assert contents(data) == before
-        (data / "sourcedata/mine.txt").write_text("x")
-        said("rm", data, *all_takes, "--raw", "--yes")
-        stays = [p for p in dates if p.exists()]
-        assert answer("import", data, corpus)["added"] == len(all_takes)
-        assert contents(data).items() >= before.items()
-        assert all(p.stat().st_mtime_ns == dates[p] for p in stays), "a file that was there was written anew"
-        assert len(list((data / "sourcedata").iterdir())) == 2, "a folder of the unpacking is left"
-    assert answer("build", folder / "set")["made"] == 3
-
-
-@case
-def what_a_killed_import_left_goes_with_the_next_one(folder):
-    archive = zipped(small_bvh(folder, "anna/walk.bvh"), folder / "a.zip")
-    said("import", folder / "set", archive)
-    raw = folder / "set/sourcedata"
-    own, = (p.name for p in raw.iterdir())
-    over = subprocess.Popen(["true"])
-    over.wait()
-    left = {name: raw / name for name in (f".{own}-{over.pid}", f".{own}-{os.getpid()}", f".{own}-note", ".other-1-1")}
-    for path in left.values():
-        (path / "anna").mkdir(parents=True)
-        (path / "anna/walk.bvh").write_text("half")
-    assert answer("import", folder / "set", archive)["added"] == 0
-    assert sorted(p.name for p in raw.iterdir()) == sorted([own, *list(left)[1:]]), list(raw.iterdir())
-
-
-def zip_of(path, *names, data=b"x"):
-    with zipfile.ZipFile(path, "w") as out:
-        for name in names:
-            out.writestr(name, data)
-
-
-def zip_entry(path, **how):
-    info = zipfile.ZipInfo("anna/walk.bvh")
-    for name, value in how.items():
-        setattr(info, name, value)
-    with zipfile.ZipFile(path, "w") as out:
-        out.writestr(info, "/etc/passwd")
-
-
-def tar_of(path, *members):
-    with tarfile.open(path, "w") as out:
-        for name, how in members:
-            info = tarfile.TarInfo(name)
-            for key, value in how.items():
-                setattr(info, key, value)
-            out.addfile(info, io.BytesIO(b"x" * info.size))
-
-
-def with_nul(path):
-    zip_of(path, "anna/walkZ.bvh")
-    path.write_bytes(path.read_bytes().replace(b"walkZ", b"walk\0"))
-
-
-def encrypted(path):
-    zip_of(path, "anna/walk.bvh")
-    data = bytearray(path.read_bytes())
-    for mark, at in ((b"PK\3\4", 6), (b"PK\1\2", 8)):
-        where = data.index(mark) + at
-        data[where] |= 1
-    path.write_bytes(data)
-
-
-def with_bad_bytes(path):
-    zip_of(path, "anna/walk.bvh", data=b"many words " * 100)
-    path.write_bytes(path.read_bytes().replace(b"many words many", b"many wards many", 1))
-
-
-HOSTILE_ZIPS = [
-    ("leads up", lambda p: zip_of(p, "anna/../../../evil.bvh"), "evil.bvh"),
-    ("absolute", lambda p: zip_of(p, "/evil.bvh"), "/evil.bvh"),
-    ("a drive", lambda p: zip_of(p, "C:evil.bvh"), "C:evil.bvh"),
-    ("backslashes", lambda p: zip_of(p, "anna\\..\\..\\evil.bvh"), "evil.bvh"),
-    ("a control character", lambda p: zip_of(p, "anna/ev\x1b[2Jil.bvh"), "il.bvh"),
-    ("a NUL", with_nul, "anna/walk"),
-    ("a name twice", lambda p: zip_of(p, "anna/walk.bvh", "anna/./walk.bvh"), "walk.bvh again"),
-    ("a file in place of a folder", lambda p: zip_of(p, "anna", "anna/walk.bvh"), "anna/walk.bvh again"),
-    ("a folder in place of a file", lambda p: zip_of(p, "anna/walk.bvh", "anna"), "anna again"),
-    ("a link", lambda p: zip_entry(p, external_attr=(stat.S_IFLNK | 0o777) << 16), "a link, anna/walk.bvh"),
-    ("a device", lambda p: zip_entry(p, external_attr=(stat.S_IFCHR | 0o777) << 16), "a device, anna/walk.bvh"),
-    ("a password", encrypted, "anna/walk.bvh"),
-    ("a wrong checksum", with_bad_bytes, "hostile.zip"),
-    ("a long name", lambda p: zip_of(p, "a/" * 600 + "walk.bvh"), "a/a/a"),
-]
-HOSTILE_TARS = [
-    ("leads up", lambda p: tar_of(p, ("../evil.bvh", {"size": 1})), "../evil.bvh"),
-    ("absolute", lambda p: tar_of(p, ("/evil.bvh", {"size": 1})), "/evil.bvh"),
-    ("a symbolic link", lambda p: tar_of(p, ("link", {"type": tarfile.SYMTYPE, "linkname": "/tmp"}),
-                                         ("link/evil.bvh", {"size": 1})), "a link, link"),
-    ("a hard link", lambda p: tar_of(p, ("link", {"type": tarfile.LNKTYPE, "linkname": "/etc/passwd"})), "a link, link"),
-    ("a pipe", lambda p: tar_of(p, ("pipe", {"type": tarfile.FIFOTYPE})), "a device, pipe"),
-    ("a device", lambda p: tar_of(p, ("null", {"type": tarfile.CHRTYPE, "devmajor": 1, "devminor": 3})), "a device, null"),
-    ("a name twice", lambda p: tar_of(p, ("a.bvh", {"size": 1}), ("./a.bvh", {"size": 1})), "a.bvh again"),
-]
-
-
-@case
-def an_archive_cant_write_outside_of_its_target_and_leaves_nothing_behind(folder):
-    said("init", folder / "set")
-    before = contents(folder)
-    for ending, hostile in ((".zip", HOSTILE_ZIPS), (".tar", HOSTILE_TARS)):
-        for what, make, naming in hostile:
-            archive = folder / ("hostile" + ending)
-            make(archive)
-            for data in ("set", "fresh"):
-                err = said("import", folder / data, archive, "--subject", "01", code=3)
-                assert naming in err, f"{what}: {err}"
-            archive.unlink()
-            assert contents(folder) == before, f"{what}: {contents(folder).keys() - before.keys()}"
-            assert sorted(p.name for p in folder.rglob("*")) == ["dataset.toml", "set"], what
-            assert not list(folder.parent.glob("evil*")), what
-
-
-@case
-def a_small_archive_cant_fill_the_disk(folder):
-    for name, make in (("bomb.zip", lambda p: zipfile.ZipFile(p, "w", zipfile.ZIP_DEFLATED)),
-                       ("bomb.tar.gz", lambda p: tarfile.open(p, "w:gz"))):
-        with make(folder / name) as out:
-            if name.endswith("zip"):
-                with out.open("anna/walk.bvh", "w") as member:
-                    for _ in range(300):
-                        member.write(b"0" * (1 << 20))
-            else:
-                info = tarfile.TarInfo("anna/walk.bvh")
-                info.size = 300 << 20
-                out.addfile(info, io.BytesIO(b"0" * info.size))
-        assert (folder / name).stat().st_size < 1 << 20
-        err = said("import", folder / "set", folder / name, code=3)
-        assert "200 times" in err and "anna/walk.bvh" in err, err
-        assert not (folder / "set").exists()
-
-
-@case
-def an_archive_cut_anywhere_is_an_error_or_whole(folder):
-    source = small_bvh(folder, "anna/walk.bvh")
-    for archive in (zipped(source, folder / "whole.zip"), tarred(source, folder / "whole.tar.gz", "w:gz")):
-        data = archive.read_bytes()
-        for end in [0, 1, 10, 100] + [len(data) * k // 8 for k in range(1, 8)] + [len(data) - 30, len(data) - 1]:
-            part = folder / ("part" + "".join(archive.suffixes))
-            part.write_bytes(data[:end])
-            ran = kinalign("dataset", "import", folder / "set", part)
-            law(ran, ("dataset", "import", folder / "set", part))
-            if ran.returncode == 0:
-                assert takes(folder / "set") == ["sub-anna_task-walk_run-01"]
-                shutil.rmtree(folder / "set")
-            assert not (folder / "set").exists(), end
-
-
-def npz_with(folder, **changes):
-    """CMU's packing of one clip of a chain of two joints."""
-    arrays = {"planes": numpy.zeros((2, 9, 4), numpy.uint8), "joints": numpy.array(["hip", "knee"]),
-              "parents": numpy.array([-1, 0], numpy.int8), "tip_parents": numpy.array([1], numpy.int8),
-              "people": numpy.array(["02"]), "rest": numpy.array([[[0, 0, 0], [0, -0.5, 0]]], numpy.float32),
-              "axis": numpy.zeros((1, 2, 3), numpy.float32), "tips": numpy.array([[[0, -0.4, 0]]], numpy.float32),
-              "clip_person": numpy.array([0], numpy.int16), "clip_take": numpy.array(["02_05"]),
-              "clip_class": numpy.array(["walk"]), "clip_text": numpy.array(["a walk"]),
-              "clip_start": numpy.array([0], numpy.int32), "clip_len": numpy.array([4], numpy.int32),
-              "rate": numpy.float32(60)}
-    arrays.update(changes)
-    numpy.savez_compressed(folder / "asf_00.npz", **{k: v for k, v in arrays.items() if v is not None})
-    return folder / "asf_00.npz"
-
-
-@case
-def a_packed_clip_is_checked_before_anything_is_written(folder):
-    whole = npz_with(folder)
-    assert answer("import", folder / "set", whole)["added"] == 1
-    assert takes(folder / "set") == ["sub-02_task-walk_run-05"]
-    shutil.rmtree(folder / "set")
-    for changes, naming in (({"rest": None}, "array rest"), ({"clip_len": numpy.array([5])}, "clip 0"),
-                            ({"clip_person": numpy.array([-1])}, "clip 0"), ({"tip_parents": numpy.array([2])}, "tip_parents"),
-                            ({"parents": numpy.array([-1, 1])}, "asf_00.npz"), ({"joints": numpy.array([1, 2])}, "joints"),
-                            ({"planes": numpy.zeros((2, 8, 4), numpy.uint8)}, "planes"),
-                            ({"planes": numpy.zeros((2, 9, 4), numpy.uint8, order="F")}, "C order"),
-                            ({"clip_text": numpy.array([{"a": 1}], dtype=object)}, "numbers or texts"),
-                            ({"rate": numpy.float32("nan")}, "rate"), ({"people": numpy.array([], "<U2")}, "people")):
-        npz_with(folder, **changes)
-        err = said("import", folder / "set", whole, code=3)
-        assert naming in err, (changes, err)
-        assert not (folder / "set").exists(), changes
-    with zipfile.ZipFile(whole, "w") as out:
-        out.writestr("planes.npy", b"\x93NUMPY\1\0" + struct.pack("<H", 76) + b"{'descr': '<f8', 'fortran_order': False, "
-                     b"'shape': (999999999999,), }".ljust(76))
-    assert "2^40" in said("import", folder / "set", whole, code=3)
+    assert "--from" in done("import", folder / "set", folder / "source", code=3)
 
 
 def skeleton(bodies):
@@ -428,7 +153,7 @@ def names_of_ntu_say_person_action_and_run_and_mutual_actions_have_two_streams(f
     assert text.index('body = "2"') < text.index("[stream.partner]") < text.index('body = "1"'), text
     assert answer("build", folder / "set")["made"] == 2
     (source / "S017C003P008R002A003.skeleton").write_text("1\nmany\n")
-    assert "A003.skeleton:2: expected the number of bodies, found many" in said("import", folder / "set", source, code=3)
+    assert "A003.skeleton:2: expected the number of bodies, found many" in done("import", folder / "set", source, code=3)
 
 
 def places(text):
@@ -524,7 +249,7 @@ def ui_prmd_comes_in_by_one_command_and_equals_its_source(folder):
         assert was.shape == now.shape and abs(was - now).max() < half_a_step + 1e-9, name
     assert answer("build", folder / "set", seconds=600)["made"] == 690
     assert answer("build", folder / "set", seconds=600)["up_to_date"] == 690
-    assert "no faults" in said("verify", folder / "set", seconds=300)
+    assert "no faults" in done("verify", folder / "set", seconds=300)
 
 
 def protocol():
@@ -573,7 +298,7 @@ def ui_prmds_pairs_come_only_when_asked_for_and_become_windows(folder):
     again = answer("import", folder / "two", source, "--from", "ui-prmd-joints", "--jobs", "4", seconds=300)
     assert made == again and contents(folder / "set") == contents(folder / "two")
     assert answer("build", folder / "set", seconds=300)["made"] == made["takes"]
-    said("windows", folder / "set", "-o", folder / "w.npz", "--length", "32", "--step", "32")
+    done("windows", folder / "set", "-o", folder / "w.npz", "--length", "32", "--step", "32")
     windows = numpy.load(folder / "w.npz")
     assert windows["mocap_positions"].shape[1:] == (32, 3 * 18) and windows["kinect_positions"].shape[1:] == (32, 3 * 22)
 
@@ -587,7 +312,7 @@ def a_pair_of_files_of_one_name_is_copied_apart_and_rebuilt(folder):
         assert answer("import", data, source, *copy)["added"] == 0
         assert answer("build", data)["made"] == 2
         assert answer("build", data)["up_to_date"] == 2
-        assert "no faults" in said("verify", data, "--deep")
+        assert "no faults" in done("verify", data, "--deep")
     assert len(list((folder / "set1/sourcedata").rglob("*.txt"))) == 6
     take = folder / "set0/sub-05/sub-05_task-m10_run-02_take.h5"
     ran = kinalign("rebuild", take, "--inputs", source, "--verify")
@@ -600,7 +325,7 @@ def two_devices_of_a_file_or_of_a_pair_come_as_two_streams(folder):
         made = answer("import", folder / name, shared(name))
         assert made["takes"] == count, made
         assert answer("build", folder / name)["made"] == count
-        streams = said("query", folder / name, "select take, count(*) from streams group by take", "--format", "csv")
+        streams = done("query", folder / name, "select take, count(*) from streams group by take", "--format", "csv")
         assert streams.count(f"sub-{subject}") == count and streams.count(",2") >= count, streams
 
 

@@ -164,9 +164,9 @@ class ArchiveReader {
 
   Error damage(const std::string& expected) const {
     if (feed_.failure) return *feed_.failure;
-    const char* const stated_name = archive_error_string(archive_.get());
+    const char* const reason = archive_error_string(archive_.get());
     return Error{feed_.bytes.name, 0, expected + " that can be read",
-                 stated_name == nullptr ? "damaged bytes" : shown(stated_name)};
+                 reason == nullptr ? "damaged bytes" : shown(reason)};
   }
 
   /// True for an entry that names the archive's top folder, such as "./".
