@@ -64,7 +64,7 @@ class RowParser {
 /// The cells of a line, trimmed and without quotes. Meant for header lines: it allocates.
 std::vector<std::string> split_cells(std::string_view line, char delimiter);
 
-/// `text` without blanks, tabs and carriage returns at both ends.
+/// `text` without blanks, tabs and line ends at both ends.
 std::string_view trimmed(std::string_view text);
 
 /// True if the cell says that there is no value: empty, or "nan" in any case.

@@ -3,6 +3,7 @@
 
 #include "kinalign/core/numbers.h"
 #include "kinalign/core/utf8.h"
+#include "kinalign/formats/cells.h"
 #include "kinalign/syntax/xml_feed.h"
 
 #include <fmt/format.h>
@@ -16,32 +17,40 @@ namespace kinalign {
 
 namespace {
 
-/// The XML in UTF-8. Each '&' that begins no entity is escaped, because some programs write a bare
-/// '&' in labels.
+/// True if the text begins with a reference that XML allows: one of the five names, or the number
+/// of a character. Expat would refuse any other, such as "&#D" or "&#0;".
+bool begins_reference(std::string_view text) {
+  constexpr std::array<std::string_view, 5> named{"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"};
+  if (std::any_of(named.begin(), named.end(),
+                  [&](std::string_view one) { return text.starts_with(one); })) {
+    return true;
+  }
+  if (!text.starts_with("&#")) return false;
+  const bool hex = text.substr(2).starts_with('x');
+  const char* const end = text.data() + text.size();
+  std::uint32_t code = 0;
+  const auto [behind, fault] =
+      std::from_chars(text.data() + (hex ? 3 : 2), end, code, hex ? 16 : 10);
+  if (fault != std::errc{} || behind == end || *behind != ';') return false;
+  if (code < 0x20) return code == '\t' || code == '\n' || code == '\r';
+  return code <= 0x10ffff && (code < 0xd800 || code > 0xdfff) && code != 0xfffe && code != 0xffff;
+}
+
+/// The XML in UTF-8. Each '&' that begins no reference is escaped, because some programs write a
+/// bare '&' in labels. XML allows no control characters, so each becomes a blank.
 std::string mended(std::string_view xml) {
-  // "&#" begins a character by its number.
-  constexpr std::array<std::string_view, 6> entities{"&amp;",  "&lt;",   "&gt;",
-                                                     "&quot;", "&apos;", "&#"};
-  const std::string text = as_utf8(xml);
+  std::string text = as_utf8(xml);
+  std::replace_if(
+      text.begin(), text.end(),
+      [](unsigned char c) { return c < 0x20 && c != '\t' && c != '\n' && c != '\r'; }, ' ');
   std::string out;
   for (std::size_t from = 0;;) {
     const std::size_t at = text.find('&', from);
     out.append(text, from, at - from);
     if (at == std::string::npos) return out;
-    // A known entity stays as it is.
-    const bool begins = std::any_of(entities.begin(), entities.end(), [&](std::string_view one) {
-      return text.compare(at, one.size(), one) == 0;
-    });
-    out += begins ? "&" : "&amp;";
+    out += begins_reference(std::string_view(text).substr(at)) ? "&" : "&amp;";
     from = at + 1;
   }
-}
-
-std::string_view without_blanks(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
-  const auto first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 /// If a format has two names, the first one is the usual one.
@@ -79,7 +88,7 @@ class HeaderElements final : public XmlHandler {
     return {};
   }
   Result<void> end(std::string_view, std::string_view text) override {
-    const std::string own(without_blanks(text));
+    const std::string own(trimmed(text));
     std::string* place = path_.size() == 2 && path_[0] == "info" ? place_of(path_[1]) : nullptr;
     // The first text counts; <desc> may repeat the names of elements.
     if (place != nullptr && place->empty()) *place = own;

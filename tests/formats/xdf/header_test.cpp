@@ -43,7 +43,10 @@ TEST_CASE("an & that begins no entity is an &, and Latin-1 is read as such") {
   };
   CHECK(name(" a b\n") == "a b");
   CHECK(name("&lt;&gt;&amp;&quot;&apos; &#65;&#xe9;&#x20ac;") == "<>&\"' A\xc3\xa9\xe2\x82\xac");
-  CHECK(name("B & C &lol; &") == "B & C &lol; &");
+  CHECK(name("B & C &lol; &#0; &#xd800; &#x110000; &#D &#x; &#65 &") ==
+        "B & C &lol; &#0; &#xd800; &#x110000; &#D &#x; &#65 &");
+  CHECK(name("a\x02"
+             "b\x1f") == "a b");
   CHECK(name("\xb5V \xc2\xb5V") == "\xc2\xb5V \xc2\xb5V");
   CHECK(name("<!-- <b> -->x<![CDATA[<y>]]>") == "x<y>");
 }
