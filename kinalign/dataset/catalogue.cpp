@@ -198,20 +198,16 @@ Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name) {
 
 std::string catalogue_toml(const Catalogue& catalogue) {
   std::string text = toml_options(catalogue);
-  // The head of a table; an empty id gives the table itself.
-  const auto head = [](const std::string& kind, const std::string& id) {
-    return "\n[" + kind + (id.empty() ? "" : "." + toml_key(id)) + "]\n";
-  };
   // Options that have their defaults are not written.
   const std::string align = toml_options(catalogue.align);
-  if (!align.empty()) text += head("align", "") + align;
+  if (!align.empty()) text += "\n[align]\n" + align;
   const auto put = [&](const std::string& kind, const auto& all) {
-    for (const auto& one : all) text += head(kind, one.id) + toml_options(one);
+    for (const auto& one : all) text += toml_head(kind, one.id) + toml_options(one);
   };
   // Devices and rigs have keys of the lab's own choice.
   const auto put_texts = [&](const std::string& kind, const std::vector<Described>& all) {
     for (const Described& one : all) {
-      text += head(kind, one.id);
+      text += toml_head(kind, one.id);
       for (const auto& [key, value] : one.texts) {
         text += toml_key(key) + " = " + toml_string(value) + "\n";
       }

@@ -90,8 +90,7 @@ Result<void> check_names(const Value& top, const Manifest& manifest) {
 
 /// The tables of one stream.
 std::string stream_text(const StreamOptions& stream) {
-  // Stream names may need quotes: toml_key() decides.
-  std::string text = "\n[stream." + toml_key(stream.name) + "]\n";
+  std::string text = toml_head("stream", stream.name);
   if (!stream.files.empty()) text += files_toml(stream.files) + "\n";
   return text + toml_options(stream);
 }
@@ -146,7 +145,7 @@ std::string manifest_toml(const Manifest& manifest) {
   }
   for (const StreamOptions& stream : manifest.streams) text += stream_text(stream);
   for (const auto& [stream, space] : manifest.spaces) {
-    text += "\n[space." + toml_key(stream) + "]\n" + toml_options(space);
+    text += toml_head("space", stream) + toml_options(space);
   }
   return text;
 }

@@ -36,6 +36,27 @@ std::string quotes_advice(std::string_view text, std::int64_t line) {
   return " (a name with blanks stands in quotes: [" + shown(table) + "\"" + shown(name) + "\"])";
 }
 
+/// The most bytes of a path. Every value holds its path, and value_of() recurses once per part, so
+/// a hostile file must not choose its length.
+constexpr std::size_t longest_path = 250;
+
+/// The first node whose path, `before` bytes above it, is longer than that; nullptr if none is.
+const toml::node* beyond_limit(const toml::node& node, std::size_t before) {
+  if (before > longest_path) return &node;
+  const toml::node* found = nullptr;
+  if (const auto* list = node.as_array()) {
+    for (const toml::node& one : *list) {
+      if (found == nullptr) found = beyond_limit(one, before);
+    }
+  }
+  if (const auto* table = node.as_table()) {
+    for (const auto& [key, one] : *table) {
+      if (found == nullptr) found = beyond_limit(one, before + key.str().size() + 1);
+    }
+  }
+  return found;
+}
+
 // Lists and tables contain nodes, so this function and entries_in_order() call each other.
 Value value_of(const toml::node& node, std::string key, std::string path);
 
@@ -117,7 +138,12 @@ Result<void> read_toml(std::string_view text, std::string_view name,
                        const std::function<Result<void>(const Value& top)>& read) {
   // toml++ throws. From here on a fault in the text is an error with its line.
   try {
-    return read(value_of(toml::parse(text, name), "", "")).map_error([&](Error error) {
+    const toml::table top = toml::parse(text, name);
+    if (const toml::node* node = beyond_limit(top, 0)) {
+      return Failure(Error{std::string(name), static_cast<std::int64_t>(node->source().begin.line),
+                           "keys of at most 250 bytes with their tables", "a longer key"});
+    }
+    return read(value_of(top, "", "")).map_error([&](Error error) {
       error.file = std::string(name);
       return error;
     });
@@ -135,6 +161,10 @@ std::string toml_key(const std::string& key) {
   };
   if (!key.empty() && std::all_of(key.begin(), key.end(), bare)) return key;
   return toml_string(key);
+}
+
+std::string toml_head(const std::string& kind, const std::string& name) {
+  return "\n[" + kind + "." + toml_key(name) + "]\n";
 }
 
 std::string toml_string(const std::string& text) {

@@ -19,6 +19,8 @@ Result<void> read_toml(std::string_view text, std::string_view name,
 
 /// The key in the form for [device.KEY]: in quotes if it needs them.
 std::string toml_key(const std::string& key);
+/// The head of a table with a name, [kind.NAME], on a line of its own after an empty one.
+std::string toml_head(const std::string& kind, const std::string& name);
 /// The text in quotes, with escapes where TOML needs them.
 std::string toml_string(const std::string& text);
 /// Texts as { a = "b", c = "d" }.

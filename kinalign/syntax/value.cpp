@@ -66,9 +66,9 @@ class Setter {
     }
     return {};
   }
-  /// An empty list means none; a take's parameters state it so.
+  /// In a take's parameters (JSON) an absent list is written as an empty one.
   Result<void> operator()(std::vector<double>* to) const {
-    if (value_.kind == Kind::list && value_.items.empty()) return {};
+    if (value_.line == 0 && value_.kind == Kind::list && value_.items.empty()) return {};
     *to = KA_TRY(numbers());
     return {};
   }
@@ -159,9 +159,10 @@ class Setter {
 }  // namespace
 
 const Value* Value::find(std::initializer_list<std::string_view> keys) const {
-  // Lists and simple values have no keys, so the search ends there without a result.
+  // Only tables have keys. The values of a list repeat the list's own key.
   const Value* found = this;
   for (const std::string_view wanted : keys) {
+    if (!found->is_table()) return nullptr;
     const auto one = std::find_if(found->items.begin(), found->items.end(),
                                   [&](const Value& item) { return item.key == wanted; });
     if (one == found->items.end()) return nullptr;

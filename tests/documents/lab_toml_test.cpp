@@ -59,6 +59,16 @@ TEST_CASE("a file without devices is a lab without any") {
   CHECK(read_devices("[align]\ngap_ms = 3\n", "kinalign.toml")->empty());
 }
 
+TEST_CASE("a key of many parts is refused before every part is copied with its path") {
+  std::string deep = "a";
+  for (int part = 0; part < 2'000; ++part) deep += ".a";
+  const std::string refused =
+      "labs/lab.toml:1: expected keys of at most 250 bytes with their tables, found a longer key";
+  CHECK(error_of(deep + " = 1\n") == refused);
+  CHECK(error_of("[" + deep + "]\n") == refused);
+  CHECK(error_of(std::string(251, 'k') + " = [1, 2]\n") == refused);
+}
+
 TEST_CASE("what is wrong with a device is told with its line and the nearest known name") {
   CHECK(error_of(mocap + "prot = 1\n") ==
         "labs/lab.toml:4: expected a key of [device.mocap] (nearest: port), found \"prot\"");

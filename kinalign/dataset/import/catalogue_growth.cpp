@@ -16,10 +16,6 @@ bool has_class(const Catalogue& catalogue, const std::string& id) {
                      [&](const ActionClass& one) { return one.id == id; });
 }
 
-std::string table_head(const std::string& kind, const std::string& id) {
-  return "\n[" + kind + "." + toml_key(id) + "]\n";
-}
-
 }  // namespace
 
 Result<std::string> grown_catalogue(const std::string& toml, const std::string& name,
@@ -29,19 +25,19 @@ Result<std::string> grown_catalogue(const std::string& toml, const std::string& 
   std::string more, actions;
   for (const std::string& id : needs.subjects) {
     // Existing entries stay as the user wrote them.
-    if (find_subject(has, id) == nullptr) more += table_head("subject", id);
+    if (find_subject(has, id) == nullptr) more += toml_head("subject", id);
   }
   std::set<std::string> classes;
   for (const Action& action : needs.actions) {
     if (find_action(has, action.id) != nullptr) continue;
     classes.insert(action.class_id);
-    actions += table_head("action", action.id) + "class = " + toml_string(action.class_id) +
+    actions += toml_head("action", action.id) + "class = " + toml_string(action.class_id) +
                "\nname = " + toml_string(action.name) + "\n";
   }
   for (const ActionClass& one : needs.classes) {
     // Only classes that a new action needs are added.
     if (!classes.contains(one.id) || has_class(has, one.id)) continue;
-    more += table_head("class", one.id) + "name = " + toml_string(one.name) + "\n";
+    more += toml_head("class", one.id) + "name = " + toml_string(one.name) + "\n";
   }
   more += actions;
   if (more.empty()) return toml;

@@ -7,6 +7,7 @@
 
 #include <numbers>
 #include <string>
+#include <vector>
 
 using namespace kinalign;
 
@@ -83,6 +84,14 @@ fields = ["ax", "ay", "az", "gx", "gy", "gz", "skip"]
   CHECK(layout.angular_velocity_unit == doctest::Approx(std::numbers::pi / 180));
   CHECK_FALSE(layout.gravity);
   CHECK(layout.axes == z_up);
+}
+
+TEST_CASE("a state without values is stated by an empty list, not by the usual value") {
+  const TableLayout layout = layout_of("name = 'a'\n" + members +
+                                       "[state]\nmissing = [0, 1]\ninferred = []\ntracked = 2\n");
+  CHECK(layout.state.missing == std::vector<double>{0, 1});
+  CHECK(layout.state.inferred.empty());
+  CHECK(layout.state.tracked == std::vector<double>{2});
 }
 
 TEST_CASE("an error in a layout names line, what is possible and what stands there") {
