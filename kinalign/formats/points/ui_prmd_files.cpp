@@ -61,11 +61,11 @@ Result<std::string> ui_prmd_angles_of(FileSystem& files, const std::string& path
         "UI-PRMD's file of positions, ..._positions.txt; the file of angles is found by its name",
         named_as_ui_prmd_angles(path) ? "the file of angles" : "another name"});
   }
-  std::string found_path = angles_path(path);
+  std::string usual_path = angles_path(path);
   const std::string here = std::string(folder(path)) + angles_for(file_name(path));
   // The folder Angles first; then the same folder.
-  auto opened = InputFile::open(files, found_path);
-  if (opened) return found_path;
+  auto opened = InputFile::open(files, usual_path);
+  if (opened) return usual_path;
   if (here != path && InputFile::open(files, here)) return here;
   return Failure(std::move(opened).error());
 }

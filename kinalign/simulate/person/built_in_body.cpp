@@ -26,8 +26,8 @@ Quat about_x(double angle) { return rotation(Vec3(angle, 0, 0)); }
 Quat about_y(double angle) { return rotation(Vec3(0, angle, 0)); }
 Quat about_z(double angle) { return rotation(Vec3(0, 0, angle)); }
 
-/// The repetitions of an act: bumps that fit between its ends.
-/// As many whole repetitions as fit, each as long as the others.
+/// The repetitions of an act are bumps of equal length. Their number is the most that fits between
+/// its ends.
 double repeated(const Act& act, double t) {
   const double room = act.end_s - act.begin_s;
   const auto times = std::max(1.0, std::floor(room / act.tempo_s));
