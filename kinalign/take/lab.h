@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The devices of a lab and how to record them. lab.toml and the flags of `kinalign record` fill
-// these structures. Documented for users in docs/recording.md.
+// these structures. Documented for users in docs/formats/lab_toml.md.
 #pragma once
 
 #include "kinalign/core/error.h"
