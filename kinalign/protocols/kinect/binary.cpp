@@ -45,11 +45,6 @@ Head take_head(LittleEndianReader& reader) {
   return head;
 }
 
-template <std::size_t n>
-void take_floats(LittleEndianReader& reader, std::array<float, n>& to) {
-  for (float& number : to) number = reader.take_float();
-}
-
 // A length of one byte, then the text without an end.
 std::string take_short_text(LittleEndianReader& reader) {
   const auto bytes = reader.take_bytes(reader.take<std::uint8_t>());
@@ -75,8 +70,10 @@ KinectBody take_body(LittleEndianReader& reader, bool has_orientations) {
   body.hand_right = reader.take<std::uint8_t>();
   body.hand_confidence = reader.take<std::uint8_t>();
   for (std::uint8_t& state : body.states) state = reader.take<std::uint8_t>();
-  take_floats(reader, body.positions);
-  if (has_orientations) take_floats(reader, body.orientations);
+  body.positions = reader.take_floats<std::tuple_size_v<decltype(body.positions)>>();
+  if (has_orientations) {
+    body.orientations = reader.take_floats<std::tuple_size_v<decltype(body.orientations)>>();
+  }
   return body;
 }
 
@@ -94,8 +91,7 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
   frame.taken_ticks = reader.take<std::int64_t>();
   frame.sent_ticks = reader.take<std::int64_t>();
   const auto utc_us = reader.take<std::int64_t>();
-  std::array<float, 4> floor{};
-  take_floats(reader, floor);
+  const auto floor = reader.take_floats<4>();
   if ((head.flags & utc_flag) != 0) {
     frame.utc_us = utc_us;
   } else if (utc_us != 0) {
