@@ -310,24 +310,4 @@ std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message) {
   return out;
 }
 
-// Each part repeats the frame's own fields, so the receiver can use the parts that arrive if one is
-// lost. A frame without bodies is one part.
-std::vector<KinectFrame> kinect_parts(const KinectFrame& frame) {
-  std::size_t most = 1;  // bodies of a part
-  while (kinect_frame_size(most + 1, frame.has_orientations) <= most_kinect_datagram) ++most;
-  std::vector<KinectFrame> parts;
-  std::size_t at = 0;
-  do {
-    const std::size_t end = std::min(at + most, frame.bodies.size());
-    KinectFrame part = frame;
-    part.bodies.assign(frame.bodies.begin() + static_cast<std::ptrdiff_t>(at),
-                       frame.bodies.begin() + static_cast<std::ptrdiff_t>(end));
-    part.part = static_cast<std::uint8_t>(parts.size());
-    part.more_parts = end < frame.bodies.size();
-    parts.push_back(std::move(part));
-    at = end;
-  } while (at < frame.bodies.size());
-  return parts;
-}
-
 }  // namespace kinalign

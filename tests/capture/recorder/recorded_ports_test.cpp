@@ -3,10 +3,10 @@
 // afterwards.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
+#include "tests/protocols/kinect/kinect_lines.h"
 
 #include "kinalign/capture/recorder/recording_session.h"
 #include "kinalign/protocols/kinect/binary.h"
-#include "kinalign/protocols/kinect/lines.h"
 #include "kinalign/protocols/kinect/stream.h"
 #include "kinalign/protocols/marks/mark_call.h"
 
