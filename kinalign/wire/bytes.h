@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes the bytes of datagrams, in network order (big-endian, RFC 1700). All layouts of
-// wire use it. Running past the end is not reported at once: one check after a layout replaces a
-// check for each field.
+// Reads the fields of messages, in network order (big-endian, RFC 1700) or in little-endian order,
+// and writes datagrams in network order. Running past the end is not reported at once: one check
+// after a layout replaces a check for each field.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
@@ -12,26 +13,44 @@
 
 namespace kinalign {
 
-/// Reads fields from the front of a datagram. Past the end it returns zeros, and `complete` is
-/// false.
-class ByteReader {
+/// Reads fields from the front. Past the end it returns zeros, and `complete` is false.
+template <std::endian order>
+class FieldReader {
  public:
-  explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  explicit FieldReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
-  template <std::unsigned_integral T>
+  template <std::integral T>
   T take() {
-    // Written so that the subtraction can't wrap: at_ never passes the end.
-    if (sizeof(T) > bytes_.size() - at_) {
-      // The rest is dropped too, so that a shorter field after the missing one can't succeed.
-      at_ = bytes_.size();
-      complete_ = false;
-      return 0;
-    }
+    const auto bytes = take_bytes(sizeof(T));
+    if (bytes.empty()) return T{0};
     std::uint64_t value = 0;
-    for (std::size_t i = 0; i < sizeof(T); ++i) value = value << 8 | bytes_[at_++];
+    // Byte by byte: neither the alignment nor the byte order of the machine matters.
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      value = value << 8 | bytes[order == std::endian::big ? i : sizeof(T) - 1 - i];
+    }
     return static_cast<T>(value);
   }
   float take_float() { return std::bit_cast<float>(take<std::uint32_t>()); }
+  template <std::size_t n>
+  std::array<float, n> take_floats() {
+    std::array<float, n> values{};
+    for (float& value : values) value = take_float();
+    return values;
+  }
+  /// Returns `count` bytes, or none if fewer are left.
+  std::span<const std::uint8_t> take_bytes(std::uint64_t count) {
+    if (count > left()) {
+      // The rest is dropped too, so that a shorter field after the missing one can't succeed.
+      at_ = bytes_.size();
+      complete_ = false;
+      return {};
+    }
+    const auto taken = bytes_.subspan(at_, static_cast<std::size_t>(count));
+    at_ += taken.size();
+    return taken;
+  }
+  /// The bytes that are not read yet.
+  std::span<const std::uint8_t> rest() const { return bytes_.subspan(at_); }
 
   bool complete() const { return complete_; }
   std::size_t left() const { return bytes_.size() - at_; }
@@ -41,6 +60,7 @@ class ByteReader {
   std::size_t at_ = 0;
   bool complete_ = true;
 };
+using ByteReader = FieldReader<std::endian::big>;
 
 /// Writes fields one after another. A field that does not fit is not written, and `complete` is
 /// false.
