@@ -27,10 +27,6 @@ constexpr double largest_number = 1e15;
 // No offset: latencies are seconds from the onset.
 constexpr TimeScale latency_seconds{1'000'000'000, 0};
 
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
-
 /// The n columns of one quantity of a tracked point, in the order of our arrays, with their unit
 /// factors.
 template <std::size_t n>

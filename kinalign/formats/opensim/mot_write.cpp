@@ -18,10 +18,6 @@ namespace {
 
 constexpr int decimals = 6;
 
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
-
 }  // namespace
 
 /// The columns of the file: their names, and their values in each frame.

@@ -14,10 +14,6 @@ constexpr std::size_t block = 512;
 constexpr std::size_t longest_in_header = 100, longest_name = 1000;
 constexpr std::uint64_t largest_in_header = (std::uint64_t{1} << 33) - 1;  // 11 octal digits
 
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
-
 /// Writes "0000644": digits - 1 octal digits; the zero byte after them is there already.
 void put_octal(std::string& header, std::size_t at, std::size_t digits, std::uint64_t value) {
   header.replace(at, digits - 1, fmt::format("{:0{}o}", value, digits - 1));
