@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes channel values as text, converts a clip to channel values, and copies a file.
 #include "kinalign/core/numbers.h"
-#include "kinalign/core/unchanged.h"
+#include "kinalign/core/file_version.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/rows.h"
 #include "kinalign/formats/unknown_file.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/formats/take/take_bvh.h"
 
-#include "kinalign/core/unchanged.h"
+#include "kinalign/core/file_version.h"
 #include "kinalign/formats/take/take_hdf5.h"
 
 #include <fmt/format.h>
