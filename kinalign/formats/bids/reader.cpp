@@ -22,8 +22,6 @@ namespace kinalign {
 
 namespace {
 
-/// Larger numbers can't be meant and are refused.
-constexpr double largest_number = 1e15;
 // No offset: latencies are seconds from the onset.
 constexpr TimeScale latency_seconds{1'000'000'000, 0};
 
