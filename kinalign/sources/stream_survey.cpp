@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/sources/stream_survey.h"
 
+#include "kinalign/core/file_version.h"
 #include "kinalign/core/hash.h"
-#include "kinalign/core/unchanged.h"
 #include "kinalign/core/utf8.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/input_facts.h"

@@ -14,7 +14,6 @@
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
 #include "kinalign/documents/report_json.h"
-#include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"

@@ -161,7 +161,7 @@ Result<Findings> convert_in_child(const Job& job) {
       KA_TRY(take_to_npz(job));
     } else {
       findings = KA_TRY(put_bvh(
-          job, [&job](const TextSink& sink) { return take_to_bvh(job.files, job.from, sink); }));
+          job, [&job](const FileSink& sink) { return take_to_bvh(job.files, job.from, sink); }));
     }
     return "{\"findings\": " + findings_json(findings) + "}";
   };
@@ -236,7 +236,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   call.console.detail(harmless(read_as(stream)));
   // BVH to BVH copies the text's values, so no number is rounded on its way through a clip.
   if (job.to.ends_with(".bvh")) {
-    return put_bvh(job, [&](const TextSink& sink) {
+    return put_bvh(job, [&](const FileSink& sink) {
       return copy_bvh(job.files, job.from, sink, call.console.progress());
     });
   }

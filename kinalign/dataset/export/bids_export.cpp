@@ -4,7 +4,6 @@
 #include "kinalign/core/progress.h"
 #include "kinalign/core/text_out.h"
 #include "kinalign/formats/bids/check.h"
-#include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/bids/motion_write.h"
 #include "kinalign/formats/bids/names.h"
 #include "kinalign/formats/take/take_hdf5.h"
@@ -100,11 +99,8 @@ Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t gr
 
 /// Writes a stream as a tracking system with its sidecar files, and notes it for scans.tsv.
 Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, FilesMade& made) {
-  const BidsEntities entities{take.name().subject,
-                              "",
-                              take.name().action,
+  const BidsEntities entities{take.name().subject, take.name().action,
                               label_of(take.header().groups[group].name),
-                              "",
                               fmt::format("{}", take.name().run)};
   const std::string motion = bids_path(entities, "motion.tsv");
   const BidsSidecars sidecars = KA_TRY(write_motion(take, group, folder_ + "/" + motion));

@@ -53,9 +53,8 @@ Result<void> write_mot(ExportedTake& take, std::size_t group, FileSystem& files,
   const TakeHeader& header = take.header();
   TextOut out = KA_TRY(TextOut::create(files, path, Overwrite::no));
   // MOT has angles of joints; the skeleton of the group gives their names.
-  auto writer = KA_TRY(MotWriter::begin({std::get<ClipGroup>(header.groups[group].kind).skeleton,
-                                         MotColumns::joint_angles, header.frames, take.first()},
-                                        out));
+  auto writer = KA_TRY(MotWriter::begin(
+      {std::get<ClipGroup>(header.groups[group].kind).skeleton, header.frames, take.first()}, out));
   KA_TRY(take.clip_frames(group, [&](const ClipFrames& frames) { return writer.append(frames); }));
   KA_TRY(writer.finish());
   return out.commit();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Imports NTU RGB+D: S001C002P003R001A004.skeleton is setup, camera, person, repetition and action.
 #include "kinalign/dataset/import/corpora.h"
-#include "kinalign/formats/points/ntu_bodies.h"
+#include "kinalign/formats/points/ntu_skeleton.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/formats/archive/npy.h"
 
+#include "kinalign/core/numbers.h"
+
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -80,10 +82,7 @@ class HeaderText {
     if (!descr || descr->size() < 3) return false;
     const char order = (*descr)[0];
     std::uint64_t size = 0;
-    const char* const end = descr->data() + descr->size();
-    // The number must fill the rest of the word.
-    const auto [behind, fault] = std::from_chars(descr->data() + 2, end, size);
-    if (fault != std::errc{} || behind != end) return false;
+    if (!parse_integer(descr->substr(2), size)) return false;
     out.kind = (*descr)[1];
     // A text of n characters takes 4 n bytes: numpy stores UTF-32.
     if (out.kind == 'U') {
@@ -152,15 +151,12 @@ std::uint64_t NpyHeader::values() const {
 }
 
 Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name) {
-  const auto refuse = [&](std::string expected, std::string found) {
-    return Failure(Error{std::string(name), 0, std::move(expected), std::move(found)});
-  };
   if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
-    return refuse("a NumPy array (NPY)", "other bytes at the beginning");
+    return refuse(name, "a NumPy array (NPY)", "other bytes at the beginning");
   }
   const auto version = static_cast<unsigned char>(bytes[6]);
   if (version < 1 || version > 3) {
-    return refuse("an NPY of version 1 to 3", std::to_string(version));
+    return refuse(name, "an NPY of version 1 to 3", std::to_string(version));
   }
   // Version 1 has two bytes for the header's length, later versions have four.
   const std::size_t length_bytes = version == 1 ? 2 : 4, at = 8 + length_bytes;
@@ -170,12 +166,13 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
     length = length << 8 | static_cast<unsigned char>(bytes[8 + i]);
   }
   if (bytes.size() < at || length > longest_header || bytes.size() - at < length) {
-    return refuse("a complete NPY header", "a header of " + std::to_string(length) + " bytes");
+    return refuse(name, "a complete NPY header",
+                  "a header of " + std::to_string(length) + " bytes");
   }
   NpyHeader out;
   const std::string_view text = bytes.substr(at, length);
   if (!HeaderText(text).parse(out)) {
-    return refuse("an NPY of numbers or texts, little-endian, in C order", shown(text));
+    return refuse(name, "an NPY of numbers or texts, little-endian, in C order", shown(text));
   }
   out.data_at = at + length;
   std::uint64_t all = std::max<std::size_t>(out.value_bytes, 1);
@@ -183,7 +180,7 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
     // Checked before each product, so that none can overflow. A length of 0 counts as 1: the others
     // must be sane, too.
     if (one > 0 && all > most_bytes / one)
-      return refuse("an array below 2^40 bytes", "a larger array");
+      return refuse(name, "an array below 2^40 bytes", "a larger array");
     all *= std::max<std::uint64_t>(one, 1);
   }
   return out;
@@ -194,8 +191,8 @@ Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
   out.header = KA_TRY(parse_npy_header(file, name));
   const std::uint64_t wanted = out.header.values() * out.header.value_bytes;
   if (file.size() - out.header.data_at != wanted) {
-    return Failure(Error{std::string(name), 0, std::to_string(wanted) + " bytes of values",
-                         std::to_string(file.size() - out.header.data_at)});
+    return refuse(name, std::to_string(wanted) + " bytes of values",
+                  std::to_string(file.size() - out.header.data_at));
   }
   // Erased in place: a copy would double the memory.
   file.erase(0, out.header.data_at);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/streams/stored_chunks.h"
 
-#include "kinalign/core/unchanged.h"
+#include "kinalign/core/file_version.h"
 #include "kinalign/mcap/chunk.h"
 #include "kinalign/mcap/reader.h"
 
