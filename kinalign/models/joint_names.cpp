@@ -73,12 +73,6 @@ std::string translated(const std::array<Word, N>& words, const std::string& name
 
 }  // namespace
 
-std::optional<std::size_t> index_of(const std::vector<std::string>& names, std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - names.begin());
-}
-
 std::vector<std::string> kinect_names(const std::vector<std::string>& names) {
   // Each vocabulary is recognised by its root. The two must not be mixed: "Head" means the neck in
   // UI-PRMD, and the head in a suit.

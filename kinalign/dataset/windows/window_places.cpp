@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/windows/window_places.h"
 
+#include "kinalign/motion/median.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,12 +22,10 @@ std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   for (std::size_t i = 1; i < stamps.size(); ++i) steps.push_back(stamps[i] - stamps[i - 1]);
   std::vector<Stretch> out{{0, stamps.size()}};
   if (steps.empty()) return out;
-  auto sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const Duration median = upper_median(steps);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     // Whole numbers: a step of 1.5 medians or less is no gap.
-    if (2 * steps[i] <= 3 * *middle) continue;
+    if (2 * steps[i] <= 3 * median) continue;
     out.back().end = i + 1;
     out.push_back({i + 1, stamps.size()});
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/pose_body.h"
 
+#include "kinalign/motion/index_of.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,8 +12,8 @@ namespace kinalign {
 namespace {
 
 int place_of(std::span<const std::string> names, std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+  const auto at = index_of(names, name);
+  return at ? static_cast<int>(*at) : -1;
 }
 
 /// The rotation of joint `j` against the root; `frame` [B].
