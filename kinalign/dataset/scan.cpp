@@ -2,6 +2,8 @@
 #include "kinalign/dataset/scan.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -21,6 +23,16 @@ Failure unreadable(const std::string& folder, const std::error_code& fault) {
 bool is_there(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
+}
+
+Result<void> remove_file(FileSystem& files, const std::string& path) {
+  if (files.remove(path.c_str()) == 0 || errno == ENOENT) return {};
+  return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
+}
+
+void remove_if_empty(const std::string& path) {
+  std::error_code ignored;  // not empty, or missing
+  if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
 }
 
 Result<std::vector<std::string>> names_in_folder(const std::string& path) {

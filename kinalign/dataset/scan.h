@@ -19,6 +19,12 @@ inline constexpr std::size_t longest_manifest = std::size_t{4} << 20;
 
 /// True if a file or folder exists; false also if that can't be found out.
 bool is_there(const std::string& path);
+/// Removes a file; a file that does not exist is no fault.
+Result<void> remove_file(FileSystem& files, const std::string& path);
+
+/// Removes a folder if it exists and is empty.
+void remove_if_empty(const std::string& path);
+
 /// The names in a folder, sorted. Fails if it can't be read.
 Result<std::vector<std::string>> names_in_folder(const std::string& path);
 /// The names of people's folders, "sub-03". Fails if the data set's folder can't be read.

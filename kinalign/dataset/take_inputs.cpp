@@ -135,12 +135,12 @@ bool is_unpacked(const std::string& place) {
 Result<std::vector<TakeInput>> raw_files_of(FileSystem& files, const std::string& folder,
                                             const TakeName& name) {
   std::error_code fault;
-  if (!fs::exists(folder + "/" + path_of(name, TakeFile::manifest), fault)) {
+  if (!fs::exists(path_of(folder, name, TakeFile::manifest), fault)) {
     return std::vector<TakeInput>{};
   }
   // Defaults of dataset.toml do not change which files are named.
   const Manifest manifest = KA_TRY(take_manifest(files, folder, Catalogue{}, name));
-  const std::string base = folder + "/sub-" + name.subject + "/";
+  const std::string base = folder_of(folder, name);
   const auto summary = read_summary(files, folder, name);
   // A take that was built states its further files; otherwise readers are asked.
   return summary ? inputs_of(files, manifest, base, summary->inputs)

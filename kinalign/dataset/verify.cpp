@@ -140,7 +140,7 @@ class Verifier {
     // The hash is checked later, with all others; here it must not differ.
     made.sha256 = stored->sha256;
     std::error_code fault;
-    made.bytes = std::filesystem::file_size(folder_ + "/" + path_of(name, TakeFile::take), fault);
+    made.bytes = std::filesystem::file_size(path_of(folder_, name, TakeFile::take), fault);
     // Everything in a summary follows from the take's bytes, so the texts must be equal.
     if (summary_json(made) != *text) {
       report(Severity::error, file, "the contents of the take", "other values", again);
@@ -149,7 +149,7 @@ class Verifier {
       report(Severity::error, path_of(name, TakeFile::take),
              "subject and action as in the take's name", made.subject + " and " + made.action);
     }
-    hashes_.push_back({folder_ + "/" + path_of(name, TakeFile::take), stored->sha256,
+    hashes_.push_back({path_of(folder_, name, TakeFile::take), stored->sha256,
                        path_of(name, TakeFile::take), stored->bytes});
     // Only takes with a good summary are compared with their manifests.
     summaries_.emplace(name, *stored);
@@ -186,7 +186,7 @@ class Verifier {
       report(Severity::warning, file, "the parameters of the take", "other parameters", build);
     }
     for (const TakeInput& input :
-         inputs_of(files_, *manifest, folder_ + "/sub-" + name.subject + "/", summary.inputs)) {
+         inputs_of(files_, *manifest, folder_of(folder_, name), summary.inputs)) {
       check_input(file, input, summary);
     }
   }

@@ -50,7 +50,7 @@ std::map<std::string, std::string> read_ledger(FileSystem& files, const std::str
 /// The folder from which the names in the take lead to all of its raw files.
 std::string inputs_folder(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                           const TakeName& name) {
-  const std::string base = folder + "/sub-" + name.subject + "/";
+  const std::string base = folder_of(folder, name);
   const auto manifest = take_manifest(files, folder, catalogue, name);
   // A take that was added as a take has no raw files.
   if (!manifest) return "";
@@ -114,7 +114,7 @@ Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
     if (is_there(page) && !is_own_page(files_, page, "name=\"generator\" content=\"kinalign")) {
       return Failure(Error{page, 0, "a page that kinalign wrote, or no file", "another file"});
     }
-    jobs.push_back({*name, folder_ + "/" + path_of(*name, TakeFile::take), page,
+    jobs.push_back({*name, path_of(folder_, *name, TakeFile::take), page,
                     inputs_folder(files_, folder_, index.catalogue(), *name), hash->second});
   }
   return jobs;

@@ -93,7 +93,7 @@ class Job {
   // Opens only the streams and arrays that windows have.
   Result<TakeReader> open(std::size_t take) const {
     return TakeReader::open(
-        files_, source_.folder + "/" + path_of(source_.takes[take].name, TakeFile::take), parts_);
+        files_, path_of(source_.folder, source_.takes[take].name, TakeFile::take), parts_);
   }
   Result<void> set_streams(const std::vector<std::string>& names);
   std::string reasons() const;
