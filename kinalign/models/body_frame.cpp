@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-// A Kinect's left-right line shrinks or flips if a person stands sideways to it (models.md 1.3).
+// A Kinect's left-right line shrinks or flips if a person stands sideways to it.
 // The direction of a shorter line is noise, so it does not change the heading.
 constexpr double least_width = 0.15;  // m, summed over the left/right pairs
 

@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-// Both values are those of models.md 11.2. There, this projection improved positions on UI-PRMD and
+// Both values are chosen by trials, in which this projection improved positions on UI-PRMD and
 // halved the bone error. Setting lengths outward from the root alone made hands and feet worse.
 constexpr int sweeps = 40;
 /// Over-relaxation of a joint's mean move; the sweeps converge sooner.

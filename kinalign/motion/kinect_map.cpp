@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sources of the tables. Heights above the hips, cm: Kinect SpineMid 32, SpineShoulder 55, Neck 63,
-// Head 78 (18 recordings, formats.md 2.1). Perception Neuron, for a person of 175: Spine1 24.0,
+// Head 78 (means of 18 recordings). Perception Neuron, for a person of 175: Spine1 24.0,
 // Spine2 34.1, Spine3 43.9, Neck 54.3, Head 63.7, end 79.7. Axis Studio: Spine1 25.1, Spine2 37.4,
 // Neck 55.8, Neck1 60.6, Head 65.3, end 81.2. Kinect hips are 15.7 cm apart, Perception Neuron's
-// 18.5 cm, hence 15 % of the way to the middle. CMU's names are those of its table in formats.md 7.
+// 18.5 cm, hence 15 % of the way to the middle. CMU's names are those of
+// its BVH files by cgspeed.
 #include "kinalign/motion/kinect_map.h"
 
 #include "kinalign/motion/index_of.h"

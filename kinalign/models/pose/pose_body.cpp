@@ -119,8 +119,8 @@ ClipFrames clip_frames(const PoseBody& body, std::span<const Turn> rotations,
     vec3(out.local_positions, t * joints) = Vec3(0.0, height, 0.0);
     put_quat(out.local_rotations, t * joints, root[t].cast<double>().normalized());
     for (std::size_t j = 1; j < joints; ++j) {
-      // Networks answer with rotations against the root, so that errors do not add up along a chain
-      // (models.md 1.6). A clip stores them against the parent.
+      // Networks answer with rotations against the root, so that errors do not add up along a
+      // chain. A clip stores them against the parent.
       const Turn above = turn_of(body, frame, static_cast<std::size_t>(body.skeleton.parents[j]));
       const Turn local = above.transpose() * turn_of(body, frame, j);
       vec3(out.local_positions, t * joints + j) = body.skeleton.rest_offsets[j];
