@@ -40,8 +40,6 @@ constexpr bool is_slow(Piece piece) { return piece >= Piece::raise_front; }
 constexpr std::string_view to_string(Piece piece) {
   return piece_names[static_cast<std::size_t>(piece)];
 }
-/// The piece of that name. The error lists all names.
-Result<Piece> piece_named(std::string_view name);
 
 struct ProgrammePiece {
   Piece piece = Piece::stand;
