@@ -2,6 +2,7 @@
 #include "kinalign/dataset/windows/window_places.h"
 
 #include "kinalign/motion/median.h"
+#include "kinalign/motion/stamps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +51,7 @@ WindowPlace place_at(std::span<const Time> stamps, const Stretch& stretch, doubl
     return {stamps[first], first, rows, rows};
   }
   const auto stamp = [&](std::uint64_t row) {
-    return stamps[stretch.begin] + Duration(std::llround(1e9 * static_cast<double>(row) / rate_hz));
+    return grid_stamp(stamps[stretch.begin], rate_hz, row);
   };
   const Time begin = stamp(offset), end = stamp(offset + rows - 1);
   // Both ends of the window lie between these rows of the take, which are read.

@@ -2,6 +2,7 @@
 #include "kinalign/models/pose/pose_body.h"
 
 #include "kinalign/motion/index_of.h"
+#include "kinalign/motion/stamps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,10 +21,6 @@ int place_of(std::span<const std::string> names, std::string_view name) {
 Turn turn_of(const PoseBody& body, std::span<const Turn> frame, std::size_t j) {
   const int bone = body.turned_by[j];
   return bone < 0 ? Turn::Identity() : frame[static_cast<std::size_t>(bone)];
-}
-
-Time stamp_of(Time start, double rate_hz, std::size_t frame) {
-  return start + Duration{std::llround(static_cast<double>(frame) * 1e9 / rate_hz)};
 }
 
 /// The height of the root above the lowest joint of a frame, m.
@@ -112,7 +109,7 @@ ClipFrames clip_frames(const PoseBody& body, std::span<const Turn> rotations,
   out.local_positions.resize(root.size() * joints * 3);
   out.local_rotations.resize(root.size() * joints * 4);
   for (std::size_t t = 0; t < root.size(); ++t) {
-    out.stamps.push_back(stamp_of(start, rate_hz, t));
+    out.stamps.push_back(grid_stamp(start, rate_hz, t));
     const std::span<const Turn> frame = rotations.subspan(t * bones, bones);
     const std::span<const float> places(&positions[t * joints * 3], joints * 3);
     const double height = depth_below_root(places, root[t].toRotationMatrix());
