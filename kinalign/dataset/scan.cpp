@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 namespace kinalign {
 
@@ -33,6 +34,22 @@ Result<void> remove_file(FileSystem& files, const std::string& path) {
 void remove_if_empty(const std::string& path) {
   std::error_code ignored;  // not empty, or missing
   if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
+}
+
+UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
+  for (fs::path up = fs::path(path_).parent_path(); !up.empty() && !is_there(up.string());
+       up = up.parent_path()) {
+    // Only folders that do not exist yet are remembered.
+    above_.push_back(up.string());
+  }
+}
+
+UnfinishedFolder::~UnfinishedFolder() {
+  // A failed import removes what it made, and no folder that existed before.
+  if (kept_) return;
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  for (const std::string& one : above_) fs::remove(one, ignored);  // only if it is empty
 }
 
 Result<std::vector<std::string>> names_in_folder(const std::string& path) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/verify.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/build.h"
 #include "kinalign/dataset/scan.h"
@@ -194,14 +195,13 @@ class Verifier {
   // Sizes are always compared. Raw files are hashed only in a deep check, since they may be large.
   void check_input(const std::string& manifest, const TakeInput& input,
                    const TakeSummary& summary) {
-    const auto known = std::find_if(summary.inputs.begin(), summary.inputs.end(),
-                                    [&](const InputFacts& one) { return one.name == input.name; });
+    const InputFacts* const known = find_named(summary.inputs, input.name);
     std::error_code fault;
     const auto size = fs::file_size(input.path, fault);
     if (fault) {
       report(Severity::warning, manifest, "the raw file " + input.name, "no such file",
              "the take can't be made again without this file");
-    } else if (known == summary.inputs.end() || known->bytes != size) {
+    } else if (known == nullptr || known->bytes != size) {
       report(Severity::warning, manifest,
              "the raw file " + input.name + " that the take was made from", "another file",
              "kinalign dataset build");

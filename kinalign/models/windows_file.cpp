@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/windows_file.h"
 
+#include "kinalign/core/find_named.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -280,9 +282,7 @@ Result<Places> places_of(const Arrays& arrays, const std::string& name) {
 }  // namespace
 
 const WindowsFacts::Stream* WindowsFacts::find(const std::string& stream) const {
-  const auto found = std::find_if(streams.begin(), streams.end(),
-                                  [&](const Stream& one) { return one.name == stream; });
-  return found == streams.end() ? nullptr : &*found;
+  return find_named(streams, stream);
 }
 
 Result<std::map<std::string, NpyArray>> stored_arrays(std::string_view npz,

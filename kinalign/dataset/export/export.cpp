@@ -5,8 +5,8 @@
 #include "kinalign/dataset/export/release.h"
 #include "kinalign/dataset/export/shard_export.h"
 #include "kinalign/dataset/export/take_files.h"
+#include "kinalign/dataset/scan.h"
 #include "kinalign/dataset/summarise.h"
-#include "kinalign/dataset/unfinished_folder.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/guarded.h"
 

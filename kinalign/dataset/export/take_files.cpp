@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/export/take_files.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/dataset/export/csv_write.h"
 #include "kinalign/formats/c3d/c3d.h"
 #include "kinalign/formats/imu/opensim_sto.h"
@@ -201,10 +202,7 @@ const std::vector<TakeFormat>& take_formats() {
 }
 
 const TakeFormat* find_take_format(std::string_view name) {
-  const auto& all = take_formats();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const TakeFormat& one) { return one.name == name; });
-  return found == all.end() ? nullptr : &*found;
+  return find_named(take_formats(), name);
 }
 
 }  // namespace kinalign

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinalign/core/files.h"
-#include "kinalign/dataset/unfinished_folder.h"
+#include "kinalign/dataset/scan.h"
 
 #include <functional>
 #include <string>

@@ -3,6 +3,7 @@
 // sizes of its arrays at its beginning; the second pass writes them.
 #include "kinalign/dataset/windows/windows.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/dataset/windows/window_arrays.h"
 #include "kinalign/dataset/windows/window_rows.h"
 #include "kinalign/formats/take/guarded.h"
@@ -124,9 +125,7 @@ Result<void> Job::done_with(std::size_t take, std::uint64_t passes) {
 std::vector<TakeGroup> groups_of(const TakeHeader& header, const std::vector<std::string>& names) {
   std::vector<TakeGroup> out;
   for (const std::string& name : names) {
-    const auto found = std::find_if(header.groups.begin(), header.groups.end(),
-                                    [&](const TakeGroup& g) { return g.name == name; });
-    if (found != header.groups.end()) out.push_back(*found);
+    if (const TakeGroup* found = find_named(header.groups, name)) out.push_back(*found);
   }
   return out;
 }

@@ -3,7 +3,7 @@
 
 #include "kinalign/infer/shapes.h"
 #include "kinalign/models/bones.h"
-#include "kinalign/models/window_rows.h"
+#include "kinalign/motion/frame_arrays.h"
 
 #include <algorithm>
 

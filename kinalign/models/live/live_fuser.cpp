@@ -2,7 +2,7 @@
 #include "kinalign/models/live/live_fuser.h"
 
 #include "kinalign/infer/shapes.h"
-#include "kinalign/models/window_rows.h"
+#include "kinalign/motion/frame_arrays.h"
 
 #include <algorithm>
 #include <utility>

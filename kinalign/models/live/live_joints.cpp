@@ -2,7 +2,7 @@
 #include "kinalign/models/live/live_joints.h"
 
 #include "kinalign/models/joint_names.h"
-#include "kinalign/models/window_rows.h"
+#include "kinalign/motion/frame_arrays.h"
 #include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>

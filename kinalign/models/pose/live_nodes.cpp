@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/live_nodes.h"
 
-#include "kinalign/models/window_rows.h"
+#include "kinalign/motion/frame_arrays.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/node_places.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/motion/index_of.h"
 
 #include <algorithm>
@@ -78,11 +79,7 @@ std::vector<std::string> words_of(std::string_view name) {
 
 std::span<const WornPlace> worn_places() { return places; }
 
-const WornPlace* worn_place(std::string_view name) {
-  const auto* found = std::find_if(places.begin(), places.end(),
-                                   [&](const WornPlace& one) { return one.name == name; });
-  return found == places.end() ? nullptr : found;
-}
+const WornPlace* worn_place(std::string_view name) { return find_named(places, name); }
 
 std::string_view place_called(std::string_view name) {
   std::string side, rest;

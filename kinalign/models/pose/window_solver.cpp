@@ -2,7 +2,7 @@
 #include "kinalign/models/pose/window_solver.h"
 
 #include "kinalign/infer/shapes.h"
-#include "kinalign/models/window_rows.h"
+#include "kinalign/motion/frame_arrays.h"
 
 #include <algorithm>
 

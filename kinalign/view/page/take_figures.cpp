@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/page/take_figures.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/motion/index_of.h"
 #include "kinalign/view/page/body_figures.h"
 #include "kinalign/view/page/floor_figures.h"
@@ -278,15 +279,14 @@ void TakeFigures::State::add_raw_node_samples() {
   page.raw_nodes_begin_s = std::max(0.0, stretch.begin_s);
   page.raw_nodes_end_s = std::min(length_s, stretch.end_s);
   const std::string& stream = header.groups[node_group].name;
-  const auto how = std::find_if(header.parameters.streams.begin(), header.parameters.streams.end(),
-                                [&](const StreamOptions& one) { return one.name == stream; });
+  const StreamOptions* const how = find_named(header.parameters.streams, stream);
   for (const RawNode& raw : options.raw_nodes) {
     const auto node = std::find_if(page.nodes.begin(), page.nodes.end(),
                                    [&](const NodeFigures& n) { return n.node == raw.node; });
     if (raw.stream != stream || node == page.nodes.end()) continue;
     Quat sensor_from_bone = Quat::Identity();
     // The mounting that alignment was given; without one, values were not turned.
-    if (how != header.parameters.streams.end() && how->mounting.contains(raw.node)) {
+    if (how != nullptr && how->mounting.contains(raw.node)) {
       sensor_from_bone = quat(how->mounting.at(raw.node), 0).normalized();
     }
     add_raw(raw, sensor_from_bone, *first, stretch, *node);
