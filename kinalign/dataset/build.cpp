@@ -13,7 +13,6 @@
 #include "kinalign/sources/open_recording.h"
 
 #include <algorithm>
-#include <map>
 #include <mutex>
 #include <optional>
 

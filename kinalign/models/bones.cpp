@@ -4,7 +4,6 @@
 #include "kinalign/motion/median.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace kinalign {

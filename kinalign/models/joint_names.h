@@ -5,7 +5,6 @@
 
 #include "kinalign/motion/index_of.h"
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <Eigen/SVD>
 
 #include <array>
-#include <cmath>
 #include <optional>
 #include <string_view>
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/motion/pose.h"
 
-#include "kinalign/motion/stamps.h"
-
-#include <cmath>
-
 namespace kinalign {
 
 void forward_kinematics(const Skeleton& skeleton, const Pose& local, GlobalPose& global) {

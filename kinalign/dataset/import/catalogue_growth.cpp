@@ -3,7 +3,6 @@
 
 #include "kinalign/syntax/toml.h"
 
-#include <algorithm>
 #include <set>
 
 namespace kinalign {

@@ -9,7 +9,6 @@
 #include "kinalign/formats/bvh/bvh.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 

@@ -5,7 +5,6 @@
 #include "kinalign/motion/stamps.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace kinalign {
 

@@ -6,7 +6,6 @@
 #include "kinalign/take/row_arrays.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace kinalign {

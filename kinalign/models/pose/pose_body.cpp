@@ -5,7 +5,6 @@
 #include "kinalign/motion/stamps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace kinalign {

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <optional>
 #include <string_view>
 
 namespace kinalign {

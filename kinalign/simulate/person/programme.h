@@ -3,7 +3,6 @@
 // tempo, size and side of its repetitions.
 #pragma once
 
-#include "kinalign/core/error.h"
 #include "kinalign/simulate/person/repetitions.h"
 
 #include <array>
