@@ -249,6 +249,16 @@ std::string report_json(const AlignmentReport& report) {
 
 std::string findings_json(const Findings& findings) { return written(findings_array(findings)); }
 
+Findings parse_findings_json(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  Findings out;
+  // A text that is no list has no elements.
+  for (const Json& finding : json.is_array() ? json : Json::array()) {
+    out.push_back(finding_from(finding));
+  }
+  return out;
+}
+
 Result<AlignmentReport> parse_report_json(std::string_view text, const std::string& path) {
   const Json json = Json::parse(text, nullptr, false);
   // Only this is a failure. All else that is wrong gives a report with fewer members.

@@ -51,9 +51,7 @@ std::string text_of(const Described* device, const char* key) {
 /// The facts about the device in dataset.toml whose id is the stream's name.
 BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
                          const TakeGroup& group) {
-  const auto device = std::find_if(catalogue.devices.begin(), catalogue.devices.end(),
-                                   [&](const Described& one) { return one.id == group.name; });
-  const Described* known = device == catalogue.devices.end() ? nullptr : &*device;
+  const Described* known = find_id(catalogue.devices, group.name);
   const Action* action = find_action(catalogue, take.name().action);
   BidsSystemFacts facts;
   facts.task_name = take.name().action;

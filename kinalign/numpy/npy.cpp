@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/archive/npy.h"
+#include "kinalign/numpy/npy.h"
 
 #include "kinalign/core/numbers.h"
 
@@ -91,7 +91,8 @@ class HeaderText {
       return true;
     }
     const bool whole = out.kind == 'i' || out.kind == 'u';
-    const bool known = (whole && (size == 1 || size == 2 || size == 4 || size == 8)) ||
+    const bool known = (out.kind == 'b' && size == 1) ||
+                       (whole && (size == 1 || size == 2 || size == 4 || size == 8)) ||
                        (out.kind == 'f' && (size == 4 || size == 8));
     out.value_bytes = size;
     // Single bytes have no byte order, which numpy writes as '|'.
@@ -186,18 +187,14 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
   return out;
 }
 
-Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
+Result<NpyArray> read_npy(std::string_view file, std::string_view name) {
   NpyArray out;
   out.header = KA_TRY(parse_npy_header(file, name));
+  out.bytes = file.substr(out.header.data_at);
   const std::uint64_t wanted = out.header.values() * out.header.value_bytes;
-  if (file.size() - out.header.data_at != wanted) {
-    return refuse(name, std::to_string(wanted) + " bytes of values",
-                  std::to_string(file.size() - out.header.data_at));
-  }
-  // Erased in place: a copy would double the memory.
-  file.erase(0, out.header.data_at);
-  out.bytes = std::move(file);
-  return out;
+  if (out.bytes.size() == wanted) return out;
+  return refuse(name, std::to_string(wanted) + " bytes of values",
+                std::to_string(out.bytes.size()));
 }
 
 // The kind tells signed and unsigned numbers of one width apart.
