@@ -108,7 +108,6 @@ class McapReader {
 /// file. Absent after the last record, or if the file is not an MCAP file. Fails if `next_piece`
 /// fails.
 template <class NextPiece>
-/// The loop that callers of McapReader need: next(), and feed() or end() if it has no record.
 Result<std::optional<McapRecord>> pull(McapReader& reader, const NextPiece& next_piece) {
   for (;;) {
     if (auto record = reader.next()) return record;
