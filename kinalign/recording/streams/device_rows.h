@@ -104,28 +104,6 @@ class DeviceListener {
   virtual void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const = 0;
 };
 
-/// The stamps of rows in the order of RowsInOrder. `Row`: the data kept of a row. A listener uses
-/// it, so that its stamps have the same order as the rows of the later passes.
-template <class Row>
-class OrderedStamps {
- public:
-  OrderedStamps(std::size_t most_overtaking, std::function<void(Time, const Row&)> take)
-      : waiting_(most_overtaking), take_(std::move(take)) {}
-  void add(Time stamp, Row row) { waiting_.add(stamp, std::move(row)); }
-  /// Call at the end of a message. Passes on the stamps that need not wait any longer.
-  void settle() {
-    while (const auto first = waiting_.take_first()) take_(first->first, first->second);
-  }
-  void finish() {
-    waiting_.finish();
-    settle();
-  }
-
- private:
-  RowsInOrder<Row> waiting_;
-  std::function<void(Time, const Row&)> take_;
-};
-
 /// A later pass: makes rows from the same messages. It must not be used again after a failure. Rows
 /// and stamps of DeviceListener::stamp_rows must agree one by one: the take's number of rows is
 /// planned by the stamps.

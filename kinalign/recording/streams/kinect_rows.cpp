@@ -13,7 +13,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <functional>
+#include <variant>
 
 namespace kinalign {
 
@@ -24,16 +25,20 @@ namespace {
 struct Taken {
   BootKey life = 0;  // the session, until the host's epochs are known
   NodeTime device{}, sender{}, sent{};
-  HostTime arrival{};
+  HostTime arrival{};  // of the message that contained the part, or completed the frame
 };
+Taken taken_of(const KinectFrame& frame, HostTime arrival) {
+  return {frame.origin.session, kinect_sender_time(frame.device_ticks),
+          kinect_sender_time(frame.taken_ticks), kinect_sender_time(frame.sent_ticks), arrival};
+}
 
 /// The order in which exchanges reached the host. device_clock() needs it.
 bool came_before(const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; }
 
-/// The stamp of a frame. `arrival`: arrival of the message that completed the frame.
-std::optional<Time> stamp_of_frame(const HeardDevice& heard, BootKey session, NodeTime sent,
-                                   NodeTime device, HostTime arrival) {
-  return stamp_of(heard.clock, heard.epochs.life_at(session, sent, arrival), device, arrival);
+/// The stamp of a frame. Absent if its clock is not known.
+std::optional<Time> stamp_of_frame(const HeardDevice& heard, const Taken& one) {
+  const BootKey life = heard.epochs.life_at(one.life, one.sent, one.arrival);
+  return stamp_of(heard.clock, life, one.device, one.arrival);
 }
 
 constexpr std::size_t most_overtaking_kinect_frames =
@@ -59,11 +64,7 @@ class KinectListener final : public DeviceListener {
     parts_.clear();
     joined_.clear();
     frames_.take(message, joined_, &parts_);
-    for (const KinectFrame& part : parts_) {
-      taken_.push_back({part.origin.session, kinect_sender_time(part.device_ticks),
-                        kinect_sender_time(part.taken_ticks), kinect_sender_time(part.sent_ticks),
-                        message.arrival});
-    }
+    for (const KinectFrame& part : parts_) taken_.push_back(taken_of(part, message.arrival));
     arrival_ = message.arrival;
     add_joined();
   }
@@ -100,35 +101,20 @@ class KinectListener final : public DeviceListener {
   }
 
   void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    OrderedStamps<bool> stamps(most_overtaking_kinect_frames,
-                               [&take](Time stamp, bool) { take(stamp); });
-    for (const Joined& one : rows_) {
-      const auto stamp = stamp_of_frame(heard, one.session, one.sent, one.device, one.arrival);
-      // A frame without a stamp makes no row, here and in KinectRows.
-      if (stamp) stamps.add(*stamp, true);
-      if (one.ends_message) stamps.settle();
-    }
-    stamps.finish();
+    // A frame without a stamp makes no row, here and in KinectRows.
+    RowsInOrder<std::monostate> stamps(most_overtaking_kinect_frames);
+    const auto release = [&take](Time stamp, std::monostate) { take(stamp); };
+    for (const Taken& one : rows_) stamps.add(stamp_of_frame(heard, one), {}, release);
+    stamps.finish(release);
   }
 
  private:
-  // The times of one complete frame, from which its stamp is computed when the clocks are known.
-  struct Joined {
-    BootKey session = 0;
-    NodeTime sent{}, device{};
-    HostTime arrival{};  // arrival of the message that completed the frame
-    bool ends_message = false;
-  };
   void add_joined() {
-    for (const JoinedKinectFrame& one : joined_) {
-      rows_.push_back({one.frame.origin.session, kinect_sender_time(one.frame.sent_ticks),
-                       kinect_sender_time(one.frame.device_ticks), arrival_,
-                       &one == &joined_.back()});
-    }
+    for (const JoinedKinectFrame& one : joined_) rows_.push_back(taken_of(one.frame, arrival_));
   }
 
   HostTime arrival_{};
-  std::vector<Joined> rows_;
+  std::vector<Taken> rows_;  // of complete frames; their stamps are computed when clocks are known
   KinectFrames frames_;
   std::vector<KinectFrame> parts_;
   std::vector<JoinedKinectFrame> joined_;
@@ -151,8 +137,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     joined_.clear();
     frames_.take(message, joined_, nullptr);
     arrival_ = message.arrival;
-    stamp_joined();
-    append_waiting(out);
+    add_joined(out);
     return {};
   }
 
@@ -160,9 +145,8 @@ class KinectRows final : public DeviceRows<PointFrames> {
   Result<void> finish(PointFrames& out) override {
     joined_.clear();
     frames_.finish(joined_);
-    stamp_joined();
-    waiting_.finish();
-    append_waiting(out);
+    add_joined(out);
+    waiting_.finish(appending(out));
     person_.report(file(), findings);
     const KinectFrameCounts counts = frames_.counts();
     tell(counts.frames.lost, "each frame's number", "that never came",
@@ -180,7 +164,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     tell(counts.parts_lost, "all parts of a frame", "frames without some",
          "bodies may be missing in them");
     tell(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");
-    tell(unknown_, "frames of a clock that is known", "others", "they were left out");
+    tell(waiting_.unstamped(), "frames of a clock that is known", "others", "they were left out");
     tell(wild_, "joints whose place is a number", "others", "they are missing");
     return {};
   }
@@ -188,28 +172,18 @@ class KinectRows final : public DeviceRows<PointFrames> {
   const PointHeader* header() const override { return &header_; }
 
  private:
-  /// Stamps the joined frames. A frame without a known clock is counted and left out.
-  void stamp_joined() {
-    for (JoinedKinectFrame& joined : joined_) {
-      KinectFrame& frame = joined.frame;
-      const auto stamp =
-          stamp_of_frame(*heard_, frame.origin.session, kinect_sender_time(frame.sent_ticks),
-                         kinect_sender_time(frame.device_ticks), arrival_);
-      if (!stamp) {
-        ++unknown_;
-        continue;
-      }
-      waiting_.add(*stamp, std::move(frame));
+  void add_joined(PointFrames& out) {
+    for (JoinedKinectFrame& one : joined_) {
+      const auto stamp = stamp_of_frame(*heard_, taken_of(one.frame, arrival_));
+      waiting_.add(stamp, std::move(one.frame), appending(out));
     }
   }
-
   // Rows are made when they leave the queue, so the person is followed in the order of time.
-  void append_waiting(PointFrames& out) {
-    while (const auto first = waiting_.take_first()) {
-      const KinectFrame& frame = first->second;
+  std::function<void(Time, const KinectFrame&)> appending(PointFrames& out) {
+    return [&](Time stamp, const KinectFrame& frame) {
       wild_ += append_kinect_row(frame, person_(frame).value_or(0), out);
-      out.stamps.back() = first->first;
-    }
+      out.stamps.back() = stamp;
+    };
   }
 
   std::shared_ptr<const HeardDevice> heard_;
@@ -219,7 +193,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
   std::vector<JoinedKinectFrame> joined_;
   RowsInOrder<KinectFrame> waiting_{most_overtaking_kinect_frames};
   HostTime arrival_{};
-  std::uint64_t unknown_ = 0, wild_ = 0;
+  std::uint64_t wild_ = 0;
 };
 
 }  // namespace

@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 
 #include <deque>
+#include <functional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace kinalign {
@@ -103,7 +105,8 @@ class NodeListener final : public DeviceListener {
 
   /// Stamps the samples in the order in which NodeRows makes its rows.
   void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    OrderedStamps<bool> stamps(most_overtaking_samples, [&take](Time stamp, bool) { take(stamp); });
+    RowsInOrder<std::monostate> stamps(most_overtaking_samples);
+    const auto release = [&take](Time stamp, std::monostate) { take(stamp); };
     // The ages are consumed in the order in which take() stored them.
     auto age_us = ages_us_.begin();
     for (const HeardFrame& one : heard_) {
@@ -118,12 +121,10 @@ class NodeListener final : public DeviceListener {
         frame.number = number_of(accepted);
       }
       for (std::uint32_t i = 0; i < one.samples; ++i) {
-        const auto stamp = stamp_of_sample(heard, frame, *age_us++, one.arrival);
-        if (stamp) stamps.add(*stamp, true);
+        stamps.add(stamp_of_sample(heard, frame, *age_us++, one.arrival), {}, release);
       }
-      stamps.settle();
     }
-    stamps.finish();
+    stamps.finish(release);
   }
 
  private:
@@ -169,28 +170,22 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     if (!frame) return {};
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
       const NodeSample& sample = frame->samples[i];
-      const auto stamp = stamp_of_sample(*heard_, *frame, sample.age_us, message.arrival);
-      if (!stamp) {
-        ++unknown_;
-        continue;
-      }
-      waiting_.add(*stamp, sample);
+      waiting_.add(stamp_of_sample(*heard_, *frame, sample.age_us, message.arrival), sample,
+                   appending(out));
     }
-    append_waiting(out);
     return {};
   }
 
   /// Makes the remaining rows and reports what was left out.
   Result<void> finish(ImuSamples& out) override {
-    waiting_.finish();
-    append_waiting(out);
+    waiting_.finish(appending(out));
     converter_.report(file(), findings);
     tell(frames_.others, "datagrams that the recorder could use",
          "of no use: damaged, too late or come twice, or of a start that was never confirmed",
          frames_.others == 1 ? "it was passed over" : "they were passed over");
     tell_too_late(waiting_, "samples");
-    tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",
-         "they were left out");
+    tell(waiting_.unstamped(), "samples of a life of the node whose clock is known",
+         "samples of others", "they were left out");
     tell(partial_, "samples with all that the node sends at times",
          "samples without, or with numbers that are none", "these samples are invalid");
     return {};
@@ -199,11 +194,11 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   const ImuHeader* header() const override { return &header_; }
 
  private:
-  void append_waiting(ImuSamples& out) {
-    while (const auto first = waiting_.take_first()) {
-      out.stamps.push_back(first->first);
-      append(first->second, out);
-    }
+  std::function<void(Time, const NodeSample&)> appending(ImuSamples& out) {
+    return [&](Time stamp, const NodeSample& sample) {
+      out.stamps.push_back(stamp);
+      append(sample, out);
+    };
   }
 
   /// Appends one row. A sample that lacks a part of the stream's content, or has another kind of
@@ -236,7 +231,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   ImuHeader header_;
   AcceptedFrames frames_;
   RowsInOrder<NodeSample> waiting_{most_overtaking_samples};
-  std::uint64_t unknown_ = 0, partial_ = 0;
+  std::uint64_t partial_ = 0;
 };
 
 }  // namespace

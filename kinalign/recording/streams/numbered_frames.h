@@ -196,16 +196,15 @@ class FrameKeys {
       if (fits(shape)) take(stamp);
     };
     if (heard.by_arrival) return stamp_by_arrivals(heard, put);
-    OrderedStamps<std::uint32_t> stamps(most_overtaking_frames, put);
+    RowsInOrder<std::uint32_t> stamps(most_overtaking_frames);
     for (const Key& key : keys_) {
       const auto stamp = !key.is_numbered
                              ? std::nullopt
                              : stamp_of(heard.clock, key.frame.life,
                                         counter_of(key.frame, heard.step_ns), key.frame.arrival);
-      if (stamp) stamps.add(*stamp, key.shape);
-      if (key.ends_message) stamps.settle();
+      stamps.add(stamp, key.shape, put);
     }
-    stamps.finish();
+    stamps.finish(put);
   }
 
  private:
@@ -254,8 +253,7 @@ class NumberedRows : public DeviceRows<Frames> {
     placed_.clear();
     frames_.finish(placed_);
     put_placed(out);
-    waiting_.finish();
-    put_waiting(out);
+    waiting_.finish(putting(out));
     if (appended_ == 0 && (misfit_ || this->header() == nullptr)) {
       return Failure(misfit_.value_or(Error{this->file(), 0, std::string(Source::what), "none"}));
     }
@@ -267,7 +265,8 @@ class NumberedRows : public DeviceRows<Frames> {
            std::to_string(misfits_) + " " + frames + " of that kind were left out", ""});
     }
     this->tell_too_late(waiting_, frames);
-    this->tell(unknown_, frames + " whose clock is known", "others", "they were left out");
+    this->tell(waiting_.unstamped(), frames + " whose clock is known", "others",
+               "they were left out");
     return {};
   }
 
@@ -296,16 +295,11 @@ class NumberedRows : public DeviceRows<Frames> {
       return;
     }
     for (auto& one : placed_) {
-      if (const auto stamp = stamp_of(*heard_, one)) {
-        waiting_.add(*stamp, std::move(one.frame));
-      } else {
-        ++unknown_;
-      }
+      waiting_.add(stamp_of(*heard_, one), std::move(one.frame), putting(out));
     }
-    put_waiting(out);
   }
-  void put_waiting(Frames& out) {
-    while (const auto first = waiting_.take_first()) put(first->second, first->first, out);
+  auto putting(Frames& out) {
+    return [&](Time stamp, const typename Source::Frame& frame) { put(frame, stamp, out); };
   }
 
   std::shared_ptr<const HeardDevice> heard_;
@@ -314,7 +308,7 @@ class NumberedRows : public DeviceRows<Frames> {
   RowsInOrder<typename Source::Frame> waiting_{most_overtaking_frames};
   ArrivalStamps arrivals_{*heard_};  // for frames that are stamped by arrival
   std::optional<Error> misfit_;
-  std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
+  std::uint64_t appended_ = 0, misfits_ = 0;
 };
 
 /// Makes the clock of numbered frames. A rate in the options has precedence over `step_ns`.

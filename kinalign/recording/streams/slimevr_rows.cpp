@@ -105,14 +105,13 @@ class SlimeListener final : public DeviceListener {
   void take(const RecordedMessage& message) override {
     taken_.clear();
     samples_.take(message, taken_);
-    rotations_ += taken_.size();
     arrivals_.insert(arrivals_.end(), taken_.size(), message.arrival);
     for (const SlimeSample& one : taken_) accelerations_ += one.acceleration ? 1U : 0U;
   }
 
   Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
     const std::string& file = wish.file.path;
-    if (rotations_ == 0) {
+    if (arrivals_.empty()) {
       return Failure(Error{
           file, 0, "of stream " + shown(heard.channel.stream) + " rotations of a SlimeVR tracker",
           "none", ErrorKind::no_rows_in_recording});
@@ -120,7 +119,7 @@ class SlimeListener final : public DeviceListener {
     stamp_by_arrival(file, heard);
     // A tracker may send accelerations rarely. If fewer than half of the samples have one, the
     // stream has no acceleration.
-    heard.content = {true, 2 * accelerations_ > rotations_, false, false};
+    heard.content = {true, 2 * accelerations_ > arrivals_.size(), false, false};
     if (any_sensor_ && samples_.sensors.size() > 1) {
       heard.findings.push_back(
           {Severity::warning,
@@ -142,7 +141,7 @@ class SlimeListener final : public DeviceListener {
   SlimeSamples samples_;
   std::vector<SlimeSample> taken_;
   std::vector<HostTime> arrivals_;  // arrivals of the samples
-  std::uint64_t rotations_ = 0, accelerations_ = 0;
+  std::uint64_t accelerations_ = 0;
 };
 
 /// Makes a row for each sample. It uses the same SlimeSamples as the listener, so both agree.
