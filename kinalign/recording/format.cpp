@@ -172,6 +172,11 @@ std::optional<RawChannel> to_raw(const McapChannel& channel) {
                     text_of(channel.metadata, "place")};
 }
 
+std::optional<Protocol> protocol_of(const RawChannel& raw) {
+  if (raw.protocol != exchange_encoding) return find_recorded_protocol(raw.protocol);
+  return raw.node.empty() ? Protocol::kinect : Protocol::nodes;
+}
+
 McapSchema clock_pair_schema() {
   return {0, "kinalign.ClockPair", "jsonschema",
           R"({"type": "object", "properties": {)"

@@ -8,6 +8,7 @@
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/mcap/records.h"
 #include "kinalign/protocols/marks/mark.h"
+#include "kinalign/protocols/protocols.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -35,6 +36,9 @@ struct RecordingFacts {
   int part = 1;            // number of this file in the recording, from 1
   ClockPair anchor;        // log times are UTC = host time + (utc - raw), in the whole recording
   std::set<int> joined{};  // numbers of the parts that recover joined into this file; else empty
+  Duration utc_minus_host() const {
+    return anchor.utc.time_since_epoch() - anchor.raw.time_since_epoch();
+  }
   int last_part() const { return joined.empty() ? part : std::max(part, *joined.rbegin()); }
 };
 McapMetadata to_metadata(const RecordingFacts& facts);
@@ -82,6 +86,9 @@ struct RawChannel {
 };
 McapChannel to_channel(std::string topic, const RawChannel& raw);
 std::optional<RawChannel> to_raw(const McapChannel& channel);
+/// The protocol of the channel's device. Absent if it is not known. Exchanges of a channel with a
+/// node belong to that node, and others to a Kinect.
+std::optional<Protocol> protocol_of(const RawChannel& raw);
 
 /// The channel of the host's two clocks, one pair per second.
 inline constexpr std::string_view host_clock_topic = "/clock/host";

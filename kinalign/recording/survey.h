@@ -8,14 +8,17 @@
 #include "kinalign/core/progress.h"
 #include "kinalign/recording/counts.h"
 #include "kinalign/recording/format.h"
+#include "kinalign/recording/kinect_survey.h"
 #include "kinalign/recording/record_stream.h"
 
+#include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace kinalign {
@@ -55,19 +58,32 @@ struct RecordingSurvey {
 /// Surveys a recording from its records, for a caller that reads them for other purposes too.
 class RecordingSurveyor {
  public:
-  RecordingSurveyor();
-  RecordingSurveyor(const RecordingSurveyor&) = delete;
-  RecordingSurveyor& operator=(const RecordingSurveyor&) = delete;
-  ~RecordingSurveyor();
-
   /// Takes a record. Call for every record of the stream, in order.
-  void take(const McapRecord& record);
+  void take(const McapRecord& record) {
+    std::visit([this](const auto& one) { add(one); }, record);
+  }
   /// Call after the last record of the stream. `path`: the file to name in findings.
   RecordingSurvey finish(const std::string& path, const RecordStream& stream);
+  /// Absent until they were read.
+  const std::optional<RecordingFacts>& facts() const { return survey_.facts; }
 
  private:
-  class State;
-  std::unique_ptr<State> state_;
+  void add(const McapChannel& channel);
+  void add(const McapMetadata& metadata);
+  void add(const McapAttachment& attachment);
+  void add(const McapMessage& message);
+  template <class Other>
+  void add(const Other&) {}
+  void add_own(std::string_view topic, const McapMessage& message);
+  void add_mark(const McapMessage& message);
+
+  std::map<std::uint16_t, ChannelSurvey> channels_;
+  std::vector<ClockPair> clock_;
+  // The last counts of each sender, by topic, stream, address and node, and of each port.
+  std::map<std::array<std::string, 4>, CountedSender> senders_;
+  std::map<std::string, CountedPort> ports_;
+  KinectSurvey kinects_;
+  RecordingSurvey survey_;
 };
 
 /// Reports a recording of kinalign that was closed properly but does not end: the rest, if a disk

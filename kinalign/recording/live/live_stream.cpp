@@ -67,10 +67,6 @@ struct LiveStream::KinectDevice {
 LiveStream::LiveStream() = default;
 LiveStream::~LiveStream() = default;
 
-Duration LiveStream::utc_minus_host() const {
-  return facts_->anchor.utc.time_since_epoch() - facts_->anchor.raw.time_since_epoch();
-}
-
 Result<void> LiveStream::take(std::string_view bytes, LiveData& news) {
   reader_.feed(bytes);
   // Records stay valid until the next one only; their contents are copied into `news`.
@@ -111,13 +107,12 @@ Result<void> LiveStream::define(const McapChannel& channel) {
   const auto raw = to_raw(channel);
   if (!raw) return {};
   added.raw = *raw;
-  const auto protocol = find_recorded_protocol(raw->protocol);
-  const bool is_exchange = raw->protocol == exchange_encoding;
-  if (!raw->node.empty() && (is_exchange || protocol == Protocol::nodes)) {
+  const auto protocol = protocol_of(*raw);
+  if (!raw->node.empty() && protocol == Protocol::nodes) {
     auto& device = nodes_[raw->stream + "/" + raw->node];
     if (!device) device = std::make_unique<NodeDevice>(NodeDevice{*raw, {}, LiveClock()});
     added.node = device.get();
-  } else if (is_exchange || protocol == Protocol::kinect) {
+  } else if (protocol == Protocol::kinect) {
     auto& device = kinects_[raw->stream];
     if (!device) {
       device = std::make_unique<KinectDevice>();
@@ -149,7 +144,8 @@ Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news
     return {};
   }
   const RecordedMessage recorded{&channel.raw, message.channel,
-                                 arrival_of(message.log_time, utc_minus_host()), message.data};
+                                 arrival_of(message.log_time, facts_->utc_minus_host()),
+                                 message.data};
   if (channel.node != nullptr) take_node(*channel.node, recorded, news);
   if (channel.kinect != nullptr) take_kinect(*channel.kinect, recorded, news);
   return {};

@@ -10,7 +10,7 @@ namespace kinalign {
 namespace {
 
 /// The functions that make rows of a protocol's poses, points or inertial samples.
-DeviceProtocol maker_of(Protocol protocol) {
+DeviceProtocol functions_of(Protocol protocol) {
   switch (protocol) {
     case Protocol::nodes:
       return node_protocol();
@@ -45,11 +45,10 @@ std::pair<std::string, std::string> tracker_of(const std::string& node) {
 
 }  // namespace
 
-std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers) {
-  const auto protocol = find_recorded_protocol(recorded_name);
+std::optional<DeviceProtocol> rows_of(std::optional<Protocol> protocol, bool trackers) {
   if (!protocol) return std::nullopt;
   // Trackers are another content of the same stream; only some protocols have them.
-  if (!trackers) return maker_of(*protocol);
+  if (!trackers) return functions_of(*protocol);
   return row_of(*protocol).has_trackers ? std::optional(xsens_tracker_protocol()) : std::nullopt;
 }
 

@@ -171,9 +171,8 @@ DeviceProtocol device_protocol() {
           }};
 }
 
-/// Finds a protocol by its name in recordings. Absent if no rows, or no trackers, can be made of
-/// it.
-std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers);
+/// Absent if the protocol is not known, or if it has no trackers but they are wanted.
+std::optional<DeviceProtocol> rows_of(std::optional<Protocol> protocol, bool trackers);
 
 DeviceProtocol node_protocol();           // node_rows.cpp: kinalign's inertial nodes
 DeviceProtocol kinect_protocol();         // kinect_rows.cpp

@@ -59,9 +59,8 @@ class Scan {
       state_.input_facts[part].bytes += piece.size();
     };
     RecordStream stream = KA_TRY(RecordStream::open(*state_.files, state_.parts, progress, hash));
-    RecordingSurveyor surveyor;
     while (const McapRecord* record = KA_TRY(stream.next())) {
-      surveyor.take(*record);
+      surveyor_.take(*record);
       take_record(*record, stream);
     }
     // The last chunk has no successor that would close it.
@@ -70,7 +69,7 @@ class Scan {
         std::make_shared<StoredChunks>(*state_.files, std::move(versions), std::move(chunks_));
     for (std::size_t k = 0; k < hashes.size(); ++k) state_.input_facts[k].sha256 = hashes[k].hex();
     for (auto& [id, channel] : state_.channels) channel.missing = stream.numbers().missing(id);
-    state_.survey = surveyor.finish(state_.path, stream);
+    state_.survey = surveyor_.finish(state_.path, stream);
     judge(stream);
     return {};
   }
@@ -78,9 +77,7 @@ class Scan {
  private:
   /// Keeps a record's data for the later passes.
   void take_record(const McapRecord& record, const RecordStream& stream) {
-    if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
-      if (!state_.facts) state_.facts = to_facts(*metadata);
-    } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
+    if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
       if (attachment->name.ends_with(".bvh"))
         state_.attachments[attachment->name] = attachment->data;
     } else if (const auto* schema = std::get_if<McapSchema>(&record)) {
@@ -122,17 +119,17 @@ class Scan {
   /// Assigns a channel to the listeners of its device, one for each variant.
   void listen_to(DeviceChannel& channel) {
     const RawChannel& raw = channel.raw;
-    // A node is one device at any address; other senders are one device per host.
-    const std::string host = raw.node.empty() ? host_of(raw.sender) : "";
     for (const ListenVariant& variant : wanted_->variants_of(raw.stream)) {
-      const DeviceKey key{raw.stream, raw.node, host, variant};
+      const DeviceKey key = key_of(raw, variant);
       auto found = state_.listening.find(key);
       if (found == state_.listening.end()) {
         // Any program may send to a port. A flood of hosts must not cost a listener each.
-        if (!host.empty() && ++hosts_[raw.stream] > most_hosts) continue;
-        found = state_.listening.emplace(key, Listening(variant)).first;
+        if (raw.node.empty() && ++hosts_[raw.stream] > most_hosts) continue;
+        const auto protocol = rows_of(protocol_of(raw), variant.trackers);
+        auto listener = protocol ? protocol->listen(variant.body) : nullptr;
+        found = state_.listening.emplace(key, Listening{std::move(listener)}).first;
       }
-      found->second.define(channel.id, raw);
+      found->second.channels.push_back(channel.id);
       channel.listening.push_back(&found->second);
     }
   }
@@ -142,18 +139,18 @@ class Scan {
     const bool is_device = found != state_.channels.end();
     const bool is_json = json_channels_.contains(message.channel);
     // Without facts the file is another program's, whose times mean something else.
-    const bool counts = state_.facts && message.log_time <= latest_log_time;
+    const bool counts = surveyor_.facts() && message.log_time <= latest_log_time;
     if (!counts || !(is_device || is_json)) return;
     add_to_index(message.channel, stream);
     if (is_device) hear(found->second, message);
   }
 
   void hear(DeviceChannel& from, const McapMessage& message) {
-    const HostTime arrival = arrival_of(message.log_time, state_.utc_minus_host());
+    const HostTime arrival = arrival_of(message.log_time, surveyor_.facts()->utc_minus_host());
     // Nodes are not counted as senders: their ids name them.
     if (from.sender) state_.senders[from.raw.stream].count(*from.sender, arrival);
-    for (Listening* one : from.listening) {
-      one->take({&from.raw, from.id, arrival, message.data});
+    for (const Listening* one : from.listening) {
+      if (one->listener) one->listener->take({&from.raw, from.id, arrival, message.data});
     }
   }
 
@@ -217,6 +214,7 @@ class Scan {
 
   ScannedRecording& state_;
   std::optional<Wanted> wanted_;  // absent: no device is listened to
+  RecordingSurveyor surveyor_;
   std::vector<StoredChunk> chunks_;
   StoredChunk chunk_;  // the chunk of the last message
   std::map<std::uint16_t, McapSchema> schemas_;
@@ -227,12 +225,13 @@ class Scan {
 }  // namespace
 
 Result<ScannedRecording> scan_recording(FileSystem& files, const std::string& path,
-                                        const ListenTo& listen, const Progress& progress) {
+                                        const std::vector<StreamOptions>* wanted,
+                                        const Progress& progress) {
   ScannedRecording scanned;
   scanned.files = &files;
   scanned.path = path;
   scanned.parts = KA_TRY(find_parts(files, {path}));
-  Scan scan(scanned, listen.any ? std::optional(Wanted(listen.wanted)) : std::nullopt);
+  Scan scan(scanned, wanted != nullptr ? std::optional(Wanted(*wanted)) : std::nullopt);
   KA_TRY(scan.read(progress));
   return scanned;
 }

@@ -19,15 +19,15 @@ namespace {
 constexpr std::size_t most_names = 32;  // streams or nodes named in one message
 
 /// The functions for the device's protocol. Fails if the protocol does not fit the selection.
-Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
+Result<DeviceProtocol> maker_of(const RawChannel& channel, const DeviceWish& wish) {
   const std::string& file = wish.file.path;
-  const auto protocol = find_recorded_protocol(channel.protocol);
+  const auto protocol = protocol_of(channel);
   // A skeleton that no one reads would be a mistake of the manifest.
   if (!wish.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
     return Failure(Error{file, 0, "a skeleton of a noitom stream alone",
                          "one of " + shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
-  if (const auto known = rows_of(channel.protocol, wish.trackers)) return *known;
+  if (const auto known = rows_of(protocol, wish.trackers)) return *known;
   if (wish.trackers) {
     return Failure(Error{file, 0, "trackers of an xsens stream",
                          shown(channel.stream) + ", of " + shown(channel.protocol)});
@@ -141,34 +141,32 @@ Result<void> report_chunk(const Progress& progress, const MessagePass& pass) {
 
 /// Reads the messages of a device again, if the first pass did not listen to all of its channels.
 Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& state,
-                                                     const Chosen& chosen, ListenVariant variant,
+                                                     const Chosen& chosen,
+                                                     std::unique_ptr<DeviceListener> listener,
                                                      const Progress& progress) {
-  Listening listening(variant);
-  for (const DeviceChannel* one : chosen.channels) listening.define(one->id, one->raw);
   MessagePass pass(state.chunks, chosen.ids());
   const auto take = [&](const ChunkMessage& message) -> Result<void> {
-    listening.take({&state.channels.at(message.channel).raw, message.channel,
-                    arrival_of(message.log_time, state.utc_minus_host()), message.data});
+    listener->take({&state.channels.at(message.channel).raw, message.channel,
+                    arrival_of(message.log_time, state.survey.facts->utc_minus_host()),
+                    message.data});
     return {};
   };
   while (KA_TRY(pass.next_chunk(take))) KA_TRY(report_chunk(progress, pass));
-  return listening.release();
+  return listener;
 }
 
 /// Returns the listener of the first pass if it has the same channels. Otherwise makes another
 /// pass.
 Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, const Chosen& chosen,
+                                                    const DeviceProtocol& protocol,
                                                     ListenVariant variant,
                                                     const Progress& progress) {
-  const RawChannel& first = *chosen.first;
-  const DeviceKey key{first.stream, first.node, first.node.empty() ? host_of(first.sender) : "",
-                      variant};
-  const auto found = state.listening.find(key);
+  const auto found = state.listening.find(key_of(*chosen.first, variant));
   // A listener is used once, since finish() takes its data.
-  const bool is_same = found != state.listening.end() && !found->second.is_released() &&
-                       found->second.channels() == chosen.ids();
-  if (is_same) return found->second.release();
-  return listen_again(state, chosen, variant, progress);
+  const bool is_same = found != state.listening.end() && found->second.listener &&
+                       found->second.channels == chosen.ids();
+  if (is_same) return std::move(found->second.listener);
+  return listen_again(state, chosen, protocol.listen(variant.body), progress);
 }
 
 /// A device whose clock was learnt, ready for its rows.
@@ -181,15 +179,16 @@ struct Heard {
 /// Fails if no rows can be made of the device.
 Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWish& wish,
                    const Progress& progress) {
-  const DeviceProtocol protocol = KA_TRY(protocol_of(*chosen.first, wish));
+  const DeviceProtocol protocol = KA_TRY(maker_of(*chosen.first, wish));
   HeardDevice heard;
   heard.channel = *chosen.first;
   const auto attached = state.attachments.find(wish.choice.stream + ".bvh");
   if (attached != state.attachments.end()) heard.skeleton = attached->second;
   // The manifest's skeleton comes before the recording's own.
   if (!wish.skeleton.empty()) heard.skeleton = wish.skeleton;
-  heard.utc_minus_host = state.utc_minus_host();
-  auto listener = KA_TRY(listener_of(state, chosen, {wish.trackers, wish.body}, progress));
+  heard.utc_minus_host = state.survey.facts->utc_minus_host();
+  auto listener =
+      KA_TRY(listener_of(state, chosen, protocol, {wish.trackers, wish.body}, progress));
   KA_TRY(listener->finish(wish, heard));
   return Heard{std::make_shared<const HeardDevice>(std::move(heard)), std::move(listener),
                protocol};
@@ -312,9 +311,9 @@ RecordingSource::~RecordingSource() = default;
 Result<std::shared_ptr<RecordingSource>> RecordingSource::open(
     FileSystem& files, const std::string& path, Devices devices,
     const std::vector<StreamOptions>& wanted, const Progress& progress) {
-  const ListenTo listen{devices == Devices::heard, wanted};
+  const auto* listen_to = devices == Devices::heard ? &wanted : nullptr;
   return std::shared_ptr<RecordingSource>(
-      new RecordingSource(KA_TRY(scan_recording(files, path, listen, progress))));
+      new RecordingSource(KA_TRY(scan_recording(files, path, listen_to, progress))));
 }
 
 const std::string& RecordingSource::path() const { return state_->path; }
@@ -334,7 +333,7 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
   if (!options.skeleton.empty()) {
     wish.skeleton = KA_TRY(read_bvh_head(*state_->files, options.skeleton));
   }
-  if (!state_->facts) {
+  if (!state_->survey.facts) {
     return Failure(Error{state_->parts.back().path, 0, "a recording of kinalign's",
                          "an MCAP file of another program"});
   }
