@@ -117,8 +117,10 @@ struct RecordedExchange {
   std::uint32_t epoch = 0;
   Exchange exchange;
 };
-/// The key of a clock model. A new epoch of the host's axis needs a new model for the same boot.
-inline BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 40U); }
+/// The key of a clock model. A new epoch of the host's axis needs a new model for the same boot. The
+/// lower 32 bits of `boot` are a node's boot id, and the next 16 count restarts under one boot id
+/// (capture/nodes/node_table.cpp).
+inline BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 48U); }
 std::string to_bytes(const RecordedExchange& recorded);
 /// Absent if the bytes are not an exchange, or if one of its clocks has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);
