@@ -213,15 +213,9 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   // Until commit() the new file has a temporary name, so a failure here leaves nothing behind.
   KA_TRY(prove(file, copier, progress));
 
-  Recovered done;
-  done.messages = copier.contents().messages;
-  done.channels = copier.channels();
-  done.unchecked = stream.unchecked();
-  done.twice = stream.repeated();
-  done.nameless = copier.nameless();
-  done.skipped = stream.skipped();
-  done.missing = stream.missing();
-  done.findings = stream.findings();
+  Recovered done{copier.contents().messages, copier.channels(), stream.unchecked(),
+                 stream.repeated(),          copier.nameless(), stream.skipped(),
+                 stream.missing(),           stream.findings()};
   append(done.findings,
          judge_end(parts.back().path, parts.front().facts.has_value(), stream.ending()));
   append(done.findings, judge_parts(files, parts, Severity::note));

@@ -149,15 +149,6 @@ Findings judge_end(const std::string& path, bool is_ours, Ending ending) {
            "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"}};
 }
 
-Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
-                                         const Progress& progress) {
-  const RecordingParts parts = KA_TRY(find_parts(files, {path}));
-  RecordStream stream = KA_TRY(RecordStream::open(files, parts, progress));
-  RecordingSurveyor surveyor;
-  while (const McapRecord* record = KA_TRY(stream.next())) surveyor.take(*record);
-  return surveyor.finish(path, stream);
-}
-
 Result<bool> is_recording(FileSystem& files, const std::string& path) {
   const InputFile file = KA_TRY(InputFile::open(files, path));
   // A file shorter than the magic is no MCAP file.

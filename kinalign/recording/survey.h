@@ -5,7 +5,6 @@
 
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/core/files.h"
-#include "kinalign/core/progress.h"
 #include "kinalign/recording/counts.h"
 #include "kinalign/recording/format.h"
 #include "kinalign/recording/kinect_survey.h"
@@ -89,11 +88,6 @@ class RecordingSurveyor {
 /// Reports a recording of kinalign that was closed properly but does not end: the rest, if a disk
 /// stored it, is missing.
 Findings judge_end(const std::string& path, bool is_ours, Ending ending);
-
-/// Surveys all parts of the recording to which the file belongs. Fails if a file cannot be read or
-/// is not an MCAP file.
-Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
-                                         const Progress& progress = {});
 
 /// Returns whether a file begins as an MCAP file. Fails if it cannot be read.
 Result<bool> is_recording(FileSystem& files, const std::string& path);

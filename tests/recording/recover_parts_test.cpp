@@ -3,6 +3,7 @@
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
 #include "tests/recording/part_files.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/recover.h"

@@ -9,14 +9,14 @@
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
+#include <deque>
 #include <functional>
-#include <list>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -51,7 +51,7 @@ struct OpenedChunk {
 };
 
 /// Safe to use from several threads at once. One lock covers files and cache. An InputFile of each
-/// part stays open. The cache holds the chunks used most recently, at most `most_cached` bytes but
+/// part stays open. The cache holds the chunks opened last, at most `most_cached` bytes but
 /// always one chunk.
 class StoredChunks {
  public:
@@ -75,18 +75,14 @@ class StoredChunks {
  private:
   Result<std::shared_ptr<const OpenedChunk>> read(const StoredChunk& chunk) const;
 
-  struct Cached {
-    std::size_t chunk = 0;
-    std::shared_ptr<const OpenedChunk> opened;
-  };
   FileSystem* files_;
   std::vector<File> parts_;
   std::vector<StoredChunk> chunks_;
   std::uint64_t bytes_ = 0;
   mutable std::mutex mutex_;
   mutable std::vector<std::optional<InputFile>> open_files_;  // by part
-  mutable std::list<Cached> cache_;                           // the most recently used one first
-  mutable std::map<std::size_t, std::list<Cached>::iterator> places_;
+  // opened chunks by their index, in the order of opening
+  mutable std::deque<std::pair<std::size_t, std::shared_ptr<const OpenedChunk>>> cache_;
   mutable std::size_t cached_bytes_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include "tests/counting_files.h"
 #include "tests/recording/streams/recorded_streams.h"
+#include "tests/recording/survey_recording.h"
 
 #include <doctest/doctest.h>
 
