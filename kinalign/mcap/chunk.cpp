@@ -136,7 +136,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   if (head.compression.empty() && chunk.stored_size != head.uncompressed_size) {
     return misfit(head, chunk.stored_size);  // checked before the records are copied
   }
-  std::string records = unpack_torn(chunk, most);
+  std::string records = unpack_truncated(chunk, most);
   // A zstd stream may end early or hold more than the head states.
   if (records.size() != head.uncompressed_size) return misfit(head, records.size());
   if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc_of(records)) {
@@ -145,7 +145,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   return records;
 }
 
-std::string unpack_torn(const McapChunkView& chunk, std::uint64_t most) {
+std::string unpack_truncated(const McapChunkView& chunk, std::uint64_t most) {
   // A truncated chunk has no checksum that could be compared.
   most = std::min(most, chunk.head.uncompressed_size);
   if (chunk.head.compression == "zstd") return decompressed(chunk.stored, most);

@@ -148,7 +148,7 @@ std::optional<RecordingEnd> to_end(const McapMetadata& metadata) {
 
 Ending ending_of(const McapMetadata& metadata) {
   if (metadata.name == end_metadata) return Ending::ended;
-  return metadata.name == torn_metadata ? Ending::torn : Ending::none;
+  return metadata.name == truncated_metadata ? Ending::truncated : Ending::none;
 }
 
 McapChannel to_channel(std::string topic, const RawChannel& raw) {

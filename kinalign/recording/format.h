@@ -67,10 +67,10 @@ std::optional<RecordingEnd> to_end(const McapMetadata& metadata);
 
 /// The metadata record kinalign.torn. `recover` writes it in place of kinalign.end if the recording
 /// was truncated.
-inline constexpr std::string_view torn_metadata = "kinalign.torn";
+inline constexpr std::string_view truncated_metadata = "kinalign.torn";
 
 /// The end of a recording by its records: no end found, truncated, or ended properly.
-enum class Ending : std::uint8_t { none, torn, ended };
+enum class Ending : std::uint8_t { none, truncated, ended };
 Ending ending_of(const McapMetadata& metadata);
 
 /// The description of a channel of raw payloads, stored as its metadata.
@@ -117,10 +117,12 @@ struct RecordedExchange {
   std::uint32_t epoch = 0;
   Exchange exchange;
 };
-/// The key of a clock model. A new epoch of the host's axis needs a new model for the same boot. The
-/// lower 32 bits of `boot` are a node's boot id, and the next 16 count restarts under one boot id
-/// (capture/nodes/node_table.cpp).
-inline BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 48U); }
+/// The key of a clock model. A new epoch of the host's axis needs a new model for the same boot.
+/// The lower 32 bits of `boot` are a node's boot id, and the next 16 count restarts under one boot
+/// id (capture/nodes/node_table.cpp).
+inline BootKey boot_in_epoch(BootKey boot, std::uint32_t epoch) {
+  return boot ^ (BootKey{epoch} << 48U);
+}
 std::string to_bytes(const RecordedExchange& recorded);
 /// Absent if the bytes are not an exchange, or if one of its clocks has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);

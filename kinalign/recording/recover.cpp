@@ -55,8 +55,8 @@ class Copier {
   /// Writes index and end. `ending`: the end of the recording.
   Result<void> finish(Ending ending) {
     KA_TRY(close_chunk());
-    if (ending == Ending::torn && parts_.front().facts) {
-      KA_TRY(writer_.write(McapMetadata{std::string(torn_metadata), {}}));
+    if (ending == Ending::truncated && parts_.front().facts) {
+      KA_TRY(writer_.write(McapMetadata{std::string(truncated_metadata), {}}));
     }
     return writer_.finish();
   }
@@ -84,7 +84,7 @@ class Copier {
     return {};
   }
   Result<void> add(const McapMetadata& metadata) {
-    if (metadata.name == torn_metadata) return {};  // finish() writes it
+    if (metadata.name == truncated_metadata) return {};  // finish() writes it
     is_empty_ = false;
     KA_TRY(close_chunk());
     return writer_.write(to_facts(metadata) ? of_all_parts(metadata) : metadata);

@@ -23,8 +23,8 @@ class Wanted {
     for (const StreamOptions& options : streams) {
       for (const StreamFile& file : options.files) {
         // A wrong selection is reported when its stream is opened; here it is left out.
-        const auto wish = wish_of(options, file);
-        if (wish) variants_[wish->choice.stream].insert({wish->trackers, wish->body});
+        const auto request = request_of(options, file);
+        if (request) variants_[request->choice.stream].insert({request->trackers, request->body});
       }
     }
   }
@@ -142,10 +142,10 @@ class Scan {
     const bool counts = surveyor_.facts() && message.log_time <= latest_log_time;
     if (!counts || !(is_device || is_json)) return;
     add_to_index(message.channel, stream);
-    if (is_device) hear(found->second, message);
+    if (is_device) pass_on(found->second, message);
   }
 
-  void hear(DeviceChannel& from, const McapMessage& message) {
+  void pass_on(DeviceChannel& from, const McapMessage& message) {
     const HostTime arrival = arrival_of(message.log_time, surveyor_.facts()->utc_minus_host());
     // Nodes are not counted as senders: their ids name them.
     if (from.sender) state_.senders[from.raw.stream].count(*from.sender, arrival);
@@ -161,7 +161,7 @@ class Scan {
     if (chunk_.end == 0 || chunk_.part != stream.part() || chunk_.at != reader.at()) {
       end_chunk();
       chunk_.part = static_cast<std::uint32_t>(stream.part());
-      chunk_.is_torn = reader.in_torn_chunk();
+      chunk_.is_truncated = reader.in_truncated_chunk();
       chunk_.at = reader.at();
       chunk_.size = reader.size();
     }

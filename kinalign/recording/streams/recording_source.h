@@ -80,7 +80,7 @@ struct DeviceStream {
 class RecordingSource {
  public:
   /// Whether streams will be read. If so, the first pass learns the devices' clocks too.
-  enum class Devices { unheard, heard };
+  enum class Devices { surveyed, learned };
 
   /// Reads all parts of the recording to which the file belongs. `wanted`: streams of a manifest
   /// that may select a body or trackers. `files` must outlive the source and the objects that it

@@ -24,7 +24,7 @@ Result<std::string> records_of(const StoredChunk& chunk, const std::string& path
   const auto view = decode_mcap_chunk(std::string_view(bytes).substr(mcap_record_head));
   if (!view) return Failure(altered(path));
   // The end of such a chunk is missing, so as much as possible is unpacked.
-  if (chunk.is_torn) return unpack_torn(*view, McapReader::most_record);
+  if (chunk.is_truncated) return unpack_truncated(*view, McapReader::most_record);
   return unpack(*view, McapReader::most_record).map_error([&](const Error&) {
     return altered(path);
   });

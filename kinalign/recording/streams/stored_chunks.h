@@ -24,7 +24,7 @@ namespace kinalign {
 /// The place of a chunk, or of a message outside of chunks, and its content by the first pass.
 struct StoredChunk {
   std::uint32_t part = 0;               // number of the file in the recording
-  bool is_torn = false;                 // the file ends within the chunk
+  bool is_truncated = false;            // the file ends within the chunk
   std::uint64_t at = 0, size = 0;       // position and size in the file, bytes
   std::vector<std::uint16_t> channels;  // channels with messages in the chunk, ascending
   std::uint32_t end = 0;  // one more than the index in the chunk of the last message to take

@@ -408,7 +408,7 @@ TEST_CASE("a second pass over a recording says how far it is, and stops when it 
   lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 20.0);
   const std::string path = folder.write("take.mcap", lab.file());
   PosixFiles files;
-  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::unheard);
+  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::surveyed);
   REQUIRE(source);
   const StreamOptions kinect = stream_named("kinect", path);
   std::uint64_t calls = 0;
