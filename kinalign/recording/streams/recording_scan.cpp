@@ -15,29 +15,20 @@ namespace {
 
 constexpr std::size_t most_hosts = 8;  // hosts of one stream that are listened to in the first pass
 
-/// The streams to listen to, and their variants. A stream that is wanted twice, with another body
-/// or as trackers, gets a listener for each.
-class Wanted {
- public:
-  explicit Wanted(const std::vector<StreamOptions>& streams) {
-    for (const StreamOptions& options : streams) {
-      for (const StreamFile& file : options.files) {
-        // A wrong selection is reported when its stream is opened; here it is left out.
-        const auto request = request_of(options, file);
-        if (request) variants_[request->choice.stream].insert({request->trackers, request->body});
-      }
+/// For each stream to listen to, the variants that are wanted. A stream that is wanted twice, with
+/// another body or as trackers, gets a listener for each.
+using Wanted = std::map<std::string, std::set<ListenVariant>>;
+Wanted wanted_of(const std::vector<StreamOptions>& streams) {
+  Wanted wanted;
+  for (const StreamOptions& options : streams) {
+    for (const StreamFile& file : options.files) {
+      // A wrong selection is reported when its stream is opened; here it is left out.
+      const auto request = request_of(options, file);
+      if (request) wanted[request->choice.stream].insert({request->trackers, request->body});
     }
   }
-  std::set<ListenVariant> variants_of(const std::string& stream) const {
-    // Without a manifest all streams are listened to, with their default options.
-    if (variants_.empty()) return {ListenVariant{}};
-    const auto found = variants_.find(stream);
-    return found == variants_.end() ? std::set<ListenVariant>{} : found->second;
-  }
-
- private:
-  std::map<std::string, std::set<ListenVariant>> variants_;
-};
+  return wanted;
+}
 
 /// The first pass: indexes the files, surveys and hashes them, and learns the devices' clocks. All
 /// of it happens in one reading, because recordings are larger than memory and disks are slow.
@@ -119,7 +110,10 @@ class Scan {
   /// Assigns a channel to the listeners of its device, one for each variant.
   void listen_to(DeviceChannel& channel) {
     const RawChannel& raw = channel.raw;
-    for (const ListenVariant& variant : wanted_->variants_of(raw.stream)) {
+    // Without a manifest all streams are listened to, with their default options.
+    const std::set<ListenVariant> variants =
+        wanted_->empty() ? std::set{ListenVariant{}} : (*wanted_)[raw.stream];
+    for (const ListenVariant& variant : variants) {
       const DeviceKey key = key_of(raw, variant);
       auto found = state_.listening.find(key);
       if (found == state_.listening.end()) {
@@ -231,7 +225,7 @@ Result<ScannedRecording> scan_recording(FileSystem& files, const std::string& pa
   scanned.files = &files;
   scanned.path = path;
   scanned.parts = KA_TRY(find_parts(files, {path}));
-  Scan scan(scanned, wanted != nullptr ? std::optional(Wanted(*wanted)) : std::nullopt);
+  Scan scan(scanned, wanted != nullptr ? std::optional(wanted_of(*wanted)) : std::nullopt);
   KA_TRY(scan.read(progress));
   return scanned;
 }

@@ -56,6 +56,13 @@ struct DeviceChannel {
   std::vector<Listening*> listening{};
 };
 
+/// A JSON channel of the recorder itself: marks, counts, or the host's clocks.
+struct JsonChannel {
+  std::uint16_t id = 0;
+  std::string topic;
+  McapSchema schema;
+};
+
 /// The result of the first pass. Later passes need nothing else of the files: chunks are found by
 /// the index, and clocks are learnt by the listeners. Pointers into `channels` and `listening` stay
 /// valid, because maps do not move their elements.

@@ -3,7 +3,6 @@
 
 #include "kinalign/formats/bvh/head.h"
 #include "kinalign/protocols/protocols.h"
-#include "kinalign/recording/streams/recording_scan.h"
 #include "kinalign/recording/streams/senders.h"
 
 #include <fmt/format.h>
@@ -254,7 +253,6 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
   out.findings = judge_missing(state, chosen);
   append(out.findings, judge_order(request.file.path, out));
   append(out.findings, ready.device->findings);
-  out.skeleton_path = request.skeleton.empty() ? "" : request.options.skeleton;
 
   // The channels are shared by all passes and outlive this function.
   std::map<std::uint16_t, RawChannel> channels;
@@ -305,10 +303,6 @@ template class DevicePass<ClipFrames>;
 template class DevicePass<PointFrames>;
 template class DevicePass<ImuSamples>;
 
-RecordingSource::RecordingSource(ScannedRecording state)
-    : state_(std::make_unique<ScannedRecording>(std::move(state))) {}
-RecordingSource::~RecordingSource() = default;
-
 Result<std::shared_ptr<RecordingSource>> RecordingSource::open(
     FileSystem& files, const std::string& path, Devices devices,
     const std::vector<StreamOptions>& wanted, const Progress& progress) {
@@ -317,38 +311,28 @@ Result<std::shared_ptr<RecordingSource>> RecordingSource::open(
       new RecordingSource(KA_TRY(scan_recording(files, path, listen_to, progress))));
 }
 
-const std::string& RecordingSource::path() const { return state_->path; }
-const RecordingParts& RecordingSource::parts() const { return state_->parts; }
-const RecordingSurvey& RecordingSource::survey() const { return state_->survey; }
-const std::vector<InputFacts>& RecordingSource::facts() const { return state_->input_facts; }
-SharedFile RecordingSource::shared() const { return state_->shared; }
-const std::vector<JsonChannel>& RecordingSource::json_channels() const { return state_->json; }
-MessagePass RecordingSource::messages_of(std::vector<std::uint16_t> channels) const {
-  return {state_->chunks, std::move(channels)};
-}
-
 Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const StreamFile& file,
                                              const Progress& progress) {
   DeviceRequest request = KA_TRY(request_of(options, file));
   // The file of the skeleton is read now, so that each pass has the same one.
   if (!options.skeleton.empty()) {
-    request.skeleton = KA_TRY(read_bvh_head(*state_->files, options.skeleton));
+    request.skeleton = KA_TRY(read_bvh_head(*state_.files, options.skeleton));
   }
-  if (!state_->survey.facts) {
-    return Failure(Error{state_->parts.back().path, 0, "a recording of kinalign's",
+  if (!state_.survey.facts) {
+    return Failure(Error{state_.parts.back().path, 0, "a recording of kinalign's",
                          "an MCAP file of another program"});
   }
   const bool any_sender = request.choice.sender.empty();
-  const SenderTable& senders = state_->senders[request.choice.stream];
+  const SenderTable& senders = state_.senders[request.choice.stream];
   // The sender with the most messages is chosen before the channels are.
   senders.complete(request.choice);
-  const Chosen chosen = KA_TRY(choose(*state_, request).map_error([&](Error error) {
+  const Chosen chosen = KA_TRY(choose(state_, request).map_error([&](Error error) {
     return with_nodes(request, survey(), std::move(error));
   }));
-  ReadyDevice ready = KA_TRY(learn(*state_, chosen, request, progress).map_error([&](Error error) {
+  ReadyDevice ready = KA_TRY(learn(state_, chosen, request, progress).map_error([&](Error error) {
     return with_senders(std::move(error), request.choice.sender, senders);
   }));
-  DeviceStream out = KA_TRY(stream_of(*state_, chosen, request, std::move(ready), progress));
+  DeviceStream out = KA_TRY(stream_of(state_, chosen, request, std::move(ready), progress));
   // The senders are judged last, when rows could be made of the chosen one.
   append(out.findings, judge_senders(request, any_sender, senders));
   return out;

@@ -86,13 +86,6 @@ class StoredChunks {
   mutable std::size_t cached_bytes_ = 0;
 };
 
-/// A JSON channel of the recorder itself: marks, counts, or the host's clocks.
-struct JsonChannel {
-  std::uint16_t id = 0;
-  std::string topic;
-  McapSchema schema;
-};
-
 /// One pass over the messages of some channels, in the order of the files. A chunk is opened when
 /// the pass needs it and is not kept.
 class MessagePass {

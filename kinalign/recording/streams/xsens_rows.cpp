@@ -84,17 +84,14 @@ class XsensTrackerRows final : public NumberedRows<XsensSource<XsensTrackers>, I
  public:
   XsensTrackerRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
       : NumberedRows(request, std::move(learned)), nodes_(request.file.path) {}
-  const ImuHeader* header() const override { return header_ ? &*header_ : nullptr; }
+  const ImuHeader* header() const override { return nodes_.header(); }
 
  private:
   Result<void> append(const XsensTrackers& trackers, Time stamp, ImuSamples& out) override {
-    KA_TRY(nodes_.append(trackers, stamp, out));
-    if (!header_) header_ = ImuHeader{nodes_.node_names(), nodes_.content()};
-    return {};
+    return nodes_.append(trackers, stamp, out);
   }
 
   XsensNodes nodes_;
-  std::optional<ImuHeader> header_;
 };
 
 }  // namespace
