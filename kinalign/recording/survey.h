@@ -45,7 +45,7 @@ struct RecordingSurvey {
   ExpectedDevices expected;
   std::map<std::string, std::string> places;  // places of nodes, if the lab names them, by "imu/7"
   std::optional<RecordingEnd> end;     // absent: truncated, or continued in a file that is missing
-  Ending ending = Ending::none;        // `torn` for a truncated last file
+  Ending ending = Ending::none;        // `truncated` if the last file is
   std::vector<CountedSender> senders;  // the last counts of each sender
   std::vector<CountedPort> ports;      // the last counts of each port
   std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times, ns
