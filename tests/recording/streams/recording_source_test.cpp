@@ -157,6 +157,11 @@ TEST_CASE("frames of a Kinect that were overtaken in the network stand where the
   CHECK(errors.most < 31.5);
 }
 
+TEST_CASE("a boot after 256 restarts is no boot of another epoch of the host") {
+  constexpr BootKey boot = 7, restarts = 256;
+  CHECK(boot_in_epoch(boot | restarts << 32U, 0) != boot_in_epoch(boot, 1));
+}
+
 TEST_CASE("samples whose time steps back where a clock begins anew are told and counted") {
   const FreshFolder folder;
   PosixFiles files;
