@@ -286,8 +286,8 @@ Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
 /// Subject and action come from the recording, if it states them.
 Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress& progress) {
   // The clocks need not be learnt to list the devices.
-  const auto source = KA_TRY(
-      RecordingSource::open(files_, request.path, RecordingSource::Devices::unheard, {}, progress));
+  const auto source = KA_TRY(RecordingSource::open(
+      files_, request.path, RecordingSource::Devices::surveyed, {}, progress));
   const RecordingSurvey survey = source->survey();
   Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(request.path))));
   if (survey.facts) {

@@ -47,7 +47,7 @@ Result<DeviceOptions> parse_device(const std::string& text);
 
 /// Gives the lab's device of that name the protocol, transport, address and port of `stated`; its
 /// other options stay. A new name is added as a device.
-void come_from(Lab& lab, const DeviceOptions& stated);
+void set_device(Lab& lab, const DeviceOptions& stated);
 
 /// Fails if an option is missing or has no meaning, or if two devices have one name or one port.
 Result<void> validate(const Lab& lab);

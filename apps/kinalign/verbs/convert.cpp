@@ -205,7 +205,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
   }
   KA_TRY(check_flags(o, nullptr, call));
   const auto source = KA_TRY(
-      RecordingSource::open(job.files, job.from, RecordingSource::Devices::heard, {}, progress));
+      RecordingSource::open(job.files, job.from, RecordingSource::Devices::learned, {}, progress));
   const Manifest manifest = KA_TRY(recorded_manifest(source->survey(), job.from));
   // One device that can't be read must not keep the others from being shown. It becomes a warning.
   const OpenedInPart opened = KA_TRY(open_what_can_be(
