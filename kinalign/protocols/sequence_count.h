@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classifies packets by the number that the sender gives each of them: lost, duplicate, late, or a
-// restart of the sender. It is for packets that arrive one by one and are judged at once.
-// PacketCount (packet_count.h) numbers the rows of a file instead.
+// Counts packets by the number that the sender gives each of them: lost, duplicate, late, or a
+// restart of the sender. It adds to the Counter of wire the detection of restarts and strays.
 #pragma once
 
-#include <array>
+#include "kinalign/wire/counter.h"
+
 #include <cstdint>
 
 namespace kinalign {
@@ -39,7 +39,7 @@ struct SequenceCounts {
   }
 };
 
-/// Counts packets by numbers of 1 to 64 bits and follows their wraps; takes 0.4 kB.
+/// Counts packets by numbers of 1 to 64 bits and follows their wraps; takes 0.5 kB.
 /// A number 1024 or more away begins a new count. If the next packet continues the old count, the
 /// number was a stray and is undone. A new count that begins less than an hour of packets ahead
 /// counts as a loss, not as a restart. A restart less than 1024 numbers back looks like duplicates
@@ -49,46 +49,33 @@ struct SequenceCounts {
 /// lost before it.
 class SequenceCount {
  public:
-  explicit SequenceCount(unsigned bits = 32);
+  explicit SequenceCount(unsigned bits = 32) : bits_(bits) {}
 
   /// `may_restart`: false if the caller knows that the packet is older than the newest one, so the
   /// sender did not restart with it.
-  Order push(std::uint64_t number, bool may_restart = true);
-  const SequenceCounts& counts() const { return now_.counts; }
+  Order push(std::uint64_t sent, bool may_restart = true);
+  SequenceCounts counts() const;
+  /// The unwrapped number of the packet that was pushed last. It continues until the next restart.
+  std::int64_t number() const { return now_.previous; }
+  std::uint64_t restarts() const { return now_.counts.restarts; }
 
  private:
-  static constexpr std::uint64_t window = 1024;  // numbers behind the newest that are remembered
-
   struct State {
-    SequenceCounts counts;
-    std::uint64_t newest = 0;
-    std::uint64_t known = 0;     // how many numbers of the window belong to this count
-    std::uint64_t previous = 0;  // the number pushed last
-    std::uint64_t old_run = 0;   // length of the present run of old numbers that rise by one
-    /// A bit for each number of the window, at number % 1024.
-    std::array<std::uint64_t, window / 64> seen{};
+    Counter numbers;            // since the last restart
+    SequenceCounts counts;      // `lost`: before the last restart
+    std::int64_t previous = 0;  // the number pushed last
+    std::uint64_t old_run = 0;  // length of the present run of old numbers that rise by one
   };
 
-  /// Steps from `of` up to `number`, with the wrap.
-  std::uint64_t ahead(std::uint64_t of, std::uint64_t number) const {
-    return (number - of) & mask_;
-  }
   /// True if the number lies less than a window before or after the newest one.
-  bool near(const State& state, std::uint64_t number) const;
-  /// True if a packet with this number arrived. Valid only for numbers within the window.
-  bool here(std::uint64_t number) const;
-  void mark(std::uint64_t number, bool here);
-  void begin(std::uint64_t number);
-  void advance(std::uint64_t number);
+  bool is_near(const State& state, std::uint64_t sent) const;
+  void begin(std::int64_t number);
+  void take(std::int64_t number);
   /// A number far away: a loss, a restart or a stray.
-  Order leap(std::uint64_t number, bool may_restart);
-  /// A number behind the newest one: late or old.
-  Order look_back(std::uint64_t number, bool may_restart);
-  Order old_number(std::uint64_t number, bool may_restart);
+  Order leap(std::int64_t number, bool may_restart);
+  Order old_number(std::int64_t number, bool may_restart);
 
-  // All numbers are kept modulo 2^bits. Differences are taken with `ahead`, never with < or >, so a
-  // wrap needs no case of its own.
-  std::uint64_t mask_;
+  unsigned bits_;
   State now_, before_;
   bool leapt_ = false;  // the last packet began a new count; `before_` is the old one
 };

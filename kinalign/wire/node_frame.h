@@ -5,10 +5,17 @@
 
 #include "kinalign/wire/node_datagram.h"
 #include "kinalign/wire/node_sample.h"
+#include "kinalign/wire/time.h"
 
 namespace kinalign {
 
 inline constexpr std::size_t max_node_samples = 30;
+
+/// The highest accepted counter, us: 31 years. A higher one is damage. The limit keeps sums of
+/// stamps within 64 bits of nanoseconds.
+inline constexpr std::uint64_t max_counter_us = 1'000'000'000'000'000;
+
+constexpr NodeTime node_time(std::int64_t us) { return NodeTime{std::chrono::microseconds(us)}; }
 
 /// Identifies the newest reply that the node has received.
 struct ReplyEcho {
