@@ -39,6 +39,12 @@ struct SequenceCounts {
   }
 };
 
+/// A packet's place among all packets of its sender.
+struct SequencePlace {
+  std::uint64_t restarts = 0;  // before this packet
+  std::int64_t number = 0;     // unwrapped; it continues until the next restart
+};
+
 /// Counts packets by numbers of 1 to 64 bits and follows their wraps; takes 0.5 kB.
 /// A number 1024 or more away begins a new count. If the next packet continues the old count, the
 /// number was a stray and is undone. A new count that begins less than an hour of packets ahead
@@ -55,9 +61,8 @@ class SequenceCount {
   /// sender did not restart with it.
   Order push(std::uint64_t sent, bool may_restart = true);
   SequenceCounts counts() const;
-  /// The unwrapped number of the packet that was pushed last. It continues until the next restart.
-  std::int64_t number() const { return now_.previous; }
-  std::uint64_t restarts() const { return now_.counts.restarts; }
+  /// The place of the packet that was pushed last.
+  SequencePlace place() const { return {now_.counts.restarts, now_.previous}; }
 
  private:
   struct State {

@@ -29,8 +29,8 @@ struct PlacedFrame {
 };
 
 /// The frames of one body, without duplicates. `Source` has the types Decoder, Arrival and Frame,
-/// and gives an arrival's frame (if it is one), body and number. Each connection and each sender
-/// has its own decoder and count.
+/// and gives an arrival's frame (if it is one) and body. Each connection and each sender has its
+/// own decoder, which counts the frames of each body.
 template <class Source>
 class NumberedFrames {
  public:
@@ -78,8 +78,7 @@ class NumberedFrames {
   static constexpr bool holds_back = requires(Arrival one) { one.arrival; };
   struct Channel {
     typename Source::Decoder decoder;
-    FrameNumbers numbers;
-    std::uint32_t counted = 0;
+    std::int64_t counted = 0;
     std::uint16_t id = 0;
     bool lossless = false;
   };
@@ -106,14 +105,14 @@ class NumberedFrames {
       if (one.order == Order::duplicate) continue;
       // A connection loses nothing, so counting frames gives the numbers that the source did not
       // send.
-      auto number = Source::number(one);
-      if (!number && from.lossless) number = from.counted++;
+      std::optional<SequencePlace> place = one.place;
+      if (!place && from.lossless) place = SequencePlace{0, from.counted++};
       Placed placed{std::move(*frame), {}, arrival};
       if constexpr (holds_back) placed.arrival = one.arrival.value_or(arrival);
-      if (number) {
-        placed.place = from.numbers.place(*number, placed.arrival);
-        // Life numbers of a channel are small; its id takes the upper bits.
-        placed.place->life |= BootKey{from.id} << 32U;
+      if (place) {
+        // A channel restarts rarely; its id takes the upper bits.
+        const BootKey life = (place->restarts + 1) | BootKey{from.id} << 32U;
+        placed.place = CountedFrame{life, place->number, placed.arrival};
       }
       out.push_back(std::move(placed));
     }
