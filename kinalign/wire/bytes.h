@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes the bytes of datagrams, in network order (big-endian, RFC 1700). All layouts of
-// wire use it. Running past the end is not reported at once: one check after a layout replaces a
+// Reads and writes the bytes of datagrams. All layouts of wire are in network order (big-endian,
+// RFC 1700). Running past the end is not reported at once: one check after a layout replaces a
 // check for each field.
 #pragma once
 
@@ -12,26 +12,36 @@
 
 namespace kinalign {
 
-/// Reads fields from the front of a datagram. Past the end it returns zeros, and `complete` is
-/// false.
-class ByteReader {
+/// Reads fields from the front, in either byte order. Past the end it returns zeros, and `complete`
+/// is false.
+template <std::endian order>
+class FieldReader {
  public:
-  explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  explicit FieldReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
-  template <std::unsigned_integral T>
+  template <std::integral T>
   T take() {
-    // Written so that the subtraction can't wrap: at_ never passes the end.
-    if (sizeof(T) > bytes_.size() - at_) {
-      // The rest is dropped too, so that a shorter field after the missing one can't succeed.
-      at_ = bytes_.size();
-      complete_ = false;
-      return 0;
-    }
+    const auto bytes = take_bytes(sizeof(T));
     std::uint64_t value = 0;
-    for (std::size_t i = 0; i < sizeof(T); ++i) value = value << 8 | bytes_[at_++];
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      value = value << 8 | bytes[order == std::endian::big ? i : bytes.size() - 1 - i];
+    }
     return static_cast<T>(value);
   }
   float take_float() { return std::bit_cast<float>(take<std::uint32_t>()); }
+  /// Returns `count` bytes, or none if fewer are left.
+  std::span<const std::uint8_t> take_bytes(std::uint64_t count) {
+    if (count > left()) {
+      // The rest is dropped too, so that a shorter field after the missing one can't succeed.
+      at_ = bytes_.size();
+      complete_ = false;
+      return {};
+    }
+    at_ += static_cast<std::size_t>(count);
+    return bytes_.subspan(at_ - static_cast<std::size_t>(count), static_cast<std::size_t>(count));
+  }
+  /// The bytes that are not read yet.
+  std::span<const std::uint8_t> rest() const { return bytes_.subspan(at_); }
 
   bool complete() const { return complete_; }
   std::size_t left() const { return bytes_.size() - at_; }
@@ -41,6 +51,7 @@ class ByteReader {
   std::size_t at_ = 0;
   bool complete_ = true;
 };
+using ByteReader = FieldReader<std::endian::big>;
 
 /// Writes fields one after another. A field that does not fit is not written, and `complete` is
 /// false.

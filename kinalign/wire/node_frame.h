@@ -40,8 +40,6 @@ struct NodeFrame {
   bool operator==(const NodeFrame&) const = default;
 };
 
-std::size_t encoded_size(const NodeFrame& frame, const MacKey* key);
-
 /// Writes the datagram to the front of `out`. Empty if there is not enough space, or if there are
 /// too many samples.
 [[nodiscard]] std::span<const std::uint8_t> encode(const NodeFrame& frame, const MacKey* key,

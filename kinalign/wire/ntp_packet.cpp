@@ -2,6 +2,7 @@
 #include "kinalign/wire/ntp_packet.h"
 
 #include "kinalign/wire/bytes.h"
+#include "kinalign/wire/counter.h"
 
 #include <algorithm>
 
@@ -93,10 +94,7 @@ NtpStamp ntp_from_time(Time t) {
 std::optional<Time> time_from_ntp(NtpStamp stamp, Time pivot) {
   if (stamp.bits == 0) return std::nullopt;
   const std::int64_t pivot_s = seconds_of(pivot).s + from_1900_to_1970_s;
-  const auto seconds_1900 = static_cast<std::uint32_t>(stamp.bits >> 32);
-  // The shorter way from the pivot to the stamp, modulo 2^32 s; it may be negative.
-  const auto step = static_cast<std::int32_t>(seconds_1900 - static_cast<std::uint32_t>(pivot_s));
-  const std::int64_t s = pivot_s + step - from_1900_to_1970_s;
+  const std::int64_t s = unwrapped(stamp.bits >> 32, 32, pivot_s) - from_1900_to_1970_s;
   const auto ns = static_cast<std::int64_t>(ns_of_fraction(static_cast<std::uint32_t>(stamp.bits)));
   // One second less than Time can hold, so that adding the fraction can't overflow.
   constexpr std::int64_t most_s = INT64_MAX / ns_per_s - 1;
