@@ -123,8 +123,6 @@ NodeVerdict NodeResponder::judge_frame(const NodeArrival& arrival, const Envelop
   }
   const std::int64_t n_tx = session->counter.unwrap(frame_.n_tx_us, sign.at);
   const auto echo = take_echo(*session, n_tx);
-  // Only the newest frame may change the node's address.
-  const bool newest = session->counter.behind_us(n_tx) <= 0;
   session->counter.take(n_tx, sign.at);
   if (const auto taken =
           take_session(*session, sign, echo ? std::optional(echo->h_tx) : std::nullopt);
@@ -133,7 +131,7 @@ NodeVerdict NodeResponder::judge_frame(const NodeArrival& arrival, const Envelop
   }
   message.exchange = Exchange{session->key, node_time(n_tx), sign.at, echo};
   keep(std::span(frame_.samples).first(frame_.sample_count), n_tx, message);
-  accept(*session, sign, newest, message);
+  accept(*session, sign, message);
   if (frame_.has_battery) table_.stream(session->stream).battery_mv = frame_.battery_mv;
   return NodeVerdict::accepted;
 }
@@ -155,8 +153,7 @@ NodeVerdict NodeResponder::judge_request(const NodeArrival& arrival, const Envel
   }
   message.clockless = ClocklessExchange{message.frame, sign.at, {}, std::nullopt, session->key};
   keep(std::span(&request.sample, request.has_sample ? 1 : 0), std::nullopt, message);
-  const auto newest = static_cast<std::uint64_t>(session->sequences.newest());
-  accept(*session, sign, message.frame == newest, message);
+  accept(*session, sign, message);
   if (request.has_battery) table_.stream(session->stream).battery_mv = request.battery_mv;
   return NodeVerdict::accepted;
 }
@@ -212,6 +209,7 @@ NodeVerdict NodeResponder::find_place(const NodeSign& sign, NodeSession*& sessio
   if (place == Counter::Place::behind) return NodeVerdict::replayed;
   sequences.take(number);
   message.frame = asked_.frame = static_cast<std::uint64_t>(number);
+  message.late = place == Counter::Place::late;
   asked_.by = session;
   return NodeVerdict::accepted;
 }
@@ -266,15 +264,15 @@ void NodeResponder::keep(std::span<const NodeSample> samples, std::optional<std:
 }
 
 // Counts an accepted datagram, and notices that its node has returned or moved.
-void NodeResponder::accept(NodeSession& session, const NodeSign& sign, bool newest,
-                           NodeMessage& message) {
+void NodeResponder::accept(NodeSession& session, const NodeSign& sign, NodeMessage& message) {
   NodeStream& stream = table_.stream(session.stream);
   message.stream = session.stream;
   session.old_key = asked_.old_key;
   ++session.accepted;
   if (stream.silent) table_.report(NodeEvent::Kind::returned, session, sign.at);
   stream.silent = false;
-  if (!newest || session.address == sign.from) return;
+  // A late datagram may come from the address that the node had before.
+  if (message.late || session.address == sign.from) return;
   session.address = sign.from;
   table_.report(NodeEvent::Kind::moved, session, sign.at);
 }

@@ -42,6 +42,7 @@ struct NodeMessage {
   std::uint32_t node_id = 0;
   std::size_t stream = 0;   // only if accepted
   std::uint64_t frame = 0;  // the datagram's unwrapped number; lost datagrams are counted too
+  bool late = false;        // a frame or request with a higher number arrived before
   std::optional<Exchange> exchange;
   std::optional<ClocklessExchange> clockless;
   std::span<const NodeReading> readings;  // oldest first; valid until the next datagram
@@ -101,7 +102,7 @@ class NodeResponder {
   std::optional<Exchange::Echo> take_echo(NodeSession& session, std::int64_t n_tx_us);
   void keep(std::span<const NodeSample> samples, std::optional<std::int64_t> n_tx_us,
             NodeMessage& message);
-  void accept(NodeSession& session, const NodeSign& sign, bool newest, NodeMessage& message);
+  void accept(NodeSession& session, const NodeSign& sign, NodeMessage& message);
   void refuse(NodeRefusal refusal, std::uint8_t version, HostTime now);
   void report_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
                         const NodeArrival& arrival);
