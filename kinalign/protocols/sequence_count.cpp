@@ -21,12 +21,12 @@ SequenceCounts SequenceCount::counts() const {
 }
 
 // The first block undoes a leap: the packet after it continues the old count, so the leap was a
-// single stray number, not a restart.
+// single outlier number, not a restart.
 Order SequenceCount::push(std::uint64_t sent, bool may_restart) {
   if (leapt_ && is_near(before_, sent) && !is_near(now_, sent)) {
     now_ = before_;
     ++now_.counts.received;
-    ++now_.counts.strays;
+    ++now_.counts.outliers;
   }
   leapt_ = false;
   ++now_.counts.received;
@@ -72,8 +72,8 @@ Order SequenceCount::leap(std::int64_t number, bool may_restart) {
   const std::int64_t steps = now_.numbers.steps_to(number);
   if (!may_restart && steps < 0) return old_number(number, may_restart);
   if (!may_restart) {
-    ++now_.counts.strays;
-    return Order::stray;
+    ++now_.counts.outliers;
+    return Order::outlier;
   }
   before_ = now_;
   --before_.counts.received;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts packets by the number that the sender gives each of them: lost, duplicate, late, or a
-// restart of the sender. It adds to the Counter of wire the detection of restarts and strays.
+// restart of the sender. It adds to the Counter of wire the detection of restarts and outliers.
 #pragma once
 
 #include "kinalign/wire/counter.h"
@@ -14,8 +14,8 @@ enum class Order {
   newest,     // the first packet, or the highest number so far; numbers that were skipped are lost
   late,       // it arrived after a newer packet; if it was counted as lost, it no longer is
   duplicate,  // its number arrived before
-  stray,      // its number is far ahead, but the sender did not restart; nothing is lost before it
-  restart     // the sender restarted, or so it seems until the next packet; see `strays`
+  outlier,    // its number is far ahead, but the sender did not restart; nothing is lost before it
+  restart     // the sender restarted, or so it seems until the next packet; see `outliers`
 };
 
 struct SequenceCounts {
@@ -24,7 +24,7 @@ struct SequenceCounts {
   std::uint64_t late = 0;
   std::uint64_t duplicates = 0;
   std::uint64_t restarts = 0;
-  std::uint64_t strays = 0;  // packets with a number far away, which changed nothing
+  std::uint64_t outliers = 0;  // packets with a number far away, which changed nothing
 
   bool operator==(const SequenceCounts&) const = default;
   /// Adds the counts of an earlier run of the sender.
@@ -34,7 +34,7 @@ struct SequenceCounts {
     late += more.late;
     duplicates += more.duplicates;
     restarts += more.restarts;
-    strays += more.strays;
+    outliers += more.outliers;
     return *this;
   }
 };
@@ -47,12 +47,12 @@ struct SequencePlace {
 
 /// Counts packets by numbers of 1 to 64 bits and follows their wraps; takes 0.5 kB.
 /// A number 1024 or more away begins a new count. If the next packet continues the old count, the
-/// number was a stray and is undone. A new count that begins less than an hour of packets ahead
+/// number was an outlier and is undone. A new count that begins less than an hour of packets ahead
 /// counts as a loss, not as a restart. A restart less than 1024 numbers back looks like duplicates
 /// for 16 packets. A restart ahead of the old count can't be told from a loss.
 /// If the caller knows that the sender did not restart, a number 1024 or more away changes nothing.
-/// A number behind the newest is then a duplicate, one ahead of it a stray, and no packet counts as
-/// lost before it.
+/// A number behind the newest is then a duplicate, one ahead of it an outlier, and no packet counts
+/// as lost before it.
 class SequenceCount {
  public:
   explicit SequenceCount(unsigned bits = 32) : bits_(bits) {}
@@ -76,7 +76,7 @@ class SequenceCount {
   bool is_near(const State& state, std::uint64_t sent) const;
   void begin(std::int64_t number);
   void take(std::int64_t number);
-  /// A number far away: a loss, a restart or a stray.
+  /// A number far away: a loss, a restart or an outlier.
   Order leap(std::int64_t number, bool may_restart);
   Order old_number(std::int64_t number, bool may_restart);
 

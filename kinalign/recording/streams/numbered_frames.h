@@ -125,10 +125,8 @@ class NumberedFrames {
 };
 
 /// The stamp of a numbered frame. Absent if its clock is not known.
-template <class Frame>
-std::optional<Time> stamp_of(const HeardDevice& heard, const PlacedFrame<Frame>& one) {
-  if (!one.place) return std::nullopt;
-  return stamp_of(heard.clock, one.place->life, counter_of(*one.place, heard.step_ns), one.arrival);
+inline std::optional<Time> stamp_of(const HeardDevice& heard, const CountedFrame& frame) {
+  return stamp_of(heard.clock, frame.life, counter_of(frame, heard.step_ns), frame.arrival);
 }
 
 // no frame was seen to arrive later than that many newer ones
@@ -197,10 +195,7 @@ class FrameKeys {
     if (heard.by_arrival) return stamp_by_arrivals(heard, put);
     OrderedStamps<std::uint32_t> stamps(most_overtaking_frames, put);
     for (const Key& key : keys_) {
-      const auto stamp = !key.is_numbered
-                             ? std::nullopt
-                             : stamp_of(heard.clock, key.frame.life,
-                                        counter_of(key.frame, heard.step_ns), key.frame.arrival);
+      const auto stamp = key.is_numbered ? stamp_of(heard, key.frame) : std::nullopt;
       if (stamp) stamps.add(*stamp, key.shape);
       if (key.ends_message) stamps.settle();
     }
@@ -295,7 +290,7 @@ class NumberedRows : public DeviceRows<Frames> {
       return;
     }
     for (auto& one : placed_) {
-      if (const auto stamp = stamp_of(*heard_, one)) {
+      if (const auto stamp = one.place ? stamp_of(*heard_, *one.place) : std::nullopt) {
         waiting_.add(*stamp, std::move(one.frame));
       } else {
         ++unknown_;
