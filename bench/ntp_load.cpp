@@ -2,7 +2,7 @@
 // Asks an NTP server on loopback for SECONDS, with IN_FLIGHT requests under way at any time, and
 // prints the number of answers and their delays: ntp_load PORT IN_FLIGHT SECONDS SOURCES. The
 // requests come in turn from SOURCES addresses of 127/8. ntp_bench.py runs it.
-#include "kinalign/wire/ntp_packet.h"
+#include "tests/ntp_client.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -97,9 +97,9 @@ class Load {
       const auto& bytes = in_.bytes[static_cast<std::size_t>(i)];
       std::uint64_t asked = 0;  // the originate stamp holds the request's number
       for (std::size_t k = 24; k < 32; ++k) asked = asked << 8 | bytes[k];
-      NtpPacket answer;
       if (asked == 0 || asked > sent_at_.size()) continue;
-      if (decode_answer(bytes, NtpStamp{asked}, answer) != NtpAnswer::good) continue;
+      const auto answer = ntp_answer_in(bytes, NtpStamp{asked});
+      if (!answer || answer->stratum == 0) continue;  // a kiss
       took_.push_back(now - sent_at_[asked - 1]);
       ++good;
     }

@@ -29,37 +29,29 @@ struct ClocklessTimes {
   bool operator==(const ClocklessTimes&) const = default;
 };
 
-/// Sent by the host to the node. It is never longer than the request.
-struct ClocklessAnswer {
+/// A datagram that only carries these times.
+template <DatagramType type>
+struct ClocklessStamped {
   DatagramOrigin origin;  // that of the request
   ClocklessTimes times;
 
-  bool operator==(const ClocklessAnswer&) const = default;
+  bool operator==(const ClocklessStamped&) const = default;
 };
-
+/// Sent by the host to the node. It is never longer than the request.
+using ClocklessAnswer = ClocklessStamped<DatagramType::answer>;
 /// Sent by the node to the host at once. It contains a copy of the answer's fields.
-struct ClocklessConfirm {
-  DatagramOrigin origin;
-  ClocklessTimes times;
-
-  bool operator==(const ClocklessConfirm&) const = default;
-};
-
-std::size_t encoded_size(const ClocklessRequest& request, const MacKey* key);
-std::size_t encoded_size(const ClocklessAnswer& answer, const MacKey* key);
-std::size_t encoded_size(const ClocklessConfirm& confirm, const MacKey* key);
+using ClocklessConfirm = ClocklessStamped<DatagramType::confirm>;
 
 /// Writes the datagram to the front of `out`. Empty if there is not enough space.
 [[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessRequest& request,
                                                    const MacKey* key, std::span<std::uint8_t> out);
-[[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessAnswer& answer, const MacKey* key,
-                                                   std::span<std::uint8_t> out);
-[[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessConfirm& confirm,
+template <DatagramType type>
+[[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessStamped<type>& stamped,
                                                    const MacKey* key, std::span<std::uint8_t> out);
 
 /// After a refusal the last argument is default-constructed.
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessRequest& request);
-NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessAnswer& answer);
-NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessConfirm& confirm);
+template <DatagramType type>
+NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessStamped<type>& stamped);
 
 }  // namespace kinalign

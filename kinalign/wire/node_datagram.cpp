@@ -85,7 +85,6 @@ NodeRefusal open_envelope(std::span<const std::uint8_t> datagram, Envelope& enve
   return NodeRefusal::none;
 }
 
-// `size` includes MAC and CRC, which seal() fills in later.
 ByteWriter begin_datagram(std::span<std::uint8_t> out, std::size_t size, const NodeHead& head,
                           const MacKey* key) {
   const std::uint8_t mac = key == nullptr ? 0 : mac_flag;

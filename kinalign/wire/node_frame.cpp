@@ -38,32 +38,26 @@ NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& fram
 
 }  // namespace
 
-std::size_t encoded_size(const NodeFrame& frame, const MacKey* key) {
-  std::size_t fields = clock_size;
-  for (std::size_t i = 0; i < frame.sample_count; ++i) fields += encoded_size(frame.samples[i]);
-  return node_datagram_size(fields, key != nullptr);
-}
-
 std::span<const std::uint8_t> encode(const NodeFrame& frame, const MacKey* key,
                                      std::span<std::uint8_t> out) {
-  // The loop in encoded_size() must not run past the array.
+  // The loops below must not run past the array.
   if (frame.sample_count > max_node_samples) return {};
-  const std::size_t size = encoded_size(frame, key);
-  if (size > out.size()) return {};
+  const auto samples = std::span(frame.samples).first(frame.sample_count);
+  std::size_t fields = clock_size;
+  for (const NodeSample& sample : samples) fields += encoded_size(sample);
   const auto flags = static_cast<std::uint8_t>((frame.has_battery ? battery_flag : 0) |
                                                (frame.has_echo ? echo_flag : 0));
   const std::uint16_t battery = frame.has_battery ? frame.battery_mv : std::uint16_t{0};
   const ReplyEcho echo = frame.has_echo ? frame.echo : ReplyEcho{};
-  ByteWriter writer = begin_datagram(out, size,
-                                     {DatagramType::frame, frame.origin, flags,
-                                      static_cast<std::uint8_t>(frame.sample_count), battery},
-                                     key);
-  writer.put(frame.n_tx_us);
-  writer.put(echo.reply_sequence);
-  writer.put(echo.nonce);
-  writer.put(echo.n_rx_us);
-  for (std::size_t i = 0; i < frame.sample_count; ++i) put_sample(writer, frame.samples[i]);
-  return seal(out.first(size), key);
+  return encode_as({DatagramType::frame, frame.origin, flags,
+                    static_cast<std::uint8_t>(frame.sample_count), battery},
+                   fields, key, out, [&](ByteWriter& writer) {
+                     writer.put(frame.n_tx_us);
+                     writer.put(echo.reply_sequence);
+                     writer.put(echo.nonce);
+                     writer.put(echo.n_rx_us);
+                     for (const NodeSample& sample : samples) put_sample(writer, sample);
+                   });
 }
 
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, NodeFrame& frame) {

@@ -5,10 +5,17 @@
 
 #include "kinalign/wire/node_datagram.h"
 #include "kinalign/wire/node_sample.h"
+#include "kinalign/wire/time.h"
 
 namespace kinalign {
 
 inline constexpr std::size_t max_node_samples = 30;
+
+/// The highest accepted counter, us: 31 years. A higher one is damage. The limit keeps sums of
+/// stamps within 64 bits of nanoseconds.
+inline constexpr std::uint64_t max_counter_us = 1'000'000'000'000'000;
+
+constexpr NodeTime node_time(std::int64_t us) { return NodeTime{std::chrono::microseconds(us)}; }
 
 /// Identifies the newest reply that the node has received.
 struct ReplyEcho {
@@ -32,8 +39,6 @@ struct NodeFrame {
 
   bool operator==(const NodeFrame&) const = default;
 };
-
-std::size_t encoded_size(const NodeFrame& frame, const MacKey* key);
 
 /// Writes the datagram to the front of `out`. Empty if there is not enough space, or if there are
 /// too many samples.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Head and end of a node's datagram, for the files that know the fields between them. encode writes
-// a head and fields, and calls seal. decode calls unseal and reads the fields. Layout:
-// docs/formats/imu_node.md.
+// Head and end of a node's datagram, for the files that know the fields between them: encode_as and
+// decode_as add head and end to the fields of one type. Layout: docs/formats/imu_node.md.
 #pragma once
 
 #include "kinalign/wire/bytes.h"
@@ -29,7 +28,8 @@ struct NodeHead {
   std::uint16_t battery_mv = 0;
 };
 
-/// Begins a datagram of `size` bytes in `out`, which must be large enough.
+/// Begins a datagram of `size` bytes in `out`, which must be large enough. `size` includes MAC and
+/// CRC, which seal() fills in later.
 ByteWriter begin_datagram(std::span<std::uint8_t> out, std::size_t size, const NodeHead& head,
                           const MacKey* key);
 
@@ -40,7 +40,18 @@ std::span<const std::uint8_t> seal(std::span<std::uint8_t> datagram, const MacKe
 NodeRefusal unseal(const Envelope& envelope, DatagramType type, const MacKey* key, NodeHead& head,
                    std::span<const std::uint8_t>& fields);
 
-/// Every decode() uses this function, so a type adds only the reading of its own fields.
+/// Encodes a datagram to the front of `out`; `put(writer)` writes its `fields` bytes. Empty if
+/// there is not enough space.
+template <class Put>
+std::span<const std::uint8_t> encode_as(const NodeHead& head, std::size_t fields, const MacKey* key,
+                                        std::span<std::uint8_t> out, Put put) {
+  const std::size_t size = node_datagram_size(fields, key != nullptr);
+  if (size > out.size()) return {};
+  ByteWriter writer = begin_datagram(out, size, head, key);
+  put(writer);
+  return seal(out.first(size), key);
+}
+
 /// Decodes a datagram. Fills `out` with take(head, reader, out) if everything else is right. After
 /// a refusal `out` is default-constructed.
 template <class Out, class Take>

@@ -23,21 +23,15 @@ NodeRefusal take_reply(const NodeHead& head, ByteReader& reader, NodeReply& repl
 
 }  // namespace
 
-std::size_t encoded_size(const NodeReply&, const MacKey* key) {
-  return node_datagram_size(fields_size, key != nullptr);
-}
-
 std::span<const std::uint8_t> encode(const NodeReply& reply, const MacKey* key,
                                      std::span<std::uint8_t> out) {
-  const std::size_t size = encoded_size(reply, key);
-  if (size > out.size()) return {};
   const std::uint8_t state = reply.locked ? locked_state : 0;
-  ByteWriter writer =
-      begin_datagram(out, size, {DatagramType::reply, reply.origin, 0, state, 0}, key);
-  writer.put(reply.reply_sequence);
-  writer.put(reply.nonce);
-  writer.put(reply.h_tx_ns);
-  return seal(out.first(size), key);
+  return encode_as({DatagramType::reply, reply.origin, 0, state, 0}, fields_size, key, out,
+                   [&](ByteWriter& writer) {
+                     writer.put(reply.reply_sequence);
+                     writer.put(reply.nonce);
+                     writer.put(reply.h_tx_ns);
+                   });
 }
 
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, NodeReply& reply) {

@@ -17,10 +17,8 @@ struct NodeReply {
   bool operator==(const NodeReply&) const = default;
 };
 
-/// Never more than the size of any frame with the same key.
-std::size_t encoded_size(const NodeReply& reply, const MacKey* key);
-
-/// Writes the datagram to the front of `out`. Empty if there is not enough space.
+/// Writes the datagram to the front of `out`. Empty if there is not enough space. It is never
+/// longer than a frame with the same key.
 [[nodiscard]] std::span<const std::uint8_t> encode(const NodeReply& reply, const MacKey* key,
                                                    std::span<std::uint8_t> out);
 

@@ -23,11 +23,6 @@ Seconds seconds_of(Time t) {
   return {to_ns(t) / ns_per_s - (rest < 0 ? 1 : 0), rest < 0 ? rest + ns_per_s : rest};
 }
 
-/// Nanoseconds of a fraction of 2^-32 s, rounded to the nearest; at most 1e9.
-std::uint64_t ns_of_fraction(std::uint32_t fraction) {
-  return (std::uint64_t{fraction} * ns_per_s + (std::uint64_t{1} << 31)) >> 32;
-}
-
 /// Returns whether `left` bytes after the extension fields can be a MAC: a key id alone (a
 /// crypto-NAK), or with a digest of 16 or 20 bytes (RFC 7822 section 7.5). Before version 4 also a
 /// digest of 8 bytes (RFC 1305), but no key id alone.
@@ -52,8 +47,26 @@ bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
   return rest.empty() || is_mac(rest.size(), version);
 }
 
-/// Reads the 48 bytes of the header.
-NtpPacket take_header(ByteReader& reader) {
+}  // namespace
+
+NtpStamp ntp_from_time(Time t) {
+  const auto [s, ns] = seconds_of(t);
+  // The shift below drops the bits of the era.
+  const auto seconds_1900 = static_cast<std::uint64_t>(s + from_1900_to_1970_s);
+  // Rounded to the nearest. 999,999,999 ns stay below 2^32.
+  const std::uint64_t fraction = ((static_cast<std::uint64_t>(ns) << 32) + ns_per_s / 2) / ns_per_s;
+  const std::uint64_t bits = seconds_1900 << 32 | fraction;
+  return {bits == 0 ? 1 : bits};
+}
+
+NtpShort ntp_short_from(Duration d) {
+  const std::int64_t ns = std::clamp(d, Duration{0}, Duration{65536 * ns_per_s}).count();
+  const std::uint64_t bits = ((static_cast<std::uint64_t>(ns) << 16) + ns_per_s - 1) / ns_per_s;
+  return {static_cast<std::uint32_t>(std::min<std::uint64_t>(bits, UINT32_MAX))};
+}
+
+NtpPacket ntp_header(std::span<const std::uint8_t> datagram) {
+  ByteReader reader(datagram);
   NtpPacket packet;
   const auto first = reader.take<std::uint8_t>();
   // From the top: leap indicator (2 bits), version (3), mode (3).
@@ -73,60 +86,9 @@ NtpPacket take_header(ByteReader& reader) {
   return packet;
 }
 
-NtpAnswer kiss(std::uint32_t code) {
-  if (code == ntp_code("DENY") || code == ntp_code("RSTR")) return NtpAnswer::kiss_deny;
-  return code == ntp_code("RATE") ? NtpAnswer::kiss_rate : NtpAnswer::kiss_other;
-}
-
-}  // namespace
-
-NtpStamp ntp_from_time(Time t) {
-  const auto [s, ns] = seconds_of(t);
-  // The shift below drops the bits of the era.
-  const auto seconds_1900 = static_cast<std::uint64_t>(s + from_1900_to_1970_s);
-  // Rounded to the nearest. 999,999,999 ns stay below 2^32.
-  const std::uint64_t fraction = ((static_cast<std::uint64_t>(ns) << 32) + ns_per_s / 2) / ns_per_s;
-  const std::uint64_t bits = seconds_1900 << 32 | fraction;
-  return {bits == 0 ? 1 : bits};
-}
-
-std::optional<Time> time_from_ntp(NtpStamp stamp, Time pivot) {
-  if (stamp.bits == 0) return std::nullopt;
-  const std::int64_t pivot_s = seconds_of(pivot).s + from_1900_to_1970_s;
-  const auto seconds_1900 = static_cast<std::uint32_t>(stamp.bits >> 32);
-  // The shorter way from the pivot to the stamp, modulo 2^32 s; it may be negative.
-  const auto step = static_cast<std::int32_t>(seconds_1900 - static_cast<std::uint32_t>(pivot_s));
-  const std::int64_t s = pivot_s + step - from_1900_to_1970_s;
-  const auto ns = static_cast<std::int64_t>(ns_of_fraction(static_cast<std::uint32_t>(stamp.bits)));
-  // One second less than Time can hold, so that adding the fraction can't overflow.
-  constexpr std::int64_t most_s = INT64_MAX / ns_per_s - 1;
-  if (s < -most_s || s > most_s) return std::nullopt;
-  return utc_time(s * ns_per_s + ns);
-}
-
-Duration ntp_difference(NtpStamp earlier, NtpStamp later) {
-  // Modulo 2^64, so the difference is right across the end of an era. Its upper half, read as a
-  // signed number of seconds, reaches 68 years either way.
-  const std::uint64_t apart = later.bits - earlier.bits;
-  const auto s = static_cast<std::int32_t>(apart >> 32);
-  const auto ns = static_cast<std::int64_t>(ns_of_fraction(static_cast<std::uint32_t>(apart)));
-  return Duration{s * ns_per_s + ns};
-}
-
-NtpShort ntp_short_from(Duration d) {
-  const std::int64_t ns = std::clamp(d, Duration{0}, Duration{65536 * ns_per_s}).count();
-  const std::uint64_t bits = ((static_cast<std::uint64_t>(ns) << 16) + ns_per_s - 1) / ns_per_s;
-  return {static_cast<std::uint32_t>(std::min<std::uint64_t>(bits, UINT32_MAX))};
-}
-
-Duration duration_from(NtpShort value) {
-  return Duration{static_cast<std::int64_t>(std::uint64_t{value.bits} * ns_per_s >> 16)};
-}
-
 NtpRefusal decode_request(std::span<const std::uint8_t> datagram, NtpPacket& packet) {
   if (datagram.size() < ntp_packet_size) return NtpRefusal::too_short;
-  ByteReader reader(datagram);
-  const NtpPacket read = take_header(reader);
+  const NtpPacket read = ntp_header(datagram);
   if (read.version < 1 || read.version > 4) return NtpRefusal::wrong_version;
   if (read.mode != ntp_mode_client) return NtpRefusal::wrong_mode;
   if (!is_trailer(datagram.subspan(ntp_packet_size), read.version))
@@ -134,22 +96,6 @@ NtpRefusal decode_request(std::span<const std::uint8_t> datagram, NtpPacket& pac
   // A refused datagram leaves `packet` unchanged.
   packet = read;
   return NtpRefusal::none;
-}
-
-// The originate stamp is checked before the kiss code, so that a forged kiss has no effect.
-NtpAnswer decode_answer(std::span<const std::uint8_t> datagram, NtpStamp sent, NtpPacket& packet) {
-  if (datagram.size() < ntp_packet_size) return NtpAnswer::malformed;
-  ByteReader reader(datagram);
-  const NtpPacket read = take_header(reader);
-  const bool ours = read.version >= 1 && read.version <= 4 && read.mode == ntp_mode_server;
-  if (!ours) return NtpAnswer::malformed;
-  packet = read;
-  // A stamp of 0 was never sent, and would match answers that leave originate empty.
-  if (read.originate != sent || sent.bits == 0) return NtpAnswer::not_ours;
-  if (read.stratum == 0) return kiss(read.reference_id);
-  const bool lost = read.leap == NtpLeap::unsynchronised ||
-                    read.stratum >= ntp_stratum_unsynchronised || read.transmit.bits == 0;
-  return lost ? NtpAnswer::unsynchronised : NtpAnswer::good;
 }
 
 std::array<std::uint8_t, ntp_packet_size> encode(const NtpPacket& packet) {

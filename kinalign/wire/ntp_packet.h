@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The NTP packet (RFC 5905 section 7.3): 48 bytes in network order. decode_request reads requests
-// of clients, and decode_answer reads answers to own requests. Both return the reason for a
-// refusal.
+// The NTP packet (RFC 5905 section 7.3) as a server needs it: 48 bytes in network order.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -9,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 namespace kinalign {
@@ -32,16 +29,8 @@ struct NtpShort {
 /// The stamp nearest to `t`. It is never 0: if it would be 0, the lowest bit is set.
 NtpStamp ntp_from_time(Time t);
 
-/// The time with this stamp that is nearest to `pivot`. Any pivot within 68 years gives the right
-/// era. Absent if the stamp is 0, or if Time cannot hold the time.
-std::optional<Time> time_from_ntp(NtpStamp stamp, Time pivot);
-
-/// later - earlier, for stamps less than 68 years apart. The stamps may be in different eras.
-Duration ntp_difference(NtpStamp earlier, NtpStamp later);
-
 /// Rounded up, so that a stated error is never too small; 0 to 65536 s.
 NtpShort ntp_short_from(Duration d);
-Duration duration_from(NtpShort value);
 
 enum class NtpLeap : std::uint8_t { none, insert, remove, unsynchronised };
 
@@ -74,23 +63,12 @@ enum class [[nodiscard]] NtpRefusal : std::uint8_t{
     wrong_trailer   // longer than 48 bytes, and the rest is neither an extension field nor a MAC
 };
 
+/// Reads the 48 bytes of the header, which must exist.
+NtpPacket ntp_header(std::span<const std::uint8_t> datagram);
+
 /// Fills `packet` if the result is `none`. A server may use only version, poll and transmit. The
 /// other fields of a request have no meaning (chrony sends zeros).
 NtpRefusal decode_request(std::span<const std::uint8_t> datagram, NtpPacket& packet);
-
-/// The reason why a datagram is not an answer to an own request, or its kiss code (RFC 5905 section
-/// 7.4).
-enum class [[nodiscard]] NtpAnswer : std::uint8_t{
-    good,
-    malformed,  // too short, or not a server's version or mode
-    not_ours,   // originate differs from the sent stamp: forged, duplicate or too late; ignore it
-    unsynchronised,  // leap 3, stratum above 15, or no transmit stamp
-    kiss_deny,       // DENY or RSTR: stop asking
-    kiss_rate,       // RATE: ask at most half as often
-    kiss_other};
-
-/// Fills `packet` if the result is not `malformed`. `sent`: the transmit stamp of the request.
-NtpAnswer decode_answer(std::span<const std::uint8_t> datagram, NtpStamp sent, NtpPacket& packet);
 
 std::array<std::uint8_t, ntp_packet_size> encode(const NtpPacket& packet);
 

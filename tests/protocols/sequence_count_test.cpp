@@ -77,10 +77,10 @@ TEST_CASE("sequence: a network that doubles every packet shows no restart") {
   CHECK(counts_of(numbers) == SequenceCounts{400, 0, 0, 200, 0, 0});
 }
 
-TEST_CASE("sequence: one stray number costs nothing") {
-  for (const std::uint64_t stray : {0ULL, 5'000ULL, 90'000ULL, 4'000'000'000ULL}) {
-    CAPTURE(stray);
-    CHECK(counts_of(joined(joined(range(50'000, 50), {stray}), range(50'050, 50))) ==
+TEST_CASE("sequence: one outlier costs nothing") {
+  for (const std::uint64_t outlier : {0ULL, 5'000ULL, 90'000ULL, 4'000'000'000ULL}) {
+    CAPTURE(outlier);
+    CHECK(counts_of(joined(joined(range(50'000, 50), {outlier}), range(50'050, 50))) ==
           SequenceCounts{101, 0, 0, 0, 0, 1});
   }
 }
@@ -144,8 +144,26 @@ TEST_CASE("sequence: any loss, doubling and reordering is counted exactly") {
   }
 }
 
+TEST_CASE("sequence: a packet's number goes on over a wrap, and begins again with a restart") {
+  SequenceCount count;
+  const auto place = [&count](std::uint64_t number) {
+    count.push(number);
+    return std::pair(count.place().restarts, count.place().number);
+  };
+  constexpr std::int64_t turn = std::int64_t{1} << 32;
+  CHECK(place(0xffff'fffe) == std::pair(std::uint64_t{0}, turn - 2));
+  CHECK(place(1) == std::pair(std::uint64_t{0}, turn + 1));
+  CHECK(place(0xffff'ffff) == std::pair(std::uint64_t{0}, turn - 1));
+  CHECK(place(5'000'000) == std::pair(std::uint64_t{1}, std::int64_t{5'000'000}));
+  // The packet before was an outlier.
+  CHECK(place(2) == std::pair(std::uint64_t{0}, turn + 2));
+  CHECK(place(3'000'000'000) == std::pair(std::uint64_t{1}, std::int64_t{3'000'000'000}));
+  CHECK(place(3'000'000'001) == std::pair(std::uint64_t{1}, std::int64_t{3'000'000'001}));
+}
+
 TEST_CASE(
-    "sequence: where there is no restart, what lies far behind was here and far ahead is a stray") {
+    "sequence: where there is no restart, what lies far behind was here and far ahead is an "
+    "outlier") {
   SequenceCount count;
   for (const auto number : range(5'000, 100)) count.push(number, false);
   for (const auto number : range(5'000, 50)) {
@@ -155,7 +173,7 @@ TEST_CASE(
     CHECK(count.push(number, false) == Order::duplicate);  // from before the window
   }
   for (const auto number : range(2'000'000'000, 50)) {
-    CHECK(count.push(number, false) == Order::stray);
+    CHECK(count.push(number, false) == Order::outlier);
   }
   CHECK(count.push(5'102, false) == Order::newest);
   CHECK(count.counts() == SequenceCounts{251, 2, 0, 100, 0, 50});

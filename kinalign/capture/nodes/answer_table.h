@@ -4,10 +4,13 @@
 // sends.
 #pragma once
 
+#include "kinalign/capture/nodes/node_verdict.h"
+#include "kinalign/wire/counter.h"
 #include "kinalign/wire/time.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -17,7 +20,7 @@ struct GivenAnswer {
   std::uint32_t sequence = 0;
   std::uint32_t nonce = 0;
   HostTime t2{}, t3{};      // arrival of the answered datagram, departure of the answer
-  std::uint64_t frame = 0;  // the widened number of the answered datagram
+  std::uint64_t frame = 0;  // the unwrapped number of the answered datagram
   // `given`: the entry is in use. `used`: the node has named the answer.
   bool given = false, used = false;
 };
@@ -27,23 +30,28 @@ class AnswerTable {
  public:
   static constexpr std::size_t remembered = 256;
 
-  enum class Found : std::uint8_t {
-    now,     // the answer is named for the first time
-    before,  // the answer was named before
-    stale,   // too old: the answer is no longer in the table
-    never    // the answer was not sent, or it has another nonce
-  };
-
-  void add(const GivenAnswer& answer);
-  /// Looks an answer up. `answer` is set if the answer is known.
-  Found find(std::uint32_t sequence, std::uint32_t nonce, GivenAnswer& answer);
+  void add(const GivenAnswer& answer) {
+    GivenAnswer& place = answers_[answer.sequence % remembered];
+    place = answer;
+    place.given = true;
+  }
+  /// Looks up the answer that an echo or a confirm names. `answer` is set if it is known: taken or
+  /// repeated.
+  EchoVerdict find(std::uint32_t sequence, std::uint32_t nonce, GivenAnswer& answer) {
+    GivenAnswer& place = answers_[sequence % remembered];
+    if (!place.given) return EchoVerdict::unknown;
+    // A later answer has taken the place.
+    if (steps_between(sequence, place.sequence, 32) > 0) return EchoVerdict::stale;
+    if (place.sequence != sequence || place.nonce != nonce) return EchoVerdict::unknown;
+    answer = place;
+    // One exchange gives one bound, however often it is echoed.
+    return std::exchange(place.used, true) ? EchoVerdict::repeated : EchoVerdict::taken;
+  }
 
  private:
   // Indexed by sequence modulo `remembered`. Stored outside the object, so that a search through
   // all sessions stays in the cache.
   std::vector<GivenAnswer> answers_ = std::vector<GivenAnswer>(remembered);
-  std::uint32_t newest_ = 0;
-  bool begun_ = false;
 };
 
 }  // namespace kinalign

@@ -1,38 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 // A node's counter in us, as 64 bits. A node may send only the low 32 bits. Such a reading is
-// widened to the value nearest to the value predicted from the host's clock.
+// unwrapped to the value nearest to the value predicted from the host's clock.
 #pragma once
 
+#include "kinalign/wire/counter.h"
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
+#include <cstdlib>
 
 namespace kinalign {
-
-/// The highest accepted reading, us: 142 years. A higher one is wrong and would overflow in ns.
-inline constexpr std::uint64_t most_counter_us = std::uint64_t{1} << 52;
-
-constexpr NodeTime node_time(std::int64_t us) { return NodeTime{std::chrono::microseconds(us)}; }
 
 /// The prediction continues from the newest reading with the host's clock. A crystal's error is
 /// small against a turn of 71 minutes.
 class NodeCounter {
  public:
-  /// Widens a reading that arrived at h_rx, us. Does not change the state.
-  std::int64_t widened(std::uint64_t counter_us, HostTime h_rx) const;
-  /// Widens a reading taken at or before `n_tx_us`, which is already widened.
-  std::int64_t widened_before(std::uint64_t counter_us, std::int64_t n_tx_us) const;
+  /// Unwraps a reading that arrived at h_rx, us. Does not change the state.
+  std::int64_t unwrap(std::uint64_t counter_us, HostTime h_rx) const {
+    const auto read = static_cast<std::int64_t>(counter_us);
+    if (!begun_ || read >= turn_us) return read;
+    const std::int64_t nearest = unwrapped(counter_us, 32, predicted_us(h_rx));
+    return nearest > read && std::abs(ahead_us(nearest, h_rx)) <= trusted_us ? nearest : read;
+  }
+  /// Unwraps a reading taken at or before `n_tx_us`, which is already unwrapped.
+  static std::int64_t unwrap_before(std::uint64_t counter_us, std::int64_t n_tx_us) {
+    const auto read = static_cast<std::int64_t>(counter_us);
+    return read >= turn_us || n_tx_us < turn_us ? read : unwrapped(counter_us, 32, n_tx_us);
+  }
 
   /// n minus the predicted counter, us. Positive: the counter is ahead. 0 before the first reading.
-  std::int64_t ahead_us(std::int64_t n_us, HostTime h_rx) const;
+  std::int64_t ahead_us(std::int64_t n_us, HostTime h_rx) const {
+    return begun_ ? n_us - predicted_us(h_rx) : 0;
+  }
   /// The newest reading minus n, us. Negative: n is newer.
   std::int64_t behind_us(std::int64_t n_us) const { return begun_ ? newest_us_ - n_us : 0; }
 
-  /// Stores a widened reading if it is the newest.
-  void take(std::int64_t n_us, HostTime h_rx);
+  /// Stores an unwrapped reading if it is the newest: late frames must not move the prediction
+  /// back.
+  void take(std::int64_t n_us, HostTime h_rx) {
+    if (begun_ && n_us <= newest_us_) return;
+    newest_us_ = n_us;
+    newest_arrival_ = h_rx;
+    begun_ = true;
+  }
 
  private:
-  std::int64_t predicted_us(HostTime h_rx) const;
+  static constexpr std::int64_t turn_us = std::int64_t{1} << 32;  // of a 32-bit counter: 71.6 min
+  /// Limit on the difference between an unwrapped reading and the prediction, us. It covers delays
+  /// and, after a day of silence, a crystal that is 100 ppm off. Beyond it the reading is taken as
+  /// 64 bits.
+  static constexpr std::int64_t trusted_us = 20'000'000;
+
+  std::int64_t predicted_us(HostTime h_rx) const {
+    const auto since = h_rx - newest_arrival_;
+    return newest_us_ + std::chrono::duration_cast<std::chrono::microseconds>(since).count();
+  }
 
   std::int64_t newest_us_ = 0;
   HostTime newest_arrival_{};  // arrival of the newest reading

@@ -31,8 +31,8 @@ struct NodeEvent {
   std::size_t stream = 0;
   std::uint32_t node_id = 0, boot_id = 0;
   HostTime at{};
-  NodeAddress address;
-  std::optional<std::uint32_t> other_id;
+  NodeAddress address{};
+  std::optional<std::uint32_t> other_id{};
   std::uint8_t version = 0;
   NodeRefusal refusal = NodeRefusal::none;
 };

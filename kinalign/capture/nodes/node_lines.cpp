@@ -4,7 +4,6 @@
 #include "kinalign/capture/nodes/node_filter.h"
 
 #include <sys/epoll.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -34,21 +33,11 @@ NodeLines::NodeLines(std::span<const UdpSocket> open, std::size_t most)
   }
 }
 
-NodeLines::NodeLines(NodeLines&& other) noexcept
-    : open_(other.open_),
-      lines_(std::move(other.lines_)),
-      poll_(std::exchange(other.poll_, -1)),
-      dropped_before_(other.dropped_before_) {}
-
-NodeLines::~NodeLines() {
-  if (poll_ >= 0) ::close(poll_);
-}
-
 void NodeLines::wait_for(const UdpSocket& socket, std::uint64_t number) {
   epoll_event event{};
   event.events = EPOLLIN;
   event.data.u64 = number;
-  ::epoll_ctl(poll_, EPOLL_CTL_ADD, socket.fd(), &event);
+  ::epoll_ctl(poll_.fd(), EPOLL_CTL_ADD, socket.fd(), &event);
 }
 
 // A node that keeps changing its address gets at most one new socket per second.
@@ -72,7 +61,7 @@ void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, H
 std::span<const UdpSocket* const> NodeLines::ready() {
   std::array<epoll_event, most_ready> events{};
   ready_.clear();
-  const int found = ::epoll_wait(poll_, events.data(), events.size(), 0);
+  const int found = ::epoll_wait(poll_.fd(), events.data(), events.size(), 0);
   const auto count = static_cast<std::size_t>(std::max(found, 0));
   std::sort(events.begin(), events.begin() + count,
             [](const auto& a, const auto& b) { return a.data.u64 < b.data.u64; });

@@ -7,6 +7,7 @@
 // descriptor on which a receiver waits.
 #pragma once
 
+#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/net/udp_socket.h"
 #include "kinalign/capture/nodes/node_session.h"
 
@@ -21,11 +22,6 @@ class NodeLines {
   /// `open`: the sockets for all senders. They must not move, and they share their port from now
   /// on.
   NodeLines(std::span<const UdpSocket> open, std::size_t most);
-  NodeLines(NodeLines&& other) noexcept;
-  NodeLines& operator=(NodeLines&&) = delete;
-  NodeLines(const NodeLines&) = delete;
-  NodeLines& operator=(const NodeLines&) = delete;
-  ~NodeLines();
 
   /// The path of a node's datagrams: from `way.from` to `way.to`, an address of this host. If the
   /// system gives no socket, the open sockets receive the node's datagrams, and a socket is asked
@@ -39,7 +35,7 @@ class NodeLines {
   void follow(std::size_t stream, const Way& way, std::uint16_t port, HostTime now);
 
   /// Readable when any of the sockets is readable.
-  int fd() const { return poll_; }
+  int fd() const { return poll_.fd(); }
   /// The sockets that can be read, those of nodes first.
   std::span<const UdpSocket* const> ready();
   /// Datagrams that the kernel dropped on all sockets, closed ones included.
@@ -56,7 +52,7 @@ class NodeLines {
 
   std::span<const UdpSocket> open_;
   std::vector<Line> lines_;
-  int poll_ = -1;
+  Handle poll_;
   std::vector<const UdpSocket*> ready_;
   std::uint64_t dropped_before_ = 0;  // datagrams dropped on sockets that are now closed
 };

@@ -10,7 +10,6 @@ namespace kinalign {
 namespace {
 
 using State = NodeSession::State;
-using Found = AnswerTable::Found;
 
 std::uint64_t host_ns(HostTime t) {
   return static_cast<std::uint64_t>(t.time_since_epoch().count());
@@ -71,11 +70,7 @@ void NodeResponder::refuse(NodeRefusal refusal, std::uint8_t version, HostTime n
   ++counts_.refusals[refusal];
   if (refusal != NodeRefusal::unknown_version || version <= counts_.newest_version) return;
   counts_.newest_version = version;
-  NodeEvent event;
-  event.kind = NodeEvent::Kind::newer_version;
-  event.at = now;
-  event.version = version;
-  table_.report(event);
+  table_.report({.kind = NodeEvent::Kind::newer_version, .at = now, .version = version});
 }
 
 /// Decodes with the node's key, or with its previous key while that is still valid.
@@ -106,14 +101,12 @@ void NodeResponder::report_wrong_key(NodeRefusal refusal, const DatagramOrigin& 
   const bool is_key = refusal == NodeRefusal::no_key || refusal == NodeRefusal::no_mac ||
                       refusal == NodeRefusal::wrong_mac;
   if (!is_key || !refused_nodes_.take(refusal, origin.node_id, arrival.h_rx)) return;
-  NodeEvent event;
-  event.kind = NodeEvent::Kind::wrong_key;
-  event.node_id = origin.node_id;
-  event.boot_id = origin.boot_id;
-  event.at = arrival.h_rx;
-  event.address = arrival.from;
-  event.refusal = refusal;
-  table_.report(event);
+  table_.report({.kind = NodeEvent::Kind::wrong_key,
+                 .node_id = origin.node_id,
+                 .boot_id = origin.boot_id,
+                 .at = arrival.h_rx,
+                 .address = arrival.from,
+                 .refusal = refusal});
 }
 
 // The sequence number is checked before the echo, and the echo before the session is admitted: an
@@ -121,18 +114,15 @@ void NodeResponder::report_wrong_key(NodeRefusal refusal, const DatagramOrigin& 
 NodeVerdict NodeResponder::judge_frame(const NodeArrival& arrival, const Envelope& envelope,
                                        NodeMessage& message) {
   if (!unlock(envelope, arrival, frame_)) return NodeVerdict::refused;
-  if (frame_.n_tx_us > most_counter_us) return NodeVerdict::wrong_counter;
+  if (frame_.n_tx_us > max_counter_us) return NodeVerdict::wrong_counter;
   NodeSign sign = sign_of(arrival, frame_.origin);
   sign.counter_us = frame_.n_tx_us;
   NodeSession* session = nullptr;
-  if (const auto found = find_place(sign, frame_.origin.sequence, session, message);
-      found != NodeVerdict::accepted) {
+  if (const auto found = find_place(sign, session, message); found != NodeVerdict::accepted) {
     return found;
   }
-  const std::int64_t n_tx = session->counter.widened(frame_.n_tx_us, sign.at);
+  const std::int64_t n_tx = session->counter.unwrap(frame_.n_tx_us, sign.at);
   const auto echo = take_echo(*session, n_tx);
-  // Only the newest frame may change the node's address.
-  const bool newest = session->counter.behind_us(n_tx) <= 0;
   session->counter.take(n_tx, sign.at);
   if (const auto taken =
           take_session(*session, sign, echo ? std::optional(echo->h_tx) : std::nullopt);
@@ -141,7 +131,7 @@ NodeVerdict NodeResponder::judge_frame(const NodeArrival& arrival, const Envelop
   }
   message.exchange = Exchange{session->key, node_time(n_tx), sign.at, echo};
   keep(std::span(frame_.samples).first(frame_.sample_count), n_tx, message);
-  accept(*session, sign, newest, message);
+  accept(*session, sign, message);
   if (frame_.has_battery) table_.stream(session->stream).battery_mv = frame_.battery_mv;
   return NodeVerdict::accepted;
 }
@@ -154,8 +144,7 @@ NodeVerdict NodeResponder::judge_request(const NodeArrival& arrival, const Envel
   if (!unlock(envelope, arrival, request)) return NodeVerdict::refused;
   const NodeSign sign = sign_of(arrival, request.origin);
   NodeSession* session = nullptr;
-  if (const auto found = find_place(sign, request.origin.sequence, session, message);
-      found != NodeVerdict::accepted) {
+  if (const auto found = find_place(sign, session, message); found != NodeVerdict::accepted) {
     return found;
   }
   if (const auto taken = take_session(*session, sign, std::nullopt);
@@ -164,7 +153,7 @@ NodeVerdict NodeResponder::judge_request(const NodeArrival& arrival, const Envel
   }
   message.clockless = ClocklessExchange{message.frame, sign.at, {}, std::nullopt, session->key};
   keep(std::span(&request.sample, request.has_sample ? 1 : 0), std::nullopt, message);
-  accept(*session, sign, message.frame == session->sequences.newest(), message);
+  accept(*session, sign, message);
   if (request.has_battery) table_.stream(session->stream).battery_mv = request.battery_mv;
   return NodeVerdict::accepted;
 }
@@ -178,9 +167,9 @@ NodeVerdict NodeResponder::judge_confirm(const NodeArrival& arrival, const Envel
   const NodeSign sign = sign_of(arrival, confirm.origin);
   NodeSession* session = table_.session_of(sign);
   GivenAnswer answer;
-  const bool known =
-      session != nullptr &&
-      session->answers.find(confirm.origin.sequence, confirm.times.nonce, answer) == Found::now;
+  const bool known = session != nullptr &&
+                     session->answers.find(confirm.origin.sequence, confirm.times.nonce, answer) ==
+                         EchoVerdict::taken;
   if (!known) return NodeVerdict::unknown_answer;
   if (confirm.times.t2_ns != host_ns(answer.t2) || confirm.times.t3_ns != host_ns(answer.t3)) {
     ++counts_.wrong_copies;
@@ -208,13 +197,19 @@ NodeVerdict NodeResponder::find_session(const NodeSign& sign, NodeSession*& sess
 }
 
 /// Finds the session of a datagram that may be answered, and takes the datagram's sequence number.
-NodeVerdict NodeResponder::find_place(const NodeSign& sign, std::uint32_t sequence,
-                                      NodeSession*& session, NodeMessage& message) {
+NodeVerdict NodeResponder::find_place(const NodeSign& sign, NodeSession*& session,
+                                      NodeMessage& message) {
   if (const auto found = find_session(sign, session); found != NodeVerdict::accepted) return found;
-  const auto place = session->sequences.place_of(sequence);
-  if (place == SequenceWindow::Place::seen) return NodeVerdict::duplicate;
-  if (place == SequenceWindow::Place::behind) return NodeVerdict::replayed;
-  message.frame = asked_.frame = session->sequences.take(sequence);
+  Counter& sequences = session->sequences;
+  // The first number is put one turn above zero, so that numbers before it are not negative.
+  const std::int64_t number =
+      sequences.empty() ? (std::int64_t{1} << 32) + sign.sequence : sequences.unwrap(sign.sequence);
+  const Counter::Place place = sequences.place_of(number);
+  if (place == Counter::Place::duplicate) return NodeVerdict::duplicate;
+  if (place == Counter::Place::behind) return NodeVerdict::replayed;
+  sequences.take(number);
+  message.frame = asked_.frame = static_cast<std::uint64_t>(number);
+  message.late = place == Counter::Place::late;
   asked_.by = session;
   return NodeVerdict::accepted;
 }
@@ -247,12 +242,11 @@ std::optional<Exchange::Echo> NodeResponder::take_echo(NodeSession& session, std
   GivenAnswer answer;
   std::int64_t n_rx = 0;
   if (frame_.has_echo) {
-    const bool future = frame_.echo.n_rx_us > most_counter_us;
-    n_rx = future ? 0 : session.counter.widened_before(frame_.echo.n_rx_us, n_tx_us);
+    const bool future = frame_.echo.n_rx_us > max_counter_us;
+    n_rx = future ? 0 : NodeCounter::unwrap_before(frame_.echo.n_rx_us, n_tx_us);
     verdict = future || n_rx > n_tx_us
                   ? EchoVerdict::future
-                  : echo_verdict(session.answers.find(frame_.echo.reply_sequence, frame_.echo.nonce,
-                                                      answer));
+                  : session.answers.find(frame_.echo.reply_sequence, frame_.echo.nonce, answer);
   }
   ++counts_.echoes[verdict];
   if (verdict != EchoVerdict::taken) return std::nullopt;
@@ -270,15 +264,15 @@ void NodeResponder::keep(std::span<const NodeSample> samples, std::optional<std:
 }
 
 // Counts an accepted datagram, and notices that its node has returned or moved.
-void NodeResponder::accept(NodeSession& session, const NodeSign& sign, bool newest,
-                           NodeMessage& message) {
+void NodeResponder::accept(NodeSession& session, const NodeSign& sign, NodeMessage& message) {
   NodeStream& stream = table_.stream(session.stream);
   message.stream = session.stream;
   session.old_key = asked_.old_key;
   ++session.accepted;
   if (stream.silent) table_.report(NodeEvent::Kind::returned, session, sign.at);
   stream.silent = false;
-  if (!newest || session.address == sign.from) return;
+  // A late datagram may come from the address that the node had before.
+  if (message.late || session.address == sign.from) return;
   session.address = sign.from;
   table_.report(NodeEvent::Kind::moved, session, sign.at);
 }

@@ -41,7 +41,8 @@ struct NodeMessage {
   // as claimed; if a key is used and the datagram is not refused, the MAC proves it
   std::uint32_t node_id = 0;
   std::size_t stream = 0;   // only if accepted
-  std::uint64_t frame = 0;  // the datagram's widened number; lost datagrams are counted too
+  std::uint64_t frame = 0;  // the datagram's unwrapped number; lost datagrams are counted too
+  bool late = false;        // a frame or request with a higher number arrived before
   std::optional<Exchange> exchange;
   std::optional<ClocklessExchange> clockless;
   std::span<const NodeReading> readings;  // oldest first; valid until the next datagram
@@ -95,14 +96,13 @@ class NodeResponder {
   template <class Datagram>
   bool unlock(const Envelope& envelope, const NodeArrival& arrival, Datagram& datagram);
   NodeVerdict find_session(const NodeSign& sign, NodeSession*& session);
-  NodeVerdict find_place(const NodeSign& sign, std::uint32_t sequence, NodeSession*& session,
-                         NodeMessage& message);
+  NodeVerdict find_place(const NodeSign& sign, NodeSession*& session, NodeMessage& message);
   NodeVerdict take_session(NodeSession& session, const NodeSign& sign,
                            std::optional<HostTime> echoed);
   std::optional<Exchange::Echo> take_echo(NodeSession& session, std::int64_t n_tx_us);
   void keep(std::span<const NodeSample> samples, std::optional<std::int64_t> n_tx_us,
             NodeMessage& message);
-  void accept(NodeSession& session, const NodeSign& sign, bool newest, NodeMessage& message);
+  void accept(NodeSession& session, const NodeSign& sign, NodeMessage& message);
   void refuse(NodeRefusal refusal, std::uint8_t version, HostTime now);
   void report_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
                         const NodeArrival& arrival);

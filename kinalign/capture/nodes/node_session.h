@@ -7,7 +7,6 @@
 #include "kinalign/capture/nodes/answer_pace.h"
 #include "kinalign/capture/nodes/answer_table.h"
 #include "kinalign/capture/nodes/node_counter.h"
-#include "kinalign/capture/nodes/sequence_window.h"
 #include "kinalign/clock/exchange.h"
 
 #include <cstddef>
@@ -32,7 +31,7 @@ struct NodeSession {
   // First arrival, last arrival, and the start of the next session.
   HostTime begun{}, last_arrival{}, replaced{};
   bool old_key = false;  // its newest frame was signed with the key that is being replaced
-  SequenceWindow sequences;
+  Counter sequences;
   NodeCounter counter;
   AnswerTable answers;
   AnswerPace pace;

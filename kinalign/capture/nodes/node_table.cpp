@@ -31,14 +31,15 @@ bool has_ids(const NodeSession& session, std::uint32_t node_id, std::uint32_t bo
 /// sequence number and address.
 bool continues(const NodeSession& session, const NodeSign& sign) {
   if (!sign.counter_us) return true;
-  const std::int64_t n = session.counter.widened(*sign.counter_us, sign.at);
+  const std::int64_t n = session.counter.unwrap(*sign.counter_us, sign.at);
   const std::int64_t behind = session.counter.behind_us(n);
   if (behind > most_back_us) return false;
   // Both counter and sequence have started again if a later reading comes with an earlier number,
   // or with a number far behind. The counter then only seems to continue: it was taken for a 32-bit
   // counter that wrapped, or it has run nearly as long as before.
-  if (behind < 0 && !session.sequences.is_ahead(sign.sequence)) return false;
-  if (session.sequences.place_of(sign.sequence) == SequenceWindow::Place::behind) return false;
+  const auto place = session.sequences.place_of(session.sequences.unwrap(sign.sequence));
+  if (behind < 0 && place != Counter::Place::ahead) return false;
+  if (place == Counter::Place::behind) return false;
   // If the address is unchanged, a jump ahead is a step of the node's counter. The clock model will
   // detect it.
   return session.address == sign.from || session.counter.ahead_us(n, sign.at) <= most_ahead_us;
@@ -51,7 +52,7 @@ auto likelihood(const NodeSession& session, const NodeSign& sign) {
   const bool live = session.state == State::live, here = session.address == sign.from;
   bool predicted = true;
   if (sign.counter_us) {
-    const std::int64_t n = session.counter.widened(*sign.counter_us, sign.at);
+    const std::int64_t n = session.counter.unwrap(*sign.counter_us, sign.at);
     predicted = std::abs(session.counter.ahead_us(n, sign.at)) <= most_ahead_us;
   }
   return std::tuple(predicted || (live && here), here, live);
@@ -233,8 +234,7 @@ void NodeTable::tick(HostTime now) {
 }
 
 void NodeTable::report(NodeEvent::Kind kind, const NodeSession& session, HostTime at) {
-  report(
-      {kind, session.stream, session.node_id, session.boot_id, at, session.address, std::nullopt});
+  report({kind, session.stream, session.node_id, session.boot_id, at, session.address});
 }
 
 }  // namespace kinalign

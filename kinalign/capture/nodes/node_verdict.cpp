@@ -16,11 +16,4 @@ const char* name_of(EchoVerdict verdict) {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-EchoVerdict echo_verdict(AnswerTable::Found found) {
-  using Found = AnswerTable::Found;
-  if (found == Found::now) return EchoVerdict::taken;
-  if (found == Found::before) return EchoVerdict::repeated;
-  return found == Found::stale ? EchoVerdict::stale : EchoVerdict::unknown;
-}
-
 }  // namespace kinalign

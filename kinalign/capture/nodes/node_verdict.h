@@ -4,7 +4,6 @@
 #pragma once
 
 #include "kinalign/capture/net/counts_by.h"
-#include "kinalign/capture/nodes/answer_table.h"
 #include "kinalign/wire/node_datagram.h"
 
 #include <cstddef>
@@ -39,9 +38,6 @@ inline constexpr std::size_t echo_verdicts = 6;
 /// The same word as in --json: "wrong_counter".
 const char* name_of(NodeVerdict verdict);
 const char* name_of(EchoVerdict verdict);
-
-/// The verdict on an echo, from the search for the answer that it names.
-EchoVerdict echo_verdict(AnswerTable::Found found);
 
 /// Counts since the port was opened.
 struct NodeCounts {

@@ -57,7 +57,7 @@ std::optional<HostTime> KinectResponder::take_echo(Session& session, const Kinec
   if (!ping.echo || ping.echo->received_ticks > ping.sent_ticks) return std::nullopt;
   GivenAnswer answer;
   const auto found = session.answers.find(ping.echo->pong_sequence, ping.echo->nonce, answer);
-  return found == AnswerTable::Found::now ? std::optional(answer.t3) : std::nullopt;
+  return found == EchoVerdict::taken ? std::optional(answer.t3) : std::nullopt;
 }
 
 // Every pong is stored, because only a stored pong can be echoed.

@@ -5,7 +5,6 @@
 #include "kinalign/protocols/protocols.h"
 #include "kinalign/wire/little_endian_reader.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace kinalign {
@@ -122,10 +121,8 @@ void RecordedNodes::judge(Node& node, const NodeMessage& news) {
   if (!news.exchange) return;
   const BootKey before = std::exchange(node.boot, news.exchange->boot);
   // The first frame is no restart, although the boot differs from the initial 0.
-  const bool same_life = before == node.boot && counts.frames > 1;
-  if (!same_life && counts.frames > 1) ++counts.order.restarts;
-  if (same_life && news.frame < node.newest) ++counts.order.late;
-  node.newest = same_life ? std::max(node.newest, news.frame) : news.frame;
+  if (before != node.boot && counts.frames > 1) ++counts.order.restarts;
+  if (news.late) ++counts.order.late;
 }
 
 void RecordedNodes::look(HostTime now) {

@@ -59,7 +59,6 @@ class RecordedNodes {
     RecordedSource raw;
     std::uint16_t exchanges = 0;  // channel of the clock exchanges
     BootKey boot = 0;             // life of the newest frame
-    std::uint64_t newest = 0;     // number of the newest frame
     // By stream of the receiver.
     std::map<std::size_t, Lost> lost{};
   };

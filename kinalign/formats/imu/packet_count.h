@@ -3,18 +3,19 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/wire/counter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 namespace kinalign {
 
 /// Continues a counter over its wraps.
 /// Devices send 16 or 32 bits and wrap around. The count must go on, because stamps are computed
-/// from it.
+/// from it. A file is written in order, so a counter that falls has wrapped; only a short way back
+/// is a late packet.
 class PacketCount {
  public:
   /// Number of the packet among all packets. It is smaller than the last one if a packet arrived
@@ -26,18 +27,17 @@ class PacketCount {
     if (!(cell >= 0.0) || cell > most || cell != std::floor(cell)) {
       return Failure(Error{"", 0, "a whole number as PacketCounter", std::to_string(cell)});
     }
-    const auto counter = static_cast<std::int64_t>(cell);
+    const auto counter = static_cast<std::uint64_t>(cell);
     // The packet before leapt ahead, and this one goes on from the count before it: the leap was a
     // wrong value.
     if (leapt_ && follows(counter, before_) && !follows(counter, now_)) now_ = before_;
     // One state back is enough: the next packet decides about a leap.
     before_ = now_;
-    leapt_ = now_.rows > 0 && !follows(counter, now_);
-    take(counter);
-    return now_.place;
+    leapt_ = !follows(counter, now_);
+    return take(counter);
   }
 
-  std::int64_t lost() const { return now_.lost; }
+  std::uint64_t lost() const { return now_.numbers.missing(); }
   /// The longest loss that is only a guess, because the counter fell. The device may have
   /// restarted.
   std::int64_t guessed() const { return now_.guessed; }
@@ -46,52 +46,43 @@ class PacketCount {
   /// Chosen: ten seconds at 100 Hz. No packet is later than that. A longer loss counts only if the
   /// next counter continues from it.
   static constexpr std::int64_t near = 1000;
-  // A counter of 16 bits wraps at `narrow`, one of 32 bits at `wide`.
-  static constexpr std::int64_t narrow = 65'536, wide = std::int64_t{1} << 32;
 
-  /// `place`: number of the last packet; `highest`: the largest number so far.
   struct State {
-    std::int64_t rows = 0, last = 0, place = 0, highest = 0, lost = 0, guessed = 0;
-    std::int64_t wrap = narrow;  // `wide` once a counter has needed more than 16 bits
+    Counter numbers;
+    std::int64_t guessed = 0;
+    unsigned bits = 16;  // 32 once a counter has needed more than 16 bits
   };
 
-  /// Step from the last counter to `counter`, by the shorter way around the wrap.
-  static std::int64_t around(std::int64_t counter, const State& s) {
-    // A counter above 16 bits can't have wrapped at 16 bits.
-    const std::int64_t wrap = counter < narrow ? s.wrap : wide;
-    const std::int64_t forward = ((counter - s.last) % wrap + wrap) % wrap;
-    // A short way back is a late packet; everything else went forward.
-    return wrap - forward <= near ? forward - wrap : forward;
+  /// How many bits the counter has, if this value is right.
+  static unsigned bits_of(std::uint64_t counter, const State& s) {
+    return counter >> 16 != 0 ? 32 : s.bits;
   }
-  static bool follows(std::int64_t counter, const State& s) {
-    return std::abs(around(counter, s)) <= near;
+  /// The number at most `near` before the newest one, or else after it.
+  static std::int64_t number_of(std::uint64_t counter, const State& s) {
+    if (s.numbers.empty()) return static_cast<std::int64_t>(counter);
+    const unsigned bits = bits_of(counter, s);
+    return unwrapped(counter, bits, s.numbers.newest() + (std::int64_t{1} << (bits - 1)) - near);
+  }
+  static bool follows(std::uint64_t counter, const State& s) {
+    return s.numbers.empty() || s.numbers.steps_to(number_of(counter, s)) <= near;
   }
 
-  void take(std::int64_t counter) {
+  std::int64_t take(std::uint64_t counter) {
     State& s = now_;
-    // The first counter may be a wrong value. A counter that falls far behind it begins a new
+    const auto value = static_cast<std::int64_t>(counter);
+    // The first counter may be a wrong value. If the second one is far below it, it begins a new
     // count.
-    const bool restarted = s.rows == 1 && counter < s.last && !follows(counter, s);
-    const std::int64_t step = s.rows == 0 ? counter
-                              : restarted ? counter - s.last
-                                          : around(counter, s);
-    if (restarted) {
-      s.highest = counter - 1;
-      s.wrap = narrow;
-    }
-    if (counter >= narrow) s.wrap = wide;
-    // A lower counter with a long way forward: lost packets or a restart. Nothing tells them apart.
-    if (s.rows > 0 && counter < s.last && step > near) s.guessed = std::max(s.guessed, step);
-    s.place += step;
-    s.last = counter;
-    if (s.rows == 0 || s.place > s.highest) {
-      // The numbers between the highest packet and this one have not arrived yet.
-      s.lost += s.rows == 0 ? 0 : s.place - s.highest - 1;
-      s.highest = s.place;
-    } else if (s.lost > 0 && s.place < s.highest) {
-      --s.lost;  // the packet was late, not lost
-    }
-    ++s.rows;
+    const bool is_alone = s.numbers.first() == s.numbers.newest();
+    if (is_alone && value < s.numbers.newest() && !follows(counter, s)) s = {};
+    const std::int64_t number = number_of(counter, s);
+    s.bits = bits_of(counter, s);
+    const std::int64_t newest = s.numbers.newest(), steps = number - newest;
+    // Another turn, and a long way: lost packets or a restart. Nothing tells them apart.
+    const bool fell = !s.numbers.empty() && number >> s.bits != newest >> s.bits;
+    if (fell && steps > near) s.guessed = std::max(s.guessed, steps);
+    const Counter::Place place = s.numbers.place_of(number);
+    if (place == Counter::Place::ahead || place == Counter::Place::late) s.numbers.take(number);
+    return number;
   }
 
   State now_, before_;

@@ -4,7 +4,6 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/cells.h"
-#include "kinalign/formats/imu/late_quantities.h"
 #include "kinalign/formats/imu/packet_count.h"
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/formats/named_lines.h"
@@ -138,6 +137,38 @@ std::string device_of(std::string_view file) {
   return std::string(hexadecimal ? id : name);
 }
 
+/// Counts rows with quantities that first appear after the rows by which the content was decided.
+/// The header must be known before the first row is passed on, so such a quantity is left out.
+class LateQuantities {
+ public:
+  /// Call for each row. `here`: the quantities with values in this row; `read`: those that are
+  /// read.
+  void add(const ImuContent& here, const ImuContent& read) {
+    const std::array late{here.orientation && !read.orientation,
+                          here.acceleration && !read.acceleration,
+                          here.angular_velocity && !read.angular_velocity};
+    for (std::size_t i = 0; i < late.size(); ++i) is_late_[i] |= late[i];
+    rows_ += late[0] || late[1] || late[2] ? 1 : 0;
+  }
+
+  /// Number of rows with at least one such quantity.
+  std::uint64_t rows() const { return rows_; }
+
+  /// "orientation, angular velocity"
+  std::string names() const {
+    constexpr std::array names{"orientation", "acceleration", "angular velocity"};
+    std::string out;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (is_late_[i]) out += (out.empty() ? "" : ", ") + std::string(names[i]);
+    }
+    return out;
+  }
+
+ private:
+  std::uint64_t rows_ = 0;
+  std::array<bool, 3> is_late_{};
+};
+
 /// Rows wait until the first `patience` of them have shown which quantities the file holds. They
 /// are then passed on in their order.
 class XsensReader final : public ImuReader {
@@ -236,7 +267,8 @@ class XsensReader final : public ImuReader {
     if (!packet) return Failure(Error{"", 0, "a whole number as PacketCounter", "an empty cell"});
     const ImuContent here = content_of_row();
     // No quantity has been measured yet.
-    if (!header_ && waiting_.empty() && !is_any(here)) return {};
+    const bool is_any = here.orientation || here.acceleration || here.angular_velocity;
+    if (!header_ && waiting_.empty() && !is_any) return {};
     const auto count = KA_TRY(packets_.next(row_.values[columns_.counter.slots[0]]));
     const Time stamp = KA_TRY(stamp_of(count));
     if (!header_) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/protocols/kinect/sessions.h"
 
+#include "kinalign/wire/counter.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +21,8 @@ constexpr std::uint32_t overlapping_frames = 16;
 bool is_after(const KinectMoment& one, const KinectMoment& from) {
   const bool same_ticks =
       one.device_ticks == from.device_ticks && one.sent_ticks == from.sent_ticks;
-  const auto ahead = static_cast<std::int32_t>(one.origin.sequence - from.origin.sequence);
-  return same_ticks ? ahead > 0 : has_newer_ticks(one, from);
+  return same_ticks ? steps_between(from.origin.sequence, one.origin.sequence, 32) > 0
+                    : has_newer_ticks(one, from);
 }
 
 std::string name_of(const KinectOverlap& overlap, std::size_t one) {

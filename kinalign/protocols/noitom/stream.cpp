@@ -288,8 +288,12 @@ void NoitomDecoder::give(NoitomFrame frame, std::vector<NoitomArrival>& out) {
   avatar.name = frame.name;
   ++avatar.frames;
   ++counts_.frames;
-  const Order order = frame.frame_index ? avatar.by_index.push(*frame.frame_index) : Order::newest;
-  out.push_back({std::move(frame), order});
+  NoitomArrival arrival{std::move(frame)};
+  if (arrival.frame.frame_index) {
+    arrival.order = avatar.by_index.push(*arrival.frame.frame_index);
+    arrival.place = avatar.by_index.place();
+  }
+  out.push_back(std::move(arrival));
 }
 
 }  // namespace kinalign

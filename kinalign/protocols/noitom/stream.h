@@ -41,7 +41,8 @@ struct NoitomCounts {
 
 struct NoitomArrival {
   NoitomFrame frame;
-  Order order = Order::newest;  // by the source's frame index; always newest without one
+  Order order = Order::newest;           // by the source's frame index; always newest without one
+  std::optional<SequencePlace> place{};  // by the same index; absent without one
   // Arrival of the piece that completed the frame; absent: it was in the bytes that were fed last.
   std::optional<HostTime> arrival{};
 };

@@ -191,7 +191,7 @@ XsensDecoder::Part& XsensDecoder::part_of(Channel& channel, std::uint32_t counte
 void XsensDecoder::give(Channel& channel, XsensSample sample, std::vector<XsensArrival>& out) {
   const Order order = channel.by_counter.push(sample.counter);
   ++counts_.samples;
-  out.push_back({std::move(sample), order});
+  out.push_back({std::move(sample), order, channel.by_counter.place()});
 }
 
 std::map<XsensChannel, SequenceCounts> XsensDecoder::channels() const {

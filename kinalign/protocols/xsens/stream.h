@@ -41,6 +41,7 @@ struct XsensCounts {
 struct XsensArrival {
   XsensSample sample;
   Order order = Order::newest;  // among the samples of its character and type
+  SequencePlace place{};        // among the same samples
 };
 
 /// A character's samples of one type.

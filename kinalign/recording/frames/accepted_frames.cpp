@@ -10,13 +10,6 @@ namespace kinalign {
 
 namespace {
 
-// A larger counter is damage. The limit keeps sums of stamps within 64 bits of nanoseconds.
-constexpr std::uint64_t most_counter_us = 1'000'000'000'000'000;  // 31 years
-
-NodeTime counter_at(std::uint64_t us) {
-  return NodeTime{std::chrono::microseconds(static_cast<std::int64_t>(us))};
-}
-
 /// Decodes a node's frame or request. Absent if the message is neither, or damaged.
 std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
   Envelope envelope;
@@ -35,8 +28,8 @@ std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
   }
   NodeFrame frame;
   if (decode(envelope, nullptr, frame) != NodeRefusal::none) return std::nullopt;
-  if (frame.n_tx_us > most_counter_us) return std::nullopt;
-  out.n_tx = counter_at(frame.n_tx_us);
+  if (frame.n_tx_us > max_counter_us) return std::nullopt;
+  out.n_tx = node_time(static_cast<std::int64_t>(frame.n_tx_us));
   out.samples = frame.samples;
   out.sample_count = frame.sample_count;
   return out;

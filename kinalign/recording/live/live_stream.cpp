@@ -5,6 +5,7 @@
 #include "kinalign/recording/frames/accepted_frames.h"
 #include "kinalign/recording/frames/kinect_frames.h"
 #include "kinalign/recording/streams/kinect_person.h"
+#include "kinalign/wire/counter.h"
 
 #include <algorithm>
 #include <utility>
@@ -20,13 +21,6 @@ constexpr Duration most_behind = std::chrono::seconds(10);
 /// Returns whether a stamp is plausible for its arrival.
 bool is_credible(Time stamp, Time arrival) {
   return stamp <= arrival + most_ahead && stamp >= arrival - most_behind;
-}
-
-/// The number of missing messages between two messages of a channel, whose numbers increase.
-std::uint32_t missing_between(std::uint32_t before, std::uint32_t behind) {
-  const std::uint32_t missing = behind - before - 1U;
-  // A difference in the upper half means that the number went back: nothing is missing then.
-  return missing < 0x8000'0000U ? missing : 0U;
 }
 
 /// The bytes come from the address that the user gave with --live, so errors name that flag.
@@ -137,7 +131,9 @@ Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news
   if (found == channels_.end()) return {};
   Channel& channel = found->second;
   ++counts_.messages;
-  if (channel.number) counts_.lost += missing_between(*channel.number, message.sequence);
+  // Without a number before this message, or if the numbers went back, nothing is missing.
+  const auto steps = steps_between(channel.number.value_or(message.sequence), message.sequence, 32);
+  if (steps > 1) counts_.lost += static_cast<std::uint64_t>(steps - 1);
   channel.number = message.sequence;
   if (channel.is_marks) {
     if (const auto mark = to_mark(message.data)) news.marks.push_back({*mark, arrival});

@@ -10,9 +10,6 @@ namespace kinalign {
 
 namespace {
 
-// Limits in frames, both choices. A number further back than any network reorders, or more than an
-// hour ahead at 100 Hz, begins a new count.
-constexpr std::int64_t furthest_back = 1000, furthest_ahead = 360'000;
 // accepted deviation from the stated step; Noitom's programs state three decimals
 constexpr double believed = 0.01;
 constexpr std::int64_t enough_frames = 100;  // needed to contradict the stated step
@@ -88,19 +85,6 @@ double measured_step_ns(const std::vector<CountedFrame>& frames) {
 std::string rate_text(double step_ns) { return fmt::format("{:.6g} Hz", 1e9 / step_ns); }
 
 }  // namespace
-
-CountedFrame FrameNumbers::place(std::uint32_t number, HostTime arrival) {
-  // The signed difference is right across the end of the 32-bit count.
-  const auto ahead = static_cast<std::int32_t>(number - static_cast<std::uint32_t>(last_));
-  if (begins_ || ahead < -furthest_back || ahead > furthest_ahead) {
-    ++life_;
-    last_ = number;
-  } else {
-    last_ += ahead;
-  }
-  begins_ = false;
-  return {life_, last_, arrival};
-}
 
 NodeTime counter_of(const CountedFrame& frame, double step_ns) {
   return NodeTime{Duration{std::llround(step_ns * static_cast<double>(frame.number))}};

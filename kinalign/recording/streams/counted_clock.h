@@ -13,25 +13,11 @@
 
 namespace kinalign {
 
-/// A frame with its unwrapped number. A life ends when the device starts a new count.
+/// A frame with its unwrapped number. A device that starts a new count begins a new life.
 struct CountedFrame {
   BootKey life = 0;
   std::int64_t number = 0;
   HostTime arrival{};
-};
-
-/// Unwraps a sender's numbers. A new life begins when the sender starts a new count. Numbers of one
-/// life rise by the differences of the 32-bit numbers, so a count that passes 2^32 goes on.
-class FrameNumbers {
- public:
-  CountedFrame place(std::uint32_t number, HostTime arrival);
-  /// Call for another connection or another sender.
-  void begin_life() { begins_ = true; }
-
- private:
-  bool begins_ = true;
-  BootKey life_ = 0;
-  std::int64_t last_ = 0;
 };
 
 /// The clock of a device that counts its frames, learnt from all of them.

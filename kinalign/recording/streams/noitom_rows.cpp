@@ -20,7 +20,6 @@ struct NoitomSource {
   using Frame = NoitomFrame;
   static Frame* frame(Arrival& arrival) { return &arrival.frame; }
   static std::uint64_t body(const Arrival& arrival) { return arrival.frame.avatar; }
-  static std::optional<std::uint32_t> number(const Arrival& a) { return a.frame.frame_index; }
 };
 using NoitomFrames = NumberedFrames<NoitomSource>;
 

@@ -29,8 +29,8 @@ struct PlacedFrame {
 };
 
 /// The frames of one body, without duplicates. `Source` has the types Decoder, Arrival and Frame,
-/// and gives an arrival's frame (if it is one), body and number. Each connection and each sender
-/// has its own decoder and count.
+/// and gives an arrival's frame (if it is one) and body. Each connection and each sender has its
+/// own decoder, which counts the frames of each body.
 template <class Source>
 class NumberedFrames {
  public:
@@ -78,8 +78,7 @@ class NumberedFrames {
   static constexpr bool holds_back = requires(Arrival one) { one.arrival; };
   struct Channel {
     typename Source::Decoder decoder;
-    FrameNumbers numbers;
-    std::uint32_t counted = 0;
+    std::int64_t counted = 0;
     std::uint16_t id = 0;
     bool lossless = false;
   };
@@ -106,14 +105,14 @@ class NumberedFrames {
       if (one.order == Order::duplicate) continue;
       // A connection loses nothing, so counting frames gives the numbers that the source did not
       // send.
-      auto number = Source::number(one);
-      if (!number && from.lossless) number = from.counted++;
+      std::optional<SequencePlace> place = one.place;
+      if (!place && from.lossless) place = SequencePlace{0, from.counted++};
       Placed placed{std::move(*frame), {}, arrival};
       if constexpr (holds_back) placed.arrival = one.arrival.value_or(arrival);
-      if (number) {
-        placed.place = from.numbers.place(*number, placed.arrival);
-        // Life numbers of a channel are small; its id takes the upper bits.
-        placed.place->life |= BootKey{from.id} << 32U;
+      if (place) {
+        // A channel restarts rarely; its id takes the upper bits.
+        const BootKey life = (place->restarts + 1) | BootKey{from.id} << 32U;
+        placed.place = CountedFrame{life, place->number, placed.arrival};
       }
       out.push_back(std::move(placed));
     }
@@ -126,11 +125,8 @@ class NumberedFrames {
 };
 
 /// The stamp of a numbered frame. Absent if its clock is not known.
-template <class Frame>
-std::optional<Time> stamp_of(const LearnedDevice& learned, const PlacedFrame<Frame>& one) {
-  if (!one.place) return std::nullopt;
-  return stamp_of(learned.clock, one.place->life, counter_of(*one.place, learned.step_ns),
-                  one.arrival);
+inline std::optional<Time> stamp_of(const LearnedDevice& learned, const CountedFrame& frame) {
+  return stamp_of(learned.clock, frame.life, counter_of(frame, learned.step_ns), frame.arrival);
 }
 
 // no frame was seen to arrive later than that many newer ones
@@ -199,10 +195,7 @@ class FrameKeys {
     if (learned.by_arrival) return stamp_by_arrivals(learned, put);
     RowsInOrder<std::uint32_t> stamps(most_overtaking_frames);
     for (const Key& key : keys_) {
-      const auto stamp = !key.is_numbered
-                             ? std::nullopt
-                             : stamp_of(learned.clock, key.frame.life,
-                                        counter_of(key.frame, learned.step_ns), key.frame.arrival);
+      const auto stamp = key.is_numbered ? stamp_of(learned, key.frame) : std::nullopt;
       stamps.add(stamp, key.shape, put);
     }
     stamps.finish(put);
@@ -298,7 +291,8 @@ class NumberedRows : public DeviceRows<Frames> {
       return;
     }
     for (auto& one : placed_) {
-      waiting_.add(stamp_of(*learned_, one), std::move(one.frame), putting(out));
+      const auto stamp = one.place ? stamp_of(*learned_, *one.place) : std::nullopt;
+      waiting_.add(stamp, std::move(one.frame), putting(out));
     }
   }
   auto putting(Frames& out) {

@@ -26,7 +26,6 @@ struct XsensSource {
   using Frame = Items;
   static Frame* frame(Arrival& arrival) { return std::get_if<Items>(&arrival.sample.body); }
   static std::uint64_t body(const Arrival& arrival) { return arrival.sample.character; }
-  static std::optional<std::uint32_t> number(const Arrival& a) { return a.sample.counter; }
 };
 template <class Items>
 using XsensFrames = NumberedFrames<XsensSource<Items>>;

@@ -59,7 +59,7 @@ bool same(const std::vector<ClockStamp>& a, const std::vector<ClockStamp>& b) {
 
 }  // namespace
 
-TEST_CASE("fault 6 counter_wrap32: a narrow counter is widened through four hours") {
+TEST_CASE("fault 6 counter_wrap32: a narrow counter is unwrapped through four hours") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
   node.narrow = true;
@@ -81,13 +81,13 @@ TEST_CASE("fault 6 counter_wrap32: a narrow counter is widened through four hour
   CHECK(host.count(EchoVerdict::future) == 0);
 }
 
-TEST_CASE("a counter that no node reaches in a century is refused") {
-  for (const int bits : {51, 53}) {
+TEST_CASE("a counter that no node reaches in 31 years is refused") {
+  for (const int bits : {49, 50}) {
     TestDesk host;
     TestNode node(7, 1);
     node.offset_s = -86'400.0 + std::ldexp(1e-6, bits);
     CHECK(host.exchange(node, home, 0.0).verdict ==
-          (bits < 52 ? Verdict::accepted : Verdict::wrong_counter));
+          (bits < 50 ? Verdict::accepted : Verdict::wrong_counter));
   }
 }
 
@@ -112,8 +112,8 @@ TEST_CASE("fault 11 reorder: frames 40 ms late are taken, each once") {
   CHECK(host.take(late, home, host_s(0.33)).verdict == Verdict::accepted);
   const NodeMessage message = host.take(early, home, host_s(0.34));
   CHECK(message.verdict == Verdict::accepted);
-  CHECK(message.frame + 1 ==
-        host.responder.session_of(host.responder.stream(message.stream)).sequences.newest());
+  const NodeSession& session = host.responder.session_of(host.responder.stream(message.stream));
+  CHECK(static_cast<std::int64_t>(message.frame) + 1 == session.sequences.newest());
   CHECK(host.take(early, home, host_s(0.35)).verdict == Verdict::duplicate);
 }
 

@@ -6,65 +6,20 @@
 
 #include <doctest/doctest.h>
 
-#include <random>
-#include <set>
-
 namespace kinalign {
 
-using Place = SequenceWindow::Place;
-
-TEST_CASE("a sequence window takes each number of the last 1024 once") {
-  SequenceWindow window;
-  window.take(5);
-  CHECK(window.place_of(5) == Place::seen);
-  window.take(1028);
-  CHECK(window.place_of(5) == Place::seen);
-  CHECK(window.place_of(6) == Place::fresh);
-  CHECK(window.place_of(4) == Place::behind);
-  window.take(4000);
-  CHECK(window.place_of(1028) == Place::behind);
-  CHECK(window.place_of(2977) == Place::fresh);
-  CHECK(window.place_of(2976) == Place::behind);
-}
-
-TEST_CASE("a sequence window agrees with a set of all numbers, across the wrap") {
-  for (std::uint32_t seed = 0; seed < 20; ++seed) {
-    CAPTURE(seed);
-    std::mt19937 random(seed);
-    SequenceWindow window;
-    std::set<std::int64_t> taken;
-    std::int64_t newest = (std::int64_t{1} << 32) - 3000;
-    window.take(static_cast<std::uint32_t>(newest));
-    taken.insert(newest);
-    for (int i = 0; i < 5000; ++i) {
-      const std::int64_t number = newest - 1100 + random() % 1110;
-      const Place expected = number <= newest - 1024  ? Place::behind
-                             : taken.contains(number) ? Place::seen
-                                                      : Place::fresh;
-      REQUIRE(window.place_of(static_cast<std::uint32_t>(number)) == expected);
-      if (expected != Place::fresh) continue;
-      const std::uint64_t before = window.newest();
-      const std::uint64_t wide = window.take(static_cast<std::uint32_t>(number));
-      REQUIRE(static_cast<std::int64_t>(wide - before) == number - newest);
-      taken.insert(number);
-      newest = std::max(newest, number);
-    }
-  }
-}
-
 TEST_CASE("an answer table knows the last 256, each for the first time once") {
-  using Found = AnswerTable::Found;
   AnswerTable table;
   GivenAnswer found;
-  CHECK(table.find(0, 0, found) == Found::never);
+  CHECK(table.find(0, 0, found) == EchoVerdict::unknown);
   for (std::uint32_t i = 0; i < 300; ++i) table.add({i - 100, i, {}, host_s(i), i});
-  CHECK(table.find(199, 299, found) == Found::now);
+  CHECK(table.find(199, 299, found) == EchoVerdict::taken);
   CHECK(found.t3 == host_s(299));
-  CHECK(table.find(199, 299, found) == Found::before);
-  CHECK(table.find(199, 298, found) == Found::never);
-  CHECK(table.find(200, 300, found) == Found::never);
-  CHECK(table.find(199 - 255, 44, found) == Found::now);
-  CHECK(table.find(199 - 256, 43, found) == Found::stale);
+  CHECK(table.find(199, 299, found) == EchoVerdict::repeated);
+  CHECK(table.find(199, 298, found) == EchoVerdict::unknown);
+  CHECK(table.find(200, 300, found) == EchoVerdict::unknown);
+  CHECK(table.find(199 - 255, 44, found) == EchoVerdict::taken);
+  CHECK(table.find(199 - 256, 43, found) == EchoVerdict::stale);
 }
 
 TEST_CASE("the pace of answers: all up to 30 a second, then every second, third, …") {
@@ -82,15 +37,15 @@ TEST_CASE("the pace of answers: all up to 30 a second, then every second, third,
   }
 }
 
-TEST_CASE("a counter of 32 bits is widened only where its node counts in 32 bits") {
+TEST_CASE("a counter of 32 bits is unwrapped only where its node counts in 32 bits") {
   NodeCounter counter;
   constexpr std::int64_t turn = std::int64_t{1} << 32;
   counter.take(turn - 1'000'000, host_s(0));
-  CHECK(counter.widened(500, host_s(1)) == turn + 500);
-  CHECK(counter.widened(500, host_s(100)) == 500);  // the number began anew
-  CHECK(counter.widened(turn + 500, host_s(100)) == turn + 500);
-  CHECK(counter.widened_before(turn - 200, turn + 500) == turn - 200);
-  CHECK(counter.widened_before(400, turn + 500) == turn + 400);
+  CHECK(counter.unwrap(500, host_s(1)) == turn + 500);
+  CHECK(counter.unwrap(500, host_s(100)) == 500);  // the number began anew
+  CHECK(counter.unwrap(turn + 500, host_s(100)) == turn + 500);
+  CHECK(NodeCounter::unwrap_before(turn - 200, turn + 500) == turn - 200);
+  CHECK(NodeCounter::unwrap_before(400, turn + 500) == turn + 400);
 }
 
 TEST_CASE("64 nodes are kept, a 65th waits until one was silent for a minute") {

@@ -2,6 +2,7 @@
 #include "kinalign/capture/ntp/ntp_responder.h"
 
 #include "tests/capture/test_node.h"
+#include "tests/ntp_client.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -58,10 +59,11 @@ TEST_CASE("a request is answered with its own stamp and the server's two") {
   state.stratum = 10;
   bench.responder.set_state(state);
   CHECK(bench.respond() == NtpOutcome::answered);
-  NtpPacket answer;
-  CHECK(decode_answer(bench.answer, NtpStamp{77}, answer) == NtpAnswer::good);
-  CHECK(time_from_ntp(answer.receive, arrival) == arrival);
-  CHECK(time_from_ntp(answer.transmit, arrival) == arrival + 20us);
+  const auto answer = ntp_answer_in(bench.answer, NtpStamp{77});
+  REQUIRE(answer);
+  CHECK(answer->stratum == 10);
+  CHECK(time_from_ntp(answer->receive, arrival) == arrival);
+  CHECK(time_from_ntp(answer->transmit, arrival) == arrival + 20us);
 }
 
 TEST_CASE("each cause of refusal is distinguished, and none writes an answer") {
@@ -157,8 +159,10 @@ TEST_CASE("fault 27 kod: one in 16 refusals by the limit gets RATE") {
   CHECK(counts[NtpOutcome::kissed] == 10);
   CHECK(counts[NtpOutcome::limited] == 150);
   CHECK(counts.total() == 168);
-  NtpPacket kiss;
-  CHECK(decode_answer(bench.answer, NtpStamp{77}, kiss) == NtpAnswer::kiss_rate);
+  const auto kiss = ntp_answer_in(bench.answer, NtpStamp{77});
+  REQUIRE(kiss);
+  CHECK(kiss->stratum == 0);
+  CHECK(kiss->reference_id == ntp_code("RATE"));
 }
 
 TEST_CASE("an exempt network asks as often as it likes") {

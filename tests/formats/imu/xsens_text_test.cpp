@@ -173,6 +173,9 @@ TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets
   CHECK(text_of(lost.findings[0]) == "MT_01_00B421E6.txt: expected every packet, found 6 lost");
   CHECK(lost.findings[0].meaning == "the missing packets are gaps");
   CHECK(counters({10, 11, 12}).findings.empty());
+  // 12 arrived late and twice; 13 and 14 are lost.
+  const auto twice = counters({10, 11, 15, 12, 12, 16});
+  CHECK(text_of(twice.findings.at(0)) == "MT_01_00B421E6.txt: expected every packet, found 2 lost");
 }
 
 TEST_CASE("a packet out of order steps back, and later packets do not move") {

@@ -11,6 +11,7 @@ namespace {
 struct Letters {
   struct Arrival {
     std::string frame;
+    SequencePlace place;
     Order order = Order::newest;
   };
   using Frame = std::string;
@@ -18,7 +19,8 @@ struct Letters {
     std::string held{};
     void feed(std::span<const std::uint8_t> bytes, std::vector<Arrival>& out) {
       held += text_of(bytes);
-      for (; held.size() >= 3; held.erase(0, 3)) out.push_back({held.substr(0, 3)});
+      for (; held.size() >= 3; held.erase(0, 3))
+        out.push_back({held.substr(0, 3), {0, held[1] - '0'}});
     }
     Findings findings(const std::string& file) const {
       return {{Severity::note, Error{file, 0, "letters", "letters"}, "", ""}};
@@ -27,9 +29,6 @@ struct Letters {
   static Frame* frame(Arrival& arrival) { return &arrival.frame; }
   static std::uint64_t body(const Arrival& arrival) {
     return static_cast<std::uint64_t>(arrival.frame[0]);
-  }
-  static std::optional<std::uint32_t> number(const Arrival& arrival) {
-    return static_cast<std::uint32_t>(arrival.frame[1] - '0');
   }
 };
 
