@@ -93,7 +93,7 @@ Result<void> read_key(Call& call, const std::string& path, const std::string& na
     if (!named.empty()) lines.insert(lines.begin(), named);
     return lines;
   });
-  options.desk.lab_key = KA_TRY(read_lab_key(call.surroundings.files, path));
+  options.node_responder.lab_key = KA_TRY(read_lab_key(call.surroundings.files, path));
   call.console.if_it_fails({});
   return {};
 }
@@ -182,7 +182,7 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
   options.live_port = port_of(job.live_port);
   options.host = host_name();
   // The secret is new for each run.
-  options.desk.secret = KA_TRY(new_secret());
+  options.node_responder.secret = KA_TRY(new_secret());
   KA_TRY(read_files(job, call, options));
   return options;
 }

@@ -70,7 +70,7 @@ class RecordPrinter {
   ClockEventLines clock_lines_;
   SilentSenders silent_senders_;
   bool ports_printed_ = false, disk_full_ = false, warned_ = false, unseen_printed_ = false;
-  HostTime begun_, next_look_ = HostTime::min(), next_second_ = HostTime::min();
+  HostTime next_look_ = HostTime::min(), next_second_ = HostTime::min();
 };
 
 }  // namespace kinalign

@@ -107,7 +107,7 @@ class RecordingDisk {
     std::uint64_t bytes = 0;
   };
   std::optional<Repeated> repeated_;  // removed as soon as the next file has all its chunks
-  bool end_told_ = false;             // a failed finish() was reported
+  bool end_reported_ = false;         // a failed finish() was reported
   std::optional<Error> given_up_;  // the reason for giving up a file, until the recording continues
   std::vector<PartFailure> failures_;
 };

@@ -48,7 +48,7 @@ StreamWatch::StreamWatch(Protocol protocol, bool datagrams, const std::string& s
       break;
     }
     case Protocol::nodes:    // RecordedNodes decodes these
-    case Protocol::slimevr:  // SlimeDesk decodes these
+    case Protocol::slimevr:  // SlimeResponder decodes these
       break;
   }
 }
