@@ -90,11 +90,6 @@ SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   return key;
 }
 
-// Options are in seconds, durations in ns.
-Duration pre_roll_of(const Lab& lab) {
-  return Duration{static_cast<std::int64_t>(lab.record.pre_roll_s * 1e9)};
-}
-
 }  // namespace
 
 // A session whose ports can't all be opened does not begin: a missing device would show only in the
@@ -114,7 +109,7 @@ RecordingSession::RecordingSession(Options options, Machine machine)
   // The pair of clocks that gives UTC to all takes of this session.
   facts_.anchor = axis_.watch();
   RecorderOptions recorder;
-  recorder.pre_roll = pre_roll_of(options_.lab);
+  recorder.pre_roll = from_seconds(options_.lab.record.pre_roll_s);
   recorder.utc_minus_host =
       facts_.anchor.utc.time_since_epoch() - facts_.anchor.raw.time_since_epoch();
   recorder_ = std::make_unique<Recorder>(recorder);
