@@ -60,9 +60,14 @@ void RecordPrinter::complain(const std::string& text, const Json& event) {
 }
 
 void RecordPrinter::print_waiting() {
+  print_ports("waiting for a start", Json{{"event", "waiting"}});
+}
+
+/// Prints a line and the ports below it. `event`: the same for programs, without the ports.
+void RecordPrinter::print_ports(const std::string& line, const Json& event) {
   ports_printed_ = true;
-  console_.print(harmless(fmt::format("waiting for a start\n  {}\n", ports_text(session_))));
-  console_.print_json(json_text(with_ports(Json{{"event", "waiting"}}, session_)));
+  console_.print(harmless(fmt::format("{}\n  {}\n", line, ports_text(session_))));
+  console_.print_json(json_text(with_ports(event, session_)));
   console_.flush();
 }
 
@@ -73,11 +78,8 @@ void RecordPrinter::print_start() {
   const DiskStatus disk = session_.takes().front()->disk.status();
   if (disk.paths.empty()) return;
   started_ = session_.takes().front();
-  ports_printed_ = true;
   const std::string& path = disk.paths.front();
-  console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
-  console_.print_json(json_text(with_ports(Json{{"event", "started"}, {"file", path}}, session_)));
-  console_.flush();
+  print_ports("recording to " + path, Json{{"event", "started"}, {"file", path}});
 }
 
 void RecordPrinter::print(const ReceivedMark& received) {

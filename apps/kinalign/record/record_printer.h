@@ -46,6 +46,7 @@ class RecordPrinter {
 
  private:
   void complain(const std::string& text, const nlohmann::ordered_json& event);
+  void print_ports(const std::string& line, const nlohmann::ordered_json& event);
   void print_start();
   void print_events();
   void print_node_events(NodeReceiver& nodes);

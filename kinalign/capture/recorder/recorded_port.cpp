@@ -70,23 +70,19 @@ void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
 /// Answers are sent before anything is recorded, because work in between would delay one direction
 /// only.
 void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
-  Source& source = source_of(sender_of(piece), piece.sender, recorder);
+  Source& source = source_of(piece, recorder);
   source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
   if (kinect_responder_) answer_pings(source, piece, axis, recorder);
   if (slime_responder_) answer_trackers(source, piece);
   source.recorded.record(recorder, piece.arrival, piece.bytes);
 }
 
-const Senders::Sender& RecordedPort::sender_of(const Piece& piece) const {
-  const auto at = [&](const auto& pieces) -> const Senders::Sender& {
-    return pieces.senders().at(piece.sender);
-  };
-  return std::visit(at, pieces_);
-}
-
 /// A new sender gets its own channel, also if it takes the number of a sender that fell silent.
-RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std::size_t number,
-                                              Recorder& recorder) {
+RecordedPort::Source& RecordedPort::source_of(const Piece& piece, Recorder& recorder) {
+  const std::size_t number = piece.sender;
+  const Senders& senders =
+      std::visit([](const auto& pieces) -> const Senders& { return pieces.senders(); }, pieces_);
+  const Senders::Sender& sender = senders.at(number);
   const bool is_shared = sender.serial > Senders::most_serials;
   if (sources_.size() <= number) sources_.resize(number + 1);
   // The number now stands for several senders, so it has no source of its own.

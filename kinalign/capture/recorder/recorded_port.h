@@ -72,8 +72,7 @@ class RecordedPort {
                const SipHashKey& secret);
   static Result<Pieces> open_pieces(const DeviceOptions& device);
   void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
-  const Senders::Sender& sender_of(const Piece& piece) const;
-  Source& source_of(const Senders::Sender& sender, std::size_t number, Recorder& recorder);
+  Source& source_of(const Piece& piece, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t serial) const;
   /// Each answering function is used for one protocol only. Both send through the port itself.
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);

@@ -196,12 +196,11 @@ Result<void> RecordingDisk::finish(const McapMetadata& end) {
   Result<void> result = finish_once(end);
   if (result) return result;
   // A caller may call finish() every second; the failure is reported by the first call only.
-  const auto reported = static_cast<std::ptrdiff_t>(failures_.size());
+  const std::size_t reported = failures_.size();
   result = next_part(result.error());
   if (result) result = finish_once(end);
   if (!result) give_up_part();
-  if (std::exchange(end_reported_, true))
-    failures_.erase(failures_.begin() + reported, failures_.end());
+  if (std::exchange(end_reported_, true)) failures_.resize(reported);
   return result;
 }
 

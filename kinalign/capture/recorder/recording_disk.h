@@ -99,7 +99,6 @@ class RecordingDisk {
   std::deque<Kept> kept_;
   // bytes_before_: bytes of earlier files.
   std::uint64_t kept_bytes_ = 0, bytes_before_ = 0;
-  // A file whose chunks the next file repeats.
   // A file that no sync has confirmed. It is kept only until another file has all its chunks.
   struct Repeated {
     std::string path;
