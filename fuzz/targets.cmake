@@ -6,6 +6,6 @@ set(KINALIGN_FUZZ_FILES archive bids bids_check bvh c3d dataset denoise_model fu
   parameters_json pose_model recording safetensors table take_hdf5 trc
   truth_json ui_prmd_kinect windows_file xdf xsens_text)
 set(KINALIGN_FUZZ_PACKETS chrony_tracking clockless kinect_stream marks node_clock node_responder node_frame node_receive
-  node_reply noitom_stream ntp_packet ntp_responder slimevr_desk slimevr_packet xsens_mvn)
+  node_reply noitom_stream ntp_packet ntp_responder slimevr_responder slimevr_packet xsens_mvn)
 set(KINALIGN_FUZZ_ROOMS kinalign_dataset_import kinalign_recording_live kinalign_models kinalign_models_fuse kinalign_models_pose kinalign_sources kinalign_formats_take kinalign_formats_xdf kinalign_protocols_marks
   kinalign_protocols_slimevr kinalign_capture_ntp kinalign_capture_recorder kinalign_node)

@@ -32,5 +32,7 @@ constexpr std::uint64_t step_between(Time earlier, Time later) {
 
 /// For arithmetic: seconds from a nearby origin, never from 1970 (a double keeps 0.24 us there).
 constexpr double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
+/// The opposite, cut to whole nanoseconds.
+constexpr Duration from_seconds(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
 
 }  // namespace kinalign

@@ -48,7 +48,7 @@ def a_file_is_no_folder(folder):
           says=f"--out: expected a folder for the files, whose names --subject and --action say, found {folder}/take.mcap")
     (folder / "here").write_text("no folder")
     _, err = done_with(3, "record", "-o", folder / "here" / "takes", "--device", "m=nodes:0")
-    assert f"{folder}/here/takes: expected a folder for the files, found Not a directory" in err, err
+    assert f"{folder}/here/takes: expected a folder that can be made, found Not a directory" in err, err
 
 
 @case

@@ -67,7 +67,7 @@ std::string rate_cell(const StreamStatus& stream, double nominal_hz) {
 
 /// "0.1 s", "silent 12 s": readable without colours, too.
 std::string heard_cell(const StreamStatus& stream, HostTime now) {
-  const double ago = seconds(now - stream.heard);
+  const double ago = seconds(now - stream.last_arrival);
   return is_silent(stream, now) ? fmt::format("silent {:.0f} s", ago)
                                 : fmt::format("{:.1f} s", ago);
 }
@@ -122,7 +122,7 @@ void add_device(const DeviceOptions& options, const LabStatus& status, std::vect
     const bool silent = is_silent(stream, status.now);
     // A program that was restarted leaves its old sender behind, which is no fault.
     const bool replaced = silent && is_replaced(stream, status);
-    if (replaced && status.now - stream.heard >= forgotten_after) continue;
+    if (replaced && status.now - stream.last_arrival >= forgotten_after) continue;
     // Only a required device makes its line red.
     const bool bad = options.required && silent && !replaced;
     rows.push_back({cells_of(stream, options, status), std::nullopt, bad});

@@ -2,11 +2,15 @@
 #include "apps/cli/console.h"
 #include "apps/cli/program.h"
 #include "apps/kinalign/record/record_run.h"
-#include "apps/kinalign/record/steady_memory.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/recorder/recording_session.h"
 
+#include <malloc.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
 #include <utility>
 
 namespace kinalign {
@@ -61,6 +65,25 @@ Usage describe_record(RecordJob& o) {
   return usage;
 }
 
+/// Takes memory at the start and keeps it, so that neither page faults nor a growing heap delay a
+/// datagram on its way to the file. Call before other threads begin. mallopt(3): with one arena,
+/// memory that one thread frees serves the others, too.
+void keep_memory(std::size_t bytes) {
+  constexpr int largest_mapped = 32 << 20;  // the largest value glibc accepts; smaller blocks come
+                                            // from the heap
+  mallopt(M_ARENA_MAX, 1);
+  // Setting a threshold by hand also switches off glibc's own adjustment of it.
+  mallopt(M_MMAP_THRESHOLD, largest_mapped);
+  // Freed memory below this size is not given back to the system.
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  // The block is freed at the end of this function. Its pages stay in the heap.
+  const std::unique_ptr<void, decltype(&std::free)> room(std::malloc(bytes), &std::free);
+  if (room == nullptr) return;
+  std::memset(room.get(), 1, bytes);
+  // Without this the compiler may remove the memset, whose result is never read.
+  asm volatile("" : : "r"(room.get()) : "memory");
+}
+
 /// Records until the end. From its beginning on signals are only noted, so that Ctrl-C ends
 /// a recording in order.
 Result<int> run(RecordJob& o, Call& call) {
@@ -71,13 +94,12 @@ Result<int> run(RecordJob& o, Call& call) {
   take_every_signal();
   keep_memory(waiting_room);
   RecordingSession::Options options = KA_TRY(session_options(o, call));
-  KA_TRY(make_folder(call.common.out));
+  KA_TRY(make_folders(call.common.out));
   // The ports of devices and the receiver of nodes have a reader of the clocks each.
   SystemClocks ports_clock, nodes_clock;
   // Only opening ports can fail with the names of devices, so the advice is set for this call
   // alone.
-  console.if_it_fails(
-      lab_port_advice(options.lab, sources_of(o, call), o.marks_port, o.trigger_port));
+  console.if_it_fails(lab_port_advice(o, options.lab, call));
   const auto session = KA_TRY(RecordingSession::open(
       std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
   console.if_it_fails({});

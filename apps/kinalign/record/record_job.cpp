@@ -16,12 +16,61 @@
 #include <unistd.h>
 
 #include <array>
+#include <map>
 #include <set>
 #include <utility>
 
 namespace kinalign {
 
 namespace {
+
+/// The places that state the lab. A device may be stated in a file, by a flag, or in both. The flag
+/// then changes the device of the file.
+struct LabSources {
+  std::string file;               // the file with tables [device.NAME]; empty: none
+  std::set<std::string> by_flag;  // devices that a --device flag states
+};
+
+LabSources sources_of(const RecordJob& job, const Call& call) {
+  LabSources sources{project_settings(call.surroundings, call.common.config), {}};
+  // parse_device() has accepted these texts before, so each has a '='.
+  for (const std::string& text : job.devices) {
+    sources.by_flag.insert(text.substr(0, text.find('=')));
+  }
+  return sources;
+}
+
+struct MarkFlag {
+  const char* name = "";
+  const char* flag = "";
+  std::optional<std::int64_t> port;
+};
+
+/// Both ports of marks, so that all checks and advice treat them alike.
+std::array<MarkFlag, 2> mark_flags(const RecordJob& job) {
+  return {
+      {{"marks", "--marks-port", job.marks_port}, {"trigger", "--trigger-port", job.trigger_port}}};
+}
+
+/// Fails if a device's UDP port is also a port for marks.
+Result<void> check_mark_ports(const RecordJob& job, const Lab& lab) {
+  for (const auto& [name, flag, port] : mark_flags(job)) {
+    for (const DeviceOptions& device : lab.devices) {
+      // Port 0 is chosen by the system and never collides. TCP and UDP have ports of their own.
+      if (port.value_or(0) == 0 || device.port != *port || !is_datagrams(device.transport))
+        continue;
+      return Failure(Error{flag, 0, "another UDP port than that of device " + device.name,
+                           std::to_string(*port)});
+    }
+  }
+  return {};
+}
+
+/// "skeleton of [device.mocap] in lab.toml names it": for a file that could not be read.
+std::string named_by(const std::string& key, const DeviceOptions& device,
+                     const LabSources& sources) {
+  return fmt::format("{} of [device.{}] in {} names it", key, toml_key(device.name), sources.file);
+}
 
 /// Refuses a lab that can't be recorded as stated. An error about a flag may be about the same
 /// setting in a file; then it names the file and line.
@@ -93,7 +142,7 @@ Result<void> read_key(Call& call, const std::string& path, const std::string& na
     if (!named.empty()) lines.insert(lines.begin(), named);
     return lines;
   });
-  options.desk.lab_key = KA_TRY(read_lab_key(call.surroundings.files, path));
+  options.node_responder.lab_key = KA_TRY(read_lab_key(call.surroundings.files, path));
   call.console.if_it_fails({});
   return {};
 }
@@ -126,6 +175,24 @@ Result<void> read_files(const RecordJob& job, Call& call, RecordingSession::Opti
   return {};
 }
 
+/// The device's port with the flag, or the key of the settings file, that states it.
+WantedPort wanted_by(const DeviceOptions& device, const LabSources& sources) {
+  WantedPort wanted{static_cast<std::uint16_t>(device.port), "", "",
+                    !is_datagrams(device.transport)};
+  // The flag wins over the file, so it is the one to change.
+  if (sources.by_flag.contains(device.name)) {
+    const std::string place =
+        fmt::format("--device {}={}:{}:", device.name, device.protocol, device.transport);
+    wanted.port_from = place + "PORT";
+    wanted.address_from = place + "ADDRESS:PORT";
+  } else {
+    const std::string place = fmt::format("[device.{}] in {}", toml_key(device.name), sources.file);
+    wanted.port_from = "port of " + place;
+    wanted.address_from = "address of " + place;
+  }
+  return wanted;
+}
+
 std::optional<std::uint16_t> port_of(const std::optional<std::int64_t>& port) {
   return port ? std::optional(static_cast<std::uint16_t>(*port)) : std::nullopt;
 }
@@ -149,16 +216,8 @@ Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file) {
     set_device(lab, *device);
   }
   KA_TRY(validate(lab));
-  KA_TRY(check_mark_ports(lab, job.marks_port, job.trigger_port));
+  KA_TRY(check_mark_ports(job, lab));
   return lab;
-}
-
-LabSources sources_of(const RecordJob& job, const Call& call) {
-  LabSources sources{project_settings(call.surroundings, call.common.config), {}};
-  for (const std::string& text : job.devices)
-    // parse_device() has accepted these texts before, so each has a '='.
-    sources.by_flag.insert(text.substr(0, text.find('=')));
-  return sources;
 }
 
 Result<RecordingSession::Options> session_options(const RecordJob& job, Call& call) {
@@ -182,9 +241,25 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
   options.live_port = port_of(job.live_port);
   options.host = host_name();
   // The secret is new for each run.
-  options.desk.secret = KA_TRY(new_secret());
+  options.node_responder.secret = KA_TRY(new_secret());
   KA_TRY(read_files(job, call, options));
   return options;
+}
+
+Advice lab_port_advice(const RecordJob& job, const Lab& lab, const Call& call) {
+  const LabSources sources = sources_of(job, call);
+  std::map<std::string, WantedPort> wanted;
+  // The error of a port names its device, which is the key here.
+  for (const DeviceOptions& device : lab.devices) wanted[device.name] = wanted_by(device, sources);
+  for (const auto& [name, flag, port] : mark_flags(job)) {
+    wanted[name] = {static_cast<std::uint16_t>(port.value_or(0)), flag, "", false};
+  }
+  // The advice outlives this call, so it holds the map by value.
+  return [wanted](const Error& error) -> std::vector<std::string> {
+    const auto whose = wanted.find(error.file);
+    if (whose == wanted.end()) return {};
+    return port_advice(error, whose->second);
+  };
 }
 
 }  // namespace kinalign

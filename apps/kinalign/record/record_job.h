@@ -3,7 +3,6 @@
 #pragma once
 
 #include "apps/cli/console.h"
-#include "apps/kinalign/record/lab_advice.h"
 
 #include "kinalign/capture/recorder/recording_session.h"
 
@@ -30,12 +29,13 @@ struct RecordJob {
 /// adds a device.
 Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file);
 
-/// The files and flags that state the lab.
-LabSources sources_of(const RecordJob& job, const Call& call);
-
 /// The options with all files read that the devices need. Problems of the lab are refused by the
 /// console (exit code 2).
 /// It opens no socket and writes no file, so a fault here leaves nothing behind.
 Result<RecordingSession::Options> session_options(const RecordJob& job, Call& call);
+
+/// Advice for a port of the lab that could not be opened: the flag or file to change. The error's
+/// file is the device's name, "marks" or "trigger".
+Advice lab_port_advice(const RecordJob& job, const Lab& lab, const Call& call);
 
 }  // namespace kinalign

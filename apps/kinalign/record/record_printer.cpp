@@ -50,8 +50,7 @@ RecordPrinter::RecordPrinter(RecordingSession& session, Console& console)
     : session_(session),
       console_(console),
       names_(node_names(session.lab())),
-      clock_lines_(names_),
-      begun_(session.now()) {}
+      clock_lines_(names_) {}
 
 // Every complaint goes to people and to programs, and is written at once.
 void RecordPrinter::complain(const std::string& text, const Json& event) {
@@ -61,9 +60,14 @@ void RecordPrinter::complain(const std::string& text, const Json& event) {
 }
 
 void RecordPrinter::print_waiting() {
+  print_ports("waiting for a start", Json{{"event", "waiting"}});
+}
+
+/// Prints a line and the ports below it. `event`: the same for programs, without the ports.
+void RecordPrinter::print_ports(const std::string& line, const Json& event) {
   ports_printed_ = true;
-  console_.print(harmless(fmt::format("waiting for a start\n  {}\n", ports_text(session_))));
-  console_.print_json(json_text(with_ports(Json{{"event", "waiting"}}, session_)));
+  console_.print(harmless(fmt::format("{}\n  {}\n", line, ports_text(session_))));
+  console_.print_json(json_text(with_ports(event, session_)));
   console_.flush();
 }
 
@@ -74,11 +78,8 @@ void RecordPrinter::print_start() {
   const DiskStatus disk = session_.takes().front()->disk.status();
   if (disk.paths.empty()) return;
   started_ = session_.takes().front();
-  ports_printed_ = true;
   const std::string& path = disk.paths.front();
-  console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
-  console_.print_json(json_text(with_ports(Json{{"event", "started"}, {"file", path}}, session_)));
-  console_.flush();
+  print_ports("recording to " + path, Json{{"event", "started"}, {"file", path}});
 }
 
 void RecordPrinter::print(const ReceivedMark& received) {
@@ -107,7 +108,7 @@ void RecordPrinter::look(const std::optional<std::string>& typed) {
   const bool second = now >= next_second_;
   // A text that is being typed is shown at once.
   if (!second && !(console_.shows() && typed)) return;
-  const RecordStatus status = status_now(session_, begun_);
+  const RecordStatus status = status_now(session_);
   if (second) {
     next_second_ = now + 1s;
     // Without a take nothing is written, so there is no forecast.
@@ -171,7 +172,7 @@ void RecordPrinter::look_at_disk(const RecordStatus& status) {
   print_dropped(disk.dropped);
   if (!disk.free_bytes) return;
   // Bytes that wait in memory will be on the disk soon, so they are taken from its free space.
-  const std::uint64_t to_write = std::min(status.waiting_bytes, *disk.free_bytes);
+  const std::uint64_t to_write = std::min(session_.waiting_bytes(), *disk.free_bytes);
   forecast_.look(status.lab.now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
   // exchange() makes it a single message: the disk stays full until the take has ended.
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
@@ -257,8 +258,8 @@ void RecordPrinter::print_slow_end(std::uint64_t waiting_bytes, bool ends) {
 /// The event "status" for programs.
 void RecordPrinter::print_status_json(const RecordStatus& status) {
   Json event{{"event", "status"}};
-  event.update(json_of(status));
-  if (status.disk) event["waiting_bytes"] = status.waiting_bytes;
+  event.update(json_of(status, session_));
+  if (status.disk) event["waiting_bytes"] = session_.waiting_bytes();
   if (const auto free = forecast_.free()) event["free_bytes"] = *free;
   if (const auto left = forecast_.minutes_left()) event["minutes_left"] = *left;
   console_.print_json(json_text(event));
@@ -300,7 +301,7 @@ RecordStatus RecordPrinter::print_end() {
   print_start();
   // Events that came with the last turn belong to this take.
   print_events();
-  RecordStatus status = status_at_end(session_, begun_);
+  RecordStatus status = status_at_end(session_);
   const DiskStatus& disk = *status.disk;
   if (disk.paths.empty()) {
     if (disk.dropped > 0) {
@@ -310,10 +311,10 @@ RecordStatus RecordPrinter::print_end() {
     console_.print_json(json_text(Json{{"event", "never_begun"}, {"dropped", disk.dropped}}));
     return status;
   }
-  std::string lines = end_text(session_.lab(), status);
+  std::string lines = end_text(status, session_);
   if (const NodeReceiver* nodes = session_.nodes()) lines += refused_lines(*nodes, names_);
   Json event{{"event", "stopped"}, {"files", disk.paths}};
-  event.update(json_of(status));
+  event.update(json_of(status, session_));
   console_.print(harmless(lines));
   console_.print_json(json_text(event));
   return status;

@@ -46,6 +46,7 @@ class RecordPrinter {
 
  private:
   void complain(const std::string& text, const nlohmann::ordered_json& event);
+  void print_ports(const std::string& line, const nlohmann::ordered_json& event);
   void print_start();
   void print_events();
   void print_node_events(NodeReceiver& nodes);
@@ -70,7 +71,7 @@ class RecordPrinter {
   ClockEventLines clock_lines_;
   SilentSenders silent_senders_;
   bool ports_printed_ = false, disk_full_ = false, warned_ = false, unseen_printed_ = false;
-  HostTime begun_, next_look_ = HostTime::min(), next_second_ = HostTime::min();
+  HostTime next_look_ = HostTime::min(), next_second_ = HostTime::min();
 };
 
 }  // namespace kinalign

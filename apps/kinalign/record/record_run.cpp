@@ -4,13 +4,13 @@
 #include "apps/cli/program.h"
 #include "apps/kinalign/record/take_path.h"
 
+#include "kinalign/core/files.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 namespace kinalign {
@@ -24,20 +24,11 @@ constexpr Duration waiting_turn = 5ms;  // the same while the disk is waited for
 
 }  // namespace
 
-Result<void> make_folder(const std::string& folder) {
-  // The result is checked instead of the error: a folder that exists already is no fault.
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (std::error_code none; std::filesystem::is_directory(folder, none)) return {};
-  const std::string why = failed ? failed.message() : "something else of that name";
-  return Failure(Error{folder, 0, "a folder for the files", why});
-}
-
 int RecordRun::operator()() {
   // The path is found when a take begins, since the takes before it have taken their names by then.
   const auto free_path = [folder = call_.common.out, subject = job_.subject, action = job_.action] {
-    (void)make_folder(folder);  // the folder may have been removed; if it can't be made, opening
-                                // the file fails
+    // The folder may have been removed. If it can't be made, opening the file fails.
+    (void)make_folders(folder);
     return free_take_path(folder, subject, action);
   };
   const TakePlan plan{free_path, job_.subject, job_.action};

@@ -48,7 +48,4 @@ class RecordRun {
   bool pressed_again_ = false;  // another Ctrl-C after the one that ended recording
 };
 
-/// Makes the folder and its parent folders.
-Result<void> make_folder(const std::string& folder);
-
 }  // namespace kinalign

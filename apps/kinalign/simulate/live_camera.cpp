@@ -48,7 +48,7 @@ LiveCamera::LiveCamera(const Rehearsal& rehearsal, const LiveCameraOptions& opti
       start_(options.start),
       next_hello_(options.start),
       next_ping_(options.start),
-      end_(options.start + Duration{static_cast<std::int64_t>(options.length_s * 1e9)}),
+      end_(options.start + from_seconds(options.length_s)),
       session_(options.session),
       socket_(std::move(socket)) {}
 
@@ -77,7 +77,7 @@ HostTime LiveCamera::next() const {
 HostTime LiveCamera::frame_due() const {
   if (frame_ >= rehearsal_.ticks.size()) return HostTime::max();
   const double s = rehearsal_.ticks[frame_].seconds + program_delay_s(random_, frame_);
-  return start_ + Duration{static_cast<std::int64_t>(s * 1e9)};
+  return start_ + from_seconds(s);
 }
 
 /// Takes the pongs; the next ping echoes the latest one.

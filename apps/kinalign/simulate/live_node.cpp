@@ -102,7 +102,7 @@ std::uint64_t LiveNode::counter_at(HostTime t) const {
 /// The host's time of a counter value, with 1 us added, so that the counter has reached it.
 HostTime LiveNode::host_at(std::uint64_t counter_us) const {
   const double s = counter_.host(static_cast<double>(counter_us) * 1e-6);
-  return start_ + Duration{static_cast<std::int64_t>(s * 1e9) + 1000};
+  return start_ + from_seconds(s) + std::chrono::microseconds(1);
 }
 
 std::uint64_t LiveNode::counter_us() {

@@ -3,20 +3,63 @@
 // made of the host's clock, and a radio in both directions. Each sample has exactly the time for
 // which it was made, however late this program wakes up: on a board a timer of higher priority
 // takes the samples.
-// of higher priority takes them.
 #pragma once
 
-#include "apps/kinalign/simulate/live_link.h"
 #include "apps/kinalign/simulate/live_socket.h"
 #include "firmware/node/clockless_node.h"
 #include "firmware/node/node.h"
 
 #include "kinalign/capture/net/host_clock.h"
 #include "kinalign/simulate/nodes/inertial_nodes.h"
+#include "kinalign/simulate/nodes/packet_fates.h"
 
+#include <cstdint>
+#include <optional>
+#include <queue>
+#include <span>
 #include <variant>
+#include <vector>
 
 namespace kinalign {
+
+/// One direction of the node's simulated link. A fate is drawn for each datagram when it is put:
+/// lost, delayed, or duplicated. The queue sorts by arrival, so datagrams may overtake each other
+/// as on a real radio. The limit of waiting datagrams bounds the memory.
+class LiveLink {
+ public:
+  LiveLink(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz)
+      : fates_(options, seed, way, rate_hz) {}
+
+  void put(HostTime now, std::span<const std::uint8_t> datagram) {
+    const PacketFates::Fate& fate = fates_.next();
+    for (const auto& delay : {fate.first, fate.duplicate}) {
+      if (delay && waiting_.size() < most_waiting) {
+        waiting_.push({now + *delay, {datagram.begin(), datagram.end()}});
+      }
+    }
+  }
+  /// The earliest datagram that has arrived by `now`; absent if there is none.
+  std::optional<std::vector<std::uint8_t>> take(HostTime now) {
+    if (waiting_.empty() || waiting_.top().at > now) return std::nullopt;
+    auto datagram = waiting_.top().datagram;
+    waiting_.pop();
+    return datagram;
+  }
+  /// The arrival of the next datagram.
+  HostTime next() const { return waiting_.empty() ? HostTime::max() : waiting_.top().at; }
+
+ private:
+  static constexpr std::size_t most_waiting = 10'000;
+  struct Packet {
+    HostTime at;
+    std::vector<std::uint8_t> datagram;
+
+    bool operator<(const Packet& other) const { return at > other.at; }  // the earliest on top
+  };
+
+  PacketFates fates_;
+  std::priority_queue<Packet> waiting_;
+};
 
 struct LiveNodeOptions {
   std::uint32_t id = 1, boot_id = 1;
@@ -75,7 +118,7 @@ class LiveNode final : public Board {
   LiveSocket socket_;
   // up_ leads to the host, down_ to the node.
   LiveLink up_, down_;
-  // Empty only during construction; then one of both kinds for the whole life.
+  // Empty only during construction; then one of both kinds.
   std::variant<std::monostate, Node, ClocklessNode> node_;
   /// The next sample to take.
   std::size_t next_sample_ = 0;

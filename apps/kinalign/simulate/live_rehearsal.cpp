@@ -12,11 +12,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration behind = 500ms,
-                   longest_wait = 100ms;  // time after the motion for datagrams on their way; the
-                                          // longest wait between two calls of go_on
+constexpr Duration after_motion = 500ms;  // for datagrams on their way
+constexpr Duration longest_wait = 100ms;  // between two calls of go_on
 
-Duration duration(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
 // Noitom's stream has a fixed number of joints.
 constexpr std::size_t noitom_joints = 59;
 
@@ -38,13 +36,16 @@ LiveTraffic LiveCounts::all() const {
 }
 
 Result<LiveSockets> open_live(const LiveOptions& options, std::size_t nodes) {
+  const auto connected = [&](std::int64_t port) {
+    return LiveSocket::connected_to(options.to, static_cast<std::uint16_t>(port));
+  };
   // All sockets are opened before the first datagram, so a fault leaves no half-started run.
-  LiveSockets sockets{KA_TRY(LiveSocket::connected_to(options.to, options.mocap_port)),
-                      KA_TRY(LiveSocket::connected_to(options.to, options.kinect_port)),
-                      KA_TRY(LiveSocket::connected_to(options.to, options.marks_port)),
+  LiveSockets sockets{KA_TRY(connected(options.mocap_port)),
+                      KA_TRY(connected(options.kinect_port)),
+                      KA_TRY(connected(options.marks_port)),
                       {}};
   for (std::size_t n = 0; n < nodes; ++n) {
-    sockets.nodes.push_back(KA_TRY(LiveSocket::connected_to(options.to, options.node_port)));
+    sockets.nodes.push_back(KA_TRY(connected(options.node_port)));
   }
   return sockets;
 }
@@ -60,7 +61,7 @@ Result<void> check_live(const Motion& motion, const std::string& name) {
 LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
                              const LiveOptions& options, ClockReader& clock, LiveSockets sockets)
     : clock_(&clock),
-      start_(begin_after(clock, duration(options.begin_in_s))),
+      start_(begin_after(clock, from_seconds(options.begin_in_s))),
       length_s_(motion.length_s) {
   const HostTime start = start_.raw;
   // These ids are new in each run, as a device draws them at each start.
@@ -89,7 +90,7 @@ LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
 /// Runs all devices in one thread until the motion's end.
 double LiveRehearsal::run(const std::function<bool()>& go_on) {
   ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns; the default of 50 us would lengthen delays
-  const HostTime end = start_.raw + duration(length_s_) + behind;
+  const HostTime end = start_.raw + from_seconds(length_s_) + after_motion;
   while (clock_->raw() < start_.raw) {  // a node's counter is not defined before
     if (!go_on()) return 0.0;
     wait(std::min(start_.raw, clock_->raw() + longest_wait));

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "apps/kinalign/simulate/live_camera.h"
-#include "apps/kinalign/simulate/live_clicks.h"
 #include "apps/kinalign/simulate/live_node.h"
 #include "apps/kinalign/simulate/live_suit.h"
 
@@ -18,7 +17,7 @@ namespace kinalign {
 
 struct LiveOptions {
   std::string to = "127.0.0.1";
-  std::uint16_t mocap_port = 7012, kinect_port = 7020, node_port = 5005, marks_port = 7030;
+  std::int64_t mocap_port = 7012, kinect_port = 7020, node_port = 5005, marks_port = 7030;
   Link link = Link::paper;  // the nodes' radio
   std::uint64_t seed = 1;
   /// Time until the motion begins, s.

@@ -4,11 +4,9 @@
 #include "kinalign/capture/net/socket_address.h"
 
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 namespace kinalign {
 
@@ -30,22 +28,11 @@ Result<LiveSocket> LiveSocket::connected_to(const std::string& host, std::uint16
   const FoundAddress address = find_address(host, port, SOCK_DGRAM);
   LiveSocket made(::socket(address->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   // A connected UDP socket receives from its peer only, and learns of ICMP refusals.
-  if (made.fd_ < 0 || ::connect(made.fd_, address->ai_addr, address->ai_addrlen) != 0) {
+  if (made.fd() < 0 || ::connect(made.fd(), address->ai_addr, address->ai_addrlen) != 0) {
     return Failure(Error{"--to", 0, "a network route to " + host + " port " + std::to_string(port),
                          std::strerror(errno)});
   }
   return made;
-}
-
-LiveSocket::LiveSocket(LiveSocket&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)), traffic_(other.traffic_) {}
-LiveSocket& LiveSocket::operator=(LiveSocket&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  std::swap(traffic_, other.traffic_);
-  return *this;
-}
-LiveSocket::~LiveSocket() {
-  if (fd_ >= 0) ::close(fd_);
 }
 
 /// Reads and counts a pending refusal (ICMP: no program listens there). The kernel keeps it in the
@@ -54,14 +41,14 @@ void LiveSocket::read_refusal() {
   // Reading SO_ERROR also clears it.
   int refusal = 0;
   socklen_t size = sizeof refusal;
-  const bool asked = ::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &refusal, &size) == 0;
+  const bool asked = ::getsockopt(fd(), SOL_SOCKET, SO_ERROR, &refusal, &size) == 0;
   if (asked && refusal != 0) ++traffic_.refused;
 }
 
 bool LiveSocket::send(std::span<const std::uint8_t> datagram) {
   read_refusal();
   ++traffic_.sent;
-  const bool taken = ::send(fd_, datagram.data(), datagram.size(), MSG_NOSIGNAL) ==
+  const bool taken = ::send(fd(), datagram.data(), datagram.size(), MSG_NOSIGNAL) ==
                      static_cast<ssize_t>(datagram.size());
   if (!taken) ++traffic_.refused;
   return taken;
@@ -69,7 +56,7 @@ bool LiveSocket::send(std::span<const std::uint8_t> datagram) {
 
 std::size_t LiveSocket::receive(std::span<std::uint8_t> room) {
   read_refusal();
-  const ssize_t size = ::recv(fd_, room.data(), room.size(), 0);
+  const ssize_t size = ::recv(fd(), room.data(), room.size(), 0);
   // A negative size means that nothing has come.
   if (size < 0) return 0;
   ++traffic_.received;

@@ -2,6 +2,7 @@
 // A device's UDP socket for `simulate --live`: sends to one port and receives from that port only.
 #pragma once
 
+#include "kinalign/capture/net/handle.h"
 #include "kinalign/core/error.h"
 
 #include <cstdint>
@@ -30,12 +31,6 @@ class LiveSocket {
   /// it is none, or if this machine has no route to it.
   static Result<LiveSocket> connected_to(const std::string& host, std::uint16_t port);
 
-  LiveSocket(LiveSocket&& other) noexcept;
-  LiveSocket& operator=(LiveSocket&& other) noexcept;
-  LiveSocket(const LiveSocket&) = delete;
-  LiveSocket& operator=(const LiveSocket&) = delete;
-  ~LiveSocket();
-
   /// False if the system did not accept the datagram. A port without a listener is known only after
   /// sending: see traffic().
   bool send(std::span<const std::uint8_t> datagram);
@@ -43,14 +38,14 @@ class LiveSocket {
   std::size_t receive(std::span<std::uint8_t> room);
   /// The counts up to now.
   const LiveTraffic& traffic();
-  int fd() const { return fd_; }
+  int fd() const { return socket_.fd(); }
 
  private:
-  explicit LiveSocket(int fd) : fd_(fd) {}
+  explicit LiveSocket(int fd) : socket_(fd) {}
   // The kernel keeps at most one refusal for each socket, so several of them may count as one.
   void read_refusal();
 
-  int fd_ = -1;
+  Handle socket_;
   LiveTraffic traffic_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/command_line.h"
+#include "apps/cli/field_text.h"
 #include "apps/cli/program.h"
 #include "apps/kinalign/simulate/simulate_folder.h"
 #include "apps/kinalign/simulate/simulate_text.h"
@@ -27,7 +28,7 @@ constexpr std::size_t most_bvh = std::size_t{256} << 20;
 // Simulated recordings begin at this time, so that the same seed gives the same bytes.
 constexpr std::int64_t start_ns = 1'790'000'000'000'000'000;
 
-/// The options of `kinalign simulate`. The flags from `to` on belong to --live.
+/// The options of `kinalign simulate`.
 struct Simulate {
   std::vector<std::string> motion;
   std::int64_t seed = 1;
@@ -35,21 +36,14 @@ struct Simulate {
   std::int64_t node_rate = 100;
   std::string node_stamps = "own";
   bool live = false;
-  std::string to = "127.0.0.1";
-  std::int64_t mocap_port = 7012, kinect_port = 7020, node_port = 5005, marks_port = 7030;
+  // --live only; run() sets the link and the seed of `sending`
   std::string link = "C";
-  double begin_in = 0.5;
-  bool clockless = false;
+  LiveOptions sending;
 };
-
-/// Fails with the error if the flag was given.
-Result<void> refuse(const Sources& given, const char* name, const Error& error) {
-  return given.contains(name) ? Result<void>(Failure(error)) : Result<void>{};
-}
 
 /// Refuses two devices on one port: they could not be told apart, and a recorder opens one port for
 /// one device.
-Result<void> check_live_ports(const Simulate& o) {
+Result<void> check_live_ports(const LiveOptions& o) {
   std::map<std::int64_t, const char*> flags;
   for (const auto& [port, flag] :
        {std::pair(o.mocap_port, "--mocap-port"), std::pair(o.kinect_port, "--kinect-port"),
@@ -66,19 +60,17 @@ Result<void> check_live_ports(const Simulate& o) {
 Result<void> check_simulate(const Simulate& o, const Common& common, const Sources& given) {
   if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
   if (o.live) {
-    KA_TRY(check_live_address(o.to));
+    KA_TRY(check_live_address(o.sending.to));
     // Files have no ports, so ports are checked for live runs only.
-    KA_TRY(check_live_ports(o));
-    return refuse(
-        given, "node_stamps",
-        {"--node-stamps", 0, "files", "--live, with which the nodes send their own stamps"});
+    KA_TRY(check_live_ports(o.sending));
+    if (!given.contains("node_stamps")) return {};
+    return Failure(
+        Error{"--node-stamps", 0, "files", "--live, with which the nodes send their own stamps"});
   }
-  for (const auto& [name, flag] :
-       {std::pair("to", "--to"), std::pair("link", "--link"), std::pair("begin_in", "--begin-in"),
-        std::pair("clockless", "--clockless"), std::pair("mocap_port", "--mocap-port"),
-        std::pair("kinect_port", "--kinect-port"), std::pair("node_port", "--node-port"),
-        std::pair("marks_port", "--marks-port")}) {
-    KA_TRY(refuse(given, name, {flag, 0, "--live as well", "no --live"}));
+  for (const char* name : {"to", "link", "begin_in", "clockless", "mocap_port", "kinect_port",
+                           "node_port", "marks_port"}) {
+    if (given.contains(name))
+      return Failure(Error{flag_of(name), 0, "--live as well", "no --live"});
   }
   return {};
 }
@@ -101,20 +93,21 @@ Usage describe_simulate(Simulate& o) {
       {"live",
        "send the streams in real time, as the devices would; a BVH must have a suit's 59 joints",
        &o.live},
-      {"to", "live: address of the host that records, in numbers", &o.to},
-      {"mocap_port", "live: the host's port for the suit", &o.mocap_port, 1.0, 65535.0},
-      {"kinect_port", "live: the host's port for the Kinect", &o.kinect_port, 1.0, 65535.0},
-      {"node_port", "live: the host's port for the nodes", &o.node_port, 1.0, 65535.0},
+      {"to", "live: address of the host that records, in numbers", &o.sending.to},
+      {"mocap_port", "live: the host's port for the suit", &o.sending.mocap_port, 1.0, 65535.0},
+      {"kinect_port", "live: the host's port for the Kinect", &o.sending.kinect_port, 1.0, 65535.0},
+      {"node_port", "live: the host's port for the nodes", &o.sending.node_port, 1.0, 65535.0},
       {"marks_port", "live: the host's port for marks: the clicks on the suit's program",
-       &o.marks_port, 1.0, 65535.0},
+       &o.sending.marks_port, 1.0, 65535.0},
       {.name = "link",
        .meaning = "live: the nodes' radio (docs/simulated_links.md: A wired, B quiet Wi-Fi, C the "
                   "paper's ...)",
        .value = &o.link,
        .choices = {"A", "B", "C", "D", "E", "F", "G"}},
-      {"begin_in", "live: wait before sending, to start the recorder, s", &o.begin_in, 0.1, 3600.0},
+      {"begin_in", "live: wait before sending, to start the recorder, s", &o.sending.begin_in_s,
+       0.1, 3600.0},
       {"clockless", "live: nodes without a counter, like the paper's, which have --node-rate 15",
-       &o.clockless}};
+       &o.sending.clockless}};
   usage.check = [&o](const Common& common, const Sources& given) {
     return check_simulate(o, common, given);
   };
@@ -172,20 +165,6 @@ Result<int> write_files(const Job& job, Call& call) {
   return done;
 }
 
-/// The options of --live, from the flags.
-LiveOptions live_options(const Simulate& o) {
-  return {.to = o.to,
-          .mocap_port = static_cast<std::uint16_t>(o.mocap_port),
-          .kinect_port = static_cast<std::uint16_t>(o.kinect_port),
-          .node_port = static_cast<std::uint16_t>(o.node_port),
-          .marks_port = static_cast<std::uint16_t>(o.marks_port),
-          // The letters A to G are the values of Link in this order.
-          .link = static_cast<Link>(o.link.front() - 'A'),
-          .seed = static_cast<std::uint64_t>(o.seed),
-          .begin_in_s = o.begin_in,
-          .clockless = o.clockless};
-}
-
 bool is_there(FileSystem& files, const std::string& path) {
   const int fd = files.open(path.c_str(), O_RDONLY | O_CLOEXEC, 0);
   if (fd >= 0) files.close(fd);
@@ -196,11 +175,11 @@ bool is_there(FileSystem& files, const std::string& path) {
 /// meanwhile.
 Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   const Simulate& o = job.o;
-  const LiveOptions options = live_options(o);
+  const LiveOptions& options = o.sending;
   KA_TRY(write_suit_head(job.folder, job.motion));
   KA_TRY(write_lab(job.folder, options, job.rehearsal));
   std::optional<double> clockless_hz;
-  if (o.clockless) clockless_hz = static_cast<double>(o.node_rate);
+  if (options.clockless) clockless_hz = static_cast<double>(o.node_rate);
   // `align` needs the rate of nodes without a counter, since they send no stamps.
   KA_TRY(write_live_manifest(job.folder, job.rehearsal, clockless_hz));
   SystemClocks clock;
@@ -225,6 +204,9 @@ Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
 
 /// Checks the motion and the route to the host before it makes a folder.
 Result<int> run(Simulate& o, Call& call) {
+  // The letters A to G are the values of Link in this order.
+  o.sending.link = static_cast<Link>(o.link.front() - 'A');
+  o.sending.seed = static_cast<std::uint64_t>(o.seed);
   const std::string& name = o.motion.front();
   const Motion motion = KA_TRY(motion_of(o, call));
   call.console.if_it_fails([](const Error&) {
@@ -238,13 +220,13 @@ Result<int> run(Simulate& o, Call& call) {
   if (!rehearsal) {
     return Failure(Error{name, 0, rehearsal.error().expected, rehearsal.error().found});
   }
-  call.console.if_it_fails([to = o.to](const Error&) {
+  call.console.if_it_fails([to = o.sending.to](const Error&) {
     return std::vector<std::string>{"nothing was written",
                                     "ip route get " + to + " shows this machine's route to it"};
   });
   std::optional<LiveSockets> sockets;
   // The sockets are opened before the folder is made.
-  if (o.live) sockets = KA_TRY(open_live(live_options(o), rehearsal->nodes.size()));
+  if (o.live) sockets = KA_TRY(open_live(o.sending, rehearsal->nodes.size()));
   call.console.if_it_fails({});
   const RehearsalFolder folder{call.surroundings.files, call.common.out};
   // An existing folder is refused, so no file of another simulation can be mixed in.

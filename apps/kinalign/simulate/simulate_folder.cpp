@@ -48,10 +48,7 @@ Result<void> write_clip(const RehearsalFolder& folder, const std::string& name,
 
 Result<void> write_text(const RehearsalFolder& folder, const std::string& name,
                         std::string_view text) {
-  OutputFile out =
-      KA_TRY(OutputFile::create(folder.files, folder.path + "/" + name, Overwrite::no));
-  KA_TRY(out.write(text));
-  return out.commit();
+  return write_whole(folder.files, folder.path + "/" + name, text, Overwrite::no);
 }
 
 /// A text file that is committed by the caller when its rows are complete.

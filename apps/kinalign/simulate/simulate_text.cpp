@@ -49,7 +49,7 @@ std::string align_line(const std::string& folder) {
 
 struct Port {
   const char* name;
-  std::uint16_t number;
+  std::int64_t number;
   LiveTraffic traffic;
 };
 

@@ -77,7 +77,7 @@ std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, s
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
 bool is_silent(const StreamStatus& stream, HostTime now) {
-  return now - stream.heard >= silent_after;
+  return now - stream.last_arrival >= silent_after;
 }
 
 const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStatus>& nodes) {
@@ -186,7 +186,7 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
     });
     if (same == newest.end()) {
       newest.push_back(stream);
-    } else if (same->heard < stream.heard) {
+    } else if (same->last_arrival < stream.last_arrival) {
       *same = stream;
     }
   }
@@ -232,7 +232,7 @@ Json json_of(const StreamStatus& stream, const LabStatus& status) {
       to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));
   if (!stream.place.empty()) json["place"] = stream.place;
   json["rate_hz"] = stream.rate_hz;
-  json["silent_s"] = seconds(status.now - stream.heard);
+  json["silent_s"] = seconds(status.now - stream.last_arrival);
   if (stream.battery_volts) json["battery_v"] = *stream.battery_volts;
   const NodeStatus* node = node_of(stream, status.nodes);
   if (stream.clock) {

@@ -3,17 +3,14 @@
 // functions.
 #pragma once
 
-#include "kinalign/capture/nodes/node_status.h"
-#include "kinalign/capture/recorder/stream_status.h"
+#include "kinalign/capture/recorder/lab_status.h"
 #include "kinalign/take/lab.h"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -21,17 +18,6 @@ namespace kinalign {
 /// A sender is silent if nothing came from it for this time.
 /// The table, the lines and the JSON use the same limit.
 inline constexpr Duration silent_after = std::chrono::seconds(2);
-
-/// A lab at one moment.
-/// Everything about a lab that the table, the lines and the JSON of record show.
-struct LabStatus {
-  HostTime now{}, begun{};  // begun: when its ports were opened
-  std::vector<StreamStatus> streams;
-  std::vector<NodeStatus> nodes;
-  std::vector<std::pair<std::string, PortCounts>> ports{};  // by the device's name
-  std::map<std::string, std::uint16_t> port_numbers{};      // by the device's name
-  bool ended = false;  // the status of a take at its end; streams without data are not in it
-};
 
 bool is_silent(const StreamStatus& stream, HostTime now);
 

@@ -17,11 +17,11 @@ std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_
 /// new one.
 std::optional<std::size_t> Senders::number(std::optional<Known>& known, const HostAddress& host,
                                            std::uint16_t port, HostTime now) {
-  if (known && senders_[known->number].life != known->life) known.reset();
+  if (known && senders_[known->number].serial != known->serial) known.reset();
   if (!known) {
     const auto number = add(host, port, now);
     if (!number) return std::nullopt;
-    known = {*number, senders_[*number].life};
+    known = {*number, senders_[*number].serial};
   }
   note_arrival(known->number, now);
   return known->number;
@@ -32,9 +32,9 @@ void Senders::note_arrival(std::size_t number, HostTime now) {
   ++senders_[number].times;
 }
 
-// The limit on lives keeps the number of channels limited.
+// The limit on serial numbers keeps the number of channels limited.
 std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t port, HostTime now) {
-  if (lives_ >= most_lives) {
+  if (serials_ >= most_serials) {
     if (const auto past = own_past(host)) {
       // The host's oldest sender continues under a new port, with its number and its channel.
       senders_[*past].port = port;
@@ -43,14 +43,14 @@ std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t p
   }
   const auto number = place_for(host, now);
   if (!number) return std::nullopt;
-  lives_ = std::min(lives_ + 1, most_lives + 1);
-  senders_[*number] = {host, port, now, lives_};
+  serials_ = std::min(serials_ + 1, most_serials + 1);
+  senders_[*number] = {host, port, now, serials_};
   return number;
 }
 
 /// Returns a free number, or the number of the sender that was silent longest. After one minute of
 /// silence a number may be reused. Two seconds suffice if the sender sent few messages, since it
-/// may be a stranger, or if it has the newcomer's host address, since it is probably the newcomer
+/// may be unrelated, or if it has the newcomer's host address, since it is probably the newcomer
 /// itself. A host with at least half of all numbers may replace its own short-lived senders at
 /// once. So a host that uses a new port for each message crowds out only itself.
 std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime now) {
@@ -64,10 +64,10 @@ std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime 
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < senders_.size(); ++i) {
     const Sender& sender = senders_[i];
-    const bool stranger = sender.times < little, same_host = sender.host == host;
+    const bool unrelated = sender.times < little, same_host = sender.host == host;
     Duration patience = std::chrono::minutes(1);
-    if (stranger || same_host) patience = std::chrono::seconds(2);
-    if (stranger && same_host && crowds) patience = Duration::zero();
+    if (unrelated || same_host) patience = std::chrono::seconds(2);
+    if (unrelated && same_host && crowds) patience = Duration::zero();
     if (now - sender.last_arrival < patience) continue;
     if (!found || sender.last_arrival < senders_[*found].last_arrival) found = i;
   }

@@ -217,7 +217,7 @@ void NodeReceiver::add_clock(NodeStatus& status, const StreamClock& clock) {
   status.drift = drift.mean;
   status.drift_deviation = drift.deviation;
   if (const auto floor = piece->floors().window(0)) {
-    status.round_trip = Duration{static_cast<std::int64_t>(floor->round_trip * 1e9)};
+    status.round_trip = from_seconds(floor->round_trip);
   }
 }
 

@@ -41,7 +41,7 @@ class NodeReceiver {
   /// Reads and answers the waiting datagrams, a few hundred per socket at most.
   void drain();
   /// Datagrams since the port was opened, of any kind.
-  std::uint64_t heard() const { return datagrams_; }
+  std::uint64_t received() const { return datagrams_; }
   /// Call about four times a second. It finds silent nodes and reads the host's clocks.
   void tick();
 

@@ -42,6 +42,7 @@ DiskThread::~DiskThread() {
 
 // The standard library throws if the system has no thread. The exception ends here.
 Result<void> DiskThread::start() {
+  if (writer_.joinable()) return {};
   try {
     syncer_ = std::thread([this] { sync(); });
     writer_ = std::thread([this] { write(); });

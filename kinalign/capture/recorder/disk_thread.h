@@ -47,8 +47,8 @@ class DiskThread {
   DiskThread(const DiskThread&) = delete;
   DiskThread& operator=(const DiskThread&) = delete;
 
-  /// Starts the threads. Chunks pushed before that wait. Fails if the system has no thread
-  /// available; it may then be called again.
+  /// Starts the threads unless they run already. Chunks pushed before that wait. Fails if the
+  /// system has no thread available; it may then be called again.
   Result<void> start();
 
   /// Queues a chunk without blocking. `room`: limit on the waiting bytes. A chunk that exceeds it

@@ -19,8 +19,8 @@ class FindingsOnce {
   static constexpr std::size_t most = 256;
 
   void add(const std::string& host, Finding finding) {
-    if (told_.size() >= most) return;
-    const bool fresh = told_.insert(host + finding.what.expected + finding.meaning).second;
+    if (reported_.size() >= most) return;
+    const bool fresh = reported_.insert(host + finding.what.expected + finding.meaning).second;
     if (fresh) fresh_.push_back(std::move(finding));
   }
   /// Findings since the previous call.
@@ -28,7 +28,7 @@ class FindingsOnce {
 
  private:
   Findings fresh_;
-  std::set<std::string> told_;
+  std::set<std::string> reported_;
 };
 
 }  // namespace kinalign

@@ -29,16 +29,16 @@ std::uint64_t no_frames(const NodeCounts& counts) {
 }  // namespace
 
 Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& device,
-                                                           const NodeResponderOptions& desk,
+                                                           const NodeResponderOptions& responder,
                                                            ClockReader& clocks,
                                                            Recorder& recorder) {
   NodeReceiverOptions options;
   if (!device.address.empty()) options.addresses = {device.address};
   options.port = static_cast<std::uint16_t>(device.port);
-  options.responder = desk;
+  options.responder = responder;
   NodeReceiver receiver = KA_TRY(with_name(device.name, NodeReceiver::open(options, clocks)));
   return std::unique_ptr<RecordedNodes>(
-      new RecordedNodes(device, desk.lab_key.has_value(), std::move(receiver), recorder));
+      new RecordedNodes(device, responder.lab_key.has_value(), std::move(receiver), recorder));
 }
 
 RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver,
@@ -47,31 +47,32 @@ RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver rece
       keyed_(keyed),
       receiver_(std::move(receiver)),
       recorder_(recorder) {
-  receiver_.watch([this](const NodeArrival& arrival, const NodeMessage& news, LiveClock*) {
-    take(arrival, news);
+  receiver_.watch([this](const NodeArrival& arrival, const NodeMessage& message, LiveClock*) {
+    take(arrival, message);
   });
 }
 
 // The raw bytes are recorded for every node with a channel, whatever the verdict.
-void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& news) {
-  const bool has_room = nodes_.size() < most_nodes && (keyed_ || !is_limited(news.verdict));
-  if (!has_room && !nodes_.contains(news.node_id)) {
-    ++crowded_;
+void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& message) {
+  const bool has_room = nodes_.size() < most_nodes && (keyed_ || !is_limited(message.verdict));
+  if (!has_room && !nodes_.contains(message.node_id)) {
+    ++without_channel_;
     return;
   }
-  Node& node = node_of(news.node_id, arrival.from);
+  Node& node = node_of(message.node_id, arrival.from);
   // The exchange comes before the raw datagram. Both have the same arrival.
   std::optional<std::uint64_t> device_ns;
-  if (news.exchange) {
-    device_ns = static_cast<std::uint64_t>(news.exchange->n_tx.time_since_epoch().count());
-    recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.exchange}),
+  if (message.exchange) {
+    device_ns = static_cast<std::uint64_t>(message.exchange->n_tx.time_since_epoch().count());
+    recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *message.exchange}),
                      device_ns);
   }
-  if (news.clockless) {
-    recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.clockless}));
+  if (message.clockless) {
+    recorder_.record(node.exchanges, arrival.h_rx,
+                     to_bytes({receiver_.epoch(), *message.clockless}));
   }
   bytes_ += arrival.bytes.size();
-  judge(node, news);
+  judge(node, message);
   node.raw.record(recorder_, arrival.h_rx, text_of(arrival.bytes), device_ns);
 }
 
@@ -97,10 +98,10 @@ RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress&
 }
 
 /// Counts a datagram by its verdict. A held datagram counts only as a message: it may belong to the
-/// node's next life, or be a recording played back.
-void RecordedNodes::judge(Node& node, const NodeMessage& news) {
+/// node's next session, or be a recording played back.
+void RecordedNodes::judge(Node& node, const NodeMessage& message) {
   SenderCounts& counts = node.raw.status.counts;
-  switch (news.verdict) {
+  switch (message.verdict) {
     case NodeVerdict::accepted:
       break;
     case NodeVerdict::held:
@@ -117,12 +118,12 @@ void RecordedNodes::judge(Node& node, const NodeMessage& news) {
       return;
   }
   ++counts.frames;
-  node.raw.status.samples += news.readings.size();
-  if (!news.exchange) return;
-  const BootKey before = std::exchange(node.boot, news.exchange->boot);
+  node.raw.status.samples += message.readings.size();
+  if (!message.exchange) return;
+  const BootKey before = std::exchange(node.boot, message.exchange->boot);
   // The first frame is no restart, although the boot differs from the initial 0.
   if (before != node.boot && counts.frames > 1) ++counts.order.restarts;
-  if (news.late) ++counts.order.late;
+  if (message.late) ++counts.order.late;
 }
 
 void RecordedNodes::look(HostTime now) {
@@ -149,20 +150,18 @@ void RecordedNodes::find_foreign() {
                  "see which port and protocol each device sends to"});
 }
 
-void RecordedNodes::remember(std::uint64_t chunk, std::uint64_t first) {
-  count_lost();
-  for (auto& [id, node] : nodes_) node.raw.remember(chunk, first);
-}
-
-// A node may have several streams of the receiver. Losses of earlier lives are kept in `before`.
+// A node may have several streams of the receiver. Losses of earlier sessions are kept in
+// `before`.
 void RecordedNodes::count_lost() {
   for (const NodeStatus& status : receiver_.status()) {
     const auto found = nodes_.find(status.node_id);
     if (found == nodes_.end()) continue;
     Lost& lost = found->second.lost[status.stream];
-    // The receiver counts losses of the present life only, so the sum so far is kept when a new
-    // life begins.
-    if (std::exchange(lost.lives, status.sessions) != status.sessions) lost.before += lost.present;
+    // The receiver counts losses of the present session only, so the sum so far is kept when a new
+    // session begins.
+    if (std::exchange(lost.sessions, status.sessions) != status.sessions) {
+      lost.before += lost.present;
+    }
     lost.present = status.lost;
     StreamStatus& stream = found->second.raw.status;
     if (status.battery_mv) stream.battery_volts = 1e-3 * *status.battery_mv;
@@ -175,14 +174,6 @@ void RecordedNodes::count_lost() {
   }
 }
 
-void RecordedNodes::begin(std::uint64_t chunk) {
-  for (auto& [id, node] : nodes_) node.raw.begin(chunk);
-}
-
-void RecordedNodes::record_counts(std::uint16_t counts, HostTime now) const {
-  for (const auto& [id, node] : nodes_) node.raw.record_counts(recorder_, counts, now);
-}
-
 // Datagrams that the filter in the kernel drops do not arrive where the system has such a filter.
 // They count as dropped, with and without it.
 PortCounts RecordedNodes::counts() const {
@@ -191,14 +182,15 @@ PortCounts RecordedNodes::counts() const {
   out.pieces = counts.verdicts.total() - no_frames(counts);
   out.bytes = bytes_;
   out.refused = counts.verdicts[NodeVerdict::refused] - no_frames(counts) +
-                receiver_.not_unicast() + receiver_.from_port_0() + crowded_;
+                receiver_.not_unicast() + receiver_.from_port_0() + without_channel_;
   out.dropped = receiver_.dropped() + no_frames(counts);
   out.sifted = true;
   return out;
 }
 
-void RecordedNodes::add_streams(std::vector<StreamStatus>& all) const {
-  for (const auto& [id, node] : nodes_) all.push_back(node.raw.of_take());
+void RecordedNodes::add_streams(std::vector<StreamStatus>& all) {
+  count_lost();
+  for (const auto& [id, node] : nodes_) all.push_back(node.raw.status);
 }
 
 }  // namespace kinalign

@@ -23,53 +23,48 @@ class RecordedNodes {
  public:
   /// `clocks` and `recorder` must outlive the object.
   static Result<std::unique_ptr<RecordedNodes>> open(const DeviceOptions& device,
-                                                     const NodeResponderOptions& desk,
+                                                     const NodeResponderOptions& responder,
                                                      ClockReader& clocks, Recorder& recorder);
   RecordedNodes(const RecordedNodes&) = delete;
   RecordedNodes& operator=(const RecordedNodes&) = delete;
   ~RecordedNodes() = default;
 
-  /// See RecordedPort.
+  /// These functions are like those of RecordedPort.
   void drain() { receiver_.drain(); }
 
   NodeReceiver& receiver() { return receiver_; }
   const NodeReceiver& receiver() const { return receiver_; }
-  /// See RecordedSource; each call applies to every node.
   void look(HostTime now);
-  void remember(std::uint64_t chunk, std::uint64_t first);
-  void begin(std::uint64_t chunk);
-  void record_counts(std::uint16_t counts, HostTime now) const;
 
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const { return receiver_.sockets().front().port(); }
   PortCounts counts() const;
   /// Call once a second. Checks whether other devices than nodes send to this port.
   void find_foreign();
-  /// See RecordedPort.
   Findings take_findings() { return findings_.take(); }
-  void add_streams(std::vector<StreamStatus>& all) const;
+  void add_streams(std::vector<StreamStatus>& all);
 
  private:
-  /// Frames that one stream of the receiver lost: in its present life, and in all earlier ones.
+  /// Frames that one stream of the receiver lost: in its present session, and in all earlier ones.
   struct Lost {
-    std::uint64_t lives = 0, present = 0, before = 0;
+    std::uint64_t sessions = 0, present = 0, before = 0;
   };
   /// One node id. Two nodes with the same id share its two channels.
   struct Node {
     RecordedSource raw;
     std::uint16_t exchanges = 0;  // channel of the clock exchanges
-    BootKey boot = 0;             // life of the newest frame
+    BootKey boot = 0;             // session of the newest frame
     // By stream of the receiver.
     std::map<std::size_t, Lost> lost{};
   };
 
   RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver, Recorder& recorder);
   /// Called by the receiver for each datagram that passed the checks of port and key.
-  void take(const NodeArrival& arrival, const NodeMessage& news);
+  void take(const NodeArrival& arrival, const NodeMessage& message);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
   /// `judge` counts by verdict, at once. `count_lost` reads losses from the receiver, when counts
   /// are looked at.
-  static void judge(Node& node, const NodeMessage& news);
+  static void judge(Node& node, const NodeMessage& message);
   void count_lost();
 
   DeviceOptions device_;
@@ -78,8 +73,8 @@ class RecordedNodes {
   Recorder& recorder_;
   std::map<std::uint32_t, Node> nodes_;
   std::uint64_t bytes_ = 0;
-  std::uint64_t crowded_ = 0;  // datagrams of nodes that got no channel
-  std::uint64_t dropped_ = 0;  // dropped datagrams at the last call of find_foreign()
+  std::uint64_t without_channel_ = 0;  // datagrams of nodes that got no channel
+  std::uint64_t dropped_ = 0;          // dropped datagrams at the last call of find_foreign()
   FindingsOnce findings_;
 };
 

@@ -50,7 +50,7 @@ RecordedPort::RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pi
       kinect_responder_ = std::make_unique<KinectResponder>(secret);
       break;
     case Answers::tracker_handshakes:
-      slimes_ = std::make_unique<SlimeDesk>(secret);
+      slime_responder_ = std::make_unique<SlimeResponder>(secret);
       break;
     case Answers::node_requests:  // RecordedNodes answers these
     case Answers::none:
@@ -70,30 +70,26 @@ void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
 /// Answers are sent before anything is recorded, because work in between would delay one direction
 /// only.
 void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
-  Source& source = source_of(sender_of(piece), piece.sender, recorder);
+  Source& source = source_of(piece, recorder);
   source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
   if (kinect_responder_) answer_pings(source, piece, axis, recorder);
-  if (slimes_) answer_trackers(source, piece);
+  if (slime_responder_) answer_trackers(source, piece);
   source.recorded.record(recorder, piece.arrival, piece.bytes);
 }
 
-const Senders::Sender& RecordedPort::sender_of(const Piece& piece) const {
-  const auto at = [&](const auto& pieces) -> const Senders::Sender& {
-    return pieces.senders().at(piece.sender);
-  };
-  return std::visit(at, pieces_);
-}
-
 /// A new sender gets its own channel, also if it takes the number of a sender that fell silent.
-RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std::size_t number,
-                                              Recorder& recorder) {
-  const bool is_shared = sender.life > Senders::most_lives;
+RecordedPort::Source& RecordedPort::source_of(const Piece& piece, Recorder& recorder) {
+  const std::size_t number = piece.sender;
+  const Senders& senders =
+      std::visit([](const auto& pieces) -> const Senders& { return pieces.senders(); }, pieces_);
+  const Senders::Sender& sender = senders.at(number);
+  const bool is_shared = sender.serial > Senders::most_serials;
   if (sources_.size() <= number) sources_.resize(number + 1);
   // The number now stands for several senders, so it has no source of its own.
   if (is_shared) sources_[number].reset();
   std::optional<Source>& source = is_shared ? others_ : sources_[number];
   const NodeAddress address{sender.host, sender.port};
-  if (source && source->life == sender.life) {
+  if (source && source->serial == sender.serial) {
     source->address = address;
     return *source;
   }
@@ -104,17 +100,17 @@ RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std
                        "",
                        ""};
   // The old source of this number ends here. Its channel stays in the recording.
-  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw), raw,
-                        StreamWatch(protocol_->protocol, has_datagrams(), raw.sender), sender.life,
-                        address});
+  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.serial), raw), raw,
+                        StreamWatch(protocol_->protocol, has_datagrams(), raw.sender),
+                        sender.serial, address});
   return *source;
 }
 
 /// Returns "/kinect/raw" for the first sender of the port, "/kinect/raw/2" for the next one.
-std::string RecordedPort::topic(const char* content, std::uint64_t life) const {
+std::string RecordedPort::topic(const char* content, std::uint64_t serial) const {
   const std::string first = "/" + device_.name + "/" + content;
-  if (life > Senders::most_lives) return first + "/others";
-  return life == 1 ? first : first + "/" + std::to_string(life);
+  if (serial > Senders::most_serials) return first + "/others";
+  return serial == 1 ? first : first + "/" + std::to_string(serial);
 }
 
 void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& axis,
@@ -138,7 +134,7 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
     // The channel is added with the first ping, because a sender may send none.
     if (!source.exchanges) {
       source.clock = std::make_unique<FollowedClock>();
-      McapChannel channel = to_channel(topic("exchange", source.life), source.raw);
+      McapChannel channel = to_channel(topic("exchange", source.serial), source.raw);
       channel.message_encoding = exchange_encoding;
       source.exchanges = recorder.add_channel(std::move(channel));
     }
@@ -154,10 +150,11 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
 /// A tracker that sends a handshake starts new counts, also at an address that another tracker had.
 void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
   look_at(source);
-  const SlimeNews news = slimes_->receive({octets(piece.bytes), source.address, piece.arrival});
-  ++source.verdicts[news.verdict];
-  if (news.spoke) ++source.spoken;
-  if (news.counts_anew) source.greeted = source.recorded.status.counts.order;
+  const SlimeResult result =
+      slime_responder_->receive({octets(piece.bytes), source.address, piece.arrival});
+  ++source.verdicts[result.verdict];
+  if (result.has_packet) ++source.tracker_packets;
+  if (result.restarts_counts) source.counts_before_handshake = source.recorded.status.counts.order;
   send_answers();
 }
 
@@ -166,63 +163,48 @@ void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
 void RecordedPort::send_answers() {
   auto* udp = std::get_if<UdpPieces>(&pieces_);  // trackers use UDP only
   if (udp == nullptr) return;
-  for (const SlimeSending& sending : slimes_->take_sendings()) {
+  for (const SlimeSending& sending : slime_responder_->take_sendings()) {
     udp->send_to(sending.to.host, sending.to.port, sending.answer.datagram());
   }
 }
 
 // Only trackers expect messages that they did not ask for.
 void RecordedPort::tick(HostTime now) {
-  if (!slimes_) return;
-  slimes_->tick(now);
+  if (!slime_responder_) return;
+  slime_responder_->tick(now);
   send_answers();
 }
 
-template <class Port, class Visit>
-void RecordedPort::for_each_source(Port& port, Visit visit) {
-  for (auto& source : port.sources_) {
+template <class Visit>
+void RecordedPort::for_each_source(Visit visit) {
+  for (auto& source : sources_) {
     if (source) visit(*source);
   }
-  if (port.others_) visit(*port.others_);
+  if (others_) visit(*others_);
 }
 
 void RecordedPort::look(HostTime now) {
-  for_each_source(*this, [&](Source& source) {
+  for_each_source([&](Source& source) {
     look_at(source);
     find_faults(source);
     source.recorded.take_rate(now);
   });
 }
 
-void RecordedPort::remember(std::uint64_t chunk, std::uint64_t first) {
-  for_each_source(*this, [&](Source& source) {
-    look_at(source);
-    source.recorded.remember(chunk, first);
-  });
-}
-
-void RecordedPort::begin(std::uint64_t chunk) {
-  for_each_source(*this, [&](Source& source) { source.recorded.begin(chunk); });
-}
-
-void RecordedPort::record_counts(Recorder& recorder, std::uint16_t counts, HostTime now) const {
-  for_each_source(
-      *this, [&](const Source& source) { source.recorded.record_counts(recorder, counts, now); });
-}
-
 /// Updates the status of a sender except its messages and bytes.
 void RecordedPort::look_at(Source& source) const {
   SenderCounts& counts = source.recorded.status.counts;
   const SenderCounts watched = source.watch.counts();
-  // Trackers are decoded by SlimeDesk, all others by the watch; the other number is 0.
-  counts.frames = watched.frames + source.spoken;
-  if (!slimes_) counts.order = watched.order;
+  // Trackers are decoded by SlimeResponder, all others by the watch; the other number is 0.
+  counts.frames = watched.frames + source.tracker_packets;
+  if (!slime_responder_) counts.order = watched.order;
   counts.refused = watched.refused + refused(source.verdicts) + source.pings_refused;
   if (source.clock) source.recorded.status.clock = source.clock->now();
-  const SlimeDevice* tracker = slimes_ ? slimes_->device_at(source.address) : nullptr;
+  const SlimeDevice* tracker =
+      slime_responder_ ? slime_responder_->device_at(source.address) : nullptr;
   // the tracker has another address now; this address keeps its counts
   if (tracker == nullptr) return;
-  counts.order = source.greeted;
+  counts.order = source.counts_before_handshake;
   counts.order += tracker->numbers.counts();
   if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
 }
@@ -256,12 +238,15 @@ PortCounts RecordedPort::counts() const {
   return std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
 }
 
-std::uint64_t RecordedPort::heard() const {
-  return std::visit([](const auto& pieces) { return pieces.heard(); }, pieces_);
+std::uint64_t RecordedPort::received() const {
+  return std::visit([](const auto& pieces) { return pieces.received(); }, pieces_);
 }
 
-void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {
-  for_each_source(*this, [&](const Source& source) { all.push_back(source.recorded.of_take()); });
+void RecordedPort::add_streams(std::vector<StreamStatus>& all) {
+  for_each_source([&](Source& source) {
+    look_at(source);
+    all.push_back(source.recorded.status);
+  });
 }
 
 }  // namespace kinalign

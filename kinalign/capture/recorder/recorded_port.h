@@ -8,7 +8,7 @@
 #include "kinalign/capture/recorder/findings_once.h"
 #include "kinalign/capture/recorder/kinect_responder.h"
 #include "kinalign/capture/recorder/recorded_source.h"
-#include "kinalign/capture/recorder/slimevr_desk.h"
+#include "kinalign/capture/recorder/slimevr_responder.h"
 #include "kinalign/capture/recorder/stream_watch.h"
 #include "kinalign/protocols/protocols.h"
 #include "kinalign/take/lab.h"
@@ -35,38 +35,36 @@ class RecordedPort {
   void drain(HostAxis& axis, Recorder& recorder);
   /// Call about ten times a second. Sends messages that are due without a request.
   void tick(HostTime now);
-  /// See RecordedSource; these apply to each sender. look() also looks for faults; call it once a
-  /// second.
+  /// Call once a second. Updates the senders' rates, and looks for faults of the senders.
   void look(HostTime now);
-  void remember(std::uint64_t chunk, std::uint64_t first);
-  void begin(std::uint64_t chunk);
-  void record_counts(Recorder& recorder, std::uint16_t counts, HostTime now) const;
 
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const;
   PortCounts counts() const;
   /// Pieces since the port was opened, including refused ones.
-  std::uint64_t heard() const;
-  void add_streams(std::vector<StreamStatus>& all) const;
+  std::uint64_t received() const;
+  /// Appends the status of each sender, with counts since its first message.
+  void add_streams(std::vector<StreamStatus>& all);
   /// Findings about senders since the previous call. Each fault of a host is reported once.
   Findings take_findings() { return findings_.take(); }
 
  private:
   using Pieces = std::variant<UdpPieces, TcpPieces>;
   /// Everything about one sender that has a channel. It is made with the sender's first piece and
-  /// replaced when the sender's number gets another life.
+  /// replaced when the sender's number gets another sender.
   struct Source {
     RecordedSource recorded;
     RawChannel raw;
     StreamWatch watch;
-    std::uint64_t life = 0;  // the sender's life, see Senders
-    NodeAddress address;     // address of the newest piece
+    std::uint64_t serial = 0;  // see Senders
+    NodeAddress address;       // address of the newest piece
     // channel of the clock exchanges; absent before the first ping
     std::optional<std::uint16_t> exchanges{};
     std::unique_ptr<FollowedClock> clock{};  // absent before the first ping
-    SequenceCounts greeted{};  // SlimeVR: counts of this address up to its newest handshake
-    SlimeVerdicts verdicts{};  // SlimeVR: datagrams by verdict
-    std::uint64_t spoken = 0;  // SlimeVR: datagrams that contain a packet of a tracker
+    SequenceCounts
+        counts_before_handshake{};  // SlimeVR: counts of this address up to its newest handshake
+    SlimeVerdicts verdicts{};       // SlimeVR: datagrams by verdict
+    std::uint64_t tracker_packets = 0;  // SlimeVR: datagrams that contain a packet of a tracker
     std::uint64_t pings_refused = 0;
   };
 
@@ -74,15 +72,14 @@ class RecordedPort {
                const SipHashKey& secret);
   static Result<Pieces> open_pieces(const DeviceOptions& device);
   void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
-  const Senders::Sender& sender_of(const Piece& piece) const;
-  Source& source_of(const Senders::Sender& sender, std::size_t number, Recorder& recorder);
-  std::string topic(const char* content, std::uint64_t life) const;
+  Source& source_of(const Piece& piece, Recorder& recorder);
+  std::string topic(const char* content, std::uint64_t serial) const;
   /// Each answering function is used for one protocol only. Both send through the port itself.
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
   void answer_trackers(Source& source, const Piece& piece);
   void send_answers();
-  template <class Port, class Visit>
-  static void for_each_source(Port& port, Visit visit);
+  template <class Visit>
+  void for_each_source(Visit visit);
   /// `look_at` brings the counts up to date; `find_faults` makes findings of them.
   void look_at(Source& source) const;
   void find_faults(const Source& source);
@@ -93,10 +90,10 @@ class RecordedPort {
   const ProtocolRow* protocol_;
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // indexed by the sender's number
-  std::optional<Source> others_;                // shared by senders beyond Senders::most_lives
+  std::optional<Source> others_;                // shared by senders beyond Senders::most_serials
   NewestKinectFrames newest_frames_;
   FindingsOnce findings_;
-  std::unique_ptr<SlimeDesk> slimes_;
+  std::unique_ptr<SlimeResponder> slime_responder_;
   std::unique_ptr<KinectResponder> kinect_responder_;
 };
 

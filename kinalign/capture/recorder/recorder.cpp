@@ -33,10 +33,6 @@ std::uint16_t Recorder::schema_id(const McapSchema& schema) {
   return schemas_.back().id = static_cast<std::uint16_t>(schemas_.size());
 }
 
-std::uint64_t Recorder::log_time(HostTime t) const {
-  return static_cast<std::uint64_t>((t.time_since_epoch() + options_.utc_minus_host).count());
-}
-
 // A chunk must be readable alone, so it contains the definitions of its channels.
 void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view data,
                       std::optional<std::uint64_t> device_ns) {
@@ -50,7 +46,8 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
     chunk_.add(channel.channel);
     channel.in_chunk = true;
   }
-  const std::uint64_t log = log_time(arrival);
+  const auto log =
+      static_cast<std::uint64_t>((arrival.time_since_epoch() + options_.utc_minus_host).count());
   // The sequence counts all messages of a channel, also before takes, so gaps between takes show in
   // it.
   const McapMessage message{number, static_cast<std::uint32_t>(channel.messages++), log,

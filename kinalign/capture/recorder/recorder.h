@@ -67,10 +67,6 @@ class Recorder {
                                       const McapMessage& message)>;
   void when_recorded(Recorded recorded) { recorded_ = std::move(recorded); }
 
-  /// Messages on a channel since it was added, also before takes.
-  std::uint64_t messages(std::uint16_t channel) const { return channels_[channel].messages; }
-  std::uint64_t log_time(HostTime t) const;
-
  private:
   /// [i] of `channels_` has the number i.
   struct Channel {
@@ -78,10 +74,10 @@ class Recorder {
     std::uint64_t messages = 0;
     bool in_chunk = false;  // the open chunk contains the channel's definition
   };
-  /// `close` ends the open chunk; `forget_before` shortens the pre-roll.
   std::uint16_t schema_id(const McapSchema& schema);
+  /// `close` ends the open chunk; `forget_before` shortens the pre-roll.
   void close();
-  void forget_before(HostTime now);
+  void forget_before(HostTime first);
 
   RecorderOptions options_;
   std::vector<McapSchema> schemas_;           // [i] has the id i + 1

@@ -130,10 +130,10 @@ void RecordingDisk::give_up_part() {
 
 /// Continues in a new file. The failure is reported once, and again when a new file accepts data.
 Result<void> RecordingDisk::next_part(const Error& why) {
-  const bool told = std::exchange(given_up_, given_up_.value_or(why)).has_value();
+  const bool reported = std::exchange(given_up_, given_up_.value_or(why)).has_value();
   give_up_part();
   Result<void> result = put_kept();
-  if (!result && !told) failures_.push_back({why, ""});
+  if (!result && !reported) failures_.push_back({why, ""});
   return result;
 }
 
@@ -196,11 +196,11 @@ Result<void> RecordingDisk::finish(const McapMetadata& end) {
   Result<void> result = finish_once(end);
   if (result) return result;
   // A caller may call finish() every second; the failure is reported by the first call only.
-  const auto told = static_cast<std::ptrdiff_t>(failures_.size());
+  const std::size_t reported = failures_.size();
   result = next_part(result.error());
   if (result) result = finish_once(end);
   if (!result) give_up_part();
-  if (std::exchange(end_told_, true)) failures_.erase(failures_.begin() + told, failures_.end());
+  if (std::exchange(end_reported_, true)) failures_.resize(reported);
   return result;
 }
 

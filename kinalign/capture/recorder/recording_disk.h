@@ -99,7 +99,6 @@ class RecordingDisk {
   std::deque<Kept> kept_;
   // bytes_before_: bytes of earlier files.
   std::uint64_t kept_bytes_ = 0, bytes_before_ = 0;
-  // A file whose chunks the next file repeats.
   // A file that no sync has confirmed. It is kept only until another file has all its chunks.
   struct Repeated {
     std::string path;
@@ -107,7 +106,7 @@ class RecordingDisk {
     std::uint64_t bytes = 0;
   };
   std::optional<Repeated> repeated_;  // removed as soon as the next file has all its chunks
-  bool end_told_ = false;             // a failed finish() was reported
+  bool end_reported_ = false;         // a failed finish() was reported
   std::optional<Error> given_up_;  // the reason for giving up a file, until the recording continues
   std::vector<PartFailure> failures_;
 };

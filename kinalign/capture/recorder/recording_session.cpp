@@ -17,6 +17,42 @@ namespace {
 constexpr Duration between_looks = std::chrono::milliseconds(100);
 constexpr std::size_t most_untaken = 256;  // marks kept for take_marks()
 
+/// The MCAP header of each file of a take, and of each live stream.
+McapHeader recording_header() {
+  return {std::string(recording_profile), "kinalign " KINALIGN_VERSION};
+}
+
+/// Opens a take's file on the disk's thread. It owns all data that it needs.
+struct TakeFiles {
+  FileSystem* files;
+  std::function<std::string()> free_path;
+  RecordingFacts facts;
+  ExpectedDevices expected;
+  std::vector<McapAttachment> attachments;
+
+  // If the same path is still free, the failure has another cause than a taken name.
+  Result<RecordingDisk> operator()() {
+    constexpr int most_tries = 100;  // a disk may accept names but no files
+    std::string path = free_path();
+    for (int tries = 1;; ++tries) {
+      Result<RecordingDisk> opened = open(path);
+      const std::string next = opened ? path : free_path();
+      if (next == path || tries == most_tries) return opened;
+      path = next;  // another recorder has taken the name in the meantime
+    }
+  }
+  // Each file gets a copy of the head, because each file must be readable alone.
+  Result<RecordingDisk> open(const std::string& path) {
+    facts.first = std::string(file_name(path));
+    return RecordingDisk::open(*files, path, [head = *this](int part) mutable -> RecordingHead {
+      head.facts.part = part;
+      return {recording_header(),
+              {to_metadata(head.facts), to_metadata(head.expected)},
+              head.attachments};
+    });
+  }
+};
+
 std::vector<McapAttachment> attachments_of(const RecordingSession::Options& options, Time at) {
   const auto utc = static_cast<std::uint64_t>(to_ns(at));
   std::vector<McapAttachment> all;
@@ -54,11 +90,6 @@ SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   return key;
 }
 
-// Options are in seconds, durations in ns.
-Duration pre_roll_of(const Lab& lab) {
-  return Duration{static_cast<std::int64_t>(lab.record.pre_roll_s * 1e9)};
-}
-
 }  // namespace
 
 // A session whose ports can't all be opened does not begin: a missing device would show only in the
@@ -73,11 +104,12 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::open(Options options
 // The channels of the session come first, so their numbers are the same in every recording.
 RecordingSession::RecordingSession(Options options, Machine machine)
     : options_(std::move(options)), machine_(machine), axis_(machine.ports_clock) {
+  opened_ = axis_.now();
   facts_.host = options_.host;
   // The pair of clocks that gives UTC to all takes of this session.
   facts_.anchor = axis_.watch();
   RecorderOptions recorder;
-  recorder.pre_roll = pre_roll_of(options_.lab);
+  recorder.pre_roll = from_seconds(options_.lab.record.pre_roll_s);
   recorder.utc_minus_host =
       facts_.anchor.utc.time_since_epoch() - facts_.anchor.raw.time_since_epoch();
   recorder_ = std::make_unique<Recorder>(recorder);
@@ -88,8 +120,14 @@ RecordingSession::RecordingSession(Options options, Machine machine)
   counts_ = add_json(sender_counts_topic, sender_counts_schema());
   port_counts_ = add_json(port_counts_topic, port_counts_schema());
   mark_channel_ = add_json(marks_topic, mark_schema());
-  recorder_->when_closed(
-      [this](std::uint64_t next, std::uint64_t first) { remember_counts(next, first); });
+  recorder_->when_closed([this](std::uint64_t next, std::uint64_t first) {
+    Counts& counts = past_[next];
+    for (const StreamStatus& stream : running_streams()) {
+      counts.senders[stream.topic] = stream.counts;
+    }
+    for (const auto& [name, port] : running_port_counts()) counts.ports[name] = port;
+    past_.erase(past_.begin(), past_.lower_bound(first));
+  });
 }
 
 // A device of protocol nodes gets RecordedNodes, any other device a RecordedPort.
@@ -97,11 +135,12 @@ Result<void> RecordingSession::open_ports() {
   for (const DeviceOptions& device : options_.lab.devices) {
     const auto protocol = find_protocol(device.protocol);
     if (protocol && row_of(*protocol).answers == Answers::node_requests) {
-      nodes_ = KA_TRY(RecordedNodes::open(device, options_.desk, machine_.nodes_clock, *recorder_));
+      nodes_ = KA_TRY(
+          RecordedNodes::open(device, options_.node_responder, machine_.nodes_clock, *recorder_));
     } else {
       const auto number = static_cast<std::uint8_t>(ports_.size());
       ports_.push_back(
-          KA_TRY(RecordedPort::open(device, key_of_port(options_.desk.secret, number))));
+          KA_TRY(RecordedPort::open(device, key_of_port(options_.node_responder.secret, number))));
     }
   }
   if (options_.marks_port) {
@@ -130,8 +169,8 @@ void RecordingSession::end_live() {
 
 // Pieces of all devices, refused ones included. Marks do not count: they are few.
 std::uint64_t RecordingSession::received() const {
-  std::uint64_t all = nodes_ ? nodes_->receiver().heard() : 0;
-  for (const RecordedPort& port : ports_) all += port.heard();
+  std::uint64_t all = nodes_ ? nodes_->receiver().received() : 0;
+  for (const RecordedPort& port : ports_) all += port.received();
   return all;
 }
 
@@ -258,46 +297,39 @@ void RecordingSession::record_counts(HostTime now) {
   for (RecordedPort& port : ports_) port.look(now);
   if (nodes_) nodes_->look(now);
   if (!recording()) return;
-  for (const RecordedPort& port : ports_) port.record_counts(*recorder_, counts_, now);
-  if (nodes_) nodes_->record_counts(counts_, now);
+  for (const StreamStatus& stream : streams()) {
+    // A sender that sent nothing in this take is not in its counts.
+    if (stream.counts.messages == 0) continue;
+    recorder_->record(
+        counts_, now,
+        to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));
+  }
   for (const auto& [name, counts] : port_counts()) {
     recorder_->record(port_counts_, now, to_json(CountedPort{name, counts}));
   }
-}
-
-// Called by the recorder whenever it closes a chunk: a take may begin with any of the chunks that
-// it keeps.
-void RecordingSession::remember_counts(std::uint64_t chunk, std::uint64_t first) {
-  for (RecordedPort& port : ports_) port.remember(chunk, first);
-  if (nodes_) nodes_->remember(chunk, first);
-  for (const auto& [name, counts] : running_port_counts()) {
-    port_counts_past_[name].past.remember(chunk, first, counts);
-  }
-}
-
-// From now on all counts are those of the take that begins with this chunk.
-void RecordingSession::begin_counts(std::uint64_t chunk) {
-  for (RecordedPort& port : ports_) port.begin(chunk);
-  if (nodes_) nodes_->begin(chunk);
-  for (auto& [name, port] : port_counts_past_) port.before = port.past.before(chunk);
 }
 
 /// `at`: begin of the take; the pre-roll reaches back from there.
 void RecordingSession::start(const TakePlan& plan, HostTime at) {
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
-  TakeHead head{facts_, expected_of(options_.lab), attachments_of(options_, facts_.anchor.utc)};
-  const auto take = begin_take(machine_.files, plan, std::move(head), compression);
-  take->begun = at;
+  TakeFiles take_files{&machine_.files, plan.free_path, facts_, expected_of(options_.lab),
+                       attachments_of(options_, facts_.anchor.utc)};
+  take_files.facts.subject = plan.subject;
+  take_files.facts.action = plan.action;
+  const std::shared_ptr<SessionTake> take(
+      new SessionTake{at, std::nullopt, {std::move(take_files), compression}});
   takes_.push_back(take);
   stop_is_due_ = false;
-  begin_counts(recorder_->start(at, [this, take](McapChunkContent chunk) {
+  const std::uint64_t first = recorder_->start(at, [this, take](McapChunkContent chunk) {
     // All takes together share the limit, because a take may begin while another is still being
     // written.
     const std::uint64_t others = waiting_bytes() - take->disk.status().waiting_bytes;
     take->disk.push(std::move(chunk),
                     DiskThread::most_waiting - std::min(others, DiskThread::most_waiting));
-  }));
+  });
+  // From now on all counts are those of the take. Nothing precedes the first chunk of all.
+  before_ = past_[first];
   start_disks();
 }
 
@@ -307,7 +339,7 @@ void RecordingSession::start_disks() {
   for (const auto& take : takes_) {
     const DiskStatus disk = take->disk.status();
     if (disk.finished) continue;
-    if (!take->disk_started) take->disk_started = take->disk.start().has_value();
+    (void)take->disk.start();
     // Later takes wait until this one has its file and so its number.
     if (disk.paths.empty()) return;
   }
@@ -333,8 +365,11 @@ void RecordingSession::end_take_if_due() {
   record_counts(now);
   recorder_->stop();
   SessionTake& take = *takes_.back();
-  take.end = TakeEnd{now, streams(), port_counts(), {}};
-  if (nodes_) take.end->nodes = nodes_->receiver().status();
+  take.end = status();
+  take.end->ended = true;
+  // Senders of earlier takes have no message in this one.
+  std::erase_if(take.end->streams,
+                [](const StreamStatus& one) { return one.counts.messages == 0; });
   take.disk.finish();
 }
 
@@ -344,9 +379,25 @@ std::uint64_t RecordingSession::waiting_bytes() const {
   return all;
 }
 
-std::vector<StreamStatus> RecordingSession::streams() const {
+LabStatus RecordingSession::status() {
+  LabStatus status{now(), opened_, streams(), {}, port_counts()};
+  if (nodes_) status.nodes = nodes_->receiver().status();
+  for (const auto& [name, port] : ports()) status.port_numbers[name] = port;
+  return status;
+}
+
+std::vector<StreamStatus> RecordingSession::streams() {
+  std::vector<StreamStatus> all = running_streams();
+  for (StreamStatus& stream : all) {
+    stream.counts = since(before_.senders[stream.topic], stream.counts);
+  }
+  return all;
+}
+
+// Counts since the session was opened.
+std::vector<StreamStatus> RecordingSession::running_streams() {
   std::vector<StreamStatus> all;
-  for (const RecordedPort& port : ports_) port.add_streams(all);
+  for (RecordedPort& port : ports_) port.add_streams(all);
   if (nodes_) nodes_->add_streams(all);
   return all;
 }
@@ -369,12 +420,9 @@ std::vector<std::pair<std::string, std::uint16_t>> RecordingSession::ports() con
   return all;
 }
 
-std::vector<std::pair<std::string, PortCounts>> RecordingSession::port_counts() const {
+std::vector<std::pair<std::string, PortCounts>> RecordingSession::port_counts() {
   auto all = running_port_counts();
-  for (auto& [name, counts] : all) {
-    const auto past = port_counts_past_.find(name);
-    if (past != port_counts_past_.end()) counts = since(past->second.before, counts);
-  }
+  for (auto& [name, counts] : all) counts = since(before_.ports[name], counts);
   return all;
 }
 

@@ -4,17 +4,19 @@
 #pragma once
 
 #include "kinalign/capture/live/live_port.h"
+#include "kinalign/capture/recorder/disk_thread.h"
+#include "kinalign/capture/recorder/lab_status.h"
 #include "kinalign/capture/recorder/mark_ports.h"
 #include "kinalign/capture/recorder/recorded_nodes.h"
 #include "kinalign/capture/recorder/recorded_port.h"
 #include "kinalign/capture/recorder/recorder.h"
-#include "kinalign/capture/recorder/session_take.h"
 #include "kinalign/recording/counts.h"
 #include "kinalign/recording/format.h"
 #include "kinalign/take/lab.h"
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,6 +25,24 @@
 #include <vector>
 
 namespace kinalign {
+
+/// A mark and its arrival.
+using ReceivedMark = std::pair<RecordedMark, HostTime>;
+
+struct TakePlan {
+  /// Returns a path that ends in .mcap and does not exist yet. It is called on the disk's thread,
+  /// where it may take long. It is called again if another recorder has taken the name.
+  std::function<std::string()> free_path;
+  std::string subject{}, action{};
+};
+
+/// A take of a session: its file and its result. The session keeps it until release_take(), and the
+/// recorder while the take is in progress. Its destructor waits for the disk's threads.
+struct SessionTake {
+  HostTime begun{};
+  std::optional<LabStatus> end;  // absent: the take is in progress
+  DiskThread disk;
+};
 
 /// One thread calls all functions. Everything that may wait is on the threads of the takes' disks.
 class RecordingSession {
@@ -33,7 +53,7 @@ class RecordingSession {
     // by stream: the head of a BVH file, stored in each file
     std::map<std::string, std::string> skeletons;
     // options of the nodes' port; the keys of other ports come from its secret
-    NodeResponderOptions desk;
+    NodeResponderOptions node_responder;
     std::string host;                                       // the machine's name
     std::optional<std::uint16_t> marks_port, trigger_port;  // absent: no such port
     std::optional<std::uint16_t> live_port;                 // absent: no live port
@@ -79,16 +99,18 @@ class RecordingSession {
   /// Marks since the previous call, 256 at most.
   std::vector<ReceivedMark> take_marks() { return std::exchange(marks_, {}); }
 
-  std::vector<StreamStatus> streams() const;
+  /// The status of the lab, with counts of the present or last take. Before the first take they
+  /// count from the opening.
+  LabStatus status();
+  /// These are parts of the status.
+  std::vector<StreamStatus> streams();
+  std::vector<std::pair<std::string, PortCounts>> port_counts();
   /// Findings about the devices' data, each once. They are looked for once a second.
   Findings take_findings();
   /// Events of the host's clocks since the previous call.
   std::vector<HostClockEvent> take_clock_events() { return axis_.take_events(); }
   /// The port of each device, by the device's name; also of "marks" and "trigger".
   std::vector<std::pair<std::string, std::uint16_t>> ports() const;
-  /// Counts by name as in ports(), for the present or last take. Before the first take they count
-  /// from the opening.
-  std::vector<std::pair<std::string, PortCounts>> port_counts() const;
   const std::vector<MarkPort>& mark_ports() const { return mark_ports_; }
   /// The live port. nullptr if the options ask for none.
   const LivePort* live() const { return live_ ? &*live_ : nullptr; }
@@ -116,15 +138,14 @@ class RecordingSession {
   void start_disks();
   void tick(HostTime now);
   void record_counts(HostTime now);
-  void remember_counts(std::uint64_t chunk, std::uint64_t first);
-  void begin_counts(std::uint64_t chunk);
   void start(const TakePlan& plan, HostTime at);
+  std::vector<StreamStatus> running_streams();
   std::vector<std::pair<std::string, PortCounts>> running_port_counts() const;
 
-  /// Counts of one port, so that a take has its own.
-  struct PortPast {
-    PastCounts<PortCounts> past;
-    PortCounts before{};  // counts before the take
+  /// Counts since the opening at one moment: of senders by topic, of ports by name.
+  struct Counts {
+    std::map<std::string, SenderCounts> senders;
+    std::map<std::string, PortCounts> ports;
   };
 
   /// The takes that marks begin all follow one plan.
@@ -146,8 +167,12 @@ class RecordingSession {
   std::vector<ReceivedMark> marks_;
   std::uint16_t pairs_ = 0, counts_ = 0, port_counts_ = 0, mark_channel_ = 0;
   RecordingFacts facts_;
+  HostTime opened_{};
   HostTime next_second_ = HostTime::min(), next_look_ = HostTime::min();
-  std::map<std::string, PortPast> port_counts_past_;
+  /// The counts before each chunk with which a take may begin, by the chunk's number. A take begins
+  /// with the chunks of its pre-roll, so its counts begin with the values before these chunks.
+  std::map<std::uint64_t, Counts> past_;
+  Counts before_;                      // counts before the take
   std::uint64_t received_before_ = 0;  // received() at the last turn
   // No rest before this time, because of a flood.
   HostTime awake_until_ = HostTime::min();

@@ -21,10 +21,8 @@ std::uint64_t sum(const Refused& refused) {
 
 /// Refused messages and skipped bytes. The sum increases with each piece that cannot be read
 /// completely.
-std::uint64_t trouble(const NoitomCounts& counts) {
-  return sum(counts.refused) + counts.bytes_skipped;
-}
-std::uint64_t trouble(const XsensCounts& counts) {
+template <class Counts>
+std::uint64_t trouble(const Counts& counts) {
   return sum(counts.refused) + counts.bytes_skipped;
 }
 std::uint64_t trouble(const KinectStreamCounts& counts) {
@@ -48,7 +46,7 @@ StreamWatch::StreamWatch(Protocol protocol, bool datagrams, const std::string& s
       break;
     }
     case Protocol::nodes:    // RecordedNodes decodes these
-    case Protocol::slimevr:  // SlimeDesk decodes these
+    case Protocol::slimevr:  // SlimeResponder decodes these
       break;
   }
 }

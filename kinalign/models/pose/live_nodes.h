@@ -32,7 +32,7 @@ class LiveNodes {
   /// A node without a sample for longer than this is not waited for.
   static constexpr Duration silence = std::chrono::seconds(1);
   /// A frame needs samples up to this long after it, because its acceleration is their mean.
-  static constexpr Duration reach{static_cast<std::int64_t>(acceleration_within_s * 1e9)};
+  static constexpr Duration reach = from_seconds(acceleration_within_s);
 
   LiveNodes(std::size_t nodes, double rate_hz);
 

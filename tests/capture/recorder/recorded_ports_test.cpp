@@ -364,7 +364,7 @@ TEST_CASE(
     "what a node sends stands in the file, held, doubled and late frames too; exchanges are "
     "those of frames that were taken") {
   RecordingSession::Options options;
-  options.desk.lab_key = LabKey{7};
+  options.node_responder.lab_key = LabKey{7};
   options.lab.devices = {*parse_device("imu=nodes:udp:127.0.0.1:0")};
   options.lab.devices.front().nodes = {{"7", "waist"}};
   LiveSession live({}, options);

@@ -77,14 +77,14 @@ TEST_CASE("a sender that another has replaced is not missing, and soon not shown
   Scene scene;
   StreamStatus again = scene.status.streams[1];  // the silent Kinect
   again.sender = "192.168.7.5:51300";
-  again.heard = scene.status.now;
+  again.last_arrival = scene.status.now;
   scene.status.streams.push_back(again);
   const auto lines = table(scene);
   REQUIRE(lines.size() == 6);
   CHECK(!lines[2].bad);
   CHECK(!lines[3].bad);
   scene.status.now += 25s;
-  scene.status.streams.back().heard = scene.status.now;
+  scene.status.streams.back().last_arrival = scene.status.now;
   CHECK(table(scene).size() == 5);
 }
 

@@ -26,7 +26,7 @@ TEST_CASE("a sender that falls silent is reported once, and once when it is back
   CHECK(changes[0].silent);
   CHECK(changes[0].stream.stream == "kinect");
   CHECK(senders.changes(scene.status).empty());
-  scene.status.streams[1].heard = scene.status.now;
+  scene.status.streams[1].last_arrival = scene.status.now;
   changes = senders.changes(scene.status);
   REQUIRE(changes.size() == 1);
   CHECK(!changes[0].silent);
@@ -47,7 +47,7 @@ TEST_CASE("a device that sent little before it fell silent is reported") {
   SilentSenders senders;
   senders.changes(scene.status);
   scene.status.streams[0].counts.messages = 3;
-  scene.status.streams[0].heard = scene.status.now - 3s;
+  scene.status.streams[0].last_arrival = scene.status.now - 3s;
   const auto changes = senders.changes(scene.status);
   REQUIRE(changes.size() == 1);
   CHECK(changes[0].stream.sender == "192.168.7.5:51234");

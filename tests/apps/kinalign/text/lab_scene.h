@@ -27,10 +27,10 @@ struct Scene {
     mocap.counts.bytes = 11'100'000;
     mocap.counts.order.lost = 3;
     mocap.rate_hz = 124.9;
-    mocap.heard = HostTime{159900ms};
+    mocap.last_arrival = HostTime{159900ms};
     StreamStatus kinect = mocap;
     kinect.stream = "kinect";
-    kinect.heard = HostTime{150s};
+    kinect.last_arrival = HostTime{150s};
     kinect.rate_hz = 0;
     StreamStatus node = mocap;
     node.stream = "imu";

@@ -12,12 +12,12 @@ using namespace kinalign;
 TEST_CASE("of connections made anew from one port the newest says whether the device is silent") {
   Scene scene;
   StreamStatus again = scene.status.streams[1];  // the Kinect, silent for ten seconds
-  again.heard = scene.status.now;
+  again.last_arrival = scene.status.now;
   scene.status.streams.push_back(again);
   const auto newest = newest_of_each(scene.status.streams);
   REQUIRE(newest.size() == 3);
   CHECK(newest[1].stream == "kinect");
-  CHECK(newest[1].heard == scene.status.now);
+  CHECK(newest[1].last_arrival == scene.status.now);
 }
 
 TEST_CASE("a line about a device that has sent nothing names its port") {

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of one stream during recording: its counts, its rate and its sender's clock.
+// The state of a lab during recording, for display and for the counts in a recording.
 #pragma once
 
 #include "kinalign/capture/net/sender_clock.h"
+#include "kinalign/capture/nodes/node_status.h"
 #include "kinalign/recording/counts.h"
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace kinalign {
 
 /// The state of one sender's or one node's stream.
-/// Made for display and for the counts in a recording.
 struct StreamStatus {
   std::string topic, stream, sender;
   std::string node, place;  // nodes only: the id, and the place on the body from lab.toml
@@ -21,9 +24,19 @@ struct StreamStatus {
   SenderCounts counts;
   std::uint64_t samples = 0;            // nodes only: a frame has several samples
   double rate_hz = 0.0;                 // of the last second: samples, or frames, or messages
-  HostTime heard{};                     // last arrival
+  HostTime last_arrival{};              // of a message
   std::optional<double> battery_volts;  // absent if the device does not send it
   std::optional<SenderClock> clock;     // senders of a Kinect only
+};
+
+/// A lab at one moment.
+struct LabStatus {
+  HostTime now{}, begun{};  // begun: when its ports were opened
+  std::vector<StreamStatus> streams;
+  std::vector<NodeStatus> nodes;
+  std::vector<std::pair<std::string, PortCounts>> ports{};  // by the device's name
+  std::map<std::string, std::uint16_t> port_numbers{};      // by the device's name
+  bool ended = false;  // the status of a take at its end; streams without data are not in it
 };
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/capture/recorder/slimevr_desk.h"
+#include "kinalign/capture/recorder/slimevr_responder.h"
 
 #include <algorithm>
 
@@ -35,11 +35,11 @@ Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name) {
   if (verdicts[SlimeVerdict::no_room] > 0) {
     findings.push_back(
         {Severity::warning,
-         Error{name, 0, "at most " + std::to_string(SlimeDesk::most_devices) + " trackers",
+         Error{name, 0, "at most " + std::to_string(SlimeResponder::most_devices) + " trackers",
                "one more"},
          unanswered, "switch others off: a minute later it has their place"});
   }
-  if (verdicts[SlimeVerdict::elsewhere] >= too_often) {
+  if (verdicts[SlimeVerdict::duplicate_mac] >= too_often) {
     findings.push_back({Severity::warning,
                         Error{name, 0, "a tracker of its own", "the MAC of another one at work"},
                         unanswered, "see which two trackers have one MAC"});
@@ -47,49 +47,41 @@ Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name) {
   return findings;
 }
 
-SlimeDesk::SlimeDesk(const SipHashKey& secret) : secret_(secret), devices_(most_devices) {}
+SlimeResponder::SlimeResponder(const SipHashKey& secret)
+    : secret_(secret), devices_(most_devices) {}
 
-SlimeNews SlimeDesk::receive(const SlimeArrival& arrival) {
-  SlimeNews news;
-  news.verdict = judge(arrival, news);
-  return news;
-}
-
-SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, SlimeNews& news) {
-  if (!decode_slime(arrival.bytes, datagram_)) return SlimeVerdict::too_short;
-  news.spoke = !datagram_.packets.empty();
+SlimeResult SlimeResponder::receive(const SlimeArrival& arrival) {
+  if (!decode_slime(arrival.bytes, datagram_)) return {};
+  const bool has_packet = !datagram_.packets.empty();
   // A handshake inside a bundle is ignored: only trackers that are known already send bundles.
-  const bool handshake = datagram_.type == handshake_type && !datagram_.packets.empty();
-  if (handshake) {
-    const auto& said = std::get<SlimeHandshake>(datagram_.packets.front());
-    const SlimeVerdict verdict = shake_hands(said, arrival);
-    news.counts_anew = verdict == SlimeVerdict::accepted;
-    if (news.counts_anew) news.device = index(*device_at(arrival.from));
-    return verdict;
+  if (datagram_.type == handshake_type && has_packet) {
+    const SlimeVerdict verdict =
+        take_handshake(std::get<SlimeHandshake>(datagram_.packets.front()), arrival);
+    return {verdict, verdict == SlimeVerdict::accepted, has_packet};
   }
   SlimeDevice* device = find_device(arrival.from);
-  if (device == nullptr) return SlimeVerdict::stranger;
-  news.device = index(*device);
-  hear(*device, arrival);
+  if (device == nullptr) return {SlimeVerdict::unknown, false, has_packet};
+  note_datagram(*device, arrival);
   // Returned pings have the host's number, so they say nothing about the order.
   if (datagram_.type != ping_type) {
     const Order order = device->numbers.push(datagram_.number);
-    if (order == Order::duplicate) return SlimeVerdict::duplicate;
-    if (order == Order::late) return SlimeVerdict::late;
+    if (order == Order::duplicate) return {SlimeVerdict::duplicate, false, has_packet};
+    if (order == Order::late) return {SlimeVerdict::late, false, has_packet};
   }
   for (const SlimePacket& packet : datagram_.packets) take(*device, packet);
-  return SlimeVerdict::accepted;
+  return {SlimeVerdict::accepted, false, has_packet};
 }
 
 // A tracker is identified by its MAC, or by its address if it sends no MAC.
-SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const SlimeArrival& arrival) {
+SlimeVerdict SlimeResponder::take_handshake(const SlimeHandshake& handshake,
+                                            const SlimeArrival& arrival) {
   SlimeDevice* device = device_named(handshake, arrival.from);
   const bool known = device != nullptr;
   const bool moves = known && device->address != arrival.from;
-  if (moves && arrival.h_rx - device->heard < left_after) return SlimeVerdict::elsewhere;
+  if (moves && arrival.h_rx - device->last_arrival < left_after) return SlimeVerdict::duplicate_mac;
   if (!known || moves) {
     const std::uint64_t hash = siphash_2_4(secret_, stranger(arrival.from.host));
-    if (strangers_.ask(hash, arrival.h_rx) != RateLimit::Verdict::answer) {
+    if (unknown_senders_.ask(hash, arrival.h_rx) != RateLimit::Verdict::answer) {
       return SlimeVerdict::limited;
     }
   }
@@ -106,26 +98,26 @@ SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const Slime
   device->credit = 0;
   device->next_heartbeat = arrival.h_rx + heartbeat_every;
   device->next_ping = arrival.h_rx;
-  hear(*device, arrival);
+  note_datagram(*device, arrival);
   // a 12-byte handshake gets no answer
   send(*device, slime_handshake_answer(arrival.bytes.size()));
   return SlimeVerdict::accepted;
 }
 
-const SlimeDevice* SlimeDesk::device_at(const NodeAddress& address) const {
+const SlimeDevice* SlimeResponder::device_at(const NodeAddress& address) const {
   for (const SlimeDevice& device : devices_) {
     if (device.used && device.address == address) return &device;
   }
   return nullptr;
 }
 
-SlimeDevice* SlimeDesk::find_device(const NodeAddress& address) {
-  const SlimeDevice* found = device_at(address);
-  return found == nullptr ? nullptr : &devices_[index(*found)];
+SlimeDevice* SlimeResponder::find_device(const NodeAddress& address) {
+  return const_cast<SlimeDevice*>(device_at(address));
 }
 
 // By MAC; a handshake without a MAC matches only a device without one at the same address.
-SlimeDevice* SlimeDesk::device_named(const SlimeHandshake& handshake, const NodeAddress& address) {
+SlimeDevice* SlimeResponder::device_named(const SlimeHandshake& handshake,
+                                          const NodeAddress& address) {
   for (SlimeDevice& device : devices_) {
     if (!device.used || device.mac != handshake.mac) continue;
     if (handshake.mac || device.address == address) return &device;
@@ -133,24 +125,24 @@ SlimeDevice* SlimeDesk::device_named(const SlimeHandshake& handshake, const Node
   return nullptr;
 }
 
-/// Returns a free place, or that of the device silent longest if it was silent for a minute.
-SlimeDevice* SlimeDesk::new_device(HostTime now) {
-  const auto heard = [](const SlimeDevice& d) { return d.used ? d.heard : HostTime::min(); };
-  SlimeDevice& place =
-      *std::min_element(devices_.begin(), devices_.end(),
-                        [&](const auto& a, const auto& b) { return heard(a) < heard(b); });
-  if (place.used && now - place.heard <= tracker_replaced_after) return nullptr;
+/// Returns a free place, or that of the device silent longest if it was silent for a minute. Free
+/// places have the earliest last arrival of all.
+SlimeDevice* SlimeResponder::new_device(HostTime now) {
+  SlimeDevice& place = *std::min_element(
+      devices_.begin(), devices_.end(),
+      [](const auto& a, const auto& b) { return a.last_arrival < b.last_arrival; });
+  if (place.used && now - place.last_arrival <= tracker_replaced_after) return nullptr;
   place = {};
   return &place;
 }
 
-void SlimeDesk::hear(SlimeDevice& device, const SlimeArrival& arrival) {
-  device.heard = arrival.h_rx;
+void SlimeResponder::note_datagram(SlimeDevice& device, const SlimeArrival& arrival) {
+  device.last_arrival = arrival.h_rx;
   device.credit = std::min(device.credit + arrival.bytes.size(), most_credit);
 }
 
 // Only packets that need an answer or are shown to the user. Measurements are recorded as they are.
-void SlimeDesk::take(SlimeDevice& device, const SlimePacket& packet) {
+void SlimeResponder::take(SlimeDevice& device, const SlimePacket& packet) {
   if (const auto* info = std::get_if<SlimeSensorInfo>(&packet)) {
     send(device, slime_sensor_info_acknowledged(info->sensor, info->status));
   } else if (std::holds_alternative<SlimeFeatures>(packet)) {
@@ -161,14 +153,14 @@ void SlimeDesk::take(SlimeDevice& device, const SlimePacket& packet) {
 }
 
 /// Sends at most as many bytes as arrived from that address since its handshake.
-void SlimeDesk::send(SlimeDevice& device, const SlimeAnswer& answer) {
+void SlimeResponder::send(SlimeDevice& device, const SlimeAnswer& answer) {
   if (device.credit < answer.size || sendings_.size() >= most_sendings) return;
   device.credit -= answer.size;
   sendings_.push_back({device.address, answer});
 }
 
 // Ids are hashed, so that a forger can't guess them.
-void SlimeDesk::ping(SlimeDevice& device, HostTime now) {
+void SlimeResponder::ping(SlimeDevice& device, HostTime now) {
   device.next_ping = now + ping_every;
   std::array<std::uint8_t, 8> count{};
   for (std::size_t i = 0; i < count.size(); ++i) {
@@ -178,7 +170,7 @@ void SlimeDesk::ping(SlimeDevice& device, HostTime now) {
   send(device, slime_ping(static_cast<std::uint32_t>(siphash_2_4(secret_, count))));
 }
 
-void SlimeDesk::tick(HostTime now) {
+void SlimeResponder::tick(HostTime now) {
   for (SlimeDevice& device : devices_) {
     if (!device.used) continue;
     if (now >= device.next_heartbeat) {
@@ -187,17 +179,6 @@ void SlimeDesk::tick(HostTime now) {
     }
     if (now >= device.next_ping) ping(device, now);
   }
-}
-
-std::span<const SlimeSending> SlimeDesk::take_sendings() {
-  taken_.clear();
-  // Both buffers keep their memory.
-  std::swap(taken_, sendings_);
-  return taken_;
-}
-
-std::size_t SlimeDesk::index(const SlimeDevice& device) const {
-  return static_cast<std::size_t>(&device - devices_.data());
 }
 
 }  // namespace kinalign

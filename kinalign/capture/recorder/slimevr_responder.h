@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The host's side of SlimeVR trackers (docs/formats/slimevr.md). It judges each datagram, makes the
-// answers and identifies the trackers. It uses no socket and no clock, and its memory is fixed.
+// answers and identifies the trackers. It uses no socket and no clock, and its memory is limited.
 // Time is an argument. Measurements are not decoded here; they are recorded as received.
 #pragma once
 
@@ -16,6 +16,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -28,13 +29,13 @@ struct SlimeArrival {
 
 enum class SlimeVerdict : std::uint8_t {
   accepted,
-  duplicate,  // its number was received before
-  late,       // a newer one arrived before it
-  stranger,   // no handshake came from this address
-  limited,    // an unknown address that sends handshakes too often
-  elsewhere,  // a handshake with the MAC of a device that sends from another address
-  no_room,    // the table of devices is full
-  too_short   // not a datagram of a tracker
+  duplicate,      // its number was received before
+  late,           // a newer one arrived before it
+  unknown,        // no handshake came from this address
+  limited,        // an unknown address that sends handshakes too often
+  duplicate_mac,  // a handshake with the MAC of a device that sends from another address
+  no_room,        // the table of devices is full
+  too_short       // not a datagram of a tracker
 };
 inline constexpr std::size_t slime_verdicts = 8;
 using SlimeVerdicts = CountsBy<SlimeVerdict, slime_verdicts>;
@@ -44,11 +45,10 @@ std::uint64_t refused(const SlimeVerdicts& verdicts);
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name);
 
 /// The result of one datagram, for the counts of its address.
-struct SlimeNews {
+struct SlimeResult {
   SlimeVerdict verdict = SlimeVerdict::too_short;
-  std::size_t device = 0;    // only if accepted
-  bool counts_anew = false;  // the datagram was a handshake that was accepted
-  bool spoke = false;        // the datagram contains a packet of a tracker; it need not be accepted
+  bool restarts_counts = false;  // the datagram was a handshake that was accepted
+  bool has_packet = false;  // the datagram contains a packet of a tracker; it need not be accepted
 };
 
 /// A datagram to send. The order must be kept.
@@ -62,52 +62,47 @@ struct SlimeDevice {
   std::optional<SlimeMac> mac;  // absent: the device is identified by its address
   NodeAddress address;
   std::optional<float> battery_volts;
-  HostTime heard{};
+  HostTime last_arrival = HostTime::min();
   SequenceCount numbers{64};  // since the newest handshake
   std::uint64_t credit = 0;   // bytes that may still be sent to this device
   HostTime next_heartbeat{}, next_ping{};
 };
 
 /// One for each port. Its decisions depend on arguments only, so tests need no tracker.
-class SlimeDesk {
+class SlimeResponder {
  public:
   static constexpr std::size_t most_devices = 64;
 
   /// `secret`: random in each run; ids of pings and the hash keys of unknown senders are made with
   /// it.
-  explicit SlimeDesk(const SipHashKey& secret);
+  explicit SlimeResponder(const SipHashKey& secret);
 
   /// Judges one datagram. Call in the order of arrival.
-  SlimeNews receive(const SlimeArrival& arrival);
+  SlimeResult receive(const SlimeArrival& arrival);
   /// Call about ten times a second. Sends heartbeats and pings.
   void tick(HostTime now);
-  /// The datagrams to send since the previous call. Valid until the next call of this function.
-  std::span<const SlimeSending> take_sendings();
+  /// The datagrams to send since the previous call.
+  std::vector<SlimeSending> take_sendings() { return std::exchange(sendings_, {}); }
 
-  const SlimeDevice& device(std::size_t i) const { return devices_[i]; }
   /// nullptr: no device has this address.
   const SlimeDevice* device_at(const NodeAddress& address) const;
 
  private:
-  SlimeVerdict judge(const SlimeArrival& arrival, SlimeNews& news);
   /// Admits a device, or moves it to the address of its newest handshake.
-  SlimeVerdict shake_hands(const SlimeHandshake& handshake, const SlimeArrival& arrival);
+  SlimeVerdict take_handshake(const SlimeHandshake& handshake, const SlimeArrival& arrival);
   SlimeDevice* find_device(const NodeAddress& address);
   SlimeDevice* device_named(const SlimeHandshake& handshake, const NodeAddress& address);
   SlimeDevice* new_device(HostTime now);
-  static void hear(SlimeDevice& device, const SlimeArrival& arrival);
+  static void note_datagram(SlimeDevice& device, const SlimeArrival& arrival);
   void take(SlimeDevice& device, const SlimePacket& packet);
   void send(SlimeDevice& device, const SlimeAnswer& answer);
   void ping(SlimeDevice& device, HostTime now);
-  std::size_t index(const SlimeDevice& device) const;
 
   SipHashKey secret_;
   std::vector<SlimeDevice> devices_;
-  RateLimit strangers_;
+  RateLimit unknown_senders_;
   std::uint64_t pings_ = 0;
-  /// Answers wait in `sendings_` until the port takes them; `taken_` holds those that it is
-  /// sending.
-  std::vector<SlimeSending> sendings_, taken_;
+  std::vector<SlimeSending> sendings_;
   SlimeDatagram datagram_;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two hosts, one tracker that is never silent: both treat it alike, whether or not others send
-// anything in between, in its name too. No address gets more bytes than it sent.
-#include "kinalign/capture/recorder/slimevr_desk.h"
+// Two hosts and one tracker that is never silent. Both hosts must give the tracker the same
+// verdicts, although one of them also receives datagrams of other addresses, some with the
+// tracker's MAC. No address may get more bytes than it sent.
+#include "kinalign/capture/recorder/slimevr_responder.h"
 #include "kinalign/wire/bytes.h"
 
 #include <cstdlib>
@@ -42,27 +43,27 @@ Bytes handshake(std::uint8_t name) {
 
 class Host {
  public:
-  SlimeNews hear(std::uint8_t from, const Bytes& bytes, HostTime now) {
-    came_[from] += bytes.size();
-    const SlimeNews news = desk_.receive({bytes, address(from), now});
+  SlimeResult receive(std::uint8_t from, const Bytes& bytes, HostTime now) {
+    received_[from] += bytes.size();
+    const SlimeResult result = responder_.receive({bytes, address(from), now});
     settle();
-    return news;
+    return result;
   }
   void tick(HostTime now) {
-    desk_.tick(now);
+    responder_.tick(now);
     settle();
   }
 
  private:
   void settle() {
-    for (const auto& one : desk_.take_sendings()) {
+    for (const auto& one : responder_.take_sendings()) {
       const std::uint8_t to = one.to.host[15];
-      went_[to] += one.answer.size;
-      if (went_[to] > came_[to]) std::abort();
+      sent_[to] += one.answer.size;
+      if (sent_[to] > received_[to]) std::abort();
     }
   }
-  SlimeDesk desk_{SipHashKey{7}};
-  std::map<std::uint8_t, std::size_t> came_, went_;
+  SlimeResponder responder_{SipHashKey{7}};
+  std::map<std::uint8_t, std::size_t> received_, sent_;
 };
 
 }  // namespace
@@ -71,8 +72,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto quiet = std::make_unique<Host>(), noisy = std::make_unique<Host>();
   HostTime now{std::chrono::hours(1)};
   std::uint64_t number = 0;
-  quiet->hear(own, handshake(1), now);
-  noisy->hear(own, handshake(1), now);
+  quiet->receive(own, handshake(1), now);
+  noisy->receive(own, handshake(1), now);
   ByteReader reader({data, size});
   while (reader.left() > 4) {
     const auto how = reader.take<std::uint8_t>(), from = reader.take<std::uint8_t>();
@@ -83,9 +84,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     now += std::chrono::milliseconds(4 * (how % 64));
     Bytes bytes = how >= 192 ? handshake(type % 4) : packet(type, how, rest);
     if (how % 5 == 0) bytes.assign(rest.begin(), rest.end());
-    if (from != own) noisy->hear(from, bytes, now);
+    if (from != own) noisy->receive(from, bytes, now);
     const Bytes mine = packet(type % 2 == 0 ? 17 : 23, ++number, rest);
-    if (quiet->hear(own, mine, now).verdict != noisy->hear(own, mine, now).verdict) std::abort();
+    if (quiet->receive(own, mine, now).verdict != noisy->receive(own, mine, now).verdict)
+      std::abort();
     if (how % 3 != 0) continue;
     quiet->tick(now);
     noisy->tick(now);
