@@ -212,10 +212,8 @@ Fields common_fields(Common& common, const Page& page) {
   fields.push_back({"quiet", "print errors only", &common.quiet});
   fields.push_back({"verbose", "print more: how each file was read, names of joints and nodes",
                     &common.verbose});
-  fields.push_back({.name = "color",
-                    .meaning = "colours; auto: on a terminal, unless NO_COLOR is set",
-                    .value = &common.color,
-                    .choices = {"auto", "always", "never"}});
+  fields.push_back(choice_flag("color", "colours; auto: on a terminal, unless NO_COLOR is set",
+                               &common.color, {"auto", "always", "never"}));
   return fields;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace kinalign {
 
@@ -19,6 +20,22 @@ void copy_value(const Field& from, const Field& onto) {
 }
 
 }  // namespace
+
+Field text_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                std::string stands_for) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .value = value,
+          .stands_for = std::move(stands_for)};
+}
+
+Field choice_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                  std::vector<std::string> choices) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .value = value,
+          .choices = std::move(choices)};
+}
 
 std::string group_of(const std::string& verb_name) {
   const auto blank = verb_name.find(' ');

@@ -76,6 +76,13 @@ struct Surroundings {
   FileSystem& files;
 };
 
+/// A flag whose value has a word of its own in --help: "FOLDER".
+Field text_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                std::string stands_for);
+/// A flag that accepts only these texts.
+Field choice_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                  std::vector<std::string> choices);
+
 /// Everything that a verb gets besides its own options.
 struct Call {
   const Common& common;

@@ -69,26 +69,18 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   for (const EvalMethod& method : eval_methods()) {
     usage.positionals.back().choices.push_back(method.name);
   }
-  usage.flags = {{"split",
-                  "people to train on and to test (default: FOLDER/splits/people.json)",
-                  &o.split,
-                  0.0,
-                  0.0,
-                  {},
-                  "FILE"},
-                 {"steps", "batches per training; 0: the method's default", &o.steps, 0.0, 1e8},
-                 {"seed", "random seed of each training", &o.seed, 0.0, 1e9},
-                 {"device", "device that trains networks", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
-                 format_field(o.format)};
-  usage.flags.push_back({"method",
-                         "another method: a program that reads one NPZ and writes another",
-                         &o.programs,
-                         0.0,
-                         0.0,
-                         {},
-                         "NAME=PROGRAM"});
+  usage.flags = {
+      text_flag("split", "people to train on and to test (default: FOLDER/splits/people.json)",
+                &o.split, "FILE"),
+      {"steps", "batches per training; 0: the method's default", &o.steps, 0.0, 1e8},
+      {"seed", "random seed of each training", &o.seed, 0.0, 1e9},
+      choice_flag("device", "device that trains networks", &o.device, {"cpu", "cuda"}),
+      format_field(o.format)};
+  usage.flags.push_back(text_flag("method",
+                                  "another method: a program that reads one NPZ and writes another",
+                                  &o.programs, "NAME=PROGRAM"));
   const auto model = [&usage](const char* name, const char* meaning, std::string& file) {
-    usage.flags.push_back({name, meaning, &file, 0.0, 0.0, {}, "FILE"});
+    usage.flags.push_back(text_flag(name, meaning, &file, "FILE"));
   };
   model("pose-model", "model for figure 8: five nodes (default: the shipped model)", o.pose_model);
   model("head-model", "model for figure 9: nodes with one on the head (default: the shipped model)",

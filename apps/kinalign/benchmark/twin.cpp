@@ -47,13 +47,8 @@ Usage describe_twin(TwinVerb& o) {
   usage.flags = {
       {"scale", "fraction of the paper's frames; 1: 13.7 hours of motion", &o.scale, 1e-6, 1.0},
       {"seed", "seed of all random numbers", &o.seed, 0.0, 9e15},
-      {"motion",
-       "BVH files of a Perception Neuron or CMU skeleton for every second take",
-       &o.motion,
-       0.0,
-       0.0,
-       {},
-       "FOLDER"}};
+      text_flag("motion", "BVH files of a Perception Neuron or CMU skeleton for every second take",
+                &o.motion, "FOLDER")};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (!common.out.empty()) return {};
     return Failure(Error{"-o", 0, "-o FOLDER for the data set", "none"});

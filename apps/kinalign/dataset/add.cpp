@@ -24,8 +24,8 @@ Usage describe_add(Add& o) {
       folder_word(o.folder),
       {"FILE", "recordings, recording.toml files or takes", &o.files, 1, 1'000'000}};
   usage.flags = {
-      {"subject", "id of the person (default: as in the file)", &o.subject, 0.0, 0.0, {}, "ID"},
-      {"action", "id of the action (default: as in the file)", &o.action, 0.0, 0.0, {}, "ID"},
+      text_flag("subject", "id of the person (default: as in the file)", &o.subject, "ID"),
+      text_flag("action", "id of the action (default: as in the file)", &o.action, "ID"),
       {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
 }

@@ -23,14 +23,12 @@ std::string folder_of(const std::vector<std::string>& words) {
 }
 
 Field where_field(std::string& where) {
-  return {"where", "use only takes that meet this condition (see `dataset query`)",
-          &where,  0.0,
-          0.0,     {},
-          "SQL"};
+  return text_flag("where", "use only takes that meet this condition (see `dataset query`)", &where,
+                   "SQL");
 }
 
 Field split_field(std::string& split) {
-  return {"split", "file with parts, written by `dataset split`", &split, 0.0, 0.0, {}, "FILE"};
+  return text_flag("split", "file with parts, written by `dataset split`", &split, "FILE");
 }
 
 Result<DatasetIndex> open_index(const std::string& folder, Call& call) {

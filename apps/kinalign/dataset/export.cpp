@@ -42,7 +42,7 @@ Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"format", "format of the files", &o.format, 0.0, 0.0, format_names()},
+      choice_flag("format", "format of the files", &o.format, format_names()),
       where_field(o.where),
       split_field(o.split),
       {"release",

@@ -29,14 +29,11 @@ struct Shown {
 
 /// The flags that list and query share.
 Fields fields_of(Shown& o) {
-  return {{"columns", "comma-separated, or all", &o.columns, 0.0, 0.0, {}, "COLUMNS"},
-          {"sort",
-           "column to sort by; with - at its end, largest first: frames-; verdict: worst first",
-           &o.sort,
-           0.0,
-           0.0,
-           {},
-           "COLUMN"},
+  return {text_flag("columns", "comma-separated, or all", &o.columns, "COLUMNS"),
+          text_flag(
+              "sort",
+              "column to sort by; with - at its end, largest first: frames-; verdict: worst first",
+              &o.sort, "COLUMN"),
           {"limit", "largest number of rows; 0: all", &o.limit, 0.0, 1e12},
           format_field(o.format)};
 }
@@ -127,16 +124,12 @@ Usage describe_list(List& o) {
   Usage usage;
   usage.positionals = {folder_word(o.shown.folder)};
   usage.flags = {
-      {"subject", "takes of this person: 03 or sub-03", &o.subject, 0.0, 0.0, {}, "ID"},
-      {"class", "takes of this class of actions", &o.class_id, 0.0, 0.0, {}, "ID"},
-      {"action", "takes of this action", &o.action, 0.0, 0.0, {}, "ID"},
-      {"modality",
-       "takes with this modality; may be repeated",
-       &o.modality,
-       0.0,
-       0.0,
-       {"mocap", "kinect", "imu"}},
-      {"verdict", "takes of this verdict", &o.verdict, 0.0, 0.0, {"good", "usable", "bad"}}};
+      text_flag("subject", "takes of this person: 03 or sub-03", &o.subject, "ID"),
+      text_flag("class", "takes of this class of actions", &o.class_id, "ID"),
+      text_flag("action", "takes of this action", &o.action, "ID"),
+      choice_flag("modality", "takes with this modality; may be repeated", &o.modality,
+                  {"mocap", "kinect", "imu"}),
+      choice_flag("verdict", "takes of this verdict", &o.verdict, {"good", "usable", "bad"})};
   const Fields shown = fields_of(o.shown);
   usage.flags.insert(usage.flags.end(), shown.begin(), shown.end());
   return usage;

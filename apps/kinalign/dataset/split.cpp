@@ -31,19 +31,15 @@ Usage describe_split(SplitVerb& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"by", "how to divide takes", &o.options.by, 0.0, 0.0, split_methods()},
+      choice_flag("by", "how to divide takes", &o.options.by, split_methods()),
       {"test", "fraction of the frames for the test", &o.options.test, 0.0, 1.0},
-      {"test-people",
-       "people of the test part, instead of --by and --test; all others are for training",
-       &o.test_people,
-       0.0,
-       0.0,
-       {},
-       "ID,ID,..."},
+      text_flag("test-people",
+                "people of the test part, instead of --by and --test; all others are for training",
+                &o.test_people, "ID,ID,..."),
       {"validation", "fraction of the frames for validation", &o.options.validation, 0.0, 1.0},
       {"stratified", "with --by take: divide each class by itself", &o.options.stratified},
       {"seed", "seed of the random numbers", &o.options.seed, 0.0, 9e15},
-      {"check", "check an existing split instead", &o.check, 0.0, 0.0, {}, "FILE"}};
+      text_flag("check", "check an existing split instead", &o.check, "FILE")};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     // Naming the people leaves nothing to choose by a rule, a share or a seed.
     for (const char* name : {"by", "test", "validation", "stratified", "seed"}) {

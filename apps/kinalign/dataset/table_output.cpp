@@ -4,7 +4,8 @@
 namespace kinalign {
 
 Field format_field(std::string& format) {
-  return {"format", "format of the table", &format, 0.0, 0.0, {"text", "markdown", "latex", "csv"}};
+  return choice_flag("format", "format of the table", &format,
+                     {"text", "markdown", "latex", "csv"});
 }
 
 void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call) {

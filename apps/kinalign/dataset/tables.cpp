@@ -30,12 +30,8 @@ constexpr std::array<std::pair<const char*, Make>, 4> tables{{{"subjects", table
 Usage describe_tables(Tables& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
-  usage.flags = {{"table",
-                  "which",
-                  &o.table,
-                  0.0,
-                  0.0,
-                  {"all", "subjects", "classes", "modalities", "data_sets"}},
+  usage.flags = {choice_flag("table", "which", &o.table,
+                             {"all", "subjects", "classes", "modalities", "data_sets"}),
                  format_field(o.format)};
   return usage;
 }

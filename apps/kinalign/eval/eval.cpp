@@ -79,30 +79,18 @@ Usage describe_eval(Eval& o) {
     if (method.task != Learns::denoise) choices.push_back(method.name);
   }
   usage.flags = {
-      {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
-      {"windows", "a file of windows instead of a data set", &o.windows, 0.0, 0.0, {}, "FILE"},
-      {"folds",
-       "folds: what is left out of training and tested",
-       &o.folds,
-       0.0,
-       0.0,
-       {"people", "runs", "actions", "split"}},
-      {"split",
-       "a split of the data set, instead of folds: its part train for training, its part test for "
-       "the test",
-       &o.split,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"model",
-       "a finished model, shown in a row of its own; may be repeated. Test it only on people who "
-       "were not in its training",
-       &o.models,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
+      text_flag("data", "the data set's folder", &o.data, "FOLDER"),
+      text_flag("windows", "a file of windows instead of a data set", &o.windows, "FILE"),
+      choice_flag("folds", "folds: what is left out of training and tested", &o.folds,
+                  {"people", "runs", "actions", "split"}),
+      text_flag("split",
+                "a split of the data set, instead of folds: its part train for training, its part "
+                "test for the test",
+                &o.split, "FILE"),
+      text_flag("model",
+                "a finished model, shown in a row of its own; may be repeated. Test it only on "
+                "people who were not in its training",
+                &o.models, "FILE"),
       input_field(o.input),
       truth_field(o.truth),
       nodes_field(o.nodes),
@@ -115,7 +103,7 @@ Usage describe_eval(Eval& o) {
        "for methods that clean: positions relative to each skeleton's own root and heading, like "
        "BRA's published marks",
        &o.own_root},
-      {"device", "device that trains networks", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      choice_flag("device", "device that trains networks", &o.device, {"cpu", "cuda"}),
       format_field(o.format)};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});

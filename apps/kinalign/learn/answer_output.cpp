@@ -56,14 +56,11 @@ std::string with_warnings(std::string text, const AboutAnswer& about) {
 }  // namespace
 
 Field body_flag(std::string& words, const std::string& otherwise) {
-  return {"body",
-          "bone lengths of the answer: a stature in m, or a BVH of the person's suit (default: " +
-              otherwise + ")",
-          &words,
-          0.0,
-          0.0,
-          {},
-          "BODY"};
+  return text_flag(
+      "body",
+      "bone lengths of the answer: a stature in m, or a BVH of the person's suit (default: " +
+          otherwise + ")",
+      &words, "BODY");
 }
 
 Result<void> check_body(const std::string& words) {

@@ -51,14 +51,11 @@ Usage describe_denoise(Denoise& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in, 0}};
   usage.flags = {
-      {"model",
-       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
-       &o.model,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"stream", "stream of joints (default: the only one)", &o.stream, 0.0, 0.0, {}, "NAME"},
+      text_flag(
+          "model",
+          "a model's file, or the name of a shipped model (default: the shipped model that fits)",
+          &o.model, "FILE"),
+      text_flag("stream", "stream of joints (default: the only one)", &o.stream, "NAME"),
       {"project",
        "keep standing feet in place and bone lengths constant, by steps in the hidden space of a "
        "model of cnn or cnn-manifold",

@@ -43,21 +43,13 @@ Usage describe_fuse(FuseWords& o) {
   usage.positionals = {
       {"IN", "a take, a recording or a manifest with a Kinect and nodes", &o.in, 0}};
   usage.flags = {
-      {"model",
-       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
-       &o.model,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"kinect",
-       "stream of the Kinect (default: the only stream of joints)",
-       &o.kinect,
-       0.0,
-       0.0,
-       {},
-       "NAME"},
-      {"nodes", "stream of the nodes (default: the only one)", &o.nodes, 0.0, 0.0, {}, "NAME"}};
+      text_flag(
+          "model",
+          "a model's file, or the name of a shipped model (default: the shipped model that fits)",
+          &o.model, "FILE"),
+      text_flag("kinect", "stream of the Kinect (default: the only stream of joints)", &o.kinect,
+                "NAME"),
+      text_flag("nodes", "stream of the nodes (default: the only one)", &o.nodes, "NAME")};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "the lengths that the Kinect measures"));
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));

@@ -30,12 +30,8 @@ struct Export {
 Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {{"MODEL", "the model's file", &o.model}};
-  usage.flags = {{"network",
-                  "network to export: net, or the second network of bra-p",
-                  &o.network,
-                  0.0,
-                  0.0,
-                  {"net", "second"}}};
+  usage.flags = {choice_flag("network", "network to export: net, or the second network of bra-p",
+                             &o.network, {"net", "second"})};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.ends_with(".onnx")) return {};
     return Failure(Error{"-o", 0, "-o FILE.onnx", common.out.empty() ? "none" : shown(common.out)});

@@ -37,14 +37,11 @@ Usage describe_pose(PoseWords& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in, 0}};
   usage.flags = {
-      {"model",
-       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
-       &o.model,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"stream", "stream of nodes (default: the only one)", &o.stream, 0.0, 0.0, {}, "NAME"}};
+      text_flag(
+          "model",
+          "a model's file, or the name of a shipped model (default: the shipped model that fits)",
+          &o.model, "FILE"),
+      text_flag("stream", "stream of nodes (default: the only one)", &o.stream, "NAME")};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "the mean of the training people"));
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));

@@ -96,26 +96,21 @@ const TrainedMethod* find_trained(const std::string& name) {
 }
 
 Field input_field(std::string& input) {
-  return {"input", "the rough stream (default: kinect; for methods that fuse: a simulated Kinect)",
-          &input,  0.0,
-          0.0,     {},
-          "NAME"};
+  return text_flag("input",
+                   "the rough stream (default: kinect; for methods that fuse: a simulated Kinect)",
+                   &input, "NAME");
 }
 
 Field truth_field(std::string& truth) {
-  return {"truth", "the precise stream", &truth, 0.0, 0.0, {}, "NAME"};
+  return text_flag("truth", "the precise stream", &truth, "NAME");
 }
 
 /// The flag --nodes, for methods that get nodes.
 Field nodes_field(std::string& nodes) {
-  return {"nodes",
-          "for poses and fusion: 3 to 6 of wrist_left, wrist_right, ankle_left, ankle_right, head "
-          "and, as the last, waist (default: all except head)",
-          &nodes,
-          0.0,
-          0.0,
-          {},
-          "NAME,NAME,..."};
+  return text_flag("nodes",
+                   "for poses and fusion: 3 to 6 of wrist_left, wrist_right, ankle_left, "
+                   "ankle_right, head and, as the last, waist (default: all except head)",
+                   &nodes, "NAME,NAME,...");
 }
 
 /// A flag without effect is wrong use: a user would believe that it had one.

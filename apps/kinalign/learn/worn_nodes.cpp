@@ -259,19 +259,11 @@ std::string t_pose_line(const Json& about) {
 }  // namespace
 
 std::vector<Field> worn_flags(WornWords& o) {
-  return {{"tpose",
-           "when the T-pose is held, s (default: the first still second)",
-           &o.t_pose,
-           0.0,
-           0.0,
-           {},
-           "START,END"},
-          {"heading",
-           "whether all nodes share a heading, or each has its own by its mounting",
-           &o.headings,
-           0.0,
-           0.0,
-           {"auto", "shared", "mounting"}}};
+  return {text_flag("tpose", "when the T-pose is held, s (default: the first still second)",
+                    &o.t_pose, "START,END"),
+          choice_flag("heading",
+                      "whether all nodes share a heading, or each has its own by its mounting",
+                      &o.headings, {"auto", "shared", "mounting"})};
 }
 
 Result<void> check(const WornWords& o) {

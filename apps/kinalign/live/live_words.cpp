@@ -24,13 +24,8 @@ std::string without_brackets(const std::string& host) {
 }  // namespace
 
 std::vector<Field> live_flags(LiveWords& o) {
-  return {{"live",
-           "instead of IN: live data from a kinalign record with this --live-port",
-           &o.live,
-           0.0,
-           0.0,
-           {},
-           "[HOST:]PORT"},
+  return {text_flag("live", "instead of IN: live data from a kinalign record with this --live-port",
+                    &o.live, "[HOST:]PORT"),
           {"look_ahead",
            "with --live: later frames that an answer waits for; a larger number gives a more "
            "accurate but later answer",
@@ -39,13 +34,9 @@ std::vector<Field> live_flags(LiveWords& o) {
            1000.0,
            {},
            "FRAMES"},
-          {"send",
-           "with --live: also send each frame to this address as a UDP datagram of JSON",
-           &o.send,
-           0.0,
-           0.0,
-           {},
-           "HOST:PORT"}};
+          text_flag("send",
+                    "with --live: also send each frame to this address as a UDP datagram of JSON",
+                    &o.send, "HOST:PORT")};
 }
 
 Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag) {
