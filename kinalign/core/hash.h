@@ -27,4 +27,7 @@ class Sha256 {
   std::unique_ptr<State> state_;
 };
 
+/// The hash of one text, in hexadecimal digits.
+std::string sha256_of(std::string_view bytes);
+
 }  // namespace kinalign
