@@ -109,10 +109,7 @@ class Walk {
     const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
     if (!first && !many) return wrong(flag, "this flag once", "it twice");
     if (first && many) std::get<std::vector<std::string>*>(field.value)->clear();
-    return set_field(field, text).map_error([&](Error error) {
-      error.file = flag;
-      return error;
-    });
+    return set_field(field, text).map_error(in_file(flag));
   }
 
   // Gives the words to the verb's positionals. One that takes several leaves enough words for those
