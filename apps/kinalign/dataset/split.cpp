@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/split.h"
 
+#include "apps/cli/field_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
@@ -8,11 +9,9 @@
 #include "kinalign/view/table.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <map>
-#include <sstream>
 
 namespace kinalign {
 
@@ -107,8 +106,7 @@ Result<int> run_split(SplitVerb& o, Call& call) {
   Split split;
   if (o.check.empty()) {
     // Empty ids between commas are passed on. make_split() refuses them as people without takes.
-    std::istringstream ids(o.test_people);
-    for (std::string id; std::getline(ids, id, ',');) o.options.test_people.push_back(id);
+    if (!o.test_people.empty()) o.options.test_people = split_at_commas(o.test_people);
     split = KA_TRY(make_split(takes, index.catalogue(), o.options));
   } else {
     split = KA_TRY(read_split(files, o.check));
