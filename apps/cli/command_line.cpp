@@ -109,10 +109,7 @@ class Walk {
     const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
     if (!first && !many) return wrong(flag, "this flag once", "it twice");
     if (first && many) std::get<std::vector<std::string>*>(field.value)->clear();
-    return set_field(field, text).map_error([&](Error error) {
-      error.file = flag;
-      return error;
-    });
+    return set_field(field, text).map_error(in_file(flag));
   }
 
   // Gives the words to the verb's positionals. One that takes several leaves enough words for those
@@ -212,10 +209,8 @@ Fields common_fields(Common& common, const Page& page) {
   fields.push_back({"quiet", "print errors only", &common.quiet});
   fields.push_back({"verbose", "print more: how each file was read, names of joints and nodes",
                     &common.verbose});
-  fields.push_back({.name = "color",
-                    .meaning = "colours; auto: on a terminal, unless NO_COLOR is set",
-                    .value = &common.color,
-                    .choices = {"auto", "always", "never"}});
+  fields.push_back(choice_flag("color", "colours; auto: on a terminal, unless NO_COLOR is set",
+                               &common.color, {"auto", "always", "never"}));
   return fields;
 }
 

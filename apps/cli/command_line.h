@@ -6,7 +6,6 @@
 
 #include "apps/cli/verb.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 

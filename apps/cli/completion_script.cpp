@@ -56,13 +56,13 @@ std::string verb_names(const std::vector<Verb>& verbs) {
   return joined(names);
 }
 
-/// The second words of a group's verbs.
-std::string names_in(const std::string& group, const std::vector<Verb>& verbs) {
-  std::vector<std::string> names;
-  for (const Verb& verb : verbs) {
-    if (group_of(verb.page.name) == group) names.push_back(verb.page.name.substr(group.size() + 1));
+/// The choices of all positionals.
+std::string choices_of(const Usage& usage) {
+  std::vector<std::string> choices;
+  for (const Positional& place : usage.positionals) {
+    choices.insert(choices.end(), place.choices.begin(), place.choices.end());
   }
-  return joined(names);
+  return joined(choices);
 }
 
 /// Text for single quotes of a shell, without characters that have a meaning in zsh's _arguments.
@@ -87,17 +87,15 @@ std::string bash_script(const std::vector<Verb>& verbs) {
       cases += fmt::format("    '{} {}'{}) words='{}' ;;\n", page.name, flag_of(field.name), letter,
                            joined(values_of(field)));
     }
-    std::string choices;
-    for (const Positional& place : usage.positionals) choices += joined(place.choices);
     cases += fmt::format("    '{} '*) [[ $word == -* ]] && words='{}' || words='{}' ;;\n",
-                         page.name, joined(words), choices);
+                         page.name, joined(words), choices_of(usage));
   });
   std::string groups;
   for (const std::string& group : groups_of(verbs)) {
     groups += fmt::format(
         "  if [ \"$verb\" = {0} ] && [ \"$COMP_CWORD\" -gt 1 ]; then\n"
         "    first=2 verb=\"{0} ${{COMP_WORDS[2]}}\" words='{1}'\n  fi\n",
-        group, names_in(group, verbs));
+        group, joined(names_in(group, verbs)));
   }
   return fmt::format(
       "# bash completion of kinalign\n_kinalign() {{\n"
@@ -120,12 +118,12 @@ std::string zsh_script(const std::vector<Verb>& verbs) {
   }
   std::string groups;
   for (const std::string& group : groups_of(verbs)) {
-    list += fmt::format("    '{}:{}'\n", group, names_in(group, verbs));
+    list += fmt::format("    '{}:{}'\n", group, joined(names_in(group, verbs)));
     groups += fmt::format(
         "  if [[ $verb == {0} ]]; then\n    if (( CURRENT == 2 )); then\n      compadd {1}\n"
         "      return\n    fi\n    verb=\"{0} $words[2]\"\n    shift words\n    (( CURRENT-- ))\n"
         "  fi\n",
-        group, names_in(group, verbs));
+        group, joined(names_in(group, verbs)));
   }
   std::string cases;
   for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
@@ -143,8 +141,7 @@ std::string zsh_script(const std::vector<Verb>& verbs) {
       }
       cases += "'";
     }
-    std::string choices;
-    for (const Positional& place : usage.positionals) choices += joined(place.choices);
+    const std::string choices = choices_of(usage);
     cases += choices.empty() ? " \\\n      '*:file:_files' ;;\n"
                              : fmt::format(" \\\n      '*:word:({})' ;;\n", choices);
   });
@@ -181,7 +178,7 @@ std::string fish_script(const std::vector<Verb>& verbs) {
   std::string text = "# fish completion of kinalign\n";
   for (const std::string& group : groups_of(verbs)) {
     text += fmt::format("complete -c kinalign -n __fish_use_subcommand -a {} -d '{}'\n", group,
-                        names_in(group, verbs));
+                        joined(names_in(group, verbs)));
   }
   for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
     const std::string group = group_of(page.name);
@@ -195,7 +192,7 @@ std::string fish_script(const std::vector<Verb>& verbs) {
       text += fmt::format(
           "complete -c kinalign -n '__fish_seen_subcommand_from {}; and not "
           "__fish_seen_subcommand_from {}' -a {} -d '{}'\n",
-          group, names_in(group, verbs), word, quotable(page.summary));
+          group, joined(names_in(group, verbs)), word, quotable(page.summary));
       within = fmt::format(
           "complete -c kinalign -n '__fish_seen_subcommand_from {}; and "
           "__fish_seen_subcommand_from {}'",

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -211,20 +210,19 @@ void Console::ring() {
   err_.flush();
 }
 
+void Console::advise(std::string line) {
+  advice_ = [line = std::move(line)](const Error&) { return std::vector<std::string>{line}; };
+}
+
 Failure Console::refuse(Error error) {
   refused_ = true;
-  if_it_fails([verb = verb_](const Error&) {
-    return std::vector<std::string>{"kinalign " + verb +
-                                    " --help lists its arguments and flags, with examples"};
-  });
+  advise("kinalign " + verb_ + " --help lists its arguments and flags, with examples");
   return Failure(std::move(error));
 }
 
 void Console::wrote(const std::string& path) {
   if (path.empty()) return;
-  if_it_fails([path](const Error&) {
-    return std::vector<std::string>{harmless(path) + " was written completely before this error"};
-  });
+  advise(harmless(path) + " was written completely before this error");
 }
 
 void Console::report(const Error& error) {

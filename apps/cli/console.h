@@ -82,6 +82,8 @@ class Console {
   /// Sets the advice for the case that the verb fails; the last call counts. It is called after the
   /// verb has returned, so it must hold its data by value.
   void if_it_fails(Advice advice) { advice_ = std::move(advice); }
+  /// Sets one line of advice, for any failure.
+  void advise(std::string line);
   /// States that the file is complete, even if the verb fails later. An empty path is ignored.
   void wrote(const std::string& path);
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -173,14 +172,26 @@ std::string flag_of(std::string_view name) {
 std::string variable_of(std::string_view name) { return "KINALIGN_" + capitals(name); }
 
 std::string any_of(const std::vector<std::string>& words) {
+  // An empty choice stands for the default and is not shown.
+  std::vector<std::string> known = words;
+  std::erase(known, "");
   std::string text;
-  std::size_t left = words.size();
-  for (const std::string& word : words) {
-    --left;
-    if (word.empty()) continue;
-    text += word + (left == 0 ? "" : left == 1 ? " or " : ", ");
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == known.size() ? " or " : ", ") + known[i];
   }
   return text;
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> out{""};
+  for (const char c : text) {
+    if (c == ',') {
+      out.emplace_back();
+    } else {
+      out.back() += c;
+    }
+  }
+  return out;
 }
 
 }  // namespace kinalign

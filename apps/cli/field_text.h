@@ -35,4 +35,7 @@ std::string variable_of(std::string_view name);
 /// The words as a choice: "a, b or c".
 std::string any_of(const std::vector<std::string>& words);
 
+/// The words between commas: "a,b" gives "a" and "b". The text "" gives one empty word.
+std::vector<std::string> split_at_commas(const std::string& text);
+
 }  // namespace kinalign

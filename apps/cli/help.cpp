@@ -5,6 +5,7 @@
 #include "apps/cli/field_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -32,16 +33,6 @@ std::string lines_of(const Fields& fields, const std::string& head) {
   for (const Field& field : fields) {
     const FlagText flag = flag_text(field);
     text += line_of(flag.flag, flag.meaning);
-  }
-  return text;
-}
-
-/// The verbs of a group without its name: "init, add, build".
-std::string words_of(const std::string& group, const std::vector<Verb>& verbs) {
-  std::string text;
-  for (const Verb& verb : verbs) {
-    if (group_of(verb.page.name) != group) continue;
-    text += (text.empty() ? "" : ", ") + verb.page.name.substr(group.size() + 1);
   }
   return text;
 }
@@ -117,7 +108,8 @@ std::string overview(const std::vector<Verb>& verbs) {
     const std::string group = group_of(verb.page.name);
     if (group.empty()) text += line_of(verb.page.name, verb.page.summary);
     if (!group.empty() && group != listed) {
-      text += line_of(group + " ...", "a group of verbs: " + words_of(group, verbs));
+      text += line_of(group + " ...",
+                      fmt::format("a group of verbs: {}", fmt::join(names_in(group, verbs), ", ")));
     }
     listed = group;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace kinalign {
 
@@ -20,6 +21,31 @@ void copy_value(const Field& from, const Field& onto) {
 
 }  // namespace
 
+Result<void> check_out(const Common& common, std::initializer_list<std::string_view> endings,
+                       std::string expected) {
+  const std::string& out = common.out;
+  const bool fits = std::any_of(endings.begin(), endings.end(),
+                                [&](std::string_view ending) { return out.ends_with(ending); });
+  if (fits || (endings.size() == 0 && !out.empty())) return {};
+  return Failure(Error{"-o", 0, std::move(expected), out.empty() ? "none" : shown(out)});
+}
+
+Field text_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                std::string stands_for) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .value = value,
+          .stands_for = std::move(stands_for)};
+}
+
+Field choice_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                  std::vector<std::string> choices) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .value = value,
+          .choices = std::move(choices)};
+}
+
 std::string group_of(const std::string& verb_name) {
   const auto blank = verb_name.find(' ');
   return blank == std::string::npos ? "" : verb_name.substr(0, blank);
@@ -34,6 +60,14 @@ std::vector<std::string> groups_of(const std::vector<Verb>& verbs) {
     groups.push_back(group);
   }
   return groups;
+}
+
+std::vector<std::string> names_in(const std::string& group, const std::vector<Verb>& verbs) {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs) {
+    if (group_of(verb.page.name) == group) names.push_back(verb.page.name.substr(group.size() + 1));
+  }
+  return names;
 }
 
 // `fill` returns false, so the verb is never run and `call` never called.

@@ -10,8 +10,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
@@ -76,6 +78,18 @@ struct Surroundings {
   FileSystem& files;
 };
 
+/// Fails unless --out ends in one of these; without `endings`, unless it is given. `expected`: "-o
+/// FILE.bvh".
+Result<void> check_out(const Common& common, std::initializer_list<std::string_view> endings,
+                       std::string expected);
+
+/// A flag whose value has a word of its own in --help: "FOLDER".
+Field text_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                std::string stands_for);
+/// A flag that accepts only these texts.
+Field choice_flag(std::string name, std::string meaning, decltype(Field::value) value,
+                  std::vector<std::string> choices);
+
 /// Everything that a verb gets besides its own options.
 struct Call {
   const Common& common;
@@ -128,6 +142,9 @@ std::string group_of(const std::string& verb_name);
 
 /// The groups of verbs, in the order of their first verbs.
 std::vector<std::string> groups_of(const std::vector<Verb>& verbs);
+
+/// The second words of a group's verbs: "build" of "dataset build".
+std::vector<std::string> names_in(const std::string& group, const std::vector<Verb>& verbs);
 
 /// Calls `use` with the description of a verb's options, which have their defaults.
 void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& use);

@@ -3,6 +3,7 @@
 
 #include "apps/kinalign-learn/marks.h"
 
+#include "kinalign/core/files.h"
 #include "kinalign/core/find_named.h"
 #include "kinalign/core/hash.h"
 #include "kinalign/learn/checkpoint.h"
@@ -21,9 +22,8 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -38,22 +38,14 @@ constexpr std::size_t least_rows = 8;  // frames; shorter stretches are left out
 
 /// A whole file in memory; models, windows and checkpoints are read in this way.
 Result<std::string> bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return Failure(Error{path, 0, "a readable file", "no readable file"});
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  PosixFiles files;
+  return read_whole(files, path, std::numeric_limits<std::size_t>::max());
 }
 
-/// Writes a file under another name first and renames it, so that a kill leaves the old file or the
-/// new one.
+/// A kill leaves the old file or the new one.
 Result<void> write_file(const std::string& path, const std::string& bytes) {
-  const std::string unfinished = path + ".part";
-  std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  std::error_code fault;
-  if (out) std::filesystem::rename(unfinished, path, fault);
-  if (!out || fault) return Failure(Error{path, 0, "room for the file", fault.message()});
-  return {};
+  PosixFiles files;
+  return write_whole(files, path, bytes, Overwrite::yes);
 }
 
 /// The default settings of a method of any task.
@@ -330,15 +322,11 @@ Result<void> project_bodies(const TrainingJob& job) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::string number = std::to_string(i);
     const JointFrames body = KA_TRY(body_of(bodies, number, joints, job.bodies));
-    auto projected = project(model, body);
-    if (!projected) {
-      projected.error().file = job.project;
-      return Failure(projected.error());
-    }
+    auto projected = KA_TRY(project(model, body).map_error(in_file(job.project)));
     out.tensors[number + ".positions"] = {{body.frames(), model.layout.outputs.size(), 3},
-                                          std::move(projected->answer.positions)};
-    add(before, projected->before);
-    add(after, projected->after);
+                                          std::move(projected.answer.positions)};
+    add(before, projected.before);
+    add(after, projected.after);
     if (!progress("projecting", i + 1, count)) return Failure(interruption());
   }
   KA_TRY(write_file(job.out, write_safetensors(out)));
@@ -445,9 +433,7 @@ Result<void> run_job(const TrainingJob& job) {
     };
   }
   TrainingJob hashed = job;
-  Sha256 hash;
-  hash.update(bytes);
-  hashed.windows_sha256 = hash.hex();
+  hashed.windows_sha256 = sha256_of(bytes);
   const Fitted fit = KA_TRY(fit_job(hashed, windows, std::move(state), hooks));
   // The processes part here; the others need not wait while the first one writes files.
   processes.leave();

@@ -54,6 +54,14 @@ std::string to_string(const Error& error);
 /// control characters and without line ends.
 std::string shown(std::string_view text);
 
+/// For map_error() of a Result: gives an error without a file this one.
+inline auto in_file(std::string file) {
+  return [file = std::move(file)](Error error) {
+    if (error.file.empty()) error.file = file;
+    return error;
+  };
+}
+
 /// Makes text safe for a terminal. The result is UTF-8. Invalid bytes and all control characters
 /// except line ends become '?', including U+0080 to U+009F and the characters that change the
 /// writing direction.

@@ -22,4 +22,7 @@ class Sha256 {
   std::unique_ptr<evp_md_ctx_st, void (*)(evp_md_ctx_st*)> context_;
 };
 
+/// The hash of one text, in hexadecimal digits.
+std::string sha256_of(std::string_view bytes);
+
 }  // namespace kinalign

@@ -14,10 +14,6 @@ namespace {
 // Beyond this number of pairs the normal approximation is used, as the header says.
 constexpr std::size_t most_exact = 50;
 
-double mean_of(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 /// The differences that are not 0, sorted by absolute value.
 std::vector<double> by_size(std::span<const double> differences) {
   std::vector<double> out;
@@ -99,9 +95,14 @@ double quantile(std::vector<double> values, double q) {
   return *at + share * (*std::min_element(at + 1, values.end()) - *at);
 }
 
+std::optional<double> mean_of(std::span<const double> values) {
+  if (values.empty()) return std::nullopt;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 double deviation(std::span<const double> values) {
   assert(!values.empty());
-  const double mean = mean_of(values);
+  const double mean = *mean_of(values);
   double square = 0.0;
   for (const double v : values) square += (v - mean) * (v - mean);
   return std::sqrt(square / static_cast<double>(values.size()));
@@ -143,7 +144,7 @@ MeanInterval bootstrap_mean(std::span<const double> people, const BootstrapOptio
     mean = sum / static_cast<double>(people.size());
   }
   const double tail = 0.5 * (1.0 - options.level);
-  return {mean_of(people), quantile(means, tail), quantile(means, 1.0 - tail)};
+  return {mean_of(people).value_or(0.0), quantile(means, tail), quantile(means, 1.0 - tail)};
 }
 
 }  // namespace kinalign

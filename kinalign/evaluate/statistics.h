@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,8 @@ namespace kinalign {
 
 /// The quantile q in [0, 1], interpolated linearly between two values, as NumPy's default.
 double quantile(std::vector<double> values, double q);
+/// The mean; absent without values.
+std::optional<double> mean_of(std::span<const double> values);
 /// The population's standard deviation (divides by n).
 double deviation(std::span<const double> values);
 

@@ -14,6 +14,8 @@ namespace kinalign {
 
 /// Empty (monostate) if the value is not known.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+/// An absent value gives an empty cell and not a zero, which would look like a perfect mark.
+inline Cell cell_of(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
 
 /// `key` never changes, because other programs read it; `title` may.
 struct TableColumn {

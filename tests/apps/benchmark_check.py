@@ -106,6 +106,13 @@ def a_job_that_is_killed_goes_on_and_ends_with_the_same_bytes(folder):
 
 
 @case
+def a_job_that_is_killed_before_its_plan_goes_on(folder):
+    (folder / "twin/truth").mkdir(parents=True)
+    data, said = twin(folder)
+    assert said["made"] > 0 and (data / "truth/twin.json").exists(), said
+
+
+@case
 def another_twin_or_other_files_are_not_touched(folder):
     data, _ = twin(folder)
     before = digests(data)

@@ -365,6 +365,7 @@ def a_mark_calibrates_anew_and_a_person_who_moves_in_the_T_pose_is_refused(folde
         assert [event["event"] for event in events] == names, (verb, events)
         for before, marked in zip(taken, taken[1:]):
             assert before["to_s"] < marked["from_s"] and 1.9 < marked["to_s"] - marked["from_s"] < 2.1, (verb, taken)
+        assert [one["found"] for one in taken] == [True, False, False], (verb, taken)
         assert "did not hold still" in events[-2]["found"], (verb, events[-2])
         assert events[-1]["t_pose"] == taken[-1], (verb, events[-1], taken)
 

@@ -345,7 +345,7 @@ def what_is_wrong_with_a_job_is_told_as_a_line(folder):
     refused(folder / "none.json", "a job of schema kinalign.training_job/1", "another file")
     refused(job(folder, "magic"), "a known method", "magic")
     refused(job(folder, "refine", input="imu"), 'a stream "imu" with names', "mocap, kinect")
-    refused(job(folder, "refine", windows=str(folder / "none.npz")), "a readable file", "no readable file")
+    refused(job(folder, "refine", windows=str(folder / "none.npz")), "a readable file", "No such file or directory")
     refused(job(folder, "refine", learn=["S09-A1"]), "pairs to train on", "none")
     assert not (folder / "m.safetensors").exists()
 

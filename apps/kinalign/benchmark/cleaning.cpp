@@ -4,8 +4,8 @@
 #include "apps/cli/console.h"
 #include "apps/kinalign/benchmark/program_method.h"
 #include "apps/kinalign/learn/eval_methods.h"
-#include "apps/kinalign/learn/worker.h"
 #include "apps/kinalign/text/counts_text.h"
+#include "apps/kinalign/verbs/describe_model.h"
 
 #include "kinalign/core/hash.h"
 #include "kinalign/evaluate/statistics.h"
@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
+#include <functional>
 #include <optional>
 #include <set>
 
@@ -29,11 +29,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-// Larger files are not of this program; the limits protect the memory.
 constexpr std::size_t most_bench_windows = std::size_t{4} << 30U;  // a larger file is refused
-constexpr std::size_t most_bench_model = std::size_t{1} << 30U;    // a larger file is refused
 constexpr std::size_t least_bench_rows = 8;  // frames; shorter stretches are left out
-constexpr const char *rough_stream = "kinect", *true_stream = "mocap";
+constexpr const char *kinect_stream = "kinect", *true_stream = "mocap";
 
 /// The time of a training step with one thread, s. Measured over 150 steps on the twin of scale
 /// 0.02, on a core that other programs used too; an idle machine needs less.
@@ -61,16 +59,13 @@ Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std
   if (o.steps > 0) options["steps"] = o.steps;
   Json job{{"schema", "kinalign.training_job/1"},
            {"method", method},
-           {"input", rough_stream},
+           {"input", kinect_stream},
            {"truth", true_stream},
            {"learn", data.learnt},
            {"options", options}};
   // The identity is the hash of all that determines the training: the job and the bytes of the
   // windows. Paths, threads and the device are added later.
-  Sha256 identity;
-  identity.update(job.dump());
-  identity.update(data.windows_hash);
-  job["identity"] = identity.hex();
+  job["identity"] = sha256_of(job.dump() + data.windows_hash);
   return job;
 }
 
@@ -95,28 +90,17 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
   std::error_code fault;
   // A model with the right identity is used again, so a run that was stopped does not train twice.
   if (fs::exists(file, fault)) {
-    const std::string bytes = KA_TRY(read_whole(files, file, most_bench_model));
+    const std::string bytes = KA_TRY(read_whole(files, file, most_model_bytes));
     if (KA_TRY(has_identity(bytes, file, identity))) return file;
     if (!call.common.force) {
       return Failure(Error{file, 0, "a model trained on these takes with this seed and these steps",
                            "a model of other takes, seed or steps (--force trains it again)"});
     }
   }
-  const std::string run = o.folder + "/models/" + method + ".training";
-  KA_TRY(make_folders(run));
   // These members say where and on which machine to train. They stay outside of the identity.
-  job.update({{"windows", data.windows},
-              {"out", file},
-              {"log", run + "/log.csv"},
-              {"checkpoint", run + "/checkpoint.safetensors"},
-              // A checkpoint is left by a training that was stopped. The worker continues from it
-              // if it fits the job.
-              {"resume", fs::exists(run + "/checkpoint.safetensors", fault)},
-              {"device", o.device},
-              {"threads", call.jobs}});
-  KA_TRY(write_whole(files, run + "/job.json", job.dump(1), Overwrite::yes));
+  job.update({{"windows", data.windows}, {"device", o.device}});
   call.console.detail("training " + method);
-  KA_TRY(run_worker(run + "/job.json", {.progress = call.console.progress()}));
+  KA_TRY(train_in(o.folder + "/models/" + method + ".training", std::move(job), file, call));
   return file;
 }
 
@@ -138,7 +122,7 @@ Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
                       data.pairs.all,
                       {.method = method,
                        .windows = data.windows,
-                       .input = rough_stream,
+                       .input = kinect_stream,
                        .truth = true_stream,
                        .learnt = data.learnt,
                        .folder = o.folder,
@@ -148,42 +132,21 @@ Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
   return make_answer(task, call);
 }
 
-/// Runs a method on all tested stretches, and marks each answer twice: plain, and steadied.
-CleanedTakes run_answer(const std::string& method, const Answer& answer, const CleaningData& data,
-                        const DenoiseMarker& marker) {
-  // The default steadying has all three parts: mirror image, smoothing and constant bones.
-  const Steadier steadier({}, data.layout);
+/// Marks the answers of a method to all tested stretches. `answer_to(i)`: the function that answers
+/// data.tested[i].
+CleanedTakes marked_answers(const std::string& method, const Steadying& steadying,
+                            const CleaningData& data, const DenoiseMarker& marker,
+                            const std::function<Answer(std::size_t)>& answer_to) {
+  const Steadier steadier(steadying, data.layout);
   CleanedTakes out;
   out.method = method;
-  for (const Pair* pair : data.tested) {
-    Denoised plain = answer(pair->input);
+  for (std::size_t i = 0; i < data.tested.size(); ++i) {
+    const Pair& pair = *data.tested[i];
+    const Answer answer = answer_to(i);
+    Denoised plain = answer(pair.input);
     // A copy is kept before steadying: figures show the plain answers.
     out.answers.push_back(plain.positions);
-    out.marks.emplace_back();
-    out.marks.back()[0] = marker.marks_of(*pair, plain.positions, plain.spread);
-    const Denoised steadied = steadier.steadied(answer, pair->input, std::move(plain));
-    out.marks.back()[1] = marker.marks_of(*pair, steadied.positions, steadied.spread);
-  }
-  return out;
-}
-
-/// Marks answers that exist already. They are steadied without a mirror image, since a program is
-/// run once.
-/// Without the mirror image the steadier has no need of a second answer, so the function may return
-/// the stored one.
-CleanedTakes marked_answers(const std::string& method,
-                            const std::vector<std::vector<float>>& answers,
-                            const CleaningData& data, const DenoiseMarker& marker) {
-  const Steadier steadier({.mirror = false}, data.layout);
-  CleanedTakes out;
-  out.method = method;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    const Pair& pair = *data.tested[i];
-    const Answer same = [&](const JointFrames&) { return Denoised{answers[i], {}}; };
-    const Denoised steadied = steadier.steadied(same, pair.input, {answers[i], {}});
-    out.answers.push_back(answers[i]);
-    out.marks.push_back(
-        {marker.marks_of(pair, answers[i], {}), marker.marks_of(pair, steadied.positions, {})});
+    out.marks.push_back(both_marks(marker, steadier, answer, pair, std::move(plain)));
   }
   return out;
 }
@@ -266,11 +229,8 @@ std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method
   std::vector<Cell> out{method.method + (which == 1 ? ", steadied" : "")};
   // Each value gives two cells, mean and deviation. with_joined_deviations() relies on this order.
   for (const auto& one : values) {
-    double sum = 0.0;
-    for (const double value : one) sum += value;
-    const bool known = !one.empty();
-    out.push_back(known ? Cell(sum / static_cast<double>(one.size())) : Cell());
-    out.push_back(known ? Cell(deviation(one)) : Cell());
+    out.push_back(cell_of(mean_of(one)));
+    out.push_back(one.empty() ? Cell() : Cell(deviation(one)));
   }
   return out;
 }
@@ -288,16 +248,14 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
   const WindowsWanted wanted{.data = o.data,
                              .split = o.split,
                              .where = "",
-                             .input = std::string(rough_stream),
+                             .input = std::string(kinect_stream),
                              .truth = std::string(true_stream),
                              .valid = "0"};
   KA_TRY(cut_windows(wanted, Learns::denoise, out.windows));
   const std::string bytes =
       KA_TRY(read_whole(call.surroundings.files, out.windows, most_bench_windows));
-  Sha256 hash;
-  hash.update(bytes);
-  out.windows_hash = hash.hex();
-  out.pairs = KA_TRY(pairs_of(KA_TRY(read_windows(bytes, out.windows)), rough_stream, true_stream,
+  out.windows_hash = sha256_of(bytes);
+  out.pairs = KA_TRY(pairs_of(KA_TRY(read_windows(bytes, out.windows)), kinect_stream, true_stream,
                               least_bench_rows));
   out.layout = KA_TRY(eval_layout(out.pairs));
   // Sets sort the names, so the job does not depend on the order of the pairs.
@@ -331,14 +289,19 @@ Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const Cl
   std::vector<CleanedTakes> out;
   for (const std::string& method : o.methods) {
     call.console.detail(method);
-    out.push_back(run_answer(method, KA_TRY(answer_for(o, data, method, call)), data, marker));
+    const Answer answer = KA_TRY(answer_for(o, data, method, call));
+    // The default steadying has all three parts: mirror image, smoothing and constant bones.
+    out.push_back(marked_answers(method, {}, data, marker, [&](std::size_t) { return answer; }));
   }
   // Programs run last: a program that fails must not cost the results of a long training.
   for (const std::string& words : o.programs) {
     const ProgramMethod method = KA_TRY(program_method(words));
     call.console.detail(method.name);
     const auto answers = KA_TRY(answers_of_program(method, o.folder, data, call));
-    out.push_back(marked_answers(method.name, answers, data, marker));
+    // A program is run once, so there is no answer to the mirror image.
+    out.push_back(marked_answers(method.name, {.mirror = false}, data, marker, [&](std::size_t i) {
+      return [&answers, i](const JointFrames&) { return Denoised{answers[i], {}}; };
+    }));
   }
   return out;
 }

@@ -22,9 +22,11 @@
 
 namespace kinalign {
 
-namespace {
+// A child process sends its result as text.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ComparedMotion, take, rate_hz, frames, truth, answers, states,
+                                   hidden)
 
-using Json = nlohmann::ordered_json;
+namespace {
 
 // A Kinect has no such joints. Both places show which way the head looks, which its joint alone
 // does not.
@@ -114,29 +116,17 @@ BodyPlaces in_body(WorldPlaces places) {
 /// The skeleton of a take's reference stream, "mocap".
 /// The truth is the take's skeleton, as it was recorded. Runs in the child process.
 Result<Clip> true_clip(FileSystem& files, const std::string& path) {
-  TakeReader reader = KA_TRY(TakeReader::open(files, path));
-  const auto& groups = reader.header().groups;
+  Take take = KA_TRY(read_take(files, path));
+  const auto& groups = take.header.groups;
   const auto wanted = std::find_if(groups.begin(), groups.end(), [](const TakeGroup& group) {
     return group.name == true_group && std::holds_alternative<ClipGroup>(group.kind);
   });
   if (wanted == groups.end())
     return Failure(Error{path, 0, "a skeleton \"mocap\"", "no such skeleton"});
-  const auto at = static_cast<std::size_t>(wanted - groups.begin());
-  Clip out;
-  out.skeleton = std::get<ClipGroup>(wanted->kind).skeleton;
-  TakeSlab slab;
-  // A take comes in slabs. The figure needs the whole skeleton at once, since it picks frames
-  // anywhere.
-  while (KA_TRY(reader.next(slab))) {
-    const auto* rows = std::get_if<ClipRows>(&slab.rows[at]);
-    if (rows == nullptr) continue;
-    ClipFrames& f = out.frames;
-    f.stamps.insert(f.stamps.end(), slab.stamps.begin(), slab.stamps.end());
-    f.local_positions.insert(f.local_positions.end(), rows->local_positions.begin(),
-                             rows->local_positions.end());
-    f.local_rotations.insert(f.local_rotations.end(), rows->local_rotations.begin(),
-                             rows->local_rotations.end());
-  }
+  auto& rows = std::get<ClipRows>(take.all.rows[static_cast<std::size_t>(wanted - groups.begin())]);
+  Clip out{std::get<ClipGroup>(wanted->kind).skeleton,
+           {std::move(take.all.stamps), std::move(rows.local_positions),
+            std::move(rows.local_rotations)}};
   if (out.frames.size() > 1) return out;
   return Failure(Error{path, 0, "a skeleton with at least two frames", "fewer frames"});
 }
@@ -255,42 +245,21 @@ void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size
   }
 }
 
-// The child sends its result as text. Floats are written with enough digits to be read back
-// unchanged.
-Json json_of(const ComparedMotion& motion) {
-  return {{"take", motion.take},    {"rate_hz", motion.rate_hz}, {"frames", motion.frames},
-          {"truth", motion.truth},  {"answers", motion.answers}, {"states", motion.states},
-          {"hidden", motion.hidden}};
-}
-
-Result<ComparedMotion> motion_of_json(const std::string& text, const std::string& path) {
-  try {
-    const Json json = Json::parse(text);
-    ComparedMotion out;
-    json.at("take").get_to(out.take);
-    json.at("rate_hz").get_to(out.rate_hz);
-    json.at("frames").get_to(out.frames);
-    json.at("truth").get_to(out.truth);
-    json.at("answers").get_to(out.answers);
-    json.at("states").get_to(out.states);
-    json.at("hidden").get_to(out.hidden);
-    return out;
-  } catch (const Json::exception&) {
-    // JSON has no infinite number; such an answer of a model is written as null.
-    return Failure(Error{path, 0, "models with finite answers", "NaN or infinite values"});
-  }
-}
-
 /// Runs the work in a child process. Errors without a file name the take.
 /// A crash of HDF5 on one take must not end the run, so each take has a process of its own.
 Result<ComparedMotion> guarded(const ComparedTake& take,
                                const std::function<Result<ComparedMotion>()>& work) {
   const auto in_child = [&]() -> Result<std::string> {
-    auto made = work();
-    if (!made && made.error().file.empty()) made.error().file = take.path;
-    return json_of(KA_TRY(std::move(made))).dump();
+    // Floats are written with enough digits to be read back unchanged.
+    return nlohmann::json(KA_TRY(work().map_error(in_file(take.path)))).dump();
   };
-  return motion_of_json(KA_TRY(run_guarded(GuardLimits{}, blame(take.path), in_child)), take.path);
+  const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(take.path), in_child));
+  try {
+    return nlohmann::json::parse(text).get<ComparedMotion>();
+  } catch (const nlohmann::json::exception&) {
+    // JSON has no infinite number; such an answer of a model is written as null.
+    return Failure(Error{take.path, 0, "models with finite answers", "NaN or infinite values"});
+  }
 }
 
 /// The nodes of a take on the grid, calibrated for that model.
@@ -309,7 +278,7 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
   // The grid begins with the truth's first frame and has the rate of the models, so truth and
   // answers share their frames.
   const Clip clip = KA_TRY(true_clip(files, take.path));
-  const NamedNodes named = KA_TRY(nodes_of_take(files, take.path, ""));
+  const NamedNodes named = KA_TRY(nodes_of_take(files, take.path, {}));
   const double rate_hz = solvers.front().model().layout.rate_hz;
   const EvenSpan span = span_of(clip.frames.stamps.front(), clip.frames.stamps.back(), rate_hz);
   const TrueFrames truth = KA_TRY(true_frames(clip, span, rate_hz));
@@ -405,8 +374,8 @@ Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSy
   const double rate_hz = layout.nodes.rate_hz;
   const Clip clip = KA_TRY(true_clip(files, take.path));
   BothDevices both;
-  both.kinect = KA_TRY(points_of_take(files, take.path, ""));
-  both.nodes = KA_TRY(nodes_of_take(files, take.path, ""));
+  both.kinect = KA_TRY(points_of_take(files, take.path, {}));
+  both.nodes = KA_TRY(nodes_of_take(files, take.path, {}));
   // The calibration of the nodes uses the whole Kinect: limbs are hidden after it.
   FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), {"", "auto"}));
   hide_limbs(layout.joints, rate_hz, given.input.kinect);

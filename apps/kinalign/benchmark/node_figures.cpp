@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/benchmark/node_figures.h"
 
-#include "apps/cli/console.h"
 #include "apps/kinalign/benchmark/compared_motion.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/learn/shipped_models.h"
@@ -10,6 +9,7 @@
 
 #include "kinalign/dataset/scan.h"
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,32 +52,25 @@ const std::vector<JointGroup>& joint_groups() {
   return all;
 }
 
+/// The place of a cell. Cells are numbered frame by frame: t * 17 + place.
+Eigen::Vector3d place_at(const BodyPlaces& places, std::size_t cell) {
+  return Eigen::Vector3f(&places[3 * cell]).cast<double>();
+}
+
 double distance_cm(const BodyPlaces& a, const BodyPlaces& b, std::size_t cell) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double apart = static_cast<double>(a[3 * cell + k] - b[3 * cell + k]);
-    sum += apart * apart;
-  }
-  return 100.0 * std::sqrt(sum);
+  return 100.0 * (place_at(a, cell) - place_at(b, cell)).norm();
+}
+
+/// The direction of look in frame `t`: from the head's joint to the nose.
+Eigen::Vector3d look_at(const BodyPlaces& places, std::size_t t) {
+  const std::size_t first = t * compared_count;
+  return place_at(places, first + nose_place) - place_at(places, first + head_place);
 }
 
 /// The angle between the directions in which two heads look in frame `t`, degrees.
-/// The direction of look goes from the head's joint to the nose.
 double look_apart_deg(const BodyPlaces& a, const BodyPlaces& b, std::size_t t) {
-  double dot = 0.0, aa = 0.0, bb = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    // Cells are numbered frame by frame: t * 17 + place.
-    const std::size_t nose = 3 * (t * compared_count + nose_place) + k,
-                      head = 3 * (t * compared_count + head_place) + k;
-    const auto x = static_cast<double>(a[nose] - a[head]),
-               y = static_cast<double>(b[nose] - b[head]);
-    dot += x * y;
-    aa += x * x;
-    bb += y * y;
-  }
-  // Rounding may put the cosine slightly above 1, for which acos is not defined. 1e-12 keeps a body
-  // without a head from dividing by zero.
-  const double cosine = dot / std::sqrt(std::max(aa * bb, 1e-12));
+  // Rounding may put the cosine slightly above 1, for which acos is not defined.
+  const double cosine = look_at(a, t).normalized().dot(look_at(b, t).normalized());
   return turn_bend_deg * std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
@@ -123,9 +116,6 @@ double mean_look_deg(const std::vector<ComparedMotion>& motions, std::size_t ans
   return sum / std::max(count, 1.0);
 }
 
-/// An absent mean gives an empty cell and not a zero, which would look like a perfect answer.
-Cell cell_of(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
-
 /// Frame `t` as a figure for a picture.
 StickFigure figure_of(const BodyPlaces& places, std::size_t t, FigureColour colour) {
   const auto first = places.begin() + static_cast<std::ptrdiff_t>(3 * compared_count * t);
@@ -141,14 +131,6 @@ StickFigure seen_figure_of(const ComparedMotion& motion, std::size_t t) {
   const auto first = motion.states.begin() + static_cast<std::ptrdiff_t>(compared_count * t);
   out.states.assign(first, first + compared_count);
   return out;
-}
-
-/// The truth is drawn first and pale, so the answer lies over it.
-PosePicture answer_over_truth(const ComparedMotion& motion, std::size_t t, StickFigure answer,
-                              std::string below) {
-  StickFigure truth = figure_of(motion.truth, t, FigureColour::truth);
-  truth.is_pale = true;
-  return {{std::move(truth), std::move(answer)}, std::move(below)};
 }
 
 std::string second_of(const ComparedMotion& motion, std::size_t t) {
@@ -263,41 +245,81 @@ const std::string how_compared =
     "truth. The answer has the bone lengths of the model's training people, so a part of the "
     "distance comes from bone lengths.";
 
+/// The beginning of a figure. A figure without data keeps its title and says why it is empty, so
+/// the page has the same parts on every data set. `lacks`: "the nodes".
+PosePictures begun_figure(int number, const std::string& title, const std::string& lacks,
+                          const AnsweredTakes& all) {
+  PosePictures out;
+  out.id = fmt::format("figure-{}", number);
+  out.title = fmt::format("Figure {}: {}", number, title);
+  out.absent = all.note();
+  if (all.motions.empty()) {
+    out.absent = fmt::format("No take has {} that the model needs. ", lacks) + out.absent;
+  }
+  return out;
+}
+
+/// A row of pictures: in each frame an answer, over the truth, and the text below.
+struct AnswerRow {
+  std::string name;
+  std::function<StickFigure(std::size_t t)> figure;
+  std::function<std::string(std::size_t t)> below;
+};
+
+/// Adds a column for each instant, and the rows. The truth has the last row.
+void add_pictures(const ComparedMotion& shown, const std::array<std::size_t, instants>& times,
+                  const std::vector<AnswerRow>& rows, PosePictures& out) {
+  for (const AnswerRow& row : rows) out.rows.emplace_back(row.name, std::vector<PosePicture>{});
+  out.rows.emplace_back("truth", std::vector<PosePicture>{});
+  for (const std::size_t t : times) {
+    out.columns.emplace_back(second_of(shown, t), "");
+    StickFigure truth = figure_of(shown.truth, t, FigureColour::truth);
+    out.rows.back().second.push_back({{truth}, ""});
+    // The truth is drawn first and pale, so the answer lies over it.
+    truth.is_pale = true;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      out.rows[r].second.push_back({{truth, rows[r].figure(t)}, rows[r].below(t)});
+    }
+  }
+}
+
+/// The row of an answer to nodes.
+AnswerRow nodes_row(const std::string& name, const ComparedMotion& shown, std::size_t answer,
+                    std::function<std::string(std::size_t t)> below) {
+  return {name,
+          [&shown, answer](std::size_t t) {
+            return figure_of(shown.answers[answer], t, FigureColour::imu);
+          },
+          std::move(below)};
+}
+
+std::string error_text(const ComparedMotion& shown, std::size_t answer, std::size_t t) {
+  return fmt::format("{:.1f} cm", frame_error_cm(shown, answer, t));
+}
+
+bool is_any(const ComparedMotion&, std::size_t) { return true; }
+
 /// Figure 8: answers of a model for five nodes.
 PosePictures pose_figure(const AnsweredTakes& all) {
   const auto& motions = all.motions;
-  PosePictures out;
-  out.id = "figure-8";
-  out.title = "Figure 8: the pose from five nodes";
-  // A figure without data keeps its title and says why it is empty, so the page has the same parts
-  // on every data set.
-  if (motions.empty()) {
-    out.absent = "No take has the nodes that the model needs. " + all.note();
-    return out;
-  }
-  out.absent = all.note();
-  const ComparedMotion& shown = motions.front();
-  out.caption = fmt::format(
-      "{}, five instants evenly over the take. Blue: the answer to five "
-      "nodes. {}",
-      shown.take, how_compared);
-  out.rows = {{"five nodes", {}}, {"truth", {}}};
+  PosePictures out = begun_figure(8, "the pose from five nodes", "the nodes", all);
+  if (motions.empty()) return out;
   // The pictures show the first take that could be answered. The table is over all of them.
-  for (const std::size_t t : even_instants(0, shown.frames)) {
-    out.columns.emplace_back(second_of(shown, t), "");
-    out.rows[0].second.push_back(
-        answer_over_truth(shown, t, figure_of(shown.answers[0], t, FigureColour::imu),
-                          fmt::format("{:.1f} cm", frame_error_cm(shown, 0, t))));
-    out.rows[1].second.push_back({{figure_of(shown.truth, t, FigureColour::truth)}, ""});
-  }
+  const ComparedMotion& shown = motions.front();
+  out.caption =
+      fmt::format("{}, five instants evenly over the take. Blue: the answer to five nodes. {}",
+                  shown.take, how_compared);
+  add_pictures(shown, even_instants(0, shown.frames),
+               {nodes_row("five nodes", shown, 0,
+                          [&shown](std::size_t t) { return error_text(shown, 0, t); })},
+               out);
   Table table;
   table.caption = "Mean distance to the truth over " + takes_text(all);
   table.columns = {{"answer", "answer"}};
   table.rows = {{std::string("five nodes")}};
   for (const JointGroup& group : joint_groups()) {
     table.columns.push_back({group.key, group.title, 1});
-    table.rows[0].push_back(cell_of(mean_distance(
-        motions, 0, group.places, [](const ComparedMotion&, std::size_t) { return true; })));
+    table.rows[0].push_back(cell_of(mean_distance(motions, 0, group.places, is_any)));
   }
   out.tables = {table};
   return out;
@@ -313,11 +335,7 @@ std::array<std::size_t, instants> head_instants(const ComparedMotion& motion) {
     // One frame of each fifth spreads the instants over the take.
     for (std::size_t t = motion.frames * i / instants; t < motion.frames * (i + 1) / instants;
          ++t) {
-      const std::size_t nose = 3 * (t * compared_count + nose_place),
-                        head = 3 * (t * compared_count + head_place);
-      const double aside =
-          static_cast<double>(std::hypot(motion.truth[nose] - motion.truth[head],
-                                         motion.truth[nose + 1] - motion.truth[head + 1]));
+      const double aside = look_at(motion.truth, t).head<2>().norm();
       if (aside <= most) continue;
       most = aside;
       out[i] = t;
@@ -329,13 +347,9 @@ std::array<std::size_t, instants> head_instants(const ComparedMotion& motion) {
 /// Figure 9: the head in answers without and with a node on it.
 PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   const auto& motions = all.motions;
-  PosePictures out;
-  out.id = "figure-9";
-  out.title = "Figure 9: the head without and with a node on it";
-  if (motions.empty()) {
-    out.absent = "No take has the nodes that the model needs. " + all.note();
-    return out;
-  }
+  PosePictures out = begun_figure(9, "the head without and with a node on it", "the nodes", all);
+  if (motions.empty()) return out;
+  out.absent.clear();  // figure 8 has the note
   // A missing second model is no reason to leave the figure out: the first row still shows the head
   // without a node.
   if (!has_head_model) {
@@ -348,8 +362,7 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   out.caption = fmt::format(
       "{}, in each fifth of the take the instant at which the true head is turned furthest to the "
       "side. The line from the head is its direction of look. Below: degrees between the answer's "
-      "and the "
-      "truth's direction of look. {} {}",
+      "and the truth's direction of look. {} {}",
       shown.take,
       has_head_model ? "The data has no node on the head: one without errors is computed from the "
                        "truth. The two models may have been trained on different people."
@@ -363,23 +376,15 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   table.caption = "The head over " + takes_text(all);
   table.columns = {
       {"answer", "answer"}, {"look_deg", "direction of look, °", 1}, {"head_cm", "head, cm", 1}};
+  std::vector<AnswerRow> rows;
   for (std::size_t a = 0; a < names.size(); ++a) {
-    out.rows.emplace_back(names[a], std::vector<PosePicture>{});
-    table.rows.push_back(
-        {names[a], mean_look_deg(motions, a),
-         cell_of(mean_distance(motions, a, {head_place},
-                               [](const ComparedMotion&, std::size_t) { return true; }))});
+    rows.push_back(nodes_row(names[a], shown, a, [&shown, a](std::size_t t) {
+      return fmt::format("{:.0f}°", look_apart_deg(shown.truth, shown.answers[a], t));
+    }));
+    table.rows.push_back({names[a], mean_look_deg(motions, a),
+                          cell_of(mean_distance(motions, a, {head_place}, is_any))});
   }
-  out.rows.emplace_back("truth", std::vector<PosePicture>{});
-  for (const std::size_t t : head_instants(shown)) {
-    out.columns.emplace_back(second_of(shown, t), "");
-    for (std::size_t a = 0; a < names.size(); ++a) {
-      out.rows[a].second.push_back(answer_over_truth(
-          shown, t, figure_of(shown.answers[a], t, FigureColour::imu),
-          fmt::format("{:.0f}°", look_apart_deg(shown.truth, shown.answers[a], t))));
-    }
-    out.rows.back().second.push_back({{figure_of(shown.truth, t, FigureColour::truth)}, ""});
-  }
+  add_pictures(shown, head_instants(shown), rows, out);
   out.tables = {table};
   return out;
 }
@@ -411,14 +416,13 @@ Table device_table(const AnsweredTakes& all) {
                    {"hidden_cm", "hidden joints, cm", 1},
                    {"seen_cm", "seen joints, cm", 1}};
   const auto& joints = joint_groups().front().places;
-  const auto any = [](const ComparedMotion&, std::size_t) { return true; };
   const auto hidden = [](const ComparedMotion& motion, std::size_t cell) {
     return motion.hidden[cell] != 0;
   };
   // Each row is one answer; the columns split the same joints into hidden and seen ones.
   for (std::size_t a = 0; a < device_rows.size(); ++a) {
     table.rows.push_back({std::string(device_rows[a]),
-                          cell_of(mean_distance(motions, a, joints, any)),
+                          cell_of(mean_distance(motions, a, joints, is_any)),
                           cell_of(mean_distance(motions, a, joints, hidden)),
                           cell_of(mean_distance(motions, a, joints, is_seen_place))});
   }
@@ -442,34 +446,27 @@ std::pair<std::size_t, std::size_t> first_hidden(const ComparedMotion& motion) {
 /// Figure 10: answers to a Kinect, to nodes and to both, while a limb is hidden.
 PosePictures device_figure(const AnsweredTakes& all) {
   const auto& motions = all.motions;
-  PosePictures out;
-  out.id = "figure-10";
-  out.title = "Figure 10: a Kinect, nodes, and both, while the Kinect loses a limb";
-  if (motions.empty()) {
-    out.absent = "No take has the Kinect and the nodes that the model needs. " + all.note();
-    return out;
-  }
-  out.absent = all.note();
+  PosePictures out = begun_figure(10, "a Kinect, nodes, and both, while the Kinect loses a limb",
+                                  "the Kinect and the nodes", all);
+  if (motions.empty()) return out;
   const ComparedMotion& shown = motions.front();
   const auto [from, to] = first_hidden(shown);
   out.caption = fmt::format(
       "{}: the right arm is hidden from the Kinect from {} to {}. One model computes the pose from "
       "the Kinect alone, from the nodes alone and from both. Below: mean distance to the truth. {}",
       shown.take, second_of(shown, from), second_of(shown, to), how_compared);
-  for (const char* name : device_rows) out.rows.emplace_back(name, std::vector<PosePicture>{});
-  out.rows.emplace_back("truth", std::vector<PosePicture>{});
-  for (const std::size_t t : even_instants(from, to)) {
-    out.columns.emplace_back(second_of(shown, t), "");
-    for (std::size_t a = 0; a < device_rows.size(); ++a) {
-      StickFigure answer =
-          a == 0 ? seen_figure_of(shown, t) : figure_of(shown.answers[a], t, device_colours[a]);
-      // Only the first row is the raw Kinect: its hidden joints are left out instead of standing
-      // still.
-      out.rows[a].second.push_back(answer_over_truth(
-          shown, t, std::move(answer), fmt::format("{:.1f} cm", frame_error_cm(shown, a, t))));
-    }
-    out.rows.back().second.push_back({{figure_of(shown.truth, t, FigureColour::truth)}, ""});
+  std::vector<AnswerRow> rows;
+  for (std::size_t a = 0; a < device_rows.size(); ++a) {
+    // Only the first row is the raw Kinect: its hidden joints are left out instead of standing
+    // still.
+    rows.push_back({device_rows[a],
+                    [&shown, a](std::size_t t) {
+                      return a == 0 ? seen_figure_of(shown, t)
+                                    : figure_of(shown.answers[a], t, device_colours[a]);
+                    },
+                    [&shown, a](std::size_t t) { return error_text(shown, a, t); }});
   }
+  add_pictures(shown, even_instants(from, to), rows, out);
   out.tables = {device_table(all)};
   return out;
 }

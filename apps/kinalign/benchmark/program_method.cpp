@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/benchmark/program_method.h"
 
-#include "apps/cli/console.h"
+#include "apps/cli/child_process.h"
 
 #include "kinalign/formats/take/take_npz.h"
 #include "kinalign/models/windows_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -53,32 +47,6 @@ Result<void> write_question(const CleaningData& data, const Pair& pair, const st
   KA_TRY(writer.append(3, outputs.bytes));
   KA_TRY(writer.append(4, bytes_of_values(rate)));
   return writer.finish();
-}
-
-/// Runs the program and returns its exit code. Its output goes to stderr.
-/// Standard input is /dev/null, so a program that asks a question ends instead of waiting. Standard
-/// output goes to stderr, since --json owns stdout.
-Result<int> run_program_on(const std::string& program, std::string question, std::string answer) {
-  std::string name = program;
-  const std::array<char*, 4> words{name.data(), question.data(), answer.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  // The child's descriptor 1 becomes a copy of its descriptor 2.
-  ::posix_spawn_file_actions_adddup2(&actions, 2, 1);
-  pid_t child = 0;
-  const int fault =
-      ::posix_spawnp(&child, program.c_str(), &actions, nullptr, words.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (fault != 0) {
-    return Failure(Error{program, 0, "a program that can be started", std::strerror(fault)});
-  }
-  int status = 0;
-  // A signal to this process may interrupt waiting; the child goes on.
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  // A shell reports a death by signal N as 128 + N, too.
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 /// Reads "positions" from the program's NPZ. Fails for another shape and for numbers that are not
@@ -130,7 +98,9 @@ Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& 
     // An answer of the stretch before would be taken for this one if the program wrote nothing.
     std::filesystem::remove(answer, ignored);
     KA_TRY(write_question(data, *pair, question, call));
-    const int code = KA_TRY(run_program_on(method.program, question, answer));
+    // Standard output goes to stderr, since --json owns stdout.
+    const int code = wait_for_child(
+        KA_TRY(start_child(method.program, {method.program, question, answer}, 2, 2)));
     if (code != 0) {
       return Failure(Error{method.program, 0, "exit code 0 for " + pair->take,
                            fmt::format("exit code {}", code)});

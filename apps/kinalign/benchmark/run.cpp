@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/cli/help.h"
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/benchmark/cleaning.h"
 #include "apps/kinalign/benchmark/node_figures.h"
 #include "apps/kinalign/benchmark/pose_table.h"
@@ -69,26 +70,18 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   for (const EvalMethod& method : eval_methods()) {
     usage.positionals.back().choices.push_back(method.name);
   }
-  usage.flags = {{"split",
-                  "people to train on and to test (default: FOLDER/splits/people.json)",
-                  &o.split,
-                  0.0,
-                  0.0,
-                  {},
-                  "FILE"},
-                 {"steps", "batches per training; 0: the method's default", &o.steps, 0.0, 1e8},
-                 {"seed", "random seed of each training", &o.seed, 0.0, 1e9},
-                 {"device", "device that trains networks", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
-                 format_field(o.format)};
-  usage.flags.push_back({"method",
-                         "another method: a program that reads one NPZ and writes another",
-                         &o.programs,
-                         0.0,
-                         0.0,
-                         {},
-                         "NAME=PROGRAM"});
+  usage.flags = {
+      text_flag("split", "people to train on and to test (default: FOLDER/splits/people.json)",
+                &o.split, "FILE"),
+      {"steps", "batches per training; 0: the method's default", &o.steps, 0.0, 1e8},
+      {"seed", "random seed of each training", &o.seed, 0.0, 1e9},
+      choice_flag("device", "device that trains networks", &o.device, {"cpu", "cuda"}),
+      format_field(o.format)};
+  usage.flags.push_back(text_flag("method",
+                                  "another method: a program that reads one NPZ and writes another",
+                                  &o.programs, "NAME=PROGRAM"));
   const auto model = [&usage](const char* name, const char* meaning, std::string& file) {
-    usage.flags.push_back({name, meaning, &file, 0.0, 0.0, {}, "FILE"});
+    usage.flags.push_back(text_flag(name, meaning, &file, "FILE"));
   };
   model("pose-model", "model for figure 8: five nodes (default: the shipped model)", o.pose_model);
   model("head-model", "model for figure 9: nodes with one on the head (default: the shipped model)",
@@ -98,8 +91,7 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     // The parse is for its error: a wrong NAME=PROGRAM is wrong use, before anything is trained.
     for (const std::string& words : o.programs) KA_TRY(program_method(words));
-    if (!common.out.empty()) return {};
-    return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});
+    return check_out(common, {}, "-o FOLDER for results");
   };
   return usage;
 }
@@ -152,37 +144,30 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
 /// Writes table 9. Deviations are joined to their means, but in CSV they keep columns of their own.
 /// The three files have the same numbers: for a README, for a paper, and for computing.
 Result<void> write_tables(const Table& table, const std::string& folder, Call& call) {
-  const Table for_people = with_joined_deviations(table);
-  for (const auto& [name, format] :
-       {std::pair("table_9.md", TableFormat::markdown),
-        std::pair("table_9.tex", TableFormat::latex), std::pair("table_9.csv", TableFormat::csv)}) {
-    const bool is_csv = format == TableFormat::csv;
-    KA_TRY(write_whole(call.surroundings.files, folder + "/" + name,
-                       written(is_csv ? table : for_people, format), Overwrite::yes));
-  }
-  return {};
+  const std::string path = folder + "/table_9";
+  KA_TRY(write_table(with_joined_deviations(table), path,
+                     {TableFormat::markdown, TableFormat::latex}, call));
+  return write_table(table, path, {TableFormat::csv}, call);
 }
 
-/// The row with the smallest number in the column of that key.
-/// nullptr if no row has a number in this column. `key` must be a column of the table.
-const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
+/// The number of a row in the column of that key; absent if the cell has none. `key` must be a
+/// column of the table.
+std::optional<double> value_of(const Table& table, const std::vector<Cell>& row,
+                               const std::string& key) {
   std::size_t column = 0;
-  while (column < table.columns.size() && table.columns[column].key != key) ++column;
+  while (table.columns[column].key != key) ++column;
+  const auto* value = std::get_if<double>(&row[column]);
+  return value == nullptr ? std::nullopt : std::optional(*value);
+}
+
+/// The row with the smallest number in that column; nullptr if no row has a number there.
+const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
   const std::vector<Cell>* best = nullptr;
   for (const auto& row : table.rows) {
-    const auto* value = std::get_if<double>(&row[column]);
-    if (value == nullptr) continue;
-    if (best == nullptr || *value < std::get<double>((*best)[column])) best = &row;
+    const auto value = value_of(table, row, key);
+    if (value && (best == nullptr || *value < *value_of(table, *best, key))) best = &row;
   }
   return best;
-}
-
-/// `row` must have a number in that column, as the rows of best_row() have.
-double value_of(const Table& table, const std::vector<Cell>& row, const std::string& key) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (table.columns[c].key == key) return std::get<double>(row[c]);
-  }
-  return 0.0;
 }
 
 /// The page without its command and its figures.
@@ -204,14 +189,15 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
   // Kinect by default) and the best bones.
   if (const auto* best = best_row(table, "position_cm")) {
     const auto& name = std::get<std::string>(best->front());
-    const double cm = value_of(table, *best, "position_cm");
+    const double cm = *value_of(table, *best, "position_cm");
     page.headline = fmt::format("{} is nearest to the truth: {:.1f} cm", name, cm);
     page.numbers.emplace_back(fmt::format("{:.1f} cm", cm), "position error of " + name);
     const auto& first = table.rows.front();
-    page.numbers.emplace_back(fmt::format("{:.1f} cm", value_of(table, first, "position_cm")),
-                              "position error of " + std::get<std::string>(first.front()));
+    page.numbers.emplace_back(
+        fmt::format("{:.1f} cm", value_of(table, first, "position_cm").value_or(0.0)),
+        "position error of " + std::get<std::string>(first.front()));
     const auto* bones = best_row(table, "bone_cm");
-    page.numbers.emplace_back(fmt::format("{:.1f} cm", value_of(table, *bones, "bone_cm")),
+    page.numbers.emplace_back(fmt::format("{:.1f} cm", *value_of(table, *bones, "bone_cm")),
                               "error of bones of " + std::get<std::string>(bones->front()));
   }
   page.marks = with_joined_deviations(table);
@@ -305,9 +291,9 @@ void print_results(const Table& table, const std::vector<PosePictures>& figures,
     json["figures"][figure.id] = rows;
   }
   // A name that is not UTF-8 must not end the program after hours of training.
-  call.console.print_json(json.dump(1, ' ', false, Json::error_handler_t::replace));
+  call.console.print_json(json_text(json, 1));
   if (call.common.json) return;
-  print_table(with_joined_deviations(table), format, "rows", call);
+  print_tables({{"rows", with_joined_deviations(table)}}, format, call);
   call.console.print(figure_lines(figures) + harmless(fmt::format("page       {}\n", page_path)));
 }
 
@@ -319,8 +305,7 @@ Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
   if (call.common.dry_run) return show_training_plan(cleaning, call);
   // A page's name that is taken is an error before the training and not after it.
   KA_TRY(check_page(page_path, call));
-  call.console.if_it_fails(
-      [](const Error&) { return std::vector<std::string>{"trained networks are kept"}; });
+  call.console.advise("trained networks are kept");
   const CleaningData data = KA_TRY(open_cleaning(cleaning, call));
   const auto all = KA_TRY(run_methods(cleaning, data, call));
   const Table table = marks_table(data, all);

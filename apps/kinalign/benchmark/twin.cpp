@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/benchmark/twin_maker.h"
-#include "apps/kinalign/benchmark/twin_tables.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
@@ -8,13 +8,15 @@
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/scan.h"
 #include "kinalign/dataset/twin/twin_actions.h"
+#include "kinalign/view/table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <iterator>
 #include <mutex>
-#include <numeric>
 #include <set>
 #include <system_error>
 
@@ -47,16 +49,10 @@ Usage describe_twin(TwinVerb& o) {
   usage.flags = {
       {"scale", "fraction of the paper's frames; 1: 13.7 hours of motion", &o.scale, 1e-6, 1.0},
       {"seed", "seed of all random numbers", &o.seed, 0.0, 9e15},
-      {"motion",
-       "BVH files of a Perception Neuron or CMU skeleton for every second take",
-       &o.motion,
-       0.0,
-       0.0,
-       {},
-       "FOLDER"}};
+      text_flag("motion", "BVH files of a Perception Neuron or CMU skeleton for every second take",
+                &o.motion, "FOLDER")};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
-    if (!common.out.empty()) return {};
-    return Failure(Error{"-o", 0, "-o FOLDER for the data set", "none"});
+    return check_out(common, {}, "-o FOLDER for the data set");
   };
   return usage;
 }
@@ -111,7 +107,10 @@ Result<void> check_folder(const TwinJob& job, Call& call) {
     return Failure(
         Error{path, 0, "a twin with the same scale, seed and motions", "a twin with other values"});
   }
-  if (is_there(job.folder) && !fs::is_empty(job.folder, fault)) {
+  // A job that was stopped before it wrote its plan has made only this folder.
+  const bool is_begun = fs::is_empty(job.folder + "/truth", fault) &&
+                        std::distance(fs::directory_iterator(job.folder, fault), {}) == 1;
+  if (is_there(job.folder) && !fs::is_empty(job.folder, fault) && !is_begun) {
     return Failure(
         Error{job.folder, 0, "a new folder, or an unfinished twin", "a folder with other files"});
   }
@@ -121,21 +120,20 @@ Result<void> check_folder(const TwinJob& job, Call& call) {
   return Failure(Error{job.folder, 0, size_text(wanted) + " of free disk space", size_text(there)});
 }
 
-/// Makes the folders, dataset.toml and the plan. Existing files stay, since a stopped job
+/// Makes the folders, the plan and dataset.toml. Existing files stay, since a stopped job
 /// continues.
 Result<void> begin_folder(const TwinJob& job, FileSystem& files) {
   KA_TRY(make_folders(job.folder + "/truth"));
+  // The plan is written first. check_folder() continues only a folder that has it.
+  const std::string plan = job.folder + "/" + plan_file;
+  if (!is_there(plan)) KA_TRY(write_whole(files, plan, job.plan, Overwrite::no));
   KA_TRY(make_folders(job.folder + "/splits"));
   const std::string catalogue = job.folder + "/" + std::string(catalogue_file);
-  if (!is_there(catalogue)) {
-    // The catalogue's name is that of the folder, also if the user typed "." or a path with "..".
-    std::error_code fault;
-    const std::string name = fs::weakly_canonical(job.folder, fault).filename().string();
-    KA_TRY(write_whole(files, catalogue, KA_TRY(twin_catalogue(name)), Overwrite::no));
-  }
-  // The plan is written last. check_folder() continues only a folder that has it.
-  const std::string path = job.folder + "/" + plan_file;
-  return is_there(path) ? Result<void>{} : write_whole(files, path, job.plan, Overwrite::no);
+  if (is_there(catalogue)) return {};
+  // The catalogue's name is that of the folder, also if the user typed "." or a path with "..".
+  std::error_code fault;
+  const std::string name = fs::weakly_canonical(job.folder, fault).filename().string();
+  return write_whole(files, catalogue, KA_TRY(twin_catalogue(name)), Overwrite::no);
 }
 
 /// The takes made from a plan, and those that failed.
@@ -151,7 +149,7 @@ struct TwinMade {
 };
 
 /// Makes the missing takes, several at once. A take that fails does not stop others.
-/// Threads take the missing takes one by one. `telling` guards the progress, the counts and the
+/// Threads take the missing takes one by one. `output` guards the progress, the counts and the
 /// list of failures.
 Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call& call) {
   TwinMaker maker({call.surroundings.files, job.folder, catalogue, job.motions});
@@ -171,10 +169,10 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
     }
   }
   // The progress function is not made for several threads, so only one may call it at a time.
-  std::mutex telling;
+  std::mutex output;
   bool stopped = false;
   const auto is_wanted = [&](std::uint64_t frames) {
-    const std::lock_guard lock(telling);
+    const std::lock_guard lock(output);
     done += frames;
     // Once it is false, it stays false: all threads end as soon as they ask again.
     stopped = stopped || !go_on(progress, "making takes", done, all);
@@ -190,7 +188,7 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
                    [&](std::string_view, std::uint64_t, std::uint64_t) { return is_wanted(0); });
     // Ctrl-C makes the take fail as well. Such a failure is not one of the take.
     if (!is_wanted(take.frames) && !summary) return;
-    const std::lock_guard lock(telling);
+    const std::lock_guard lock(output);
     if (summary) {
       ++out.made;
       out.add(take, *summary);
@@ -230,12 +228,6 @@ Result<std::vector<std::string>> write_splits(const TwinJob& job, const DatasetI
   return out;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
 double hours_of(std::uint64_t frames) {
   return static_cast<double>(frames) / twin_rate_hz / 3600.0;
 }
@@ -247,7 +239,7 @@ std::string pairs_text(const TwinCounts& counts) {
   for (std::size_t i = 0; i < device_choices.size(); ++i) {
     words.push_back(fmt::format("{} {}", device_choices[i], counted(counts.takes[i], "take")));
   }
-  return joined(words);
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 Json json_of(const TwinCounts& counts) {
@@ -258,6 +250,65 @@ Json json_of(const TwinCounts& counts) {
   }
   return {{"frames", {{"mocap", sum.mocap}, {"kinect", sum.kinect}, {"imu", sum.imu}}},
           {"takes_by_devices", takes}};
+}
+
+/// An empty table with the columns of the paper, of the plan and of the takes made.
+Table table_with(const std::string& key, const std::string& caption) {
+  Table table;
+  table.caption = caption;
+  table.has_sum = true;
+  table.columns = {{key, key}};
+  for (const std::string whose : {"paper", "asked", "made"}) {
+    // The keys name the origin for programs. Only the first title of three names it for people.
+    table.columns.push_back({whose + "_mocap", whose + ": mocap"});
+    table.columns.push_back({whose + "_kinect", "Kinect"});
+    table.columns.push_back({whose + "_imu", "IMU"});
+  }
+  return table;
+}
+
+void add_row(const std::string& name, const std::vector<ModalityFrames>& values, Table& table) {
+  std::vector<Cell> row{name};
+  for (const ModalityFrames& one : values) {
+    for (const std::uint64_t frames : {one.mocap, one.kinect, one.imu}) {
+      row.emplace_back(static_cast<std::int64_t>(frames));
+    }
+  }
+  table.rows.push_back(std::move(row));
+}
+
+/// The people of one row of the paper's table 6, as that table writes them.
+std::string ids_of(const PaperPeople& people) {
+  return fmt::format(
+      "{}", fmt::join(people.ids.begin(),
+                      people.ids.begin() + static_cast<std::ptrdiff_t>(people.count()), ", "));
+}
+
+/// Frames by people (the paper's table 6), by classes (table 7) and by devices. Each table compares
+/// the paper, the scale's plan and the takes made.
+/// The plan can't meet the paper's counts exactly at a small scale, so all three are shown next to
+/// each other.
+std::vector<Table> twin_tables(double scale, const TwinCounts& made) {
+  // A scale of 1 gives the paper's own counts.
+  const TwinCounts paper = paper_counts(1.0), asked = paper_counts(scale);
+  Table people = table_with("people", "Frames by people (the paper's table 6)");
+  for (std::size_t i = 0; i < paper_people.size(); ++i) {
+    add_row(ids_of(paper_people[i]), {paper.people[i], asked.people[i], made.people[i]}, people);
+  }
+  Table classes = table_with("class", "Frames by classes (the paper's table 7)");
+  for (std::size_t i = 0; i < paper_classes.size(); ++i) {
+    add_row(std::string(paper_classes[i].id), {paper.classes[i], asked.classes[i], made.classes[i]},
+            classes);
+  }
+  Table choices = table_with("devices", "Frames by devices that recorded together");
+  for (std::size_t i = 0; i < device_choices.size(); ++i) {
+    add_row(std::string(device_choices[i]), {paper.choices[i], asked.choices[i], made.choices[i]},
+            choices);
+  }
+  std::vector<Table> out{std::move(people), std::move(classes), std::move(choices)};
+  // All three tables end with the same sums.
+  for (Table& table : out) add_row("sum", {paper.sum(), asked.sum(), made.sum()}, table);
+  return out;
 }
 
 std::string tables_text(const std::vector<Table>& tables) {
@@ -284,23 +335,24 @@ Result<int> show_twin_plan(const TwinJob& job, Call& call) {
 }
 
 /// Prints the tables and counts of a finished twin.
-void say_made(const TwinJob& job, const TwinMade& made, const std::vector<std::string>& splits,
-              Call& call) {
+void print_made(const TwinJob& job, const TwinMade& made, const std::vector<std::string>& splits,
+                Call& call) {
   std::set<std::string> people, actions;
   for (const TwinTake& take : job.takes) {
     people.insert(take.name.subject);
     actions.insert(take.name.action);
   }
   call.console.print(tables_text(twin_tables(job.o.scale, made.counts)));
-  call.console.print(harmless(
-      fmt::format("{}: {}, {:.2f} h, {}{}\n  people  {}, {}\n  pairs   {}\n  splits  {}\n"
-                  // The last line is a command that works on the new data set as it stands.
-                  "  next    kinalign eval raw offset ridge --data {} -o results --folds people\n",
-                  job.folder, counted(made.made + made.were_there, "take"),
-                  hours_of(made.counts.sum().mocap), size_text(made.bytes),
-                  made.were_there > 0 ? fmt::format("; {} existed before", made.were_there) : "",
-                  counted(people.size(), "person", "people"), counted(actions.size(), "action"),
-                  pairs_text(made.counts), splits.empty() ? "none" : joined(splits), job.folder)));
+  call.console.print(harmless(fmt::format(
+      "{}: {}, {:.2f} h, {}{}\n  people  {}, {}\n  pairs   {}\n  splits  {}\n"
+      // The last line is a command that works on the new data set as it stands.
+      "  next    kinalign eval raw offset ridge --data {} -o results --folds people\n",
+      job.folder, counted(made.made + made.were_there, "take"), hours_of(made.counts.sum().mocap),
+      size_text(made.bytes),
+      made.were_there > 0 ? fmt::format("; {} existed before", made.were_there) : "",
+      counted(people.size(), "person", "people"), counted(actions.size(), "action"),
+      pairs_text(made.counts), splits.empty() ? "none" : fmt::format("{}", fmt::join(splits, ", ")),
+      job.folder)));
   // A failed take is listed with its reason; running the command again tries it again.
   for (const auto& [name, error] : made.failed) {
     call.console.print(
@@ -313,7 +365,7 @@ void say_made(const TwinJob& job, const TwinMade& made, const std::vector<std::s
   json["people"] = people.size();
   json["bytes"] = made.bytes;
   json["splits"] = splits;
-  call.console.print_json(json.dump(1, ' ', false, Json::error_handler_t::replace));
+  call.console.print_json(json_text(json, 1));
 }
 
 /// The plan is made from the options alone; motion files enter it by name only.
@@ -329,17 +381,14 @@ Result<TwinJob> job_of(const TwinVerb& o, const Call& call) {
 /// Makes a twin. The folder is begun only after all checks.
 Result<int> run_twin(TwinVerb& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  call.console.if_it_fails(
-      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  call.console.advise("nothing was written");
   const TwinJob job = KA_TRY(job_of(o, call));
   KA_TRY(check_folder(job, call));
   if (call.common.dry_run) return show_twin_plan(job, call);
   call.console.detail(fmt::format("{} to make: about {}", counted(job.takes.size(), "take"),
                                   size_text(bytes_of(job.takes))));
   // From here on files exist, so the advice changes from "nothing was written".
-  call.console.if_it_fails([](const Error&) {
-    return std::vector<std::string>{"run the same command again to continue"};
-  });
+  call.console.advise("run the same command again to continue");
   KA_TRY(begin_folder(job, files));
   const std::string path = job.folder + "/" + std::string(catalogue_file);
   const Catalogue catalogue =
@@ -348,7 +397,7 @@ Result<int> run_twin(TwinVerb& o, Call& call) {
   const TwinMade made = KA_TRY(make_takes(job, catalogue, call));
   const DatasetIndex index = KA_TRY(open_index(job.folder, call));
   const auto splits = KA_TRY(write_splits(job, index, call));
-  say_made(job, made, splits, call);
+  print_made(job, made, splits, call);
   return made.failed.empty() ? 0 : 1;
 }
 

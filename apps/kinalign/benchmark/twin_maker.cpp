@@ -100,10 +100,7 @@ Result<Motion> TwinMaker::built_in(const TwinTake& take, double length_s) const 
 /// it; a short file is played there and back.
 Result<Motion> TwinMaker::carried(const TwinTake& take, double length_s,
                                   const std::string& file) const {
-  const auto named = [&file](Error error) {
-    if (error.file.empty()) error.file = file;
-    return error;
-  };
+  const auto named = in_file(file);
   const std::string text = KA_TRY(read_whole(place_.files, file, most_bvh_bytes));
   const BvhFile bvh = KA_TRY(read_bvh(text, file, {}));
   Motion recorded = KA_TRY(kinalign::motion_of(bvh.clip, {.smooth_s = smooth_s}).map_error(named));

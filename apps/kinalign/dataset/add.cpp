@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/add.h"
 
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
@@ -24,8 +25,8 @@ Usage describe_add(Add& o) {
       folder_word(o.folder),
       {"FILE", "recordings, recording.toml files or takes", &o.files, 1, 1'000'000}};
   usage.flags = {
-      {"subject", "id of the person (default: as in the file)", &o.subject, 0.0, 0.0, {}, "ID"},
-      {"action", "id of the action (default: as in the file)", &o.action, 0.0, 0.0, {}, "ID"},
+      text_flag("subject", "id of the person (default: as in the file)", &o.subject, "ID"),
+      text_flag("action", "id of the action (default: as in the file)", &o.action, "ID"),
       {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
 }
@@ -36,9 +37,8 @@ Result<int> run_add(Add& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   // The catalogue is read once for all files.
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
-  call.console.if_it_fails([folder](const Error&) -> std::vector<std::string> {
-    return {"files before this one were added; run the same command again after the repair"};
-  });
+  call.console.advise(
+      "files before this one were added; run the same command again after the repair");
   // One adder serves all files, so each file sees the takes that were added before it.
   TakeAdder adder(files, folder, catalogue);
   auto json = nlohmann::ordered_json::array();
@@ -52,9 +52,7 @@ Result<int> run_add(Add& o, Call& call) {
         {{"file", path}, {"name", to_string(added.name)}, {"was_there", added.was_there}});
   }
   call.console.print("see    kinalign dataset build " + harmless(folder) + "\n");
-  call.console.print_json(nlohmann::ordered_json{{"added", json}}.dump(
-      // A path need not be UTF-8. A byte that is not becomes U+FFFD instead of ending the verb.
-      1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  call.console.print_json(json_text(nlohmann::ordered_json{{"added", json}}, 1));
   return 0;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/build.h"
 
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/dataset/share.h"
 #include "apps/kinalign/text/counts_text.h"
@@ -130,12 +131,11 @@ Result<int> run_build(Build& o, Call& call) {
                     tally.bad, tally.usable, harmless(folder)));
   }
   call.console.print(fmt::format("see    kinalign dataset tables {}\n", harmless(folder)));
-  call.console.print_json(nlohmann::ordered_json{
-      {"made", tally.made},
-      {"failed", tally.failed},
-      {"up_to_date", plan.up_to_date},
-      {"takes", tally.takes}}.dump(1, ' ', false,
-                                   nlohmann::ordered_json::error_handler_t::replace));
+  call.console.print_json(json_text(nlohmann::ordered_json{{"made", tally.made},
+                                                           {"failed", tally.failed},
+                                                           {"up_to_date", plan.up_to_date},
+                                                           {"takes", tally.takes}},
+                                    1));
   return tally.failed > 0 ? 1 : 0;
 }
 

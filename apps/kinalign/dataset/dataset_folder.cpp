@@ -6,6 +6,7 @@
 #include "kinalign/dataset/scan.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -23,14 +24,12 @@ std::string folder_of(const std::vector<std::string>& words) {
 }
 
 Field where_field(std::string& where) {
-  return {"where", "use only takes that meet this condition (see `dataset query`)",
-          &where,  0.0,
-          0.0,     {},
-          "SQL"};
+  return text_flag("where", "use only takes that meet this condition (see `dataset query`)", &where,
+                   "SQL");
 }
 
 Field split_field(std::string& split) {
-  return {"split", "file with parts, written by `dataset split`", &split, 0.0, 0.0, {}, "FILE"};
+  return text_flag("split", "file with parts, written by `dataset split`", &split, "FILE");
 }
 
 Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
@@ -69,21 +68,42 @@ Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string&
   return takes;
 }
 
+std::string first_lines(const std::vector<std::string>& lines, std::size_t most,
+                        const std::string& last) {
+  const std::size_t shown = std::min(lines.size(), most);
+  std::string out;
+  for (std::size_t i = 0; i < shown; ++i) out += lines[i];
+  return shown == lines.size() ? out : out + fmt::format(fmt::runtime(last), lines.size() - shown);
+}
+
 bool print_findings(const Findings& findings, Call& call) {
   // Findings of a data set of thousands of takes would fill the terminal. The exit code counts all
   // of them.
   constexpr std::size_t shown_findings = 8;
-  for (std::size_t i = 0; i < std::min(findings.size(), shown_findings); ++i) {
-    const Finding& one = findings[i];
-    call.console.print(
-        harmless(fmt::format("{}  {}\n", to_string(one.severity), to_string(one.what))));
+  std::vector<std::string> lines;
+  for (const Finding& one : findings) {
+    lines.push_back(fmt::format("{}  {}\n", to_string(one.severity), to_string(one.what)));
   }
-  if (findings.size() > shown_findings) {
-    call.console.print(
-        fmt::format("... and {} more (--json has them)\n", findings.size() - shown_findings));
-  }
+  call.console.print(
+      harmless(first_lines(lines, shown_findings, "... and {} more (--json has them)\n")));
   return std::any_of(findings.begin(), findings.end(),
                      [](const Finding& one) { return one.severity == Severity::error; });
+}
+
+// The lines follow others of a verb, so each begins with two spaces.
+std::string splits_text(const std::vector<SplitFile>& splits) {
+  std::string out;
+  for (const SplitFile& one : splits) {
+    out += fmt::format("  {} names {} of these takes: make it again with kinalign dataset split\n",
+                       one.path, one.takes);
+  }
+  return out;
+}
+
+nlohmann::ordered_json splits_json(const std::vector<SplitFile>& splits) {
+  auto out = nlohmann::ordered_json::array();
+  for (const SplitFile& one : splits) out.push_back({{"file", one.path}, {"takes", one.takes}});
+  return out;
 }
 
 }  // namespace kinalign

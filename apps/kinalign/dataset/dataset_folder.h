@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the verbs of a data set: the folder, the index, and findings.
+// Shared by the verbs of a data set: the folder, the index, findings and splits.
 #pragma once
 
 #include "apps/cli/console.h"
 #include "apps/cli/verb.h"
 
+#include "kinalign/dataset/changes/split_files.h"
 #include "kinalign/dataset/index.h"
 #include "kinalign/dataset/split.h"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 #include <vector>
@@ -25,6 +28,10 @@ std::string folder_of(const std::vector<std::string>& words);
 Field where_field(std::string& where);
 Field split_field(std::string& split);
 
+/// The first lines, and the last one if there are more: "{}" in it is the number of the others.
+std::string first_lines(const std::vector<std::string>& lines, std::size_t most,
+                        const std::string& last);
+
 /// Opens the index. Problems of its files are printed on stderr.
 /// Every verb that reads takes calls it first. Summaries that changed since the last call are read
 /// again, all others come from the index.
@@ -41,5 +48,11 @@ bool print_findings(const Findings& findings, Call& call);
 /// Takes without a summary are not among them; print_not_built() tells the user how many there are.
 Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,
                                            const DatasetIndex& index, const std::string& where);
+
+/// The lines about splits that name takes which do not exist any more; empty without such splits.
+/// A verb that changes names prints them, since it never edits a split: it may be part of published
+/// results.
+std::string splits_text(const std::vector<SplitFile>& splits);
+nlohmann::ordered_json splits_json(const std::vector<SplitFile>& splits);
 
 }  // namespace kinalign

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/export/export.h"
 
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
@@ -43,7 +44,7 @@ Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"format", "format of the files", &o.format, 0.0, 0.0, format_names()},
+      choice_flag("format", "format of the files", &o.format, format_names()),
       where_field(o.where),
       split_field(o.split),
       {"release",
@@ -100,26 +101,18 @@ std::set<std::string> names_in(const ExportJob& job) {
   return out;
 }
 
-bool has_error(const Findings& findings) {
-  return std::any_of(findings.begin(), findings.end(),
-                     [](const Finding& one) { return one.severity == Severity::error; });
-}
-
 /// Prints a line for each reason, with the number of takes.
 /// Streams are lost for few reasons but in many takes, so the lines are grouped by reason. Returns
 /// the whole list for the JSON.
 nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
   std::map<std::string, std::vector<std::string>> takes;
   for (const LeftOutStream& one : made.left_out) takes[one.why].push_back(to_string(one.name));
-  std::size_t lines = 0;
+  std::vector<std::string> lines;
   for (const auto& [why, names] : takes) {
-    if (++lines > shown_streams) break;
-    call.console.print(
-        harmless(fmt::format("lost   {} ({})\n", why, counted(names.size(), "take"))));
+    lines.push_back(fmt::format("lost   {} ({})\n", why, counted(names.size(), "take")));
   }
-  if (takes.size() > shown_streams) {
-    call.console.print(fmt::format("lost   {} kinds in all (--json has them)\n", takes.size()));
-  }
+  call.console.print(
+      harmless(first_lines(lines, shown_streams, "lost   {} more kinds (--json has them)\n")));
   return takes;
 }
 
@@ -133,9 +126,8 @@ Result<int> run_export(Export& o, Call& call) {
   if (o.release) {
     findings = look_for_people(index.catalogue(), job.folder + "/dataset.toml", names_in(job));
   }
-  print_findings(findings, call);
   // Publication can't be undone. A suspicion is therefore enough to stop before the first file.
-  if (has_error(findings)) {
+  if (print_findings(findings, call)) {
     call.console.print("nothing was written: the texts listed as errors may identify a person\n");
     call.console.print_json(
         fmt::format("{{\"files\": 0, \"findings\": {}}}", findings_json(findings)));
@@ -152,17 +144,17 @@ Result<int> run_export(Export& o, Call& call) {
   const auto left_out = print_left_out(made, call);
   // The files exist already at this point. An error among these findings changes only the exit
   // code.
-  print_findings(made.findings, call);
+  const bool has_error = print_findings(made.findings, call);
   findings.insert(findings.end(), made.findings.begin(), made.findings.end());
-  call.console.print_json(
+  call.console.print_json(json_text(
       nlohmann::ordered_json{{"takes", job.takes.size()},
                              {"files", made.files},
                              {"format", o.format},
                              {"lost", format->lost},
                              {"left_out", left_out},
-                             {"findings", nlohmann::ordered_json::parse(findings_json(findings))}}
-          .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  return has_error(made.findings) ? 1 : 0;
+                             {"findings", nlohmann::ordered_json::parse(findings_json(findings))}},
+      1));
+  return has_error ? 1 : 0;
 }
 
 /// The text of the help page, made from the same list as the choices.

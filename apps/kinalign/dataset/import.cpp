@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/import/import.h"
 
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
@@ -8,8 +9,10 @@
 #include "kinalign/dataset/import/corpora.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <map>
 
 namespace kinalign {
@@ -35,30 +38,25 @@ Usage describe_import(Import& o) {
                        {"SOURCE", "folders, files or archives (.zip, .tar, .tar.gz) of a corpus",
                         &o.sources, 1, 1'000'000}};
   usage.flags = {
-      {"from", "kind of corpus; auto: recognised by its files", &o.from, 0.0, 0.0, kinds},
-      {"subject",
-       "id of the person, if neither folders nor names state it",
-       &o.subject,
-       0.0,
-       0.0,
-       {},
-       "ID"},
-      {"action",
-       "id of the action, instead of the names of single files",
-       &o.action,
-       0.0,
-       0.0,
-       {},
-       "ID"},
+      choice_flag("from", "kind of corpus; auto: recognised by its files", &o.from, kinds),
+      text_flag("subject", "id of the person, if neither folders nor names state it", &o.subject,
+                "ID"),
+      text_flag("action", "id of the action, instead of the names of single files", &o.action,
+                "ID"),
       {"metres_per_unit",
        "length of the unit of BVH, C3D or TRC files, m; 0: the format's own (BVH: 0.01)",
        &o.metres_per_unit, 0.0, 1000.0},
-      {.name = "up",
-       .meaning = "the up axis of BVH, C3D or TRC files (default: the format's own)",
-       .value = &o.up,
-       .choices = {"", "y", "z"}},
+      choice_flag("up", "the up axis of BVH, C3D or TRC files (default: the format's own)", &o.up,
+                  {"", "y", "z"}),
       {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
+}
+
+/// The first words, and the end of their line.
+std::string first_words(const std::vector<std::string>& words, std::size_t most) {
+  const auto end = words.begin() + static_cast<std::ptrdiff_t>(std::min(most, words.size()));
+  return fmt::format("{}{}\n", fmt::join(words.begin(), end, ", "),
+                     words.size() > most ? ", ..." : "");
 }
 
 /// A line for each reason: "10 without Vicon left out: m03_s03_e01, m03_s03_e02, m03_s03_e03, ...".
@@ -69,12 +67,7 @@ std::string left_out_lines(const std::vector<LeftOut>& all) {
   for (const LeftOut& one : all) by_reason[one.why].push_back(one.what);
   std::string text;
   for (const auto& [why, what] : by_reason) {
-    constexpr std::size_t most = 3;
-    text += fmt::format("  left out, {}: {}: ", why, what.size());
-    for (std::size_t i = 0; i < std::min(most, what.size()); ++i) {
-      text += (i > 0 ? ", " : "") + what[i];
-    }
-    text += what.size() > most ? ", ...\n" : "\n";
+    text += fmt::format("  left out, {}: {}: {}", why, what.size(), first_words(what, 3));
   }
   return text;
 }
@@ -86,12 +79,9 @@ using Changed = std::vector<std::pair<std::string, std::string>>;
 /// be able to find them again.
 std::string changed_line(std::string_view what, const Changed& changed) {
   if (changed.empty()) return "";
-  constexpr std::size_t most = 5;
-  std::string text = fmt::format("  {} renamed to ids of letters and digits: ", what);
-  for (std::size_t i = 0; i < std::min(most, changed.size()); ++i) {
-    text += fmt::format("{}{} is {}", i > 0 ? ", " : "", changed[i].first, changed[i].second);
-  }
-  return text + (changed.size() > most ? ", ...\n" : "\n");
+  std::vector<std::string> words;
+  for (const auto& [word, id] : changed) words.push_back(word + " is " + id);
+  return fmt::format("  {} renamed to ids of letters and digits: {}", what, first_words(words, 5));
 }
 
 nlohmann::ordered_json json_of(const Changed& changed) {
@@ -107,24 +97,17 @@ void print_json(const Imported& made, Console& console) {
   for (const LeftOut& one : made.left_out) {
     left_out.push_back({{"what", one.what}, {"why", one.why}});
   }
-  console.print_json(nlohmann::ordered_json{{"corpus", made.kind},
-                                            {"takes", made.takes},
-                                            {"added", made.takes - made.were_there},
-                                            {"were_there", made.were_there},
-                                            {"subjects", made.subjects},
-                                            {"actions", made.actions},
-                                            {"new_data_set", made.is_new},
-                                            {"left_out", left_out},
-                                            {"subject_ids", json_of(made.subject_ids)},
-                                            {"action_ids", json_of(made.action_ids)}}
-                         .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-}
-
-/// Before the first take nothing was changed, so this advice would be wrong.
-void advise_to_run_again(Console& console) {
-  console.if_it_fails([](const Error&) -> std::vector<std::string> {
-    return {"some takes are in the data set; run the same command again to continue"};
-  });
+  console.print_json(json_text(nlohmann::ordered_json{{"corpus", made.kind},
+                                                      {"takes", made.takes},
+                                                      {"added", made.takes - made.were_there},
+                                                      {"were_there", made.were_there},
+                                                      {"subjects", made.subjects},
+                                                      {"actions", made.actions},
+                                                      {"new_data_set", made.is_new},
+                                                      {"left_out", left_out},
+                                                      {"subject_ids", json_of(made.subject_ids)},
+                                                      {"action_ids", json_of(made.action_ids)}},
+                               1));
 }
 
 /// Imports a corpus. The advice to run it again is set only once a take was added.
@@ -144,7 +127,12 @@ Result<int> run_import(Import& o, Call& call) {
                            [&](std::uint64_t done, std::uint64_t takes) {
                              // The function is called after each take. A line for every hundred
                              // shows that a long import is alive, also in a log file.
-                             if (done == 1) advise_to_run_again(console);
+                             // Before the first take nothing was changed.
+                             if (done == 1) {
+                               console.advise(
+                                   "some takes are in the data set; run the same command again to "
+                                   "continue");
+                             }
                              if (done % 100 == 0 && done < takes)
                                console.print(fmt::format("{} of {}\n", done, takes));
                            }));

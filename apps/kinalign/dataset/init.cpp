@@ -26,9 +26,9 @@ Usage describe_init(Init& o) {
   Usage usage;
   usage.positionals = {{"FOLDER", "folder of the new data set; it may exist", &o.folder}};
   usage.flags = {
-      {"template", "first content of dataset.toml", &o.template_name, 0.0, 0.0,
-       catalogue_template_names()},
-      {"name", "name of the data set (default: the folder's name)", &o.name, 0.0, 0.0, {}, "NAME"}};
+      choice_flag("template", "first content of dataset.toml", &o.template_name,
+                  catalogue_template_names()),
+      text_flag("name", "name of the data set (default: the folder's name)", &o.name, "NAME")};
   return usage;
 }
 

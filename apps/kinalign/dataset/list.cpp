@@ -29,14 +29,11 @@ struct Shown {
 
 /// The flags that list and query share.
 Fields fields_of(Shown& o) {
-  return {{"columns", "comma-separated, or all", &o.columns, 0.0, 0.0, {}, "COLUMNS"},
-          {"sort",
-           "column to sort by; with - at its end, largest first: frames-; verdict: worst first",
-           &o.sort,
-           0.0,
-           0.0,
-           {},
-           "COLUMN"},
+  return {text_flag("columns", "comma-separated, or all", &o.columns, "COLUMNS"),
+          text_flag(
+              "sort",
+              "column to sort by; with - at its end, largest first: frames-; verdict: worst first",
+              &o.sort, "COLUMN"),
           {"limit", "largest number of rows; 0: all", &o.limit, 0.0, 1e12},
           format_field(o.format)};
 }
@@ -75,16 +72,12 @@ Result<std::string> checked_column(const std::string& name, const char* flag) {
 /// The columns of a flag for a SELECT: "name,frames" gives "name, frames".
 Result<std::string> chosen_columns(const std::string& text) {
   if (text == "all") return fmt::format("{}", fmt::join(column_names(), ", "));
-  std::string out;
-  // The loop ends after the last comma. An empty name between two commas is refused as an unknown
-  // column.
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    out += (out.empty() ? "" : ", ") +
-           KA_TRY(checked_column(text.substr(at, comma - at), "--columns"));
-    at = comma + 1;
+  // An empty name between two commas is refused as an unknown column.
+  std::vector<std::string> out;
+  for (const std::string& name : split_at_commas(text)) {
+    out.push_back(KA_TRY(checked_column(name, "--columns")));
   }
-  return out;
+  return fmt::format("{}", fmt::join(out, ", "));
 }
 
 /// The text after "order by". Verdicts are sorted by severity, not by the alphabet.
@@ -116,7 +109,7 @@ Result<std::string> select_text(const Shown& o, const std::string& where) {
 Result<int> show(const Shown& o, const DatasetIndex& index, const std::string& sql,
                  const std::vector<Cell>& values, Call& call) {
   const Table table = KA_TRY(index.select(sql, values));
-  print_table(table, o.format, "takes", call);
+  print_tables({{"takes", table}}, o.format, call);
   // The note stands below the table in text only. Other formats are read by programs.
   if (o.format == "text") KA_TRY(print_not_built(index, folder_of(o.folder), call));
   return index.findings().empty() ? 0 : 1;
@@ -127,16 +120,12 @@ Usage describe_list(List& o) {
   Usage usage;
   usage.positionals = {folder_word(o.shown.folder)};
   usage.flags = {
-      {"subject", "takes of this person: 03 or sub-03", &o.subject, 0.0, 0.0, {}, "ID"},
-      {"class", "takes of this class of actions", &o.class_id, 0.0, 0.0, {}, "ID"},
-      {"action", "takes of this action", &o.action, 0.0, 0.0, {}, "ID"},
-      {"modality",
-       "takes with this modality; may be repeated",
-       &o.modality,
-       0.0,
-       0.0,
-       {"mocap", "kinect", "imu"}},
-      {"verdict", "takes of this verdict", &o.verdict, 0.0, 0.0, {"good", "usable", "bad"}}};
+      text_flag("subject", "takes of this person: 03 or sub-03", &o.subject, "ID"),
+      text_flag("class", "takes of this class of actions", &o.class_id, "ID"),
+      text_flag("action", "takes of this action", &o.action, "ID"),
+      choice_flag("modality", "takes with this modality; may be repeated", &o.modality,
+                  {"mocap", "kinect", "imu"}),
+      choice_flag("verdict", "takes of this verdict", &o.verdict, {"good", "usable", "bad"})};
   const Fields shown = fields_of(o.shown);
   usage.flags.insert(usage.flags.end(), shown.begin(), shown.end());
   return usage;
@@ -200,7 +189,6 @@ bool is_select(std::string_view text) {
   std::transform(word.begin(), word.end(), word.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return word == "select" || word.starts_with("with ");
-  /// The parser knows the positional words already, so this check can look at both.
 }
 
 /// Flags that shape the program's own SELECT have no meaning for a SELECT that the user wrote.

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/dataset/own_process.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
+#include "apps/cli/child_process.h"
+
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <utility>
 
 namespace kinalign {
 
@@ -33,53 +32,25 @@ std::string drained(int pipe) {
   }
 }
 
-/// Waits for the child. A signal's number becomes 128 + N, as in a shell.
-int code_of(pid_t child) {
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return -1;
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
 }  // namespace
 
 Result<Ended> run_own_process(const std::vector<std::string>& words) {
-  // O_CLOEXEC keeps both ends out of the child. dup2 makes a copy on descriptor 2 that stays open
-  // there.
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return Failure(Error{"", 0, "a pipe to a child process", std::strerror(errno)});
-  }
   std::vector<std::string> all{"kinalign"};
   all.insert(all.end(), words.begin(), words.end());
-  // posix_spawn takes char*. The strings of `all` must not move any more once their addresses are
-  // taken.
-  std::vector<char*> arguments;
-  arguments.reserve(all.size() + 1);
-  for (std::string& word : all) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  ::posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
-  pid_t child = 0;
-  const int fault =
-      ::posix_spawn(&child, own_program, &actions, nullptr, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
+  const auto ends = KA_TRY(child_pipe());
+  const auto child = start_child(own_program, std::move(all), -1, ends[1]);
   // The parent must close its copy of the writing end. Otherwise drained() would never see the end.
   ::close(ends[1]);
   Ended out;
-  if (fault == 0) {
+  if (child) {
     // The pipe is read to its end before waiting: in the other order a talkative child and this
     // process could wait for each other.
     out.complaint = drained(ends[0]);
-    out.code = code_of(child);
+    out.code = wait_for_child(*child);
   }
   ::close(ends[0]);
-  if (fault == 0) return out;
-  return Failure(Error{own_program, 0, "a program that can be started", std::strerror(fault)});
+  KA_TRY(child);
+  return out;
 }
 
 }  // namespace kinalign

@@ -3,14 +3,11 @@
 
 #include "apps/cli/json_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
-#include "apps/kinalign/dataset/splits_text.h"
 #include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
-
-#include <algorithm>
 
 namespace kinalign {
 
@@ -39,29 +36,22 @@ constexpr std::size_t most_places = 5;  // more raw files are only counted
 /// A path that ends in '/' is the take's own folder below sourcedata/. A file may be an input of
 /// other takes, too.
 std::string raw_left_text(const std::vector<std::string>& places) {
-  std::string out;
-  for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
-    const bool is_folder = places[i].ends_with('/');
-    out += "  " + places[i] + " is kept; --raw removes it" +
-           (is_folder ? "" : ", unless another take is made from it") + "\n";
+  std::vector<std::string> lines;
+  for (const std::string& place : places) {
+    lines.push_back("  " + place + " is kept; --raw removes it" +
+                    (place.ends_with('/') ? "" : ", unless another take is made from it") + "\n");
   }
-  if (places.size() > most_places) {
-    out += "  and " + std::to_string(places.size() - most_places) + " more raw files or folders\n";
-  }
-  return out;
+  return first_lines(lines, most_places, "  and {} more raw files or folders\n");
 }
 
 /// The raw files that stay because they were not copied or unpacked for this take.
 /// --raw does not remove files that lie elsewhere, nor the targets of links.
 std::string raw_kept_text(const std::vector<std::string>& places) {
-  std::string out;
-  for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
-    out += "  " + places[i] + " is kept: it was not copied or unpacked for this take\n";
+  std::vector<std::string> lines;
+  for (const std::string& place : places) {
+    lines.push_back("  " + place + " is kept: it was not copied or unpacked for this take\n");
   }
-  if (places.size() > most_places) {
-    out += "  and " + std::to_string(places.size() - most_places) + " more that are kept\n";
-  }
-  return out;
+  return first_lines(lines, most_places, "  and {} more that are kept\n");
 }
 
 /// Removing a shared raw file would make other takes impossible to build again.
@@ -133,9 +123,7 @@ Result<int> run_remove(Remove& o, Call& call) {
     return 0;
   }
   // From here on a failure leaves a part of the work done, so the advice changes.
-  call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
-    return {"some files may be removed; run the same command again to continue"};
-  });
+  call.console.advise("some files may be removed; run the same command again to continue");
   KA_TRY(remove_takes(files, folder, plan));
   // Opening the index removes the rows of takes that are gone.
   KA_TRY(open_index(folder, call));

@@ -3,7 +3,6 @@
 
 #include "apps/cli/json_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
-#include "apps/kinalign/dataset/splits_text.h"
 #include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
@@ -55,12 +54,10 @@ Result<int> run_rename(Rename& o, Call& call) {
   const RenamePlan plan = KA_TRY(plan_rename(files, folder, catalogue, from, to));
   if (call.common.dry_run) return show_plan(plan, call);
   // The exact command is printed, because only the same rename continues one that was stopped.
-  call.console.if_it_fails([=](const Error&) -> std::vector<std::string> {
-    return {
-        "some files may be renamed; run the same command again to continue: kinalign dataset "
-        "rename " +
-        folder + " " + from + " " + to};
-  });
+  call.console.advise(
+      "some files may be renamed; run the same command again to continue: kinalign dataset "
+      "rename " +
+      folder + " " + from + " " + to);
   const Renamed done = KA_TRY(rename_takes(files, folder, plan));
   KA_TRY(open_index(folder, call));
   std::set<TakeName> old;

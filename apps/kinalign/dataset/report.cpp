@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
 #include <map>
 
 namespace kinalign {
@@ -58,10 +57,7 @@ Result<void> write_over_own(const std::string& path, std::string_view mark, cons
                             Call& call) {
   FileSystem& files = call.surroundings.files;
   const bool is_own = is_there(path) && is_own_page(files, path, mark);
-  OutputFile file =
-      KA_TRY(OutputFile::create(files, path, is_own ? Overwrite::yes : call.common.overwrite()));
-  KA_TRY(file.write(text));
-  KA_TRY(file.commit());
+  KA_TRY(write_whole(files, path, text, is_own ? Overwrite::yes : call.common.overwrite()));
   call.console.wrote(path);
   return {};
 }
@@ -144,8 +140,8 @@ Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const 
 
 /// Prints what was written: takes by verdict, and the pages made.
 /// Each count is in the text and in the JSON. Failed pages do not stop the verb but are listed.
-void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
-         const std::optional<PagesMade>& pages, Call& call) {
+void print_written(const std::string& out, std::size_t bytes, const DatasetPage& page,
+                   const std::optional<PagesMade>& pages, Call& call) {
   std::string text = fmt::format("{}: {}, {}: {} bad, {} usable, {} good\n", out, size_text(bytes),
                                  counted(page.takes, "take"), page.bad, page.usable, page.good);
   if (page.worst.size() < page.takes) {
@@ -195,7 +191,7 @@ Result<int> write_page(const std::string& folder, const DatasetIndex& index, boo
   KA_TRY(link_pages(pages, index, place, page));
   const std::string html = dataset_html(page);
   KA_TRY(write_over_own(out, dataset_page_mark, html, call));
-  say(out, html.size(), page, made, call);
+  print_written(out, html.size(), page, made, call);
   // A summary that can't be read or a page that failed gives exit code 1.
   return index.findings().empty() && (!made || made->failed.empty()) ? 0 : 1;
 }

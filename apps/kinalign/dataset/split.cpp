@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/split.h"
 
+#include "apps/cli/field_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
@@ -8,11 +9,9 @@
 #include "kinalign/view/table.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <map>
-#include <sstream>
 
 namespace kinalign {
 
@@ -31,19 +30,15 @@ Usage describe_split(SplitVerb& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"by", "how to divide takes", &o.options.by, 0.0, 0.0, split_methods()},
+      choice_flag("by", "how to divide takes", &o.options.by, split_methods()),
       {"test", "fraction of the frames for the test", &o.options.test, 0.0, 1.0},
-      {"test-people",
-       "people of the test part, instead of --by and --test; all others are for training",
-       &o.test_people,
-       0.0,
-       0.0,
-       {},
-       "ID,ID,..."},
+      text_flag("test-people",
+                "people of the test part, instead of --by and --test; all others are for training",
+                &o.test_people, "ID,ID,..."),
       {"validation", "fraction of the frames for validation", &o.options.validation, 0.0, 1.0},
       {"stratified", "with --by take: divide each class by itself", &o.options.stratified},
       {"seed", "seed of the random numbers", &o.options.seed, 0.0, 9e15},
-      {"check", "check an existing split instead", &o.check, 0.0, 0.0, {}, "FILE"}};
+      text_flag("check", "check an existing split instead", &o.check, "FILE")};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     // Naming the people leaves nothing to choose by a rule, a share or a seed.
     for (const char* name : {"by", "test", "validation", "stratified", "seed"}) {
@@ -111,8 +106,7 @@ Result<int> run_split(SplitVerb& o, Call& call) {
   Split split;
   if (o.check.empty()) {
     // Empty ids between commas are passed on. make_split() refuses them as people without takes.
-    std::istringstream ids(o.test_people);
-    for (std::string id; std::getline(ids, id, ',');) o.options.test_people.push_back(id);
+    if (!o.test_people.empty()) o.options.test_people = split_at_commas(o.test_people);
     split = KA_TRY(make_split(takes, index.catalogue(), o.options));
   } else {
     split = KA_TRY(read_split(files, o.check));

@@ -1,10 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/dataset/table_output.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace kinalign {
 
 Field format_field(std::string& format) {
-  return {"format", "format of the table", &format, 0.0, 0.0, {"text", "markdown", "latex", "csv"}};
+  return choice_flag("format", "format of the table", &format,
+                     {"text", "markdown", "latex", "csv"});
+}
+
+Result<void> write_table(const Table& table, const std::string& path,
+                         std::initializer_list<TableFormat> formats, Call& call) {
+  for (const auto& [format, ending] :
+       {std::pair(TableFormat::markdown, ".md"), std::pair(TableFormat::latex, ".tex"),
+        std::pair(TableFormat::csv, ".csv"), std::pair(TableFormat::json, ".json")}) {
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) continue;
+    KA_TRY(write_whole(call.surroundings.files, path + ending, written(table, format),
+                       Overwrite::yes));
+  }
+  return {};
 }
 
 void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call) {
@@ -27,11 +43,6 @@ void print_tables(const std::vector<NamedTable>& tables, const std::string& form
   }
   // Names in tables come from files and are made harmless. put() prints them also with --quiet.
   call.console.put(harmless(text));
-}
-
-void print_table(const Table& table, const std::string& format, const std::string& name,
-                 Call& call) {
-  print_tables({{name, table}}, format, call);
 }
 
 }  // namespace kinalign

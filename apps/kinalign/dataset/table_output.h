@@ -7,6 +7,7 @@
 
 #include "kinalign/view/table.h"
 
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,12 @@ struct NamedTable {
   std::string name;
   Table table;
 };
+/// Writes a table as files in these formats; `path` has no ending.
+Result<void> write_table(const Table& table, const std::string& path,
+                         std::initializer_list<TableFormat> formats, Call& call);
 /// Prints tables one below the other in that format, or as members of one JSON object.
 /// Results go to standard output also with --quiet, because the table is what the verb is called
 /// for.
 void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call);
-
-/// Prints a table in that format, or as the member `name` of a JSON object.
-void print_table(const Table& table, const std::string& format, const std::string& name,
-                 Call& call);
 
 }  // namespace kinalign

@@ -30,12 +30,8 @@ constexpr std::array<std::pair<const char*, Make>, 4> tables{{{"subjects", table
 Usage describe_tables(Tables& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
-  usage.flags = {{"table",
-                  "which",
-                  &o.table,
-                  0.0,
-                  0.0,
-                  {"all", "subjects", "classes", "modalities", "data_sets"}},
+  usage.flags = {choice_flag("table", "which", &o.table,
+                             {"all", "subjects", "classes", "modalities", "data_sets"}),
                  format_field(o.format)};
   return usage;
 }
@@ -43,22 +39,12 @@ Usage describe_tables(Tables& o) {
 /// Prints one or all of the paper's tables.
 Result<int> run_tables(Tables& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
-  std::string text, json;
+  std::vector<NamedTable> chosen;
   for (const auto& [name, make] : tables) {
-    if (o.table != "all" && o.table != name) continue;
-    const Table table = KA_TRY(make(index));
-    // Text and JSON are both made; which of them is printed is decided once at the end.
-    const auto format = table_format(o.format).value_or(TableFormat::text);
-    text += (text.empty() ? "" : "\n") + written(table, format);
-    json += (json.empty() ? "\"" : ", \"") + std::string(name) +
-            "\": " + written(table, TableFormat::json);
+    if (o.table == "all" || o.table == name) chosen.push_back({name, KA_TRY(make(index))});
   }
-  if (call.console.prints_json()) {
-    call.console.print_json("{" + json + "}");
-  } else {
-    call.console.put(harmless(text));
-    if (o.format == "text") KA_TRY(print_not_built(index, folder_of(o.folder), call));
-  }
+  print_tables(chosen, o.format, call);
+  if (o.format == "text") KA_TRY(print_not_built(index, folder_of(o.folder), call));
   return index.findings().empty() ? 0 : 1;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/windows/windows.h"
 
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
@@ -9,8 +10,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
 
 namespace kinalign {
 
@@ -35,21 +34,16 @@ Usage describe_windows(Windows& o) {
   usage.flags = {
       split_field(o.split),
       where_field(o.where),
-      {"stream",
-       "stream to use; may be repeated (default: the streams that all takes have)",
-       &o.options.streams,
-       0.0,
-       0.0,
-       {},
-       "NAME"},
+      text_flag("stream",
+                "stream to use; may be repeated (default: the streams that all takes have)",
+                &o.options.streams, "NAME"),
       {"length", "rows per window", &o.options.length, 2.0, 1e6},
       {"step", "rows from the start of one window to the start of the next", &o.options.step, 1.0,
        1e6},
       {"rate", "rows per second; 0: the rate of the takes", &o.options.rate_hz, 0.0, 1e4, {}, "HZ"},
       {"valid", "smallest fraction of valid cells in each stream", &o.options.valid, 0.0, 1.0}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
-    if (common.out.ends_with(".npz")) return {};
-    return Failure(Error{"-o", 0, "-o FILE.npz", common.out.empty() ? "none" : shown(common.out)});
+    return check_out(common, {".npz"}, "-o FILE.npz");
   };
   return usage;
 }
@@ -122,24 +116,20 @@ void print(const WindowsMade& made, const WindowSource& source, Call& call) {
                     made.rows_left_out));
   }
   auto left_out = nlohmann::ordered_json::array();
+  std::vector<std::string> lines;
   for (const TakeLeftOut& one : made.takes_left_out) {
-    // The JSON lists every take; the text shows only the first ones.
     left_out.push_back({{"take", to_string(one.name)}, {"why", one.why}});
-    if (left_out.size() > shown_takes) continue;
-    call.console.print(
-        harmless(fmt::format("note   {} left out: {}\n", to_string(one.name), one.why)));
+    lines.push_back(fmt::format("note   {} left out: {}\n", to_string(one.name), one.why));
   }
-  if (left_out.size() > shown_takes) {
-    call.console.print(
-        fmt::format("note   {} takes left out in all (--json has them)\n", left_out.size()));
-  }
-  call.console.print_json(nlohmann::ordered_json{
-      {"windows", made.windows},
-      {"parts", source.parts},
-      {"rows_left_out", made.rows_left_out},
-      {"windows_with_too_little_valid", made.too_little_valid},
-      {"takes_left_out",
-       left_out}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  call.console.print(harmless(
+      first_lines(lines, shown_takes, "note   {} more takes left out (--json has them)\n")));
+  call.console.print_json(
+      json_text(nlohmann::ordered_json{{"windows", made.windows},
+                                       {"parts", source.parts},
+                                       {"rows_left_out", made.rows_left_out},
+                                       {"windows_with_too_little_valid", made.too_little_valid},
+                                       {"takes_left_out", left_out}},
+                1));
 }
 
 /// Cuts the windows into one NPZ.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/cli/console.h"
 #include "apps/kinalign/eval/comparison.h"
 
 #include "kinalign/models/windows_file.h"
@@ -7,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 namespace kinalign {

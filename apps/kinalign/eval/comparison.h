@@ -26,10 +26,6 @@ struct Eval {
   bool own_root = false;
 };
 
-/// The name of the rough stream. The default is a Kinect's for methods that clean one; others see
-/// none or a simulated one.
-std::string input_of(const Eval& o, Learns task);
-
 /// A method or a model on one fold, trained from one seed.
 /// The unit of the cache: the same trial on the same windows always has the same marks.
 struct Trial {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/cli/console.h"
 #include "apps/kinalign/eval/comparison.h"
 #include "apps/kinalign/learn/eval_methods.h"
 #include "apps/kinalign/verbs/describe_model.h"
@@ -32,83 +31,59 @@ struct Marked {
   std::array<DenoiseMarks, 2> marks;  // plain answer, steadied answer
 };
 
-/// A mark that does not exist is null, since JSON has no other word for it.
-Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+/// Calls use(mark) for every mark, in the order of the cached texts. If the order or the meaning
+/// changes, cache_version in eval.cpp must change, too.
+void each_mark(auto& marks, const auto& use) {
+  const auto all = [&](auto&... each) { (use(each), ...); };
+  auto& p = marks.protocol;
+  auto& t = marks.table_nine;
+  all(p.position_cm, p.fitted_cm, p.bone_cm, p.constancy_cm);
+  all(p.acceleration_mm, p.jitter_mm, p.true_jitter_mm);
+  all(t.position, t.bone, t.smooth, t.true_smooth);
+  all(marks.hand_cm, marks.feet.contacts, marks.feet.skate_m_s, marks.feet.true_skate_m_s);
+  all(marks.radii[0], marks.radii[1], marks.radii[2]);
+  all(marks.joint_cm, marks.lag_ms, marks.amplitude);
+}
 
+/// A mark in the cache. A mark that does not exist is null, since JSON has no other word for it.
+Json json_of(const auto& number) { return number; }
+Json json_of(const std::optional<double>& mark) { return mark ? Json(*mark) : Json(); }
+/// One entry for each of the shared joints.
+Json json_of(const std::array<std::optional<double>, shared_joint_count>& joints) {
+  Json out = Json::array();
+  for (const auto& one : joints) out.push_back(json_of(one));
+  return out;
+}
 /// The whole histogram is kept: the single radius over all stretches can't be computed from means.
-Json radii_json(const RadiusMarks& radii) {
+Json json_of(const RadiusMarks& radii) {
   return {radii.cells, radii.within, radii.sum_m, radii.errors};
 }
 
-/// The order is that of radii_json().
-RadiusMarks radii_of(const Json& json) {
-  return {json.at(0).get<std::size_t>(), json.at(1).get<std::size_t>(), json.at(2).get<double>(),
-          json.at(3).get<std::vector<std::uint32_t>>()};
+/// The opposite of json_of(). Throws for another type; read_marks() catches it.
+void read_mark(const Json& json, auto& number) { json.get_to(number); }
+void read_mark(const Json& json, std::optional<double>& mark) {
+  mark = json.is_null() ? std::nullopt : std::optional(json.get<double>());
+}
+void read_mark(const Json& json, std::array<std::optional<double>, shared_joint_count>& joints) {
+  for (std::size_t j = 0; j < joints.size(); ++j) read_mark(json.at(j), joints[j]);
+}
+void read_mark(const Json& json, RadiusMarks& radii) {
+  json.at(0).get_to(radii.cells);
+  json.at(1).get_to(radii.within);
+  json.at(2).get_to(radii.sum_m);
+  json.at(3).get_to(radii.errors);
 }
 
-/// The marks as an array, for the cache. marks_of() reads the same order.
-/// If the order or the meaning changes, cache_version in eval.cpp must change, too.
 Json marks_json(const DenoiseMarks& marks) {
-  const ProtocolMarks& p = marks.protocol;
-  const TableNine& t = marks.table_nine;
-  // One entry for each of the shared joints, null for a joint that the data lack.
-  Json joints = Json::array();
-  for (const auto& one : marks.joint_cm) joints.push_back(number(one));
-  return {number(p.position_cm),
-          number(p.fitted_cm),
-          number(p.bone_cm),
-          number(p.constancy_cm),
-          p.acceleration_mm,
-          p.jitter_mm,
-          p.true_jitter_mm,
-          t.position,
-          t.bone,
-          t.smooth,
-          t.true_smooth,
-          number(marks.hand_cm),
-          marks.feet.contacts,
-          marks.feet.skate_m_s,
-          marks.feet.true_skate_m_s,
-          radii_json(marks.radii[0]),
-          radii_json(marks.radii[1]),
-          radii_json(marks.radii[2]),
-          joints,
-          number(marks.lag_ms),
-          number(marks.amplitude)};
+  Json out = Json::array();
+  each_mark(marks, [&](const auto& mark) { out.push_back(json_of(mark)); });
+  return out;
 }
 
-/// The opposite of number().
-std::optional<double> number_of(const Json& json) {
-  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
-}
-
-/// The marks that marks_json() wrote.
-/// Throws if an element is missing or of another type; read_marks() catches it.
 DenoiseMarks marks_of(const Json& json) {
   DenoiseMarks out;
-  ProtocolMarks& p = out.protocol;
-  p.position_cm = number_of(json.at(0));
-  p.fitted_cm = number_of(json.at(1));
-  p.bone_cm = number_of(json.at(2));
-  p.constancy_cm = number_of(json.at(3));
-  p.acceleration_mm = json.at(4).get<double>();
-  p.jitter_mm = json.at(5).get<double>();
-  p.true_jitter_mm = json.at(6).get<double>();
-  TableNine& t = out.table_nine;
-  t.position = json.at(7).get<double>();
-  t.bone = json.at(8).get<double>();
-  t.smooth = json.at(9).get<double>();
-  t.true_smooth = json.at(10).get<double>();
-  out.hand_cm = number_of(json.at(11));
-  out.feet.contacts = json.at(12).get<std::size_t>();
-  out.feet.skate_m_s = json.at(13).get<double>();
-  out.feet.true_skate_m_s = json.at(14).get<double>();
-  // Elements 15 to 17 are the radii of trunk, arms and legs.
-  for (std::size_t g = 0; g < out.radii.size(); ++g) out.radii[g] = radii_of(json.at(15 + g));
-  for (std::size_t j = 0; j < out.joint_cm.size(); ++j)
-    out.joint_cm[j] = number_of(json.at(18).at(j));
-  out.lag_ms = number_of(json.at(19));
-  out.amplitude = number_of(json.at(20));
+  std::size_t next = 0;
+  each_mark(out, [&](auto& mark) { read_mark(json.at(next++), mark); });
   return out;
 }
 
@@ -201,14 +176,8 @@ Result<std::string> marks_on(const Bench& bench, const Answer& answer,
   std::vector<Marked> out;
   for (const Pair& pair : bench.pairs.all) {
     if (std::find(tested.begin(), tested.end(), pair.take) == tested.end()) continue;
-    // The plain answer is marked before it is moved into the steadier.
-    Denoised plain = answer(pair.input);
-    Marked one{pair.take, pair.subject, {}};
-    one.marks[0] = bench.marker.marks_of(pair, plain.positions, plain.spread);
-    // steadied() calls the method again for the mirror image.
-    const Denoised steadied = steadier.steadied(answer, pair.input, std::move(plain));
-    one.marks[1] = bench.marker.marks_of(pair, steadied.positions, steadied.spread);
-    out.push_back(std::move(one));
+    out.push_back({pair.take, pair.subject,
+                   both_marks(bench.marker, steadier, answer, pair, answer(pair.input))});
   }
   return written_marks(out);
 }
@@ -356,7 +325,7 @@ std::vector<MethodMarks> sum_up(const std::string& name, const std::vector<FoldM
 Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                                       const std::string& file) {
   Windows windows = KA_TRY(read_windows(bytes, file));
-  const std::string input = input_of(o, Learns::denoise);
+  const std::string input = rough_stream(o.input, Learns::denoise);
   Pairs pairs = KA_TRY(pairs_of(windows, input, o.truth, least_rows));
   DenoiseLayout layout = KA_TRY(eval_layout(pairs));
   const MarkedIn marked_in = o.own_root ? MarkedIn::own_root : MarkedIn::space;

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/cli/field_text.h"
 #include "apps/kinalign/dataset/table_output.h"
-#include "apps/kinalign/eval/comparison.h"
+#include "apps/kinalign/eval/eval_tables.h"
 #include "apps/kinalign/learn/eval_methods.h"
 #include "apps/kinalign/learn/shipped_models.h"
-#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
 
 #include "kinalign/core/hash.h"
-#include "kinalign/evaluate/statistics.h"
 #include "kinalign/models/model_file.h"
 
 #include <fmt/format.h>
@@ -19,7 +18,6 @@
 #include <filesystem>
 #include <iterator>
 #include <set>
-#include <span>
 
 namespace kinalign {
 
@@ -34,13 +32,6 @@ constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
 /// The version of cached results. Another number makes every result be computed again.
 constexpr int cache_version = 6;
-/// An interval over fewer people would be too narrow.
-constexpr std::size_t least_for_interval = 8;
-/// A terminal shows this number of marks in one table; the others follow in further tables.
-constexpr std::size_t most_columns = 6;
-/// If there are more rows of tests, they are only written to files.
-constexpr std::size_t most_printed_tests = 12;
-
 Learns task_of(const std::string& method) {
   const TrainedMethod* found = find_trained(trained_part(method));
   return found == nullptr ? Learns::denoise : found->task;
@@ -79,30 +70,18 @@ Usage describe_eval(Eval& o) {
     if (method.task != Learns::denoise) choices.push_back(method.name);
   }
   usage.flags = {
-      {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
-      {"windows", "a file of windows instead of a data set", &o.windows, 0.0, 0.0, {}, "FILE"},
-      {"folds",
-       "folds: what is left out of training and tested",
-       &o.folds,
-       0.0,
-       0.0,
-       {"people", "runs", "actions", "split"}},
-      {"split",
-       "a split of the data set, instead of folds: its part train for training, its part test for "
-       "the test",
-       &o.split,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"model",
-       "a finished model, shown in a row of its own; may be repeated. Test it only on people who "
-       "were not in its training",
-       &o.models,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
+      text_flag("data", "the data set's folder", &o.data, "FOLDER"),
+      text_flag("windows", "a file of windows instead of a data set", &o.windows, "FILE"),
+      choice_flag("folds", "folds: what is left out of training and tested", &o.folds,
+                  {"people", "runs", "actions", "split"}),
+      text_flag("split",
+                "a split of the data set, instead of folds: its part train for training, its part "
+                "test for the test",
+                &o.split, "FILE"),
+      text_flag("model",
+                "a finished model, shown in a row of its own; may be repeated. Test it only on "
+                "people who were not in its training",
+                &o.models, "FILE"),
       input_field(o.input),
       truth_field(o.truth),
       nodes_field(o.nodes),
@@ -115,14 +94,11 @@ Usage describe_eval(Eval& o) {
        "for methods that clean: positions relative to each skeleton's own root and heading, like "
        "BRA's published marks",
        &o.own_root},
-      {"device", "device that trains networks", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      choice_flag("device", "device that trains networks", &o.device, {"cpu", "cuda"}),
       format_field(o.format)};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
-    if (common.out.empty()) return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});
-    if (o.data.empty() == o.windows.empty()) {
-      return Failure(Error{"--data", 0, "a data set (--data) or a file of windows (--windows)",
-                           o.data.empty() ? "neither" : "both"});
-    }
+    KA_TRY(check_out(common, {}, "-o FOLDER for results"));
+    KA_TRY(check_data(o.data, o.windows));
     if (!o.split.empty() && (o.data.empty() || (given.count("folds") > 0 && o.folds != "split"))) {
       return Failure(Error{"--split", 0, "a data set (--data) without other folds",
                            o.data.empty() ? "--windows (--folds split uses the file's own parts)"
@@ -137,25 +113,39 @@ std::vector<std::string> chosen_methods(const Eval& o) {
   if (!o.methods.empty() || !o.models.empty()) return o.methods;
   std::vector<std::string> out;
   for (const EvalMethod& method : eval_methods()) {
-    if (!method.trained) out.push_back(method.name);
+    if (!is_trained(method.name)) out.push_back(method.name);
   }
   return out;
 }
 
-/// Checks that the models can be read and that they and the methods have one task. Returns that
-/// task.
-Result<Learns> task_of_all(const Eval& o, Call& call) {
-  std::vector<Compared> all;
-  for (const std::string& method : chosen_methods(o)) all.push_back({method, task_of(method)});
+/// A finished model of --model. `training`: what its file states about its training.
+struct FinishedModel {
+  std::string file, hash;
+  Learns task = Learns::denoise;
+  Json training;
+};
+
+Result<std::vector<FinishedModel>> finished_models(const Eval& o, Call& call) {
+  std::vector<FinishedModel> out;
   for (const std::string& file : o.models) {
     const std::string bytes = KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes));
+    const ModelHeader header =
+        KA_TRY(read_model_header(KA_TRY(read_safetensors(bytes, file)), file));
     const std::string word = KA_TRY(task_of_model(bytes, file));
     const auto task = learns_of(word);
     if (!task) {
       return Failure(Error{file, 0, "a model that cleans, poses or fuses", "task " + shown(word)});
     }
-    all.push_back({file, *task});
+    out.push_back({file, sha256_of(bytes), *task, header.value("training", Json())});
   }
+  return out;
+}
+
+/// The task that the methods and the models have in common.
+Result<Learns> task_of_all(const Eval& o, const std::vector<FinishedModel>& models, Call& call) {
+  std::vector<Compared> all;
+  for (const std::string& method : chosen_methods(o)) all.push_back({method, task_of(method)});
+  for (const FinishedModel& model : models) all.push_back({model.file, model.task});
   for (const Compared& one : all) {
     if (const auto same = check_one_task(all.front(), one); !same) {
       return call.console.refuse(same.error());
@@ -177,22 +167,21 @@ Result<WindowsFile> windows_of(const Eval& o, Learns task, Call& call) {
     const WindowsWanted wanted{.data = o.data,
                                .split = o.split,
                                .where = "",
-                               .input = input_of(o, task),
+                               .input = rough_stream(o.input, task),
                                .truth = o.truth,
                                .rate_hz = o.rate_hz,
                                .valid = task == Learns::denoise ? "0" : "0.2"};
     KA_TRY(cut_windows(wanted, task, out.file));
   }
   out.bytes = KA_TRY(read_whole(call.surroundings.files, out.file, most_windows_bytes));
-  Sha256 hash;
-  hash.update(out.bytes);
-  out.hash = hash.hex();
+  out.hash = sha256_of(out.bytes);
   return out;
 }
 
 /// The compared methods, the data and the folds.
 struct EvalRun {
   const Eval& options;
+  std::vector<FinishedModel> models;
   Learns task;
   std::string windows, windows_hash;
   Comparison comparison;
@@ -215,8 +204,8 @@ void add_people_learnt(const Json& training, const std::string& dataset,
 
 /// A warning about tested people whom finished models learnt from: such rows do not show how well a
 /// model does on other people. Empty if there are none.
-Result<std::string> known_people(const Eval& o, const Comparison& comparison,
-                                 const std::vector<Fold>& folds, Call& call) {
+std::string known_people(const std::vector<FinishedModel>& models, const Comparison& comparison,
+                         const std::vector<Fold>& folds) {
   std::set<std::string> tested;
   for (const FoldTake& take : comparison.takes) {
     for (const Fold& fold : folds) {
@@ -225,35 +214,38 @@ Result<std::string> known_people(const Eval& o, const Comparison& comparison,
       tested.insert(take.subject);
     }
   }
-  std::string out;
-  for (const std::string& file : o.models) {
-    const std::string bytes = KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes));
-    const ModelHeader header =
-        KA_TRY(read_model_header(KA_TRY(read_safetensors(bytes, file)), file));
+  std::vector<std::string> out;
+  for (const FinishedModel& model : models) {
     std::set<std::string> learnt, both;
-    add_people_learnt(header.value("training", Json()), comparison.dataset, learnt);
+    add_people_learnt(model.training, comparison.dataset, learnt);
     std::set_intersection(learnt.begin(), learnt.end(), tested.begin(), tested.end(),
                           std::inserter(both, both.end()));
     if (both.empty()) continue;
-    out += (out.empty() ? "" : "; ") +
-           fmt::format("{} was trained on {} of the test part: {}", file_name(file),
-                       both.size() == 1 ? "a person" : "people", fmt::join(both, ", "));
+    out.push_back(fmt::format("{} was trained on {} of the test part: {}", file_name(model.file),
+                              both.size() == 1 ? "a person" : "people", fmt::join(both, ", ")));
   }
-  return out;
+  return fmt::format("{}", fmt::join(out, "; "));
 }
 
 /// Opens the run: windows, folds, and a warning if a model was trained on tested people.
 Result<EvalRun> open_run(const Eval& o, Call& call) {
-  const Learns task = KA_TRY(task_of_all(o, call));
+  auto models = KA_TRY(finished_models(o, call));
+  const Learns task = KA_TRY(task_of_all(o, models, call));
   KA_TRY(make_folders(call.common.out + "/cache"));
   const WindowsFile windows = KA_TRY(windows_of(o, task, call));
   Comparison comparison =
       KA_TRY(task == Learns::denoise ? denoise_comparison(o, windows.bytes, windows.file)
                                      : body_comparison(o, task, windows.bytes, windows.file));
   auto folds = KA_TRY(folds_of(o.split.empty() ? o.folds : "split", comparison.takes));
-  const std::string known = KA_TRY(known_people(o, comparison, folds, call));
+  const std::string known = known_people(models, comparison, folds);
   if (!known.empty()) comparison.note += (comparison.note.empty() ? "" : "; ") + known;
-  return EvalRun{o, task, windows.file, windows.hash, std::move(comparison), std::move(folds)};
+  return EvalRun{o,
+                 std::move(models),
+                 task,
+                 windows.file,
+                 windows.hash,
+                 std::move(comparison),
+                 std::move(folds)};
 }
 
 /// The name of a cached result: a hash of all that the marks depend on. `model_hash`: of a finished
@@ -267,16 +259,7 @@ std::string key_of(const EvalRun& run, const TrainingWanted& training, const Fol
   if (!fold.judged.empty()) all.push_back(fold.judged);
   if (run.options.own_root) all.push_back("own_root");
   if (!model_hash.empty()) all.push_back(model_hash);
-  Sha256 hash;
-  hash.update(all.dump());
-  return hash.hex().substr(0, 32);
-}
-
-Result<std::string> hash_of_model(const std::string& file, Call& call) {
-  if (file.empty()) return std::string();
-  Sha256 hash;
-  hash.update(KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes)));
-  return hash.hex();
+  return sha256_of(all.dump()).substr(0, 32);
 }
 
 /// The marks from the cache, or computed and written there. A cached file that can't be read is
@@ -299,23 +282,22 @@ Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std:
   return made;
 }
 
-/// The rows of a method, or of a model if `model` names its file.
+/// The rows of a method, or of a model ("model") if there is one.
 Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& method,
-                                         const std::string& model, Call& call) {
+                                         const FinishedModel& model, Call& call) {
   const Eval& o = run.options;
-  const bool is_trained = model.empty() && find_trained(trained_part(method)) != nullptr;
-  const std::string model_hash = KA_TRY(hash_of_model(model, call));
+  const bool trains = model.file.empty() && is_trained(method);
   std::vector<FoldMarks> folds;
   for (const Fold& fold : run.folds) {
     FoldMarks& marks = folds.emplace_back(FoldMarks{fold.name, {}});
-    for (std::int64_t seed = 1; seed <= (is_trained ? o.seeds : 1); ++seed) {
+    for (std::int64_t seed = 1; seed <= (trains ? o.seeds : 1); ++seed) {
       call.console.detail(fmt::format("{}: {}", method, fold.name));
       if (!go_on(call.console.progress(), method, folds.size() - 1, run.folds.size())) {
         return Failure(interruption());
       }
       Trial trial{{.method = method,
                    .windows = run.windows,
-                   .input = input_of(o, run.task),
+                   .input = rough_stream(o.input, run.task),
                    .truth = o.truth,
                    .learnt = fold.learnt,
                    .judged = fold.judged,
@@ -323,216 +305,17 @@ Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& 
                    .seed = seed,
                    .steps = o.steps,
                    .hand_weight = o.hand_weight},
-                  model,
+                  model.file,
                   fold.tested};
       if (!o.nodes.empty()) trial.training.nodes = split_at_commas(o.nodes);
-      const std::string key = key_of(run, trial.training, fold, model_hash);
+      const std::string key = key_of(run, trial.training, fold, model.hash);
       TrainingWanted trained = trial.training;  // cnn and cnn+project share one training
       trained.method = trained_part(method);
-      trial.training.folder = call.common.out + "/models/" + key_of(run, trained, fold, model_hash);
+      trial.training.folder = call.common.out + "/models/" + key_of(run, trained, fold, model.hash);
       marks.texts.push_back(KA_TRY(marks_for(run, trial, key, call)));
     }
   }
-  return run.comparison.sum_up(model.empty() ? method : model, folds);
-}
-
-/// The number of people, or folds, with a value in at least one row.
-std::size_t count_of_values(const std::vector<MethodMarks>& rows) {
-  std::set<std::string> all;
-  for (const MethodMarks& row : rows) {
-    for (const auto& [mark, values] : row.marks) {
-      for (const auto& [name, value] : values) all.insert(name);
-    }
-  }
-  return all.size();
-}
-
-/// Adds the mean and the ends of its interval, or the mean and, for several values, the standard
-/// deviation.
-void put_mean(const std::vector<double>& values, bool has_interval, std::vector<Cell>& row) {
-  if (values.empty()) {
-    row.resize(row.size() + (has_interval ? 3 : 2));
-    return;
-  }
-  Mean mean;
-  for (const double value : values) mean.add(value);
-  row.emplace_back(mean.value_or(0.0));
-  if (has_interval) {
-    const MeanInterval interval = bootstrap_mean(values);
-    row.insert(row.end(), {Cell(interval.low), Cell(interval.high)});
-  } else {
-    row.push_back(values.size() > 1 ? Cell(deviation(values)) : Cell());
-  }
-}
-
-/// The table of these columns, with the means of all rows.
-Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows,
-               std::span<const MarkColumn> columns) {
-  const std::size_t count = count_of_values(rows);
-  const Comparison& comparison = run.comparison;
-  const bool has_interval = comparison.over == "people" && count >= least_for_interval;
-  Table out;
-  out.caption =
-      (run.folds.size() > 1 ? "folds of " + run.options.folds : std::string("one split")) +
-      ": mean and " + (has_interval ? "its 95 % interval" : "standard deviation") + " over " +
-      (comparison.over == "people" ? counted(count, "person", "people") : comparison.over);
-  if (!comparison.note.empty()) out.caption += "; " + comparison.note;
-  out.columns = {{"method", "method"}};
-  for (const auto& [key, title, decimals] : columns) {
-    out.columns.push_back({key, title, decimals});
-    if (has_interval) {
-      out.columns.push_back({key + "_low", "from", decimals});
-      out.columns.push_back({key + "_high", "to", decimals});
-    } else {
-      out.columns.push_back({key + "_sd", "±", decimals});
-    }
-  }
-  for (const MethodMarks& marks : rows) {
-    auto& row = out.rows.emplace_back(std::vector<Cell>{marks.label()});
-    for (const MarkColumn& column : columns) {
-      put_mean(marks.values(column.key), has_interval, row);
-    }
-  }
-  return out;
-}
-
-/// The table of single values: a row for each person or fold.
-Table people_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
-  Table out;
-  out.columns = {{"method", "method"}, {"tested", "tested"}};
-  for (const auto& [key, title, decimals] : run.comparison.columns) {
-    out.columns.push_back({key, title, decimals});
-  }
-  for (const MethodMarks& marks : rows) {
-    std::map<std::string, std::vector<Cell>> people;
-    for (std::size_t c = 0; c < run.comparison.columns.size(); ++c) {
-      const auto found = marks.marks.find(run.comparison.columns[c].key);
-      if (found == marks.marks.end()) continue;
-      for (const auto& [name, mean] : found->second) {
-        auto& row = people[name];
-        row.resize(run.comparison.columns.size());
-        row[c] = mean.value_or(0.0);
-      }
-    }
-    for (auto& [name, values] : people) {
-      auto& row = out.rows.emplace_back(std::vector<Cell>{marks.label(), name});
-      row.insert(row.end(), values.begin(), values.end());
-    }
-  }
-  return out;
-}
-
-/// The table of paired tests between any two methods, for each mark.
-Table tests_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
-  Table out;
-  out.caption = "differences of two methods, with Wilcoxon's signed-rank test over " +
-                run.comparison.over + "; Holm's correction over the tests of a mark";
-  out.columns = {{"first", "first"},
-                 {"second", "second"},
-                 {"mark", "mark"},
-                 {"pairs", "pairs"},
-                 {"difference", "first − second", 2},
-                 {"p", "p", 4},
-                 {"p_corrected", "p, corrected", 4}};
-  for (const MarkColumn& column : run.comparison.columns) {
-    for (const PairedTest& test : paired_tests(rows, column.key)) {
-      out.rows.push_back({rows[test.first].label(), rows[test.second].label(), column.key,
-                          static_cast<std::int64_t>(test.people), test.difference, test.p,
-                          test.corrected});
-    }
-  }
-  return out;
-}
-
-/// The table of each joint's mean error. Without rows if joints are not marked separately.
-Table joints_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
-  Table out;
-  out.caption = "position of each joint, cm";
-  out.columns = {{"method", "method"}};
-  for (const auto& [key, title, decimals] : run.comparison.joints) {
-    out.columns.push_back({key, title, decimals});
-  }
-  for (const MethodMarks& marks : rows) {
-    if (run.comparison.joints.empty()) break;
-    auto& row = out.rows.emplace_back(std::vector<Cell>{marks.label()});
-    for (const MarkColumn& joint : run.comparison.joints) {
-      Mean mean;
-      for (const double value : marks.values(joint.key)) mean.add(value);
-      row.push_back(mean.value() ? Cell(*mean.value()) : Cell());
-    }
-  }
-  return out;
-}
-
-/// The table of stated radii and the share of errors within them. Without rows if no method states
-/// radii.
-Table radii_of(const std::vector<MethodMarks>& rows) {
-  Table out;
-  out.caption =
-      "stated 90 % radii over all people, and the single radius for all joints that contains the "
-      "same fraction";
-  out.columns = {{"method", "method"},           {"part", "part"},
-                 {"cells", "positions"},         {"covered_percent", "within, %", 1},
-                 {"radius_cm", "stated, cm", 2}, {"one_radius_cm", "single radius, cm", 2}};
-  for (const MethodMarks& marks : rows) {
-    if (marks.radii.empty()) continue;
-    auto parts = marks.radii;
-    for (const auto& [part, radii] : marks.radii) parts["all"].add(radii);
-    for (const auto& [part, radii] : parts) {
-      out.rows.push_back({marks.label(), part, static_cast<std::int64_t>(radii.cells),
-                          100.0 * radii.covered(), 100.0 * radii.mean_radius_m(),
-                          100.0 * radii.one_radius_m()});
-    }
-  }
-  return out;
-}
-
-Result<void> write_table(const Table& table, const std::string& name, Call& call) {
-  for (const auto& [end, format] :
-       {std::pair(".md", TableFormat::markdown), std::pair(".tex", TableFormat::latex),
-        std::pair(".csv", TableFormat::csv), std::pair(".json", TableFormat::json)}) {
-    KA_TRY(write_whole(call.surroundings.files, call.common.out + "/" + name + end,
-                       written(table, format), Overwrite::yes));
-  }
-  return {};
-}
-
-Result<void> write_tables(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
-  KA_TRY(write_table(table_of(run, rows, run.comparison.columns), "table", call));
-  KA_TRY(write_table(people_of(run, rows), "people", call));
-  for (const NamedTable& table :
-       {NamedTable{"joints", joints_of(run, rows)}, NamedTable{"radii", radii_of(rows)}}) {
-    if (!table.table.rows.empty()) KA_TRY(write_table(table.table, table.name, call));
-  }
-  return write_table(tests_of(run, rows), "tests", call);
-}
-
-/// Prints the tables; a text splits the marks into tables that fit a terminal. Long tables of tests
-/// are only written to files.
-void print_tables_of(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
-  const std::span<const MarkColumn> columns = run.comparison.columns;
-  const bool is_text = run.options.format == "text" && !call.console.prints_json();
-  const std::size_t width = is_text ? most_columns : columns.size();
-  std::vector<NamedTable> all;
-  for (std::size_t begin = 0; begin < columns.size(); begin += width) {
-    const auto some = columns.subspan(begin, std::min(width, columns.size() - begin));
-    all.push_back({"rows", table_of(run, rows, some)});
-    if (begin > 0) all.back().table.caption.clear();
-  }
-  const Table tests = tests_of(run, rows);
-  const bool is_shown = !tests.rows.empty() && tests.rows.size() <= most_printed_tests;
-  if (const Table radii = radii_of(rows); !radii.rows.empty()) all.push_back({"radii", radii});
-  if (is_shown || call.console.prints_json()) all.push_back({"tests", tests});
-  if (call.console.prints_json()) {
-    all.push_back({"people", people_of(run, rows)});
-    if (const Table joints = joints_of(run, rows); !joints.rows.empty()) {
-      all.push_back({"joints", joints});
-    }
-  }
-  print_tables(all, run.options.format, call);
-  if (!is_shown && !tests.rows.empty() && run.options.format == "text") {
-    call.console.print(fmt::format("\npaired tests: {}/tests.md\n", harmless(call.common.out)));
-  }
+  return run.comparison.sum_up(model.file.empty() ? method : model.file, folds);
 }
 
 /// Adds the rows that are not there yet: every model for fusion brings the filter's rows, which are
@@ -551,24 +334,20 @@ void add_new(const std::vector<MethodMarks>& more, std::vector<MethodMarks>& row
 Result<int> run_eval(Eval& o, Call& call) {
   for (std::string& model : o.models) model = KA_TRY(model_named(model, ""));
   const EvalRun run = KA_TRY(open_run(o, call));
-  std::vector<MethodMarks> rows;
+  EvalRows all{run.comparison, run.folds.size() > 1 ? "folds of " + o.folds : "one split", {}};
   for (const std::string& method : chosen_methods(o)) {
-    add_new(KA_TRY(rows_of(run, method, "", call)), rows);
-    KA_TRY(write_tables(run, rows, call));
+    add_new(KA_TRY(rows_of(run, method, {}, call)), all.rows);
+    KA_TRY(write_tables(all, call));
   }
-  for (const std::string& model : o.models) {
-    add_new(KA_TRY(rows_of(run, "model", model, call)), rows);
-    KA_TRY(write_tables(run, rows, call));
+  for (const FinishedModel& model : run.models) {
+    add_new(KA_TRY(rows_of(run, "model", model, call)), all.rows);
+    KA_TRY(write_tables(all, call));
   }
-  print_tables_of(run, rows, call);
+  print_tables(all, o.format, call);
   return 0;
 }
 
 }  // namespace
-
-std::string input_of(const Eval& o, Learns task) {
-  return o.input.empty() && task == Learns::denoise ? "kinect" : o.input;
-}
 
 /// The verb `kinalign eval`.
 Verb eval_verb() {

@@ -3,18 +3,20 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/text/describe_file.h"
-#include "apps/kinalign/verbs/inputs.h"
 
+#include "kinalign/core/numbers.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/take/guarded.h"
 #include "kinalign/models/pose/own_body.h"
+#include "kinalign/sources/formats.h"
+#include "kinalign/view/report_words.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -38,10 +40,8 @@ constexpr std::uint64_t most_body_bytes = std::uint64_t{1} << 28U;
 /// The stature that the text states, m. Absent if the text is not one number.
 std::optional<double> stature_in(const std::string& words) {
   double out = 0.0;
-  const char* end = words.data() + words.size();
-  const auto [rest, fault] = std::from_chars(words.data(), end, out);
   // The whole text must be a number: "1.75m" may be the name of a file.
-  return fault == std::errc() && rest == end ? std::optional(out) : std::nullopt;
+  return parse_number(words, out) ? std::optional(out) : std::nullopt;
 }
 
 /// Each warning has a line of its own, after the summary. Names in warnings come from files, so
@@ -55,15 +55,19 @@ std::string with_warnings(std::string text, const AboutAnswer& about) {
 
 }  // namespace
 
+Field model_flag(std::string& model) {
+  return text_flag(
+      "model",
+      "a model's file, or the name of a shipped model (default: the shipped model that fits)",
+      &model, "FILE");
+}
+
 Field body_flag(std::string& words, const std::string& otherwise) {
-  return {"body",
-          "bone lengths of the answer: a stature in m, or a BVH of the person's suit (default: " +
-              otherwise + ")",
-          &words,
-          0.0,
-          0.0,
-          {},
-          "BODY"};
+  return text_flag(
+      "body",
+      "bone lengths of the answer: a stature in m, or a BVH of the person's suit (default: " +
+          otherwise + ")",
+      &words, "BODY");
 }
 
 Result<void> check_body(const std::string& words) {
@@ -84,11 +88,8 @@ Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Sk
   if (const auto stature = stature_in(words)) return scaled(body, *stature / stature_of(body));
   const std::string text = KA_TRY(read_whole(call.surroundings.files, words, most_body_bytes));
   // Only lengths are taken from the BVH.
-  auto own = with_lengths_of(body, KA_TRY(read_bvh(text, words, {})).clip.skeleton);
-  if (own) return std::optional(std::move(*own));
-  Error error = own.error();
-  error.file = words;
-  return Failure(std::move(error));
+  return std::optional(KA_TRY(with_lengths_of(body, KA_TRY(read_bvh(text, words, {})).clip.skeleton)
+                                  .map_error(in_file(words))));
 }
 
 AboutAnswer about_body(const Skeleton& body, const std::string& by) {
@@ -101,9 +102,16 @@ std::string body_line(const AboutAnswer& about) {
                      harmless(body.at("by").get<std::string>()));
 }
 
-Result<AboutAnswer> in_child(const std::string& in,
-                             const std::function<Result<AboutAnswer>()>& work) {
-  const auto as_text = [&]() -> Result<std::string> { return KA_TRY(work()).dump(); };
+Result<AboutAnswer> answered(const std::string& in,
+                             const std::function<Result<AboutAnswer>()>& work, Call& call) {
+  // HDF5 is read in a child. All other formats have readers of kinalign, which are safe in this
+  // process.
+  if (KA_TRY(kind_of_file(call.surroundings.files, in)) != FileKind::take) {
+    return work().map_error(in_file(in));
+  }
+  const auto as_text = [&]() -> Result<std::string> {
+    return KA_TRY(work().map_error(in_file(in))).dump();
+  };
   AboutAnswer about =
       // A child process that read a damaged take may send anything. Text that is no object is an
       // error.
@@ -133,17 +141,36 @@ Result<void> keep_free(const Call& call) {
   return {};
 }
 
-void print_live(std::string text, const AboutAnswer& about, Call& call) {
+std::string answer_line(const AboutAnswer& about, const std::string& out) {
+  return fmt::format("{}: {} frames at {:g} Hz, {} joints\n", out.empty() ? "live" : harmless(out),
+                     grouped(about.at("frames").get<std::size_t>()),
+                     about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>());
+}
+
+std::string seen_text(const AboutAnswer& about) {
+  return fmt::format("{:.1f} % missing, {:.1f} % inferred",
+                     100.0 * about.at("missing").get<double>(),
+                     100.0 * about.at("inferred").get<double>());
+}
+
+int print_answer(std::string text, const AboutAnswer& about, Call& call) {
+  call.console.print(with_warnings(std::move(text), about));
+  call.console.print_json(json_text(about, 1));
+  return about.at("warnings").empty() ? 0 : 1;
+}
+
+Result<int> end_live(Clip clip, const std::string& model, const std::string& text,
+                     const AboutAnswer& about, Call& call) {
+  if (!call.common.out.empty()) {
+    KA_TRY(write_answer(std::move(clip), about.at("rate_hz").get<double>(), model, call));
+    call.console.wrote(call.common.out);
+  }
   // "event" comes first, as in all other lines of a live run.
   AboutAnswer event{{"event", "ended"}};
   event.update(about);
-  call.console.print(with_warnings(std::move(text), about));
+  call.console.print(with_warnings(text + live_lines(about), about));
   call.console.print_json(json_text(event));
-}
-
-void print_answer(std::string text, const AboutAnswer& about, Call& call) {
-  call.console.print(with_warnings(std::move(text), about));
-  call.console.print_json(about.dump(1, ' ', false, AboutAnswer::error_handler_t::replace));
+  return about.at("warnings").empty() ? 0 : 1;
 }
 
 }  // namespace kinalign

@@ -19,13 +19,15 @@ namespace kinalign {
 /// lines, so both always agree.
 using AboutAnswer = nlohmann::ordered_json;
 
-/// Returns the result of `work`, which runs in a child process, so a damaged take can crash only
-/// the child. Errors name the take `in`.
+/// Returns the result of `work`, which reads the file `in`. If that is a take, it runs in a child
+/// process, so a damaged take can crash only the child. Errors without a file name `in`.
 /// Only the JSON comes back from the child. A file that `work` writes stays, so the child may write
 /// the answer itself.
-Result<AboutAnswer> in_child(const std::string& in,
-                             const std::function<Result<AboutAnswer>()>& work);
+Result<AboutAnswer> answered(const std::string& in,
+                             const std::function<Result<AboutAnswer>()>& work, Call& call);
 
+/// The flag --model of a verb with shipped models.
+Field model_flag(std::string& model);
 /// The flag --body. `otherwise`: the help's words for the bones that the answer has without the
 /// flag.
 Field body_flag(std::string& words, const std::string& otherwise);
@@ -48,9 +50,18 @@ Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, C
 /// A live run may last for hours. A name that can't be written must fail at its start.
 Result<void> keep_free(const Call& call);
 
-/// Prints `text`, a line for each warning, and the JSON.
-void print_answer(std::string text, const AboutAnswer& about, Call& call);
-/// Prints the same for a live run; the JSON is one line, the event `ended`.
-void print_live(std::string text, const AboutAnswer& about, Call& call);
+/// The first printed line: "clean.bvh: 300 frames at 30 Hz, 25 joints". A live run without a file
+/// is called "live".
+std::string answer_line(const AboutAnswer& about, const std::string& out);
+/// The share of the Kinect's joints: "1.2 % missing, 3.4 % inferred".
+std::string seen_text(const AboutAnswer& about);
+
+/// Prints `text`, a line for each warning, and the JSON. Returns the exit code: 1 if there are
+/// warnings.
+int print_answer(std::string text, const AboutAnswer& about, Call& call);
+/// Ends a live run: writes the clip if --out names a file, and prints as print_answer() does, with
+/// the latencies. The JSON is one line, the event `ended`.
+Result<int> end_live(Clip clip, const std::string& model, const std::string& text,
+                     const AboutAnswer& about, Call& call);
 
 }  // namespace kinalign

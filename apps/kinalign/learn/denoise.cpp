@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/point_source.h"
 #include "apps/kinalign/learn/projected.h"
@@ -10,7 +11,7 @@
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
-#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/evaluate/sequence.h"
 #include "kinalign/formats/points/trc.h"
 #include "kinalign/formats/take/guarded.h"
 #include "kinalign/infer/safetensors.h"
@@ -19,14 +20,12 @@
 #include "kinalign/models/joint_names.h"
 #include "kinalign/models/skeleton_of_points.h"
 #include "kinalign/sources/formats.h"
-#include "kinalign/view/report_words.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace kinalign {
 
@@ -34,8 +33,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_gap_s = 0.2;     // samples further apart are not interpolated
-constexpr double longest_unseen_s = 2.0;  // a joint missing for longer gets a warning
+constexpr double longest_gap_s = 0.2;  // samples further apart are not interpolated
 
 /// The options of `kinalign denoise`. `in` is empty in a live run.
 struct Denoise {
@@ -51,14 +49,8 @@ Usage describe_denoise(Denoise& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in, 0}};
   usage.flags = {
-      {"model",
-       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
-       &o.model,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"stream", "stream of joints (default: the only one)", &o.stream, 0.0, 0.0, {}, "NAME"},
+      model_flag(o.model),
+      text_flag("stream", "stream of joints (default: the only one)", &o.stream, "NAME"),
       {"project",
        "keep standing feet in place and bone lengths constant, by steps in the hidden space of a "
        "model of cnn or cnn-manifold",
@@ -71,14 +63,10 @@ Usage describe_denoise(Denoise& o) {
       return Failure(
           Error{"--project", 0, "a file or a take, because it needs the whole motion", "--live"});
     }
+    if (o.live.live.empty()) return check_out(common, {".bvh", ".trc"}, "-o FILE.bvh or FILE.trc");
     // A live run sends its frames as it goes, so a file is optional. TRC is not offered there.
-    if (!o.live.live.empty() && (common.out.empty() || common.out.ends_with(".bvh"))) return {};
-    if (!o.live.live.empty()) {
-      return Failure(Error{"-o", 0, "-o FILE.bvh, with --live", shown(common.out)});
-    }
-    if (common.out.ends_with(".bvh") || common.out.ends_with(".trc")) return {};
-    return Failure(
-        Error{"-o", 0, "-o FILE.bvh or FILE.trc", common.out.empty() ? "none" : shown(common.out)});
+    if (common.out.empty()) return {};
+    return check_out(common, {".bvh"}, "-o FILE.bvh, with --live");
   };
   return usage;
 }
@@ -91,17 +79,11 @@ struct Cleaned {
   Json about;
 };
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-/// The distances, m, by which the model moved joints that the Kinect tracked. An output joint is
-/// compared with the input joint of the same name.
-/// This measure of the model's work needs no truth.
-std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
-  std::vector<double> out;
+/// The mean distance, m, by which the model moved joints that the Kinect tracked. An output joint
+/// is compared with the input joint of the same name. This measure of the model's work needs no
+/// truth.
+Mean moves_m(const DenoiseModel& model, const Cleaned& cleaned) {
+  Mean out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
   const auto names = kinect_names(model.layout.outputs);
   for (std::size_t t = 0; t < cleaned.input.body.frames(); ++t) {
@@ -111,16 +93,16 @@ std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
       if (!from || cleaned.input.body.seen[t * in + *from] != 2) continue;
       const float* a = &cleaned.input.body.positions[(t * in + *from) * 3];
       const float* b = &cleaned.answer.positions[(t * joints + j) * 3];
-      out.push_back(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+      out.add(static_cast<double>(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2])));
     }
   }
   return out;
 }
 
-/// The stated standard deviations, m, of output joints whose input joint was seen. Others are left
-/// out: a network does not know how far off a guess is.
-std::vector<double> spread_of_seen(const DenoiseModel& model, const Cleaned& cleaned) {
-  std::vector<double> out;
+/// The mean of the stated standard deviations, m, of output joints whose input joint was seen.
+/// Others are left out: a network does not know how far off a guess is.
+Mean spread_m(const DenoiseModel& model, const Cleaned& cleaned) {
+  Mean out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
   const auto stands = inputs_of_outputs(model.layout);
   for (std::size_t i = 0; i < cleaned.answer.spread.size(); ++i) {
@@ -128,7 +110,7 @@ std::vector<double> spread_of_seen(const DenoiseModel& model, const Cleaned& cle
     // for it.
     const std::size_t seen = i / joints * in + stands[i % joints];
     if (cleaned.input.body.seen[seen] != 0) {
-      out.push_back(static_cast<double>(cleaned.answer.spread[i]));
+      out.add(static_cast<double>(cleaned.answer.spread[i]));
     }
   }
   return out;
@@ -153,51 +135,27 @@ Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
   return out;
 }
 
-/// A warning that concerns more joints states their number instead of their names.
-constexpr std::size_t most_named = 4;
-
-/// One warning for all joints that were missing for the same time.
-std::vector<std::string> missing_warnings(const Json& long_missing) {
-  std::map<std::string, std::vector<std::string>> joints;
-  // Joints that vanish together, such as a whole leg behind a table, get one line.
-  for (const auto& [joint, seconds] : long_missing.items()) {
-    joints[fmt::format("{:.1f}", seconds.get<double>())].push_back(harmless(joint));
-  }
-  std::vector<std::string> out;
-  for (const auto& [seconds, names] : joints) {
-    const std::string who = names.size() > most_named ? fmt::format("{} joints", names.size())
-                                                      : fmt::format("{}", fmt::join(names, ", "));
-    const bool is_one = names.size() == 1;
-    out.push_back(fmt::format("{} {} missing for {} s: during this time {} a guess", who,
-                              is_one ? "is" : "are", seconds, is_one ? "it is" : "they are"));
-  }
-  return out;
-}
-
 /// The JSON about an answer. `warnings`: those about the input.
 /// Shares are fractions from 0 to 1 over all input cells [T,Jin]; distances are in centimetres.
 Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string& stream,
            std::vector<std::string> warnings) {
   const auto& seen = cleaned.input.body.seen;
-  const auto missing = std::count(seen.begin(), seen.end(), 0);
-  const auto inferred = std::count(seen.begin(), seen.end(), 1);
-  const double all = static_cast<double>(std::max<std::size_t>(seen.size(), 1));
   Json out{{"stream", stream},
            {"frames", cleaned.input.body.frames()},
            {"rate_hz", cleaned.input.rate_hz},
            {"joints", model.layout.outputs.size()},
            {"method", model.facts.method},
-           {"missing", static_cast<double>(missing) / all},
-           {"inferred", static_cast<double>(inferred) / all},
-           {"moved_cm", 100.0 * mean_of(moves(model, cleaned))},
+           {"missing", share_of(seen, 0)},
+           {"inferred", share_of(seen, 1)},
+           {"moved_cm", 100.0 * moves_m(model, cleaned).value_or(0.0)},
            {"long_missing_s", long_missing(model, cleaned.input)}};
   for (std::string& one : missing_warnings(out.at("long_missing_s"))) {
     warnings.push_back(std::move(one));
   }
   out["warnings"] = std::move(warnings);
-  const std::vector<double> spread = spread_of_seen(model, cleaned);
+  const auto spread = spread_m(model, cleaned).value();
   // radius_90 turns a standard deviation per axis into the radius that contains 90 % of the errors.
-  if (!spread.empty()) out["radius_90_cm"] = 100.0 * radius_90 * mean_of(spread);
+  if (spread) out["radius_90_cm"] = 100.0 * radius_90 * *spread;
   return out;
 }
 
@@ -208,52 +166,49 @@ struct SeenJoints {
   std::vector<std::string> warnings{};
 };
 
-/// Brings the joints to the model's grid. Errors name the file `in`.
-/// `points` is passed as a result, so takes and other files are handled in one expression.
-Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> points,
-                               const std::string& in) {
-  const NamedPoints named = KA_TRY(std::move(points));
+/// Reads the joints and brings them to the model's grid.
+Result<SeenJoints> seen_joints(const DenoiseLayout& layout, const Denoise& o, Call& call) {
+  const NamedPoints named = KA_TRY(points_of(o.in.front(), {o.stream}, call));
   // The joints are renamed to the Kinect's names first, since layouts of files name them
   // differently.
-  auto frames = even_frames(layout.inputs, kinect_names(named.joints), named.frames,
-                            {layout.rate_hz, longest_gap_s});
-  if (frames) {
-    std::vector<std::string> warnings = warnings_of(named, *frames);
-    return SeenJoints{named.stream, *std::move(frames), std::move(warnings)};
-  }
-  Error error = frames.error();
-  if (error.file.empty()) error.file = in;
-  return Failure(error);
+  EvenFrames frames = KA_TRY(even_frames(layout.inputs, kinect_names(named.joints), named.frames,
+                                         {layout.rate_hz, longest_gap_s})
+                                 .map_error(in_file(o.in.front())));
+  std::vector<std::string> warnings = warnings_of(named, frames);
+  return SeenJoints{named.stream, std::move(frames), std::move(warnings)};
 }
 
 /// Does the same for a take, which is read in a child process.
-Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::string& in,
-                                       const std::string& stream, Call& call) {
-  // The child sends positions and states as a SafeTensors file, which is far more compact than
-  // JSON.
+/// The child sends positions and states as a SafeTensors file, which is far more compact than JSON.
+Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const Denoise& o, Call& call) {
+  const std::string& in = o.in.front();
   const auto work = [&]() -> Result<std::string> {
-    const SeenJoints seen =
-        KA_TRY(seen_joints(layout, points_of_take(call.surroundings.files, in, stream), in));
+    const SeenJoints seen = KA_TRY(seen_joints(layout, o, call));
     const JointFrames& body = seen.frames.body;
     TensorFile out;
-    out.metadata = {{"stream", seen.stream},
-                    {"start_ns", std::to_string(to_ns(seen.frames.start))},
-                    {"warnings", Json(seen.warnings).dump()}};
+    out.metadata["about"] = json_text(Json{{"stream", seen.stream},
+                                           {"start_ns", to_ns(seen.frames.start)},
+                                           {"warnings", seen.warnings}});
     out.tensors["positions"] = {{body.frames(), body.joints, 3}, body.positions};
     out.tensors["seen"] = {{body.frames(), body.joints}, {body.seen.begin(), body.seen.end()}};
     return write_safetensors(out);
   };
-  TensorFile answer_file =
+  TensorFile sent =
       KA_TRY(read_safetensors(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), in));
   SeenJoints out;
-  out.stream = answer_file.metadata["stream"];
-  out.frames.start = utc_time(std::stoll(answer_file.metadata["start_ns"]));
-  Json::parse(answer_file.metadata["warnings"]).get_to(out.warnings);
+  try {  // a child process that read a damaged file is not trusted
+    const Json about = Json::parse(sent.metadata["about"]);
+    about.at("stream").get_to(out.stream);
+    out.frames.start = utc_time(about.at("start_ns").get<std::int64_t>());
+    about.at("warnings").get_to(out.warnings);
+  } catch (const Json::exception&) {
+    return Failure(Error{in, 0, "a take that can be read", "an unreadable answer"});
+  }
   out.frames.rate_hz = layout.rate_hz;
   // The layout is known here, so the child does not repeat it.
   out.frames.body.joints = layout.inputs.size();
-  out.frames.body.positions = std::move(answer_file.tensors["positions"].values);
-  const auto& seen = answer_file.tensors["seen"].values;
+  out.frames.body.positions = std::move(sent.tensors["positions"].values);
+  const auto& seen = sent.tensors["seen"].values;
   out.frames.body.seen.assign(seen.begin(), seen.end());
   return out;
 }
@@ -295,38 +250,26 @@ Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Clean
   return out.commit();
 }
 
-/// Writes the joints as a BVH, whose bones have constant lengths.
-Result<void> write_skeleton(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
-                            const Common& common) {
-  OutputFile file = KA_TRY(OutputFile::create(files, common.out, common.overwrite()));
+/// Writes the joints as points (TRC) or as a BVH, which has rotations and bones of constant length.
+Result<void> write_cleaned(const DenoiseModel& model, const Cleaned& cleaned, const Denoise& o,
+                           Call& call) {
+  if (call.common.out.ends_with(".trc")) {
+    return write_trc(call.surroundings.files, model, cleaned, call.common);
+  }
   const DenoiseLayout& layout = model.layout;
-  // A BVH has rotations and constant bones. Positions are turned into them here.
   Clip clip = KA_TRY(skeleton_of_points({layout.outputs, layout.parents}, cleaned.answer.positions,
                                         cleaned.input.start, layout.rate_hz));
-  KA_TRY(write_bvh(bvh_from_clip(std::move(clip), 1.0 / layout.rate_hz),
-                   [&](std::string_view text) { return file.write(text); }));
-  return file.commit();
+  return write_answer(std::move(clip), layout.rate_hz, o.model, call);
 }
 
-Result<void> write_cleaned(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
-                           const Common& common) {
-  return common.out.ends_with(".trc") ? write_trc(files, model, cleaned, common)
-                                      : write_skeleton(files, model, cleaned, common);
-}
-
-/// Prints the summary: frames, joints, missing input, stated spread and, with --project,
+/// The printed summary: frames, joints, missing input, stated spread and, with --project,
 /// constraints before and after.
-void print(const Json& about, const std::string& out, Call& call) {
-  std::string text = fmt::format(
-      "{}: {} frames at {:g} Hz, {} joints\ncleaned  joints moved by {:.1f} cm on average, bones "
-      "of one "
-      "length each\n",
-      harmless(out), grouped(about.at("frames").get<std::size_t>()),
-      about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
-      about.at("moved_cm").get<double>());
-  text += fmt::format("seen     {:.1f} % missing, {:.1f} % inferred\n",
-                      100.0 * about.at("missing").get<double>(),
-                      100.0 * about.at("inferred").get<double>());
+std::string cleaned_text(const Json& about, const std::string& out) {
+  std::string text =
+      answer_line(about, out) +
+      fmt::format("cleaned  joints moved by {:.1f} cm on average, bones of one length each\n",
+                  about.at("moved_cm").get<double>()) +
+      "seen     " + seen_text(about) + "\n";
   // The member is missing if the model states no spread.
   if (about.contains("radius_90_cm")) {
     text += fmt::format(
@@ -345,15 +288,7 @@ void print(const Json& about, const std::string& out, Call& call) {
         value_of("feet_cm", 1), value_of("feet_cm", 0), value_of("bone_cm", 1),
         value_of("bone_cm", 0));
   }
-  print_answer(std::move(text), about, call);
-}
-
-Result<SeenJoints> seen_joints_of_file(const DenoiseLayout& layout, const Denoise& o, Call& call) {
-  const std::string& in = o.in.front();
-  if (KA_TRY(kind_of_file(call.surroundings.files, in)) == FileKind::take) {
-    return seen_joints_of_take(layout, in, o.stream, call);
-  }
-  return seen_joints(layout, points_of_file(in, o.stream, call), in);
+  return text;
 }
 
 /// Denoises the samples that a running record receives. Writes a file if -o names one.
@@ -364,22 +299,9 @@ Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
   KA_TRY(keep_free(call));
   Clip clip;
   const Json about = KA_TRY(run_live_denoise(denoiser, job, clip, call));
-  const std::string& out = call.common.out;
-  if (!out.empty()) {
-    KA_TRY(write_answer(std::move(clip), denoiser.model().layout.rate_hz, o.model, call));
-    call.console.wrote(out);
-  }
-  // Progress lines end with the run; this summary is the last output.
-  print_live(
-      fmt::format("{}: {} frames at {:g} Hz, {} joints\nseen     {:.1f} % missing, {:.1f} % "
-                  "inferred\n",
-                  out.empty() ? "live" : harmless(out),
-                  grouped(about.at("frames").get<std::size_t>()), about.at("rate_hz").get<double>(),
-                  about.at("joints").get<std::size_t>(), 100.0 * about.at("missing").get<double>(),
-                  100.0 * about.at("inferred").get<double>()) +
-          live_lines(about),
-      about, call);
-  return about.at("warnings").empty() ? 0 : 1;
+  const std::string text =
+      answer_line(about, call.common.out) + "seen     " + seen_text(about) + "\n";
+  return end_live(std::move(clip), o.model, text, about, call);
 }
 
 /// Denoises one file and writes the result. The exit code is 1 if there were warnings.
@@ -393,7 +315,9 @@ Result<int> run_denoise(Denoise& o, Call& call) {
   if (!o.live.live.empty()) return clean_live(denoiser, o, call);
   KA_TRY(keep_inputs(call.common.out, o.in));
   const DenoiseModel& model = denoiser.model();
-  SeenJoints seen = KA_TRY(seen_joints_of_file(model.layout, o, call));
+  const bool is_take = KA_TRY(kind_of_file(files, o.in.front())) == FileKind::take;
+  SeenJoints seen = KA_TRY(is_take ? seen_joints_of_take(model.layout, o, call)
+                                   : seen_joints(model.layout, o, call));
   Cleaned cleaned{std::move(seen.frames), {}, Json::object()};
   // The members about the projection are kept apart, since about() makes a new object.
   Json of_projection = Json::object();
@@ -403,10 +327,9 @@ Result<int> run_denoise(Denoise& o, Call& call) {
           : denoiser.clean(cleaned.input.body);
   cleaned.about = about(model, cleaned, seen.stream, std::move(seen.warnings));
   cleaned.about.update(of_projection);
-  KA_TRY(write_cleaned(files, model, cleaned, call.common));
+  KA_TRY(write_cleaned(model, cleaned, o, call));
   call.console.wrote(call.common.out);
-  print(cleaned.about, call.common.out, call);
-  return cleaned.about.at("warnings").empty() ? 0 : 1;
+  return print_answer(cleaned_text(cleaned.about, call.common.out), cleaned.about, call);
 }
 
 }  // namespace

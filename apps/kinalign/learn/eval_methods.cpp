@@ -9,6 +9,8 @@
 #include "kinalign/models/joint_names.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <memory>
 
 namespace kinalign {
@@ -71,10 +73,9 @@ const std::vector<EvalMethod>& eval_methods() {
                                 {"ridge", "ridge regression over 9 frames"}};
     for (const TrainedMethod& one : trained_methods()) {
       if (one.task != Learns::denoise) continue;
-      out.push_back({one.name, one.summary, true});
+      out.push_back({one.name, one.summary});
       if (one.has_code) {
-        out.push_back(
-            {one.name + std::string(projects), "the same, projected to constraints", true});
+        out.push_back({one.name + std::string(projects), "the same, projected to constraints"});
       }
     }
     return out;
@@ -82,11 +83,7 @@ const std::vector<EvalMethod>& eval_methods() {
   return all;
 }
 
-bool is_trained(const std::string& method) {
-  const auto& all = eval_methods();
-  return std::any_of(all.begin(), all.end(),
-                     [&](const EvalMethod& one) { return one.name == method && one.trained; });
-}
+bool is_trained(const std::string& method) { return find_trained(trained_part(method)) != nullptr; }
 
 std::string trained_part(const std::string& method) {
   return method.ends_with(projects) ? method.substr(0, method.size() - projects.size()) : method;
@@ -115,6 +112,14 @@ Result<Answer> trained_answer(const std::string& method, const std::string& file
   return answer_of_model(KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes)), file);
 }
 
+std::array<DenoiseMarks, 2> both_marks(const DenoiseMarker& marker, const Steadier& steadier,
+                                       const Answer& answer, const Pair& pair, Denoised plain) {
+  // The plain answer is marked before it is moved into the steadier.
+  const DenoiseMarks marks = marker.marks_of(pair, plain.positions, plain.spread);
+  const Denoised steadied = steadier.steadied(answer, pair.input, std::move(plain));
+  return {marks, marker.marks_of(pair, steadied.positions, steadied.spread)};
+}
+
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name) {
   auto denoiser =
       // A Denoiser can't be copied into a function, so the function shares it. It must be used by
@@ -128,19 +133,16 @@ Result<Answer> make_answer(const EvalTask& task, Call& call) {
   const std::string& method = task.training.method;
   const DenoiseLayout& layout = task.layout;
   const double rate = layout.rate_hz;
-  // "raw" is the baseline: its errors are those of the Kinect itself.
-  if (method == "raw") return filtered(layout, [](JointFrames&) {});
-  if (method == "hold") return filtered(layout, [rate](JointFrames& body) { hold(body, rate); });
-  if (method == "savgol") {
-    return filtered(layout, [&layout](JointFrames& body) {
-      smooth(layout.smoothing, 3 * body.joints, body.positions);
-    });
-  }
-  if (method == "one-euro") {
-    return filtered(layout, [rate](JointFrames& body) { one_euro({}, body, rate); });
-  }
-  if (method == "kalman") {
-    return filtered(layout, [rate](JointFrames& body) { kalman_smooth({}, body, rate); });
+  const std::map<std::string, std::function<void(JointFrames&)>> filters{
+      // The baseline: its errors are those of the Kinect itself.
+      {"raw", [](JointFrames&) {}},
+      {"hold", [rate](JointFrames& body) { hold(body, rate); }},
+      {"savgol",
+       [&](JointFrames& body) { smooth(layout.smoothing, 3 * body.joints, body.positions); }},
+      {"one-euro", [rate](JointFrames& body) { one_euro({}, body, rate); }},
+      {"kalman", [rate](JointFrames& body) { kalman_smooth({}, body, rate); }}};
+  if (const auto filter = filters.find(method); filter != filters.end()) {
+    return filtered(layout, filter->second);
   }
   if (method == "offset" || method == "offset+kalman") {
     // Offset and ridge learn from the same takes as the networks, so the comparison is fair.

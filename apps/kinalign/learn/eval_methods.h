@@ -5,9 +5,11 @@
 #include "apps/cli/verb.h"
 #include "apps/kinalign/learn/training_job.h"
 
+#include "kinalign/compare/denoise_marks.h"
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/pairs.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,6 @@ namespace kinalign {
 
 struct EvalMethod {
   std::string name, summary;
-  bool trained = false;  // by kinalign-learn, from the pairs
 };
 /// The order is that of tables and help pages. The list is made once and lives as long as the
 /// program.
@@ -46,6 +47,11 @@ Result<Answer> make_answer(const EvalTask& task, Call& call);
 Result<Answer> trained_answer(const std::string& method, const std::string& file,
                               const DenoiseLayout& layout, const std::vector<JointFrames>& bodies,
                               Call& call);
+
+/// The marks of the plain answer to a pair, and of the steadied one. `answer`: asked again for the
+/// mirror image.
+std::array<DenoiseMarks, 2> both_marks(const DenoiseMarker& marker, const Steadier& steadier,
+                                       const Answer& answer, const Pair& pair, Denoised plain);
 
 /// The answer of a model's file, without the steadying.
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name);

@@ -4,20 +4,17 @@
 #include "apps/kinalign/learn/fused_input.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/live/live_runs.h"
-#include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/models/fuse/fuse_model.h"
-#include "kinalign/sources/formats.h"
-#include "kinalign/view/report_words.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <numbers>
+#include <span>
 
 namespace kinalign {
 
@@ -43,21 +40,10 @@ Usage describe_fuse(FuseWords& o) {
   usage.positionals = {
       {"IN", "a take, a recording or a manifest with a Kinect and nodes", &o.in, 0}};
   usage.flags = {
-      {"model",
-       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
-       &o.model,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"kinect",
-       "stream of the Kinect (default: the only stream of joints)",
-       &o.kinect,
-       0.0,
-       0.0,
-       {},
-       "NAME"},
-      {"nodes", "stream of the nodes (default: the only one)", &o.nodes, 0.0, 0.0, {}, "NAME"}};
+      model_flag(o.model),
+      text_flag("kinect", "stream of the Kinect (default: the only stream of joints)", &o.kinect,
+                "NAME"),
+      text_flag("nodes", "stream of the nodes (default: the only one)", &o.nodes, "NAME")};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "the lengths that the Kinect measures"));
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
@@ -68,8 +54,7 @@ Usage describe_fuse(FuseWords& o) {
     // A live run waits for the T-pose for a limited time only, so --tpose is checked against it.
     if (!o.live.live.empty()) KA_TRY(live_options(o.worn));
     if (!o.live.live.empty() && common.out.empty()) return {};
-    if (common.out.ends_with(".bvh")) return {};
-    return Failure(Error{"-o", 0, "-o FILE.bvh", common.out.empty() ? "none" : shown(common.out)});
+    return check_out(common, {".bvh"}, "-o FILE.bvh");
   };
   return usage;
 }
@@ -78,28 +63,24 @@ Usage describe_fuse(FuseWords& o) {
 /// corrects it by much or can't find it.
 void add_heading_warnings(const std::vector<std::string>& names,
                           const std::vector<HeadingState>& states, Json& about) {
-  Json found = Json::object();
-  for (std::size_t n = 0; n < names.size(); ++n) {
-    // `states` is [T,N], frame after frame; the last row has the corrections after the whole run.
-    const HeadingState& last = states[states.size() - names.size() + n];
-    const double degrees = 180.0 / std::numbers::pi;
-    const double spread = degrees * static_cast<double>(last.spread);
-    const double turned = degrees * static_cast<double>(last.yaw);
-    found[names[n]] = {{"turned_deg", turned}, {"spread_deg", spread}};
+  // `states` is [T,N], frame after frame; the last row has the corrections after the whole run.
+  about["found_headings"] = headings_json(names, std::span(states).last(names.size()));
+  for (const auto& [name, found] : about["found_headings"].items()) {
+    const auto spread = found.at("spread_deg").get<double>();
+    const auto turned = found.at("turned_deg").get<double>();
     // A node without samples has a heading without meaning and already has its own warning.
-    const bool is_there = about.at("nodes").at(names[n]).at("valid").get<double>() > 0.0;
+    const bool is_there = about.at("nodes").at(name).at("valid").get<double>() > 0.0;
     if (is_there && std::abs(turned) > most_turned_deg && spread <= most_unsure_deg) {
       about["warnings"].push_back(
           fmt::format("{}: its heading differs by {:.0f} deg from the Kinect's; was it swapped "
                       "with another node, or worn in another orientation?",
-                      names[n], turned));
+                      name, turned));
     }
     // An uncertain heading is only reported. The node stays in use.
     if (!is_there || spread <= most_unsure_deg) continue;
     about["warnings"].push_back(
-        fmt::format("{}: its heading is uncertain by the Kinect (± {:.0f} deg)", names[n], spread));
+        fmt::format("{}: its heading is uncertain by the Kinect (± {:.0f} deg)", name, spread));
   }
-  about["found_headings"] = std::move(found);
 }
 
 /// Fuses both devices and writes the answer. The bones have the lengths of --body, else those that
@@ -121,43 +102,6 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
   return about;
 }
 
-/// The stream, or its error with `flag` in place of --stream: this verb chooses each device's
-/// stream by its own flag.
-/// Readers of streams name --stream, which this verb does not have.
-template <class Stream>
-Result<Stream> by_flag(Result<Stream> stream, const std::string& flag) {
-  if (stream) return stream;
-  Error error = stream.error();
-  const std::string general = "--stream";
-  const std::size_t at = error.expected.find(general);
-  if (at != std::string::npos) error.expected.replace(at, general.size(), flag);
-  return Failure(std::move(error));
-}
-
-/// Fuses and writes. Errors without a file name `in`.
-Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNodes> nodes,
-                        const FuseWords& o, Call& call) {
-  BothDevices both;
-  // Both readers ran already. If both failed, the error of the nodes is reported.
-  both.nodes = KA_TRY(by_flag(std::move(nodes), "--nodes"));
-  both.kinect = KA_TRY(by_flag(std::move(kinect), "--kinect"));
-  auto about = fuse_into(fuser, std::move(both), o, call);
-  if (!about && about.error().file.empty()) about.error().file = o.in.front();
-  return about;
-}
-
-/// Does the same for a take, in a child process.
-/// The child reads, fuses and writes the file. Only the JSON about it comes back.
-Result<Json> fuse_take(Fuser& fuser, const FuseWords& o, Call& call) {
-  FileSystem& files = call.surroundings.files;
-  const std::string& in = o.in.front();
-  const auto work = [&]() {
-    return fuse_named(fuser, points_of_take(files, in, o.kinect), nodes_of_take(files, in, o.nodes),
-                      o, call);
-  };
-  return in_child(in, work);
-}
-
 /// The printed summary. Each node's heading correction stands with 1 sigma, both in degrees.
 std::string fuse_text(const Json& about, const std::string& out) {
   std::string found;
@@ -165,15 +109,8 @@ std::string fuse_text(const Json& about, const std::string& out) {
     found += fmt::format("{}{} {:+.0f} ± {:.0f}", found.empty() ? "" : ", ", harmless(name),
                          one.at("turned_deg").get<double>(), one.at("spread_deg").get<double>());
   }
-  return fmt::format(
-             "{}: {} frames at {:g} Hz, {} joints\nkinect   {:.1f} % missing, {:.1f} % "
-             "inferred\n",
-             out.empty() ? "live" : harmless(out), grouped(about.at("frames").get<std::size_t>()),
-             about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
-             100.0 * about.at("missing").get<double>(),
-             100.0 * about.at("inferred").get<double>()) +
-         body_line(about) + node_lines(about) +
-         fmt::format("turned   by the Kinect, deg: {}\n", found);
+  return answer_line(about, out) + "kinect   " + seen_text(about) + "\n" + body_line(about) +
+         node_lines(about) + fmt::format("turned   by the Kinect, deg: {}\n", found);
 }
 
 /// Fuses the samples that a running record receives. Writes a file if -o names one.
@@ -188,12 +125,7 @@ Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
   }
   Json about = KA_TRY(run_live_fuse(fuser, job, clip, call));
   about["body"] = about_body(fuser.model().body.skeleton, o.body.empty() ? "the model" : "--body");
-  if (!call.common.out.empty()) {
-    KA_TRY(write_answer(std::move(clip), fuser.model().layout.nodes.rate_hz, o.model, call));
-    call.console.wrote(call.common.out);
-  }
-  print_live(fuse_text(about, call.common.out) + live_lines(about), about, call);
-  return about.at("warnings").empty() ? 0 : 1;
+  return end_live(std::move(clip), o.model, fuse_text(about, call.common.out), about, call);
 }
 
 /// Fuses one file and writes the result. The exit code is 1 if there were warnings.
@@ -205,15 +137,16 @@ Result<int> run_fuse(FuseWords& o, Call& call) {
   if (!o.live.live.empty()) return fuse_live(fuser, o, call);
   const std::string& in = o.in.front();
   KA_TRY(keep_inputs(call.common.out, o.in));
-  // HDF5 is read in a child. All other formats have readers of kinalign, which are safe in this
-  // process.
-  const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
-  const Json about = KA_TRY(is_take ? fuse_take(fuser, o, call)
-                                    : fuse_named(fuser, points_of_file(in, o.kinect, call),
-                                                 nodes_of_file(in, o.nodes, call), o, call));
+  const auto work = [&]() -> Result<Json> {
+    BothDevices both;
+    // If both readers fail, the error of the nodes is reported.
+    both.nodes = KA_TRY(nodes_of(in, {o.nodes, "--nodes"}, call));
+    both.kinect = KA_TRY(points_of(in, {o.kinect, "--kinect"}, call));
+    return fuse_into(fuser, std::move(both), o, call);
+  };
+  const Json about = KA_TRY(answered(in, work, call));
   call.console.wrote(call.common.out);
-  print_answer(fuse_text(about, call.common.out), about, call);
-  return about.at("warnings").empty() ? 0 : 1;
+  return print_answer(fuse_text(about, call.common.out), about, call);
 }
 
 }  // namespace

@@ -31,13 +31,6 @@ EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double 
   return span_of(first, last, rate_hz);
 }
 
-/// `value`: 0 missing, 1 inferred, 2 tracked. The maximum keeps an empty array from dividing by
-/// zero.
-double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t value) {
-  return static_cast<double>(std::count(seen.begin(), seen.end(), value)) /
-         static_cast<double>(std::max<std::size_t>(seen.size(), 1));
-}
-
 }  // namespace
 
 Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn) {

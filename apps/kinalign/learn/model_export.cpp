@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
@@ -30,15 +31,10 @@ struct Export {
 Usage describe_export(Export& o) {
   Usage usage;
   usage.positionals = {{"MODEL", "the model's file", &o.model}};
-  usage.flags = {{"network",
-                  "network to export: net, or the second network of bra-p",
-                  &o.network,
-                  0.0,
-                  0.0,
-                  {"net", "second"}}};
+  usage.flags = {choice_flag("network", "network to export: net, or the second network of bra-p",
+                             &o.network, {"net", "second"})};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
-    if (common.out.ends_with(".onnx")) return {};
-    return Failure(Error{"-o", 0, "-o FILE.onnx", common.out.empty() ? "none" : shown(common.out)});
+    return check_out(common, {".onnx"}, "-o FILE.onnx");
   };
   return usage;
 }
@@ -105,6 +101,12 @@ Scaling standardising(const std::vector<float>& mean, const std::vector<float>& 
   return out;
 }
 
+/// The network with its own scaling of the input, and this one of the output.
+Parts scaled_network(const auto& model, const Scaling& after) {
+  return scaled(parts_of(model.architecture, model.tensors, "net"),
+                standardising(model.input_mean, model.input_scale), after);
+}
+
 /// The network from raw features to corrections in metres and logarithms of centimetres.
 /// The last channels, the logarithms of the spread, are not scaled.
 Parts whole_network(const DenoiseModel& model) {
@@ -116,8 +118,7 @@ Parts whole_network(const DenoiseModel& model) {
     after.factor.resize(after.factor.size() + model.layout.outputs.size(), 1.0F);
     after.offset.resize(after.factor.size(), 0.0F);
   }
-  return scaled(parts_of(model.architecture, model.tensors, "net"),
-                standardising(model.input_mean, model.input_scale), after);
+  return scaled_network(model, after);
 }
 
 /// The scaling that adds the identity's six numbers to each bone's rotation: networks answer the
@@ -171,7 +172,7 @@ struct Exported {
 Result<Exported> exported_denoise(const std::string& bytes, const std::string& path, bool second) {
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
   // The model is built once to check it, and then dropped.
-  KA_TRY(check_usable(Denoiser::make(model), path));
+  KA_TRY(Denoiser::make(model).map_error(in_file(path)));
   if (second && !model.second) {
     return Failure(Error{path, 0, "a second network", "none"});
   }
@@ -197,10 +198,8 @@ std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const 
 /// written.
 Result<Exported> exported_pose(const std::string& bytes, const std::string& path) {
   const PoseModel model = KA_TRY(read_pose_model(bytes, path));
-  KA_TRY(check_usable(PoseSolver::make(model), path));
-  return Exported{scaled(parts_of(model.architecture, model.tensors, "net"),
-                         standardising(model.input_mean, model.input_scale),
-                         onto_identity(model.layout.bones.size())),
+  KA_TRY(PoseSolver::make(model).map_error(in_file(path)));
+  return Exported{scaled_network(model, onto_identity(model.layout.bones.size())),
                   body_metadata(model.facts, model.layout,
                                 "two columns of each bone's rotation against the root, not yet "
                                 "orthonormal")};
@@ -210,14 +209,13 @@ Result<Exported> exported_pose(const std::string& bytes, const std::string& path
 /// fuse_place_unit_m.
 Result<Exported> exported_fuse(const std::string& bytes, const std::string& path) {
   const FuseModel model = KA_TRY(read_fuse_model(bytes, path));
-  KA_TRY(check_usable(Fuser::make(model), path));
+  KA_TRY(Fuser::make(model).map_error(in_file(path)));
   // The bones are followed by the root's rotation, hence + 1.
   Scaling after = onto_identity(model.layout.nodes.bones.size() + 1);
   // resize() adds the three channels of the place with their own factor.
   after.factor.resize(model.layout.answers(), fuse_place_unit_m);
   after.offset.resize(model.layout.answers(), 0.0F);
-  Exported out{scaled(parts_of(model.architecture, model.tensors, "net"),
-                      standardising(model.input_mean, model.input_scale), after),
+  Exported out{scaled_network(model, after),
                body_metadata(model.facts, model.layout.nodes,
                              "two columns of the rotation of each bone and of the root in the "
                              "frame's space, not yet orthonormal; the way from SpineBase to the "
@@ -254,8 +252,8 @@ Result<int> run_export(Export& o, Call& call) {
   const std::size_t channels = parts.architecture.inputs, answers = outputs(parts.architecture);
   call.console.print(fmt::format("{}: input [1,T,{}], output [1,T,{}], ONNX opset 13\n",
                                  harmless(out), channels, answers));
-  call.console.print_json(Json{{"file", out}, {"inputs", channels}, {"outputs", answers}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace));
+  call.console.print_json(
+      json_text(Json{{"file", out}, {"inputs", channels}, {"outputs", answers}}));
   return 0;
 }
 

@@ -7,9 +7,28 @@
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <utility>
 
 namespace kinalign {
+
+Result<std::size_t> choose_stream(const std::vector<StreamChoice>& all, const WantedStream& wanted,
+                                  std::string_view kind, const std::string& path) {
+  std::vector<std::string> names;
+  std::vector<std::size_t> found;
+  for (const StreamChoice& one : all) {
+    names.push_back(one.name);
+    if (wanted.name.empty() ? one.is_usual : one.name == wanted.name) found.push_back(one.index);
+  }
+  if (found.size() == 1) return found.front();
+  const std::string expected = wanted.name.empty()
+                                   ? fmt::format("one stream of {} ({} NAME)", kind, wanted.flag)
+                                   : fmt::format("a stream of {} \"{}\"", kind, wanted.name);
+  return Failure(
+      Error{path, 0, expected, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))});
+}
 
 Result<Input> open_motion(const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/learn/node_source.h"
 
-#include "apps/kinalign/learn/motion_input.h"
-
 #include "kinalign/align/nodes.h"
 #include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/sources/formats.h"
 
 #include <algorithm>
 #include <utility>
@@ -15,18 +14,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_samples = std::size_t{1} << 26U;  // all nodes together, for memory
-
-/// The error of a stream that does not exist or is not the only one. `known`: the streams that
-/// exist.
-Failure no_nodes(const std::string& path, const std::string& wanted, const std::string& known) {
-  const std::string expected = wanted.empty() ? "one stream of inertial nodes (--stream NAME)"
-                                              : "a stream of inertial nodes \"" + wanted + "\"";
-  return Failure(Error{path, 0, expected, known.empty() ? "none" : known});
-}
-
-void add_known(std::string& all, const std::string& name) {
-  all += (all.empty() ? "" : ", ") + name;
-}
+constexpr std::string_view nodes_kind = "inertial nodes";
 
 /// n samples of S nodes. An empty array was not measured.
 /// The references lead into a block of a reader or a slab of a take. [n,S] is the shape of all
@@ -100,38 +88,34 @@ std::vector<std::optional<Quat>> worn_by(const StreamOptions& options,
 
 /// The take's only group of nodes, or the one with the wanted name.
 Result<std::size_t> node_group_of(const TakeHeader& header, const std::string& path,
-                                  const std::string& wanted) {
-  std::optional<std::size_t> found;
-  std::string known;
+                                  const WantedStream& wanted) {
+  std::vector<StreamChoice> all;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
     const TakeGroup& group = header.groups[g];
-    if (!std::holds_alternative<ImuGroup>(group.kind)) continue;
-    add_known(known, group.name);
-    if (!wanted.empty() && group.name != wanted) continue;
-    // A second group makes the choice unclear, unless the user named one.
-    if (found) return no_nodes(path, wanted, known);
-    found = g;
+    if (std::holds_alternative<ImuGroup>(group.kind)) all.push_back({group.name, g});
   }
-  if (!found) return no_nodes(path, wanted, known);
-  return *found;
+  return choose_stream(all, wanted, nodes_kind, path);
 }
 
 /// The streams of nodes with the wanted name. If no name is given, all streams must have one name.
 Result<std::vector<const RecordedStream*>> node_streams(const Recording& recording,
                                                         const std::string& path,
-                                                        const std::string& wanted) {
-  std::vector<const RecordedStream*> out;
-  std::string known;
-  bool one_name = true;
-  for (const RecordedStream& one : recording.streams) {
-    if (!std::holds_alternative<ImuInput>(one.data)) continue;
-    // Streams of one name that follow each other are listed once.
-    if (out.empty() || out.back()->name != one.name) add_known(known, one.name);
-    if (!wanted.empty() && one.name != wanted) continue;
-    one_name = one_name && (out.empty() || out.back()->name == one.name);
-    out.push_back(&one);
+                                                        const WantedStream& wanted) {
+  const auto& streams = recording.streams;
+  std::vector<StreamChoice> all;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const bool is_known = std::any_of(all.begin(), all.end(), [&](const StreamChoice& one) {
+      return one.name == streams[i].name;
+    });
+    if (std::holds_alternative<ImuInput>(streams[i].data) && !is_known) {
+      all.push_back({streams[i].name, i});
+    }
   }
-  if (out.empty() || !one_name) return no_nodes(path, wanted, known);
+  const std::string& name = streams[KA_TRY(choose_stream(all, wanted, nodes_kind, path))].name;
+  std::vector<const RecordedStream*> out;
+  for (const RecordedStream& one : streams) {
+    if (std::holds_alternative<ImuInput>(one.data) && one.name == name) out.push_back(&one);
+  }
   return out;
 }
 
@@ -154,7 +138,7 @@ Result<void> read_nodes(const RecordedStream& stream, const ImuInput& input, std
 }  // namespace
 
 Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
-                                 const std::string& stream) {
+                                 const WantedStream& stream) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const std::size_t wanted = KA_TRY(node_group_of(reader.header(), path, stream));
   const auto group = std::get<ImuGroup>(reader.header().groups[wanted].kind);
@@ -175,7 +159,10 @@ Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
 }
 
 /// Several streams of one name make one set of nodes: each device sends its own nodes.
-Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& stream, Call& call) {
+Result<NamedNodes> nodes_of(const std::string& path, const WantedStream& stream, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  if (KA_TRY(kind_of_file(files, path)) == FileKind::take)
+    return nodes_of_take(files, path, stream);
   const Input input = KA_TRY(open_motion(path, call));
   const auto streams = KA_TRY(node_streams(input.recording, path, stream));
   NamedNodes out{streams.front()->name, {}, {}, {}};

@@ -2,7 +2,7 @@
 // Reads the nodes of one stream from a take, a recording, a manifest or a device's file.
 #pragma once
 
-#include "apps/cli/verb.h"
+#include "apps/kinalign/learn/motion_input.h"
 
 #include "kinalign/models/pose/even_nodes.h"
 
@@ -23,13 +23,12 @@ struct NamedNodes {
   std::vector<std::string> warnings{};    // from the file's reader
 };
 
-/// `stream`: the stream's name; empty: the only stream of nodes. Samples that are not valid, and
-/// stamps that repeat or step back, are left out. Nodes in the space of a root are brought back to
-/// their own space. Takes may be read only in a child process (guarded.h).
+/// Samples that are not valid, and stamps that repeat or step back, are left out. Nodes in the
+/// space of a root are brought back to their own space. Takes may be read only in a child process
+/// (guarded.h).
 Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
-                                 const std::string& stream);
-/// The same for any file that is no take. Several streams of that name (one for each device) are
-/// joined.
-Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& stream, Call& call);
+                                 const WantedStream& stream);
+/// The same for any file. Several streams of that name (one for each device) are joined.
+Result<NamedNodes> nodes_of(const std::string& path, const WantedStream& stream, Call& call);
 
 }  // namespace kinalign

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/learn/point_source.h"
 
-#include "apps/kinalign/learn/motion_input.h"
-
 #include "kinalign/align/own_rows.h"
 #include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
 
 #include <fmt/format.h>
 
-#include <optional>
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -18,17 +17,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_values = std::size_t{1} << 29U;  // frames x joints, for memory
-
-/// `known` lists the streams that could be named. The flag is shown only if no name was given.
-Failure no_stream(const std::string& path, const std::string& wanted, const std::string& known) {
-  const std::string expected = wanted.empty() ? "one stream of joints (--stream NAME)"
-                                              : "a stream of joints \"" + wanted + "\"";
-  return Failure(Error{path, 0, expected, known.empty() ? "none" : known});
-}
-
-void add_name(std::string& all, const std::string& name) {
-  all += (all.empty() ? "" : ", ") + name;
-}
+constexpr std::string_view joints_kind = "joints";
 
 /// Appends the rows whose stamps rise, and counts the others.
 Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
@@ -78,21 +67,31 @@ std::vector<Tracking> where_valid(const PointRows& rows) {
 
 /// The index of the wanted group. If no name is given, the only group of points.
 Result<std::size_t> group_of(const TakeHeader& header, const std::string& path,
-                             const std::string& wanted) {
-  std::optional<std::size_t> found;
-  std::string known;
+                             const WantedStream& wanted) {
+  std::vector<StreamChoice> all;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
     const TakeGroup& group = header.groups[g];
-    if (std::holds_alternative<ImuGroup>(group.kind)) continue;
-    add_name(known, group.name);
     // A name may select a skeleton too. Without a name only groups of points count.
-    if (wanted.empty() ? std::holds_alternative<PointGroup>(group.kind) : group.name == wanted) {
-      if (found) return no_stream(path, wanted, known);
-      found = g;
+    const bool is_usual = std::holds_alternative<PointGroup>(group.kind);
+    if (!std::holds_alternative<ImuGroup>(group.kind)) all.push_back({group.name, g, is_usual});
+  }
+  return choose_stream(all, wanted, joints_kind, path);
+}
+
+/// If no name is given, the only stream of points is read, or the only stream there is, even if it
+/// is a skeleton.
+Result<const RecordedStream*> stream_of(const Recording& recording, const std::string& path,
+                                        const WantedStream& wanted) {
+  const auto& streams = recording.streams;
+  std::vector<StreamChoice> all;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const bool is_usual =
+        streams.size() == 1 || std::holds_alternative<PointInput>(streams[i].data);
+    if (!std::holds_alternative<ImuInput>(streams[i].data)) {
+      all.push_back({streams[i].name, i, is_usual});
     }
   }
-  if (!found) return no_stream(path, wanted, known);
-  return *found;
+  return &streams[KA_TRY(choose_stream(all, wanted, joints_kind, path))];
 }
 
 /// Reads all frames of a stream of points, with stamps on the take's clock.
@@ -126,7 +125,7 @@ Result<void> read_clip(const TimeModel& clock, const ClipInput& input, NamedPoin
 }  // namespace
 
 Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
-                                   const std::string& stream) {
+                                   const WantedStream& stream) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const std::size_t wanted = KA_TRY(group_of(reader.header(), path, stream));
   const TakeGroup& group = reader.header().groups[wanted];
@@ -148,24 +147,13 @@ Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
   return out;
 }
 
-/// If no name is given, the only stream of points is read, or the only stream there is, even if it
-/// is a skeleton.
-Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call) {
-  const Input input = KA_TRY(open_motion(path, call));
-  std::string known;
-  const RecordedStream* found = nullptr;
-  for (const RecordedStream& one : input.recording.streams) {
-    if (std::holds_alternative<ImuInput>(one.data)) continue;
-    add_name(known, one.name);
-    // A file with a single stream needs no name, whatever its kind is.
-    const bool fits = stream.empty() ? input.recording.streams.size() == 1 ||
-                                           std::holds_alternative<PointInput>(one.data)
-                                     : one.name == stream;
-    if (!fits) continue;
-    if (found != nullptr) return no_stream(path, stream, known);
-    found = &one;
+Result<NamedPoints> points_of(const std::string& path, const WantedStream& stream, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  if (KA_TRY(kind_of_file(files, path)) == FileKind::take) {
+    return points_of_take(files, path, stream);
   }
-  if (found == nullptr) return no_stream(path, stream, known);
+  const Input input = KA_TRY(open_motion(path, call));
+  const RecordedStream* found = KA_TRY(stream_of(input.recording, path, stream));
   NamedPoints out{found->name, {}, {}};
   if (const auto* points = std::get_if<PointInput>(&found->data)) {
     KA_TRY(read_points(found->clock, *points, out));
@@ -174,6 +162,11 @@ Result<NamedPoints> points_of_file(const std::string& path, const std::string& s
   }
   out.warnings = warnings_of(*found);
   return out;
+}
+
+double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t state) {
+  return static_cast<double>(std::count(seen.begin(), seen.end(), state)) /
+         static_cast<double>(std::max<std::size_t>(seen.size(), 1));
 }
 
 std::vector<std::string> warnings_of(const NamedPoints& points, const EvenFrames& frames) {

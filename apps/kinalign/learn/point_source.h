@@ -2,11 +2,12 @@
 // Reads the joints of one stream from a take, a recording, a manifest or a device's file.
 #pragma once
 
-#include "apps/cli/verb.h"
+#include "apps/kinalign/learn/motion_input.h"
 
 #include "kinalign/models/even_grid.h"
 #include "kinalign/motion/streams.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,15 @@ struct NamedPoints {
   std::vector<std::string> warnings{};  // from the file's reader
 };
 
-/// `stream`: the stream's name; empty: the only stream of points. A skeleton's joints are read as
-/// tracked points. Stamps that repeat or step back are left out. Takes may be read only in a child
-/// process (guarded.h).
+/// A skeleton's joints are read as tracked points. Stamps that repeat or step back are left out.
+/// Takes may be read only in a child process (guarded.h).
 Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
-                                   const std::string& stream);
-Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call);
+                                   const WantedStream& stream);
+/// The same for any file.
+Result<NamedPoints> points_of(const std::string& path, const WantedStream& stream, Call& call);
+
+/// The fraction of cells with that state: 0 missing, 1 inferred, 2 tracked. 0 without cells.
+double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t state);
 
 /// Warnings about a Kinect before a model gets its frames: the reader's, and those about `frames`,
 /// which `points` were brought to.

@@ -4,19 +4,13 @@
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/learn/worn_nodes.h"
 #include "apps/kinalign/live/live_runs.h"
-#include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/models/pose/pose_model.h"
-#include "kinalign/sources/formats.h"
-#include "kinalign/view/report_words.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <optional>
 
 namespace kinalign {
 
@@ -36,15 +30,8 @@ struct PoseWords {
 Usage describe_pose(PoseWords& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in, 0}};
-  usage.flags = {
-      {"model",
-       "a model's file, or the name of a shipped model (default: the shipped model that fits)",
-       &o.model,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"stream", "stream of nodes (default: the only one)", &o.stream, 0.0, 0.0, {}, "NAME"}};
+  usage.flags = {model_flag(o.model),
+                 text_flag("stream", "stream of nodes (default: the only one)", &o.stream, "NAME")};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "the mean of the training people"));
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
@@ -54,8 +41,7 @@ Usage describe_pose(PoseWords& o) {
     KA_TRY(check(o.live, o.in));
     if (!o.live.live.empty()) KA_TRY(live_options(o.worn));
     if (!o.live.live.empty() && common.out.empty()) return {};
-    if (common.out.ends_with(".bvh")) return {};
-    return Failure(Error{"-o", 0, "-o FILE.bvh", common.out.empty() ? "none" : shown(common.out)});
+    return check_out(common, {".bvh"}, "-o FILE.bvh");
   };
   return usage;
 }
@@ -108,25 +94,8 @@ Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
   return about;
 }
 
-/// Solves and writes. Errors without a file name `in`.
-Result<Json> solve_named(Result<NamedNodes> nodes, const PoseWords& o, Call& call) {
-  auto about = solve_into(KA_TRY(std::move(nodes)), o, call);
-  if (!about && about.error().file.empty()) about.error().file = o.in.front();
-  return about;
-}
-
-/// Does the same for a take, in a child process.
-Result<Json> solve_take(const PoseWords& o, Call& call) {
-  FileSystem& files = call.surroundings.files;
-  const std::string& in = o.in.front();
-  return in_child(in, [&] { return solve_named(nodes_of_take(files, in, o.stream), o, call); });
-}
-
 std::string pose_text(const Json& about, const std::string& out) {
-  return fmt::format("{}: {} frames at {:g} Hz, {} joints\n", out.empty() ? "live" : harmless(out),
-                     grouped(about.at("frames").get<std::size_t>()),
-                     about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>()) +
-         body_line(about) + node_lines(about);
+  return answer_line(about, out) + body_line(about) + node_lines(about);
 }
 
 /// Solves the samples that a running record receives. Writes a file if -o names one.
@@ -140,27 +109,20 @@ Result<int> solve_live(const PoseWords& o, Call& call) {
   Clip clip;
   Json about = KA_TRY(run_live_pose(solver, job, clip, call));
   about["body"] = body_of_answer(solver.model(), o);
-  if (!call.common.out.empty()) {
-    KA_TRY(write_answer(std::move(clip), solver.model().layout.rate_hz, path, call));
-    call.console.wrote(call.common.out);
-  }
-  print_live(pose_text(about, call.common.out) + live_lines(about), about, call);
-  return about.at("warnings").empty() ? 0 : 1;
+  return end_live(std::move(clip), path, pose_text(about, call.common.out), about, call);
 }
 
 /// Solves one file and writes the result. The exit code is 1 if there were warnings.
 Result<int> run_pose(PoseWords& o, Call& call) {
-  FileSystem& files = call.surroundings.files;
   if (!o.live.live.empty()) return solve_live(o, call);
   const std::string& in = o.in.front();
   KA_TRY(keep_inputs(call.common.out, o.in));
-  // Only HDF5 needs a child process.
-  const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
-  const Json about = KA_TRY(is_take ? solve_take(o, call)
-                                    : solve_named(nodes_of_file(in, o.stream, call), o, call));
+  const auto work = [&]() -> Result<Json> {
+    return solve_into(KA_TRY(nodes_of(in, {o.stream}, call)), o, call);
+  };
+  const Json about = KA_TRY(answered(in, work, call));
   call.console.wrote(call.common.out);
-  print_answer(pose_text(about, call.common.out), about, call);
-  return about.at("warnings").empty() ? 0 : 1;
+  return print_answer(pose_text(about, call.common.out), about, call);
 }
 
 }  // namespace

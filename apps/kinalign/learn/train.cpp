@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/cli/field_text.h"
 #include "apps/kinalign/dataset/share.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/learn/training_job.h"
 #include "apps/kinalign/learn/worker.h"
+#include "apps/kinalign/live/live_words.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/capture/net/handle.h"
 #include "kinalign/core/hash.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <optional>
-#include <utility>
 
 namespace kinalign {
 
@@ -42,12 +41,6 @@ struct Train {
 /// The method of the command line, which accepts only known ones.
 const TrainedMethod& method_of(const Train& o) { return *find_trained(o.method.front()); }
 
-/// The name of the rough stream. The default is a Kinect's for methods that clean one; others see
-/// none or a simulated one.
-std::string input_of(const Train& o) {
-  return o.input.empty() && method_of(o).task == Learns::denoise ? "kinect" : o.input;
-}
-
 /// The command line of `kinalign train`, with the checks that need several flags.
 Usage describe_train(Train& o) {
   Usage usage;
@@ -56,34 +49,22 @@ Usage describe_train(Train& o) {
     usage.positionals.front().choices.push_back(one.name);
   }
   usage.flags = {
-      {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
-      {"windows", "a file of windows instead of a data set", &o.windows, 0.0, 0.0, {}, "FILE"},
-      {"split",
-       "a split of the data set: its parts train and validation are used",
-       &o.split,
-       0.0,
-       0.0,
-       {},
-       "FILE"},
-      {"where",
-       "use only takes of the data set that meet this condition, as in dataset query (default: "
-       "takes whose verdict is not bad)",
-       &o.where,
-       0.0,
-       0.0,
-       {},
-       "SQL"},
+      text_flag("data", "the data set's folder", &o.data, "FOLDER"),
+      text_flag("windows", "a file of windows instead of a data set", &o.windows, "FILE"),
+      text_flag("split", "a split of the data set: its parts train and validation are used",
+                &o.split, "FILE"),
+      text_flag("where",
+                "use only takes of the data set that meet this condition, as in dataset query "
+                "(default: takes whose verdict is not bad)",
+                &o.where, "SQL"),
       input_field(o.input),
       truth_field(o.truth),
       nodes_field(o.nodes),
       {"rate", "frames per second of the model", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
-      {"from",
-       "a model of the same method to continue from: a file, or the name of a shipped model",
-       &o.from,
-       0.0,
-       0.0,
-       {},
-       "MODEL"},
+      text_flag(
+          "from",
+          "a model of the same method to continue from: a file, or the name of a shipped model",
+          &o.from, "MODEL"),
       {"hand-weight",
        "weight of wrists and hands in the loss, where other joints have 1; 0: the method's default",
        &o.hand_weight, 0.0, 100.0},
@@ -97,7 +78,7 @@ Usage describe_train(Train& o) {
       {"seed", "seed of all random numbers", &o.seed, 0.0, 1e9},
       {"patience", "stop after this many validations without improvement; 0: never", &o.patience,
        0.0, 1e6},
-      {"device", "device to train on", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      choice_flag("device", "device to train on", &o.device, {"cpu", "cuda"}),
       {"processes",
        "number of processes of this machine that train together, with the same result as one",
        &o.processes, 1.0, 32.0},
@@ -106,15 +87,8 @@ Usage describe_train(Train& o) {
        &o.prepare}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     KA_TRY(check_task_flags(method_of(o), given));
-    if (!common.out.ends_with(".safetensors")) {
-      return Failure(
-          Error{"-o", 0, "-o FILE.safetensors", common.out.empty() ? "none" : shown(common.out)});
-    }
-    if (o.data.empty() == o.windows.empty()) {
-      return Failure(Error{"--data", 0, "a data set (--data) or a file of windows (--windows)",
-                           o.data.empty() ? "neither" : "both"});
-    }
-    return {};
+    KA_TRY(check_out(common, {".safetensors"}, "-o FILE.safetensors"));
+    return check_data(o.data, o.windows);
   };
   return usage;
 }
@@ -148,7 +122,8 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   if (o.patience > 0) options.update({{"patience", o.patience}, {"judge_every", 100}});
   Json job{{"schema", "kinalign.training_job/1"}, {"method", o.method.front()}};
   // A method may have no rough stream: nodes and a Kinect are then simulated from the mocap.
-  if (!input_of(o).empty()) job["input"] = input_of(o);
+  const std::string input = rough_stream(o.input, method_of(o).task);
+  if (!input.empty()) job["input"] = input;
   job["truth"] = o.truth;
   job["options"] = options;
   if (o.hand_weight > 0.0) job["hand_weight"] = o.hand_weight;
@@ -156,10 +131,7 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   if (o.vary_speed > 0.0) job["vary_speed"] = o.vary_speed;
   if (o.vary_size > 0.0) job["vary_size"] = o.vary_size;
   if (!from_hash.empty()) job["from_sha256"] = from_hash;
-  Sha256 identity;
-  identity.update(job.dump());
-  identity.update(hash);
-  job["identity"] = identity.hex();  // the same wherever the files lie
+  job["identity"] = sha256_of(job.dump() + hash);  // the same wherever the files lie
   // Members from here on do not belong to the identity: they say where files lie and how to run.
   if (!o.from.empty()) job["from"] = o.from;
   job["windows"] = windows;
@@ -186,10 +158,7 @@ constexpr std::int64_t usual_port = 29500;  // PyTorch's default
 
 Result<std::int64_t> port_of(const std::string& text) {
   if (text.empty()) return usual_port;
-  std::int64_t port = 0;
-  const char* end = text.data() + text.size();
-  const auto [behind, fault] = std::from_chars(text.data(), end, port);
-  if (fault == std::errc{} && behind == end && port > 0 && port < 65536) return port;
+  if (const auto port = parse_port(text)) return *port;
   return Failure(Error{"MASTER_PORT", 0, "a TCP port", shown(text)});
 }
 
@@ -282,7 +251,7 @@ Result<std::string> windows_of(const Train& o, const std::string& folder) {
   const WindowsWanted wanted{.data = o.data,
                              .split = o.split,
                              .where = o.where,
-                             .input = input_of(o),
+                             .input = rough_stream(o.input, method_of(o).task),
                              .truth = o.truth,
                              .rate_hz = o.rate_hz};
   // The windows are cut into the folder of the run, which the lock protects.
@@ -306,48 +275,23 @@ Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
   return last;
 }
 
-/// Holds a lock on the folder, so that no other training uses it. The system frees the lock when
-/// this program ends, even if it crashes.
-/// The lock is of the open file (flock), so a file that was left by a crash does not block the next
-/// run. Invariant: path_ is set only while the lock is held.
-class FolderLock {
- public:
-  static Result<FolderLock> take(const std::string& folder) {
-    std::string path = folder + "/lock";
-    const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
-    FolderLock out(file);
-    // LOCK_NB: a second training is refused at once and does not wait.
-    if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) {
-      out.path_ = std::move(path);
-      return out;
-    }
-    return Failure(Error{folder, 0, "a folder that no other training uses now",
-                         file < 0 ? std::strerror(errno) : "another training in this folder"});
-  }
-  FolderLock(FolderLock&& other) noexcept
-      : file_(std::exchange(other.file_, -1)), path_(std::exchange(other.path_, "")) {}
-  FolderLock& operator=(FolderLock&&) = delete;
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock() {
-    // The name is removed before the lock is freed. Only the holder does this.
-    if (!path_.empty()) ::unlink(path_.c_str());
-    if (file_ >= 0) ::close(file_);
-  }
-
- private:
-  explicit FolderLock(int file) : file_(file) {}
-  int file_;
-  std::string path_;  // while it is held
-};
+/// Locks the folder, so that no other training uses it. The system frees the lock when the file is
+/// closed, also if this program crashes, so the file "lock" may stay.
+Result<Handle> locked(const std::string& folder) {
+  Handle file(::open((folder + "/lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644));
+  // LOCK_NB: a second training is refused at once and does not wait.
+  if (file.fd() >= 0 && ::flock(file.fd(), LOCK_EX | LOCK_NB) == 0) return file;
+  return Failure(Error{folder, 0, "a folder that no other training uses now",
+                       file.fd() < 0 ? std::strerror(errno) : "another training in this folder"});
+}
 
 /// Makes the run's folder, which all processes share. The first process locks it.
-Result<std::optional<FolderLock>> open_folder(const Train& o, const std::string& folder,
-                                              const Places& places, Call& call) {
+Result<Handle> open_folder(const Train& o, const std::string& folder, const Places& places,
+                           Call& call) {
   KA_TRY(make_folders(folder));
-  std::optional<FolderLock> out;
+  Handle out;
   // Other processes of the same training must not lock it: they share the folder.
-  if (places.is_first()) out.emplace(KA_TRY(FolderLock::take(folder)));
+  if (places.is_first()) out = KA_TRY(locked(folder));
   std::error_code fault;
   if (o.resume && !fs::exists(folder + "/checkpoint.safetensors", fault)) {
     call.console.note("kinalign train: no checkpoint in " + harmless(folder) +

@@ -32,6 +32,24 @@ constexpr std::array<TaskWords, 3> task_words{
      {Learns::pose, "pose", "computes a pose from nodes"},
      {Learns::fuse, "fuse", "computes a pose from a Kinect and nodes"}}};
 
+/// A flag that only methods of these tasks use. `why` follows the name of another method.
+struct TaskFlag {
+  const char* flag;
+  std::vector<Learns> tasks;
+  const char *expected, *why = "";
+};
+const std::array<TaskFlag, 7> task_flags{
+    {{"nodes", {Learns::pose, Learns::fuse}, "a method for poses or for fusion"},
+     {"vary-speed", {Learns::pose, Learns::fuse}, "a method for poses or for fusion"},
+     {"vary-size", {Learns::pose, Learns::fuse}, "a method for poses or for fusion"},
+     {"hand-weight", {Learns::denoise}, "a method that cleans a Kinect"},
+     {"own-root", {Learns::denoise}, "a method that cleans a Kinect"},
+     {"input",
+      {Learns::denoise, Learns::fuse},
+      "a method with a Kinect as input",
+      ", whose input is simulated nodes"},
+     {"rate", {Learns::denoise}, "a method that cleans a stream", ", which works at 30 Hz"}}};
+
 /// The members that every job has.
 /// `learn` and `judge` are names of takes. Members with defaults are left out.
 Json begun_job(const TrainingWanted& wanted, Call& call) {
@@ -94,52 +112,41 @@ const TrainedMethod* find_trained(const std::string& name) {
   return find_named(trained_methods(), name);
 }
 
+Result<void> check_data(const std::string& data, const std::string& windows) {
+  if (data.empty() != windows.empty()) return {};
+  return Failure(Error{"--data", 0, "a data set (--data) or a file of windows (--windows)",
+                       data.empty() ? "neither" : "both"});
+}
+
+std::string rough_stream(const std::string& input, Learns task) {
+  return input.empty() && task == Learns::denoise ? "kinect" : input;
+}
+
 Field input_field(std::string& input) {
-  return {"input", "the rough stream (default: kinect; for methods that fuse: a simulated Kinect)",
-          &input,  0.0,
-          0.0,     {},
-          "NAME"};
+  return text_flag("input",
+                   "the rough stream (default: kinect; for methods that fuse: a simulated Kinect)",
+                   &input, "NAME");
 }
 
 Field truth_field(std::string& truth) {
-  return {"truth", "the precise stream", &truth, 0.0, 0.0, {}, "NAME"};
+  return text_flag("truth", "the precise stream", &truth, "NAME");
 }
 
 /// The flag --nodes, for methods that get nodes.
 Field nodes_field(std::string& nodes) {
-  return {"nodes",
-          "for poses and fusion: 3 to 6 of wrist_left, wrist_right, ankle_left, ankle_right, head "
-          "and, as the last, waist (default: all except head)",
-          &nodes,
-          0.0,
-          0.0,
-          {},
-          "NAME,NAME,..."};
+  return text_flag("nodes",
+                   "for poses and fusion: 3 to 6 of wrist_left, wrist_right, ankle_left, "
+                   "ankle_right, head and, as the last, waist (default: all except head)",
+                   &nodes, "NAME,NAME,...");
 }
 
-/// A flag without effect is wrong use: a user would believe that it had one.
 Result<void> check_task_flags(const TrainedMethod& method, const Sources& given) {
-  if (method.task == Learns::denoise && given.count("nodes") > 0) {
-    return Failure(Error{"--nodes", 0, "a method for poses or for fusion", method.name});
-  }
-  for (const char* flag : {"vary-speed", "vary-size"}) {
-    if (method.task != Learns::denoise || given.count(flag) == 0) continue;
-    return Failure(
-        Error{std::string("--") + flag, 0, "a method for poses or for fusion", method.name});
-  }
-  if (method.task != Learns::denoise && given.count("hand-weight") > 0) {
-    return Failure(Error{"--hand-weight", 0, "a method that cleans a Kinect", method.name});
-  }
-  if (method.task != Learns::denoise && given.count("own-root") > 0) {
-    return Failure(Error{"--own-root", 0, "a method that cleans a Kinect", method.name});
-  }
-  if (method.task == Learns::pose && given.count("input") > 0) {
-    return Failure(Error{"--input", 0, "a method with a Kinect as input",
-                         method.name + ", whose input is simulated nodes"});
-  }
-  if (method.task != Learns::denoise && given.count("rate") > 0) {
-    return Failure(Error{"--rate", 0, "a method that cleans a stream",
-                         method.name + ", which works at 30 Hz"});
+  // A flag without effect is wrong use: a user would believe that it had one.
+  for (const TaskFlag& one : task_flags) {
+    const bool is_used =
+        std::find(one.tasks.begin(), one.tasks.end(), method.task) != one.tasks.end();
+    if (is_used || given.count(one.flag) == 0) continue;
+    return Failure(Error{std::string("--") + one.flag, 0, one.expected, method.name + one.why});
   }
   return {};
 }
@@ -168,26 +175,30 @@ Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::st
   return Failure(Error{wanted.data, 0, "a data set to cut windows from", why});
 }
 
+Result<void> train_in(const std::string& folder, Json job, const std::string& model, Call& call) {
+  KA_TRY(make_folders(folder));
+  job.update({{"out", model},
+              {"log", folder + "/log.csv"},
+              {"checkpoint", folder + "/checkpoint.safetensors"},
+              // A checkpoint is left by a training that was stopped. The worker continues from it.
+              {"resume", true},
+              {"threads", call.jobs}});
+  const std::string file = folder + "/job.json";
+  KA_TRY(write_whole(call.surroundings.files, file, job.dump(1), Overwrite::yes));
+  KA_TRY(run_worker(file, {.progress = call.console.progress()}));
+  return {};
+}
+
 Result<std::string> trained_model(const TrainingWanted& wanted, Call& call) {
   const std::string model = wanted.folder + "/model.safetensors";
   std::error_code fault;
   // The name of the folder depends on everything that the model depends on, so an existing model is
   // the right one.
   if (std::filesystem::exists(model, fault)) return model;
-  KA_TRY(make_folders(wanted.folder));
-  Json options{{"seed", wanted.seed}};
-  if (wanted.steps > 0) options["steps"] = wanted.steps;
   Json job = begun_job(wanted, call);
-  job.update({{"out", model},
-              {"log", wanted.folder + "/log.csv"},
-              {"checkpoint", wanted.folder + "/checkpoint.safetensors"},
-              // A checkpoint that was left by a stopped training is used, since the folder belongs
-              // to this training alone.
-              {"resume", true},
-              {"options", options}});
-  const std::string file = wanted.folder + "/job.json";
-  KA_TRY(write_whole(call.surroundings.files, file, job.dump(1), Overwrite::yes));
-  KA_TRY(run_worker(file, {.progress = call.console.progress()}));
+  job["options"]["seed"] = wanted.seed;
+  if (wanted.steps > 0) job["options"]["steps"] = wanted.steps;
+  KA_TRY(train_in(wanted.folder, std::move(job), model, call));
   return model;
 }
 
@@ -202,19 +213,6 @@ Result<std::vector<std::string>> rows_of_model(const TrainingWanted& wanted,
   std::vector<std::string> out;
   KA_TRY(run_worker(file, {.progress = call.console.progress(),
                            .row = [&](const std::string& row) { out.push_back(row); }}));
-  return out;
-}
-
-// The text "" gives one empty name.
-std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> out{""};
-  for (const char c : text) {
-    if (c == ',') {
-      out.emplace_back();
-    } else {
-      out.back() += c;
-    }
-  }
   return out;
 }
 

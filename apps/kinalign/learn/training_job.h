@@ -4,6 +4,8 @@
 
 #include "apps/cli/verb.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,6 +34,12 @@ struct TrainedMethod {
 const std::vector<TrainedMethod>& trained_methods();
 /// The method with that name; nullptr if there is none.
 const TrainedMethod* find_trained(const std::string& name);
+
+/// Fails unless exactly one of --data and --windows is given.
+Result<void> check_data(const std::string& data, const std::string& windows);
+/// The name of the rough stream. The default is a Kinect's for methods that clean one; others see
+/// none or a simulated one.
+std::string rough_stream(const std::string& input, Learns task);
 
 /// Flags that train and eval share.
 Field input_field(std::string& input);
@@ -69,12 +77,14 @@ struct TrainingWanted {
 /// The folder belongs to one training: its name is made from everything that the result depends on.
 Result<std::string> trained_model(const TrainingWanted& wanted, Call& call);
 
+/// Trains a model by a job without files and threads. The folder belongs to this training: it keeps
+/// job, log and checkpoint, so a training that was stopped goes on.
+Result<void> train_in(const std::string& folder, nlohmann::ordered_json job,
+                      const std::string& model, Call& call);
+
 /// The rows that kinalign-learn prints about a model for poses or fusion, a JSON object each. The
 /// model is tested on the takes that are neither in `learnt` nor in `judged`.
 Result<std::vector<std::string>> rows_of_model(const TrainingWanted& wanted,
                                                const std::string& model, Call& call);
-
-/// Splits the text at commas: "a,b" gives "a" and "b".
-std::vector<std::string> split_at_commas(const std::string& text);
 
 }  // namespace kinalign

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/learn/worker.h"
 
+#include "apps/cli/child_process.h"
 #include "apps/kinalign/learn/shipped_models.h"
 
-#include <fcntl.h>
 #include <netinet/in.h>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -57,40 +55,23 @@ struct Child {
 /// Starts kinalign-learn with a job file. Its stdout is a pipe; its stderr is dropped, since errors
 /// come as JSON on stdout.
 Result<Child> start(const std::string& program, const std::string& job) {
-  std::array<int, 2> ends{};
-  // O_CLOEXEC keeps the pipes of one child out of the next one. Otherwise the end of a pipe would
-  // never be seen.
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return Failure(Error{"", 0, "a pipe to a child process", std::strerror(errno)});
-  }
-  std::string name = "kinalign-learn", word = job;
-  const std::array<char*, 3> words{name.data(), word.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-  ::posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-  Child out;
-  out.out = ends[0];
-  const int fault =
-      ::posix_spawn(&out.id, program.c_str(), &actions, nullptr, words.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
+  const auto ends = KA_TRY(child_pipe());
+  const auto child = start_child(program, {"kinalign-learn", job}, ends[1], -1);
   // The parent's copy of the writing end must be closed, so that the end of the output is the end
   // of the child.
   ::close(ends[1]);
-  if (fault == 0) return out;
-  ::close(ends[0]);
-  return Failure(Error{program, 0, "a program that can be started", std::strerror(fault)});
+  if (!child) ::close(ends[0]);
+  Child out;
+  out.id = KA_TRY(child);
+  out.out = ends[0];
+  return out;
 }
 
 /// Closes the pipe and waits until the child has ended.
 void wait_for(Child& child) {
   ::close(child.out);
   child.out = -1;
-  int status = 0;
-  while (::waitpid(child.id, &status, 0) < 0 && errno == EINTR) {
-  }
-  child.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  child.code = wait_for_child(child.id);
 }
 
 /// Reads the available output and returns its whole lines. At the end of the output it waits for

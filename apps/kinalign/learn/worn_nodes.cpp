@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/learn/worn_nodes.h"
 
-#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/live/live_worn_report.h"
 
 #include "kinalign/core/numbers.h"
 
@@ -39,6 +39,12 @@ Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
   return Failure(Error{"--tpose", 0, "START,END in seconds, such as 1.5,4", shown(text)});
 }
 
+/// The value of --heading; absent: the calibration decides.
+std::optional<Headings> headings_of(const WornWords& o) {
+  if (o.headings == "shared") return Headings::shared;
+  return o.headings == "mounting" ? std::optional(Headings::mounting) : std::nullopt;
+}
+
 /// The frames of the T-pose: the wanted seconds, else the first second in which no node turns.
 /// The T-pose is a stretch of frames in which the person stands still with the arms to the sides.
 /// It fixes how each node lies on its bone.
@@ -69,8 +75,6 @@ Result<ChosenTPose> choose_t_pose(const std::string& wanted, const WornFrames& w
     out.frames = *still;
     out.found = true;
   }
-  out.from_s = static_cast<double>(out.frames.first) / rate_hz;
-  out.to_s = static_cast<double>(out.frames.first + out.frames.count) / rate_hz;
   return out;
 }
 
@@ -100,12 +104,9 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
                        const NodePresence& presence) {
   const std::string& name = layout.nodes[node];
   const auto& worn = posed.calibration.nodes[node];
-  if (presence.valid == 0.0) return name + " has no samples: its limb is a guess";
-  if (!worn) return name + " has no samples in the T-pose and is left out: its limb is a guess";
-  if (presence.longest_lost_s >= longest_lost_s) {
-    return fmt::format("{} is missing for {:.1f} s: during this time its limb is a guess", name,
-                       presence.longest_lost_s);
-  }
+  const std::string missing =
+      missing_warning(name, presence.valid > 0.0, worn.has_value(), presence.longest_lost_s);
+  if (!missing.empty()) return missing;
   // If nodes are not worn as described, their tilt is found by calibration and says nothing about a
   // mistake.
   const bool is_checked =
@@ -259,19 +260,11 @@ std::string t_pose_line(const Json& about) {
 }  // namespace
 
 std::vector<Field> worn_flags(WornWords& o) {
-  return {{"tpose",
-           "when the T-pose is held, s (default: the first still second)",
-           &o.t_pose,
-           0.0,
-           0.0,
-           {},
-           "START,END"},
-          {"heading",
-           "whether all nodes share a heading, or each has its own by its mounting",
-           &o.headings,
-           0.0,
-           0.0,
-           {"auto", "shared", "mounting"}}};
+  return {text_flag("tpose", "when the T-pose is held, s (default: the first still second)",
+                    &o.t_pose, "START,END"),
+          choice_flag("heading",
+                      "whether all nodes share a heading, or each has its own by its mounting",
+                      &o.headings, {"auto", "shared", "mounting"})};
 }
 
 Result<void> check(const WornWords& o) {
@@ -286,8 +279,7 @@ Result<LiveWornOptions> live_options(const WornWords& o) {
     // A live run keeps the frames before its T-pose for a minute only.
     return Failure(Error{"--tpose", 0, "a T-pose within the first minute", shown(o.t_pose)});
   }
-  if (o.headings == "shared") out.headings = Headings::shared;
-  if (o.headings == "mounting") out.headings = Headings::mounting;
+  out.headings = headings_of(o);
   return out;
 }
 
@@ -343,8 +335,7 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
   out.even = KA_TRY(even_nodes(tracks, layout.rate_hz, span));
   out.t_pose = KA_TRY(choose_t_pose(o.t_pose, out.even.worn, layout.rate_hz));
   options.t_pose = out.t_pose.frames;
-  if (o.headings == "shared") options.headings = Headings::shared;
-  if (o.headings == "mounting") options.headings = Headings::mounting;
+  options.headings = headings_of(o);
   out.calibration = KA_TRY(calibrate(layout, body, out.even.worn, options));
   // Calibration tells how nodes were worn, so its warnings come last.
   warn(warnings_of(layout, out.calibration, o.headings));
@@ -356,12 +347,8 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
   const NodeChoice& choice = posed.choice;
   Json each = Json::object(), warnings = Json::array();
   double valid = 0.0;
-  // A T-pose with motion gives a wrong calibration of every node. The warning is about all of them.
   const double fastest = fastest_turn_deg(posed.even.worn, posed.t_pose.frames);
-  if (fastest > most_turn_deg_s) {
-    warnings.push_back(fmt::format(
-        "a node turned at {:.0f} deg/s in the T-pose: the person did not hold still", fastest));
-  }
+  warn_of_turn(fastest, warnings);
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const NodePresence presence = presence_of(nodes, n, layout.rate_hz);
     const auto& worn = posed.calibration.nodes[n];
@@ -375,19 +362,14 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
   }
   // Warnings of single nodes come first, then those about all of them.
   for (const std::string& warning : posed.warnings) warnings.push_back(warning);
-  const NodeCalibration& calibration = posed.calibration;
-  return {{"valid", valid},
-          {"nodes", std::move(each)},
-          {"t_pose",
-           {{"from_s", posed.t_pose.from_s},
-            {"to_s", posed.t_pose.to_s},
-            {"found", posed.t_pose.found},
-            {"fastest_deg_s", fastest}}},
-          {"headings", calibration.headings == Headings::shared ? "shared" : "mounting"},
-          {"facing", calibration.facing == Facing::arms ? "arms" : "mounting"},
-          {"spread_deg", calibration.spread_deg},
-          {"worn_as_told", calibration.worn_as_told},
-          {"warnings", std::move(warnings)}};
+  Json out{{"valid", valid}, {"nodes", std::move(each)}};
+  out.update(calibration_json(
+      {static_cast<double>(posed.t_pose.frames.first) / layout.rate_hz,
+       static_cast<double>(posed.t_pose.frames.first + posed.t_pose.frames.count) / layout.rate_hz,
+       posed.t_pose.found, fastest},
+      posed.calibration));
+  out["warnings"] = std::move(warnings);
+  return out;
 }
 
 std::string node_lines(const Json& about) {

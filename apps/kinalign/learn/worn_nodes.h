@@ -37,7 +37,6 @@ Result<NodeChoice> choose(const PoseLayout& layout, const NamedNodes& nodes);
 /// The frames of the T-pose.
 struct ChosenTPose {
   TPose frames;
-  double from_s = 0.0, to_s = 0.0;
   bool found = false;  // true: found by the program, not stated in --tpose
 };
 

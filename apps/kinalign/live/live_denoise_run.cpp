@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/live/live_session.h"
 
 #include "kinalign/models/live/live_joints.h"
 #include "kinalign/models/skeleton_of_points.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <deque>
-#include <utility>
+#include <map>
 
 namespace kinalign {
 
@@ -19,8 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The same limit as for files (denoise.cpp), so both give the same warnings.
-constexpr double longest_unseen_s = 2.0;  // a joint missing for longer gets a warning
+/// A warning that concerns more joints states their number instead of their names.
+constexpr std::size_t most_named = 4;
 
 /// Runs `denoise --live`: puts the Kinect's frames on the model's grid and answers each frame once
 /// its later frames have come.
@@ -30,8 +30,7 @@ class LiveDenoiseRun {
   LiveDenoiseRun(Denoiser& denoiser, const LiveJob& job, LiveSession& session)
       : model_(denoiser.model()),
         session_(session),
-        stream_(job.kinect),
-        is_chosen_(!job.kinect.empty()),
+        stream_(live_kinect(job.kinect)),
         joints_(model_.layout.inputs, model_.layout.rate_hz),
         cleaner_(denoiser, job.look_ahead()),
         unseen_(model_.layout.inputs.size()) {}
@@ -48,8 +47,7 @@ class LiveDenoiseRun {
   Result<void> take(const LiveData& data) {
     for (const LiveKinectRow& row : data.rows) {
       // The choice must come first: a second Kinect would be mixed into the first one's rows.
-      KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
-      if (row.kinect->stream != stream_) continue;
+      if (!KA_TRY(stream_.takes(row.kinect->stream))) continue;
       joints_.add(row.row, row.arrival);
       // Frames are made after every row, so the arrival of this row is the one that they needed.
       KA_TRY(advance(row.arrival));
@@ -94,7 +92,7 @@ class LiveDenoiseRun {
       const double longest_s = static_cast<double>(unseen_[j].longest) / model_.layout.rate_hz;
       if (longest_s >= longest_unseen_s) missing[model_.layout.inputs[j]] = longest_s;
     }
-    Json out{{"stream", stream_},
+    Json out{{"stream", stream_.name()},
              {"frames", frames},
              {"rate_hz", model_.layout.rate_hz},
              {"joints", model_.layout.outputs.size()},
@@ -103,12 +101,7 @@ class LiveDenoiseRun {
              {"missing", static_cast<double>(seen_[0]) / all},
              {"inferred", static_cast<double>(seen_[1]) / all},
              {"long_missing_s", missing},
-             {"warnings", Json::array()}};
-    for (const auto& [joint, seconds] : missing.items()) {
-      out["warnings"].push_back(
-          fmt::format("{} is missing for {:.1f} s: during this time it is a guess", joint,
-                      seconds.get<double>()));
-    }
+             {"warnings", missing_warnings(missing)}};
     session_.describe(out);
     return out;
   }
@@ -179,8 +172,7 @@ class LiveDenoiseRun {
   };
   const DenoiseModel& model_;
   LiveSession& session_;
-  std::string stream_;
-  bool is_chosen_;
+  LiveChoice stream_;
   LiveJoints joints_;
   LiveCleaner cleaner_;
   std::size_t made_ = 0, answered_ = 0;  // made_: frames given to the cleaner; answered_: frames it
@@ -192,15 +184,25 @@ class LiveDenoiseRun {
 
 }  // namespace
 
+std::vector<std::string> missing_warnings(const Json& long_missing) {
+  std::map<std::string, std::vector<std::string>> joints;
+  // Joints that vanish together, such as a whole leg behind a table, get one line.
+  for (const auto& [joint, seconds] : long_missing.items()) {
+    joints[fmt::format("{:.1f}", seconds.get<double>())].push_back(harmless(joint));
+  }
+  std::vector<std::string> out;
+  for (const auto& [seconds, names] : joints) {
+    const std::string who = names.size() > most_named ? fmt::format("{} joints", names.size())
+                                                      : fmt::format("{}", fmt::join(names, ", "));
+    const bool is_one = names.size() == 1;
+    out.push_back(fmt::format("{} {} missing for {} s: during this time {} a guess", who,
+                              is_one ? "is" : "are", seconds, is_one ? "it is" : "they are"));
+  }
+  return out;
+}
+
 Result<Json> run_live_denoise(Denoiser& denoiser, const LiveJob& job, Clip& clip, Call& call) {
-  LiveSession session = KA_TRY(LiveSession::open(job.words, call));
-  LiveDenoiseRun run(denoiser, job, session);
-  run.begin();
-  // The lambdas refer to `run`, which outlives the session's loop.
-  KA_TRY(session.run(
-      {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
-  KA_TRY(run.finish());
-  return run.answer(clip);
+  return run_live<LiveDenoiseRun>(denoiser, job, clip, call);
 }
 
 }  // namespace kinalign

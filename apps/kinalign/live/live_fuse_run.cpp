@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/live/live_worn_report.h"
 
 #include "kinalign/models/live/live_joints.h"
@@ -27,8 +26,7 @@ class LiveFuseRun {
       : model_(fuser.model()),
         nodes_(model_.layout.nodes),
         session_(session),
-        stream_(job.kinect),
-        is_chosen_(!job.kinect.empty()),
+        stream_(live_kinect(job.kinect)),
         worn_(nodes_, model_.body.skeleton, job.worn),
         report_(nodes_, job.nodes, worn_, session),
         joints_(model_.layout.joints, nodes_.rate_hz),
@@ -49,8 +47,7 @@ class LiveFuseRun {
     // Marks come first: a mark calibrates with samples that are there already.
     for (const LiveMark& mark : data.marks) report_.take(mark);
     for (const LiveKinectRow& row : data.rows) {
-      KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
-      if (row.kinect->stream == stream_) joints_.add(row.row, row.arrival);
+      if (KA_TRY(stream_.takes(row.kinect->stream))) joints_.add(row.row, row.arrival);
     }
     for (const LiveNodeSample& sample : data.samples) KA_TRY(report_.add(sample));
     // All samples of the piece are in, so one call answers all of its frames in one run of the
@@ -70,7 +67,7 @@ class LiveFuseRun {
   }
 
   // Answers the rest of the frames after the stream's end, without latencies.
-  void finish() {
+  Result<void> finish() {
     std::vector<LiveWornFrame> ready;
     std::vector<FusedFramePose> answered;
     // The last frames are made before the fuser is finished, which then answers all of them.
@@ -78,6 +75,7 @@ class LiveFuseRun {
     for (const LiveWornFrame& frame : ready) take_frame(frame);
     fuser_.finish(answered);
     for (FusedFramePose& pose : answered) take_answer(std::move(pose), std::nullopt);
+    return {};
   }
 
   // The whole answer as a clip and as JSON.
@@ -89,8 +87,7 @@ class LiveFuseRun {
     std::vector<Eigen::Quaternionf> root;
     for (std::size_t t = 0; t < poses_.size(); ++t) {
       if (answered_[t].stamp > *worn_.nodes().newest_of_root())
-        break;  // a file's frames end there
-                // too
+        break;  // a file's frames end there too
       report_.count(answered_[t].valid);
       rotations.insert(rotations.end(), poses_[t].rotations.begin(), poses_[t].rotations.end());
       root.push_back(poses_[t].root);
@@ -161,7 +158,7 @@ class LiveFuseRun {
   Json about(std::size_t frames) const {
     const double all =
         static_cast<double>(std::max<std::size_t>(seen_[0] + seen_[1] + seen_[2], 1));
-    Json out{{"kinect", stream_},
+    Json out{{"kinect", stream_.name()},
              {"imu", report_.names().stream()},
              {"frames", frames},
              {"rate_hz", nodes_.rate_hz},
@@ -171,15 +168,8 @@ class LiveFuseRun {
              {"missing", static_cast<double>(seen_[0]) / all},
              {"inferred", static_cast<double>(seen_[1]) / all}};
     out.update(report_.about());
-    Json found = Json::object();
-    const double degrees = 180.0 / std::numbers::pi;
-    for (std::size_t n = 0; n < nodes_.nodes.size(); ++n) {
-      // These are the corrections at the newest answer.
-      const HeadingState& state = fuser_.headings()[n];
-      found[nodes_.nodes[n]] = {{"turned_deg", degrees * static_cast<double>(state.yaw)},
-                                {"spread_deg", degrees * static_cast<double>(state.spread)}};
-    }
-    out["found_headings"] = std::move(found);
+    // These are the corrections at the newest answer.
+    out["found_headings"] = headings_json(nodes_.nodes, fuser_.headings());
     session_.describe(out);
     return out;
   }
@@ -191,8 +181,7 @@ class LiveFuseRun {
   const FuseModel& model_;
   const PoseLayout& nodes_;
   LiveSession& session_;
-  std::string stream_;  // the Kinect's stream
-  bool is_chosen_;
+  LiveChoice stream_;  // the Kinect's stream
   LiveWorn worn_;
   LiveWornReport report_;
   LiveJoints joints_;
@@ -205,14 +194,18 @@ class LiveFuseRun {
 
 }  // namespace
 
+Json headings_json(const std::vector<std::string>& nodes, std::span<const HeadingState> states) {
+  Json out = Json::object();
+  const double degrees = 180.0 / std::numbers::pi;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    out[nodes[n]] = {{"turned_deg", degrees * static_cast<double>(states[n].yaw)},
+                     {"spread_deg", degrees * static_cast<double>(states[n].spread)}};
+  }
+  return out;
+}
+
 Result<Json> run_live_fuse(Fuser& fuser, const LiveJob& job, Clip& clip, Call& call) {
-  LiveSession session = KA_TRY(LiveSession::open(job.words, call));
-  LiveFuseRun run(fuser, job, session);
-  run.begin();
-  KA_TRY(session.run(
-      {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
-  run.finish();
-  return run.answer(clip);
+  return run_live<LiveFuseRun>(fuser, job, clip, call);
 }
 
 }  // namespace kinalign

@@ -5,15 +5,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace kinalign {
 
 LiveNodeNames::LiveNodeNames(const PoseLayout& layout, std::string stream)
     : names_(layout.nodes),
-      stream_(std::move(stream)),
-      is_chosen_(!stream_.empty()),
+      stream_(std::move(stream), "one stream of inertial nodes (its stream by name)"),
       called_(layout.nodes.size()) {}
 
 /// Remembers each node's result, so that a name is looked up once. The first node at a place keeps
@@ -21,16 +19,9 @@ LiveNodeNames::LiveNodeNames(const PoseLayout& layout, std::string stream)
 Result<std::optional<std::size_t>> LiveNodeNames::find(const RawChannel& node) {
   const auto known = found_.find(&node);
   if (known != found_.end()) return known->second;
-  // The first stream that sends becomes the stream of the run.
-  if (stream_.empty()) stream_ = node.stream;
   // The entry is made before the checks, so that a node of no use is remembered as well.
   std::optional<std::size_t>& found = found_[&node];
-  // Two sets of nodes could be two people. Only the user knows which of them is meant.
-  if (node.stream != stream_ && !is_chosen_) {
-    return Failure(Error{"--live", 0, "one stream of inertial nodes (--stream NAME)",
-                         shown(stream_) + ", " + shown(node.stream)});
-  }
-  if (node.stream != stream_) return found;
+  if (!KA_TRY(stream_.takes(node.stream))) return found;
   // The place comes from lab.toml. A node without one is known by its id.
   const std::string& name = node.place.empty() ? node.node : node.place;
   for (std::size_t n = 0; n < names_.size() && !found; ++n) {

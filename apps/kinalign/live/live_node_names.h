@@ -8,9 +8,31 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
+
+/// The stream of a device: the chosen one, else the first that sends.
+class LiveChoice {
+ public:
+  /// `name`: empty if none was chosen. `expected`: for the error.
+  LiveChoice(std::string name, std::string expected)
+      : name_(std::move(name)), expected_(std::move(expected)), is_chosen_(!name_.empty()) {}
+
+  /// True if data of that stream are used. Fails if a second stream sends and none was chosen: two
+  /// streams could be two people.
+  Result<bool> takes(const std::string& sends) {
+    if (name_.empty()) name_ = sends;
+    if (is_chosen_ || sends == name_) return sends == name_;
+    return Failure(Error{"--live", 0, expected_, shown(name_) + ", " + shown(sends)});
+  }
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_, expected_;
+  bool is_chosen_;
+};
 
 /// Invariant: once a node of the layout has a sender, it keeps this sender until the end of the
 /// run.
@@ -24,7 +46,7 @@ class LiveNodeNames {
   /// nodes.
   Result<std::optional<std::size_t>> find(const RawChannel& node);
 
-  const std::string& stream() const { return stream_; }
+  const std::string& stream() const { return stream_.name(); }
   /// [N] the stream's name for each node; empty: nothing came from it yet.
   const std::vector<std::string>& called() const { return called_; }
   /// "4 of 5 nodes; not yet: ankle_left".
@@ -34,8 +56,7 @@ class LiveNodeNames {
 
  private:
   std::vector<std::string> names_;  // [N] the layout's names
-  std::string stream_;
-  bool is_chosen_;
+  LiveChoice stream_;
   std::vector<std::string> called_, others_;
   // The key is the channel's address, which is valid as long as the stream object.
   std::map<const RawChannel*, std::optional<std::size_t>> found_;

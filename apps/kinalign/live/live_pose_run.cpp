@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/live/live_worn_report.h"
 
 #include <fmt/format.h>
@@ -55,10 +54,11 @@ class LivePoseRun {
   }
 
   // Answers the rest of the frames after the stream's end, without latencies.
-  void finish() {
+  Result<void> finish() {
     std::vector<LivePoseFrame> answered;
     pose_.finish(answered);
     for (LivePoseFrame& frame : answered) take_answer(std::move(frame), std::nullopt);
+    return {};
   }
 
   // The whole answer as a clip and as JSON.
@@ -70,8 +70,7 @@ class LivePoseRun {
     std::vector<Eigen::Quaternionf> root;
     for (const LivePoseFrame& frame : frames_) {
       if (frame.stamp > *pose_.worn().nodes().newest_of_root())
-        break;  // a file's frames end there
-                // too
+        break;  // a file's frames end there too
       report_.count(frame.valid);
       rotations.insert(rotations.end(), frame.pose.rotations.begin(), frame.pose.rotations.end());
       root.push_back(frame.pose.root);
@@ -120,13 +119,7 @@ class LivePoseRun {
 }  // namespace
 
 Result<Json> run_live_pose(const PoseSolver& solver, const LiveJob& job, Clip& clip, Call& call) {
-  LiveSession session = KA_TRY(LiveSession::open(job.words, call));
-  LivePoseRun run(solver, job, session);
-  run.begin();
-  KA_TRY(session.run(
-      {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
-  run.finish();
-  return run.answer(clip);
+  return run_live<LivePoseRun>(solver, job, clip, call);
 }
 
 std::string live_lines(const Json& about) {

@@ -12,7 +12,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <span>
 #include <string>
+#include <vector>
 
 namespace kinalign {
 
@@ -36,6 +38,15 @@ Result<nlohmann::ordered_json> run_live_denoise(Denoiser& denoiser, const LiveJo
                                                 Call& call);
 Result<nlohmann::ordered_json> run_live_fuse(Fuser& fuser, const LiveJob& job, Clip& clip,
                                              Call& call);
+
+/// A joint missing for longer gets a warning, in a live run and in a file.
+inline constexpr double longest_unseen_s = 2.0;
+/// One warning for all joints that were missing for the same time. `long_missing`: s, by the joint.
+std::vector<std::string> missing_warnings(const nlohmann::ordered_json& long_missing);
+
+/// The corrections of the nodes' headings by the Kinect: the member "found_headings".
+nlohmann::ordered_json headings_json(const std::vector<std::string>& nodes,
+                                     std::span<const HeadingState> states);
 
 /// The last line of a live run, after those of the verb: "live     9 ms after ...".
 std::string live_lines(const nlohmann::ordered_json& about);

@@ -2,7 +2,6 @@
 #include "apps/kinalign/live/live_session.h"
 
 #include "apps/cli/json_text.h"
-#include "apps/kinalign/text/describe_file.h"
 
 #include "kinalign/motion/arrays.h"
 #include "kinalign/motion/kinematics.h"
@@ -73,13 +72,6 @@ Result<void> check_live_frames(std::size_t frames) {
 Failure no_live_frames(const std::string& waited_for) {
   return Failure(
       Error{"--live", 0, "frames to compute", "no frame; the program ended " + waited_for});
-}
-
-Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::string& stream) {
-  if (stream.empty()) stream = sends;
-  if (is_chosen || sends == stream) return {};
-  return Failure(
-      Error{"--live", 0, "one Kinect (its stream by name)", shown(stream) + ", " + shown(sends)});
 }
 
 Result<LiveSession> LiveSession::open(const LiveWords& words, Call& call) {

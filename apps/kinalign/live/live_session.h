@@ -5,6 +5,8 @@
 
 #include "apps/cli/console.h"
 #include "apps/kinalign/live/live_latency.h"
+#include "apps/kinalign/live/live_node_names.h"
+#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/live/live_sockets.h"
 
 #include "kinalign/capture/net/host_clock.h"
@@ -16,6 +18,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace kinalign {
 
@@ -27,9 +30,10 @@ inline constexpr std::size_t most_live_frames = 1'000'000;
 Result<void> check_live_frames(std::size_t frames);
 /// The failure of a run without an answered frame. `waited_for`: the status at its end.
 Failure no_live_frames(const std::string& waited_for);
-/// Chooses the stream of a Kinect: the chosen one, else the first that sends. Fails if two send and
-/// none was chosen.
-Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::string& stream);
+/// The Kinect of a run. `name`: of its stream; empty: the first that sends.
+inline LiveChoice live_kinect(const std::string& name) {
+  return {name, "one Kinect (its stream by name)"};
+}
 
 /// The callbacks for the stream.
 struct LiveWork {
@@ -87,5 +91,20 @@ class LiveSession {
   bool is_quiet_ = false;  // the pause was reported
   bool broke_ = false;     // the stream ended without record's end
 };
+
+/// Runs `run` from the connection to the last frame and returns the JSON about it. `Run` has
+/// begin(), take(), status(), finish() and answer().
+template <class Run>
+auto run_live(auto& model, const LiveJob& job, Clip& clip, Call& call)
+    -> decltype(std::declval<Run&>().answer(clip)) {
+  LiveSession session = KA_TRY(LiveSession::open(job.words, call));
+  Run run(model, job, session);
+  run.begin();
+  // The functions refer to `run`, which outlives the session's loop.
+  KA_TRY(session.run(
+      {[&](const LiveData& data) { return run.take(data); }, [&] { return run.status(); }}));
+  KA_TRY(run.finish());
+  return run.answer(clip);
+}
 
 }  // namespace kinalign

@@ -9,12 +9,6 @@ namespace {
 
 constexpr const char* own_machine = "127.0.0.1";
 
-bool parse_port(std::string_view text, std::uint16_t& port) {
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
-  // Port 0 means "any" to the system, so it can't be a destination.
-  return fault == std::errc{} && end == text.data() + text.size() && port != 0;
-}
-
 /// The host without brackets: "[::1]" gives "::1".
 std::string without_brackets(const std::string& host) {
   const bool has = host.size() > 2 && host.front() == '[' && host.back() == ']';
@@ -23,14 +17,17 @@ std::string without_brackets(const std::string& host) {
 
 }  // namespace
 
+std::optional<std::uint16_t> parse_port(std::string_view text) {
+  std::uint16_t port = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
+  // Port 0 means "any" to the system, so it can't be a destination.
+  const bool is_port = fault == std::errc{} && end == text.data() + text.size() && port != 0;
+  return is_port ? std::optional(port) : std::nullopt;
+}
+
 std::vector<Field> live_flags(LiveWords& o) {
-  return {{"live",
-           "instead of IN: live data from a kinalign record with this --live-port",
-           &o.live,
-           0.0,
-           0.0,
-           {},
-           "[HOST:]PORT"},
+  return {text_flag("live", "instead of IN: live data from a kinalign record with this --live-port",
+                    &o.live, "[HOST:]PORT"),
           {"look_ahead",
            "with --live: later frames that an answer waits for; a larger number gives a more "
            "accurate but later answer",
@@ -39,13 +36,9 @@ std::vector<Field> live_flags(LiveWords& o) {
            1000.0,
            {},
            "FRAMES"},
-          {"send",
-           "with --live: also send each frame to this address as a UDP datagram of JSON",
-           &o.send,
-           0.0,
-           0.0,
-           {},
-           "HOST:PORT"}};
+          text_flag("send",
+                    "with --live: also send each frame to this address as a UDP datagram of JSON",
+                    &o.send, "HOST:PORT")};
 }
 
 Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag) {
@@ -54,7 +47,8 @@ Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag
   Endpoint out{own_machine, 0};
   if (colon != std::string::npos) out.host = without_brackets(text.substr(0, colon));
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
-  if (!out.host.empty() && parse_port(port, out.port)) return out;
+  out.port = parse_port(port).value_or(0);
+  if (!out.host.empty() && out.port != 0) return out;
   return Failure(
       Error{flag, 0, "a port from 1 to 65535, such as 7040 or 127.0.0.1:7040", shown(text)});
 }

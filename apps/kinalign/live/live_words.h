@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
@@ -26,6 +27,9 @@ struct Endpoint {
   std::string host;
   std::uint16_t port = 0;
 };
+
+/// A port from 1 to 65535; absent for any other text.
+std::optional<std::uint16_t> parse_port(std::string_view text);
 
 /// Accepts "7040", "127.0.0.1:7040", "[::1]:7040". `flag`: named in errors.
 Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag);

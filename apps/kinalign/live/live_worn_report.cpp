@@ -40,6 +40,35 @@ NodeReadings readings_of(const LiveNodeSample& one) {
 
 }  // namespace
 
+Json calibration_json(const UsedTPose& t_pose, const NodeCalibration& found) {
+  return {{"t_pose",
+           {{"from_s", t_pose.from_s},
+            {"to_s", t_pose.to_s},
+            {"found", t_pose.found},
+            {"fastest_deg_s", t_pose.fastest_deg_s}}},
+          {"headings", found.headings == Headings::shared ? "shared" : "mounting"},
+          {"facing", found.facing == Facing::arms ? "arms" : "mounting"},
+          {"spread_deg", found.spread_deg},
+          {"worn_as_told", found.worn_as_told}};
+}
+
+void warn_of_turn(double fastest_deg_s, Json& warnings) {
+  if (fastest_deg_s <= most_turn_deg_s) return;
+  warnings.push_back(fmt::format(
+      "a node turned at {:.0f} deg/s in the T-pose: the person did not hold still", fastest_deg_s));
+}
+
+// A node without samples and a node without samples in the T-pose look alike in the answer. The
+// user has to mend different things.
+std::string missing_warning(const std::string& node, bool has_samples, bool is_used,
+                            double lost_s) {
+  if (!has_samples) return node + " has no samples: its limb is a guess";
+  if (!is_used) return node + " has no samples in the T-pose and is left out: its limb is a guess";
+  if (lost_s < longest_lost_s) return "";
+  return fmt::format("{} is missing for {:.1f} s: during this time its limb is a guess", node,
+                     lost_s);
+}
+
 LiveWornReport::LiveWornReport(const PoseLayout& layout, const std::string& stream, LiveWorn& worn,
                                LiveSession& session)
     : layout_(&layout),
@@ -134,18 +163,13 @@ std::string LiveWornReport::waits_for() const {
                      refusal_.empty() ? "" : "; " + refusal_);
 }
 
-/// The members about the calibration, named like those of about_nodes().
 Json LiveWornReport::calibration() const {
   const LiveCalibration& found = *worn_->calibration();
-  return {{"t_pose",
-           {{"from_s", static_cast<double>(found.first) / layout_->rate_hz},
-            {"to_s", static_cast<double>(found.first + found.count) / layout_->rate_hz},
-            {"found", false},
-            {"fastest_deg_s", found.fastest_deg_s}}},
-          {"headings", found.nodes.headings == Headings::shared ? "shared" : "mounting"},
-          {"facing", found.nodes.facing == Facing::arms ? "arms" : "mounting"},
-          {"spread_deg", found.nodes.spread_deg},
-          {"worn_as_told", found.nodes.worn_as_told}};
+  const double rate = layout_->rate_hz;
+  return calibration_json(
+      {static_cast<double>(found.first) / rate,
+       static_cast<double>(found.first + found.count) / rate, found.found, found.fastest_deg_s},
+      found.nodes);
 }
 
 Json LiveWornReport::about() const {
@@ -159,42 +183,23 @@ Json LiveWornReport::about() const {
     nodes[layout_->nodes[n]] = {{"called", names_.called()[n]},
                                 {"valid", share},
                                 {"tilt_deg", worn ? Json(worn->tilt_deg) : Json()}};
-    const std::string warning = warning_of(n);
+    const bool is_used = presence_[n].valid > 0;
+    const std::string warning =
+        missing_warning(layout_->nodes[n], is_used || worn_->nodes().has_samples(n), is_used,
+                        static_cast<double>(presence_[n].longest) / layout_->rate_hz);
     if (!warning.empty()) warnings.push_back(warning);
   }
   Json out{{"valid", valid}, {"nodes", std::move(nodes)}};
   out.update(calibration());
   // Late samples came after their frame was made.
   out["late_samples"] = worn_->nodes().late();
-  const double fastest = worn_->calibration()->fastest_deg_s;
-  if (fastest > most_turn_deg_s) {
-    warnings.push_back(fmt::format(
-        "a node turned at {:.0f} deg/s in the T-pose: the person did not hold still", fastest));
-  }
+  warn_of_turn(worn_->calibration()->fastest_deg_s, warnings);
   // A node that the model does not use is often one whose place is missing in lab.toml.
   for (const std::string& other : names_.others()) {
     warnings.push_back(other + " is not a node of the model: state in lab.toml where it is worn");
   }
   out["warnings"] = std::move(warnings);
   return out;
-}
-
-/// The most serious warning about a node; empty if there is none.
-std::string LiveWornReport::warning_of(std::size_t node) const {
-  const std::string& name = layout_->nodes[node];
-  const Presence& one = presence_[node];
-  const double lost_s = static_cast<double>(one.longest) / layout_->rate_hz;
-  // A node without samples and a node without samples in the T-pose look alike in the answer. The
-  // user has to mend different things.
-  if (one.valid == 0 && !worn_->nodes().has_samples(node)) {
-    return name + " has no samples: its limb is a guess";
-  }
-  if (one.valid == 0) {
-    return name + " has no samples in the T-pose and is left out: its limb is a guess";
-  }
-  if (lost_s < longest_lost_s) return "";
-  return fmt::format("{} is missing for {:.1f} s: during this time its limb is a guess", name,
-                     lost_s);
 }
 
 }  // namespace kinalign

@@ -15,6 +15,23 @@
 
 namespace kinalign {
 
+// The next three are about nodes of files as well (apps/kinalign/learn/worn_nodes.h).
+
+/// The seconds of a T-pose, and the fastest turn of a node in it.
+struct UsedTPose {
+  double from_s = 0.0, to_s = 0.0;
+  bool found = false;  // true: found by the program, not stated by the user
+  double fastest_deg_s = 0.0;
+};
+/// The members t_pose, headings, facing, spread_deg and worn_as_told.
+nlohmann::ordered_json calibration_json(const UsedTPose& t_pose, const NodeCalibration& found);
+/// Appends a warning if a node turned in the T-pose, which makes the calibration of all nodes
+/// wrong.
+void warn_of_turn(double fastest_deg_s, nlohmann::ordered_json& warnings);
+/// The warning about a node that is missing for 2 s or longer, or always; empty if it is not.
+/// `is_used`: it has samples in the T-pose.
+std::string missing_warning(const std::string& node, bool has_samples, bool is_used, double lost_s);
+
 /// The grid and the calibration are LiveWorn's; this class adds names and words. Invariant: each
 /// change (T-pose, loss, return) is reported once.
 class LiveWornReport {
@@ -54,7 +71,6 @@ class LiveWornReport {
   };
   void report_refusal(const std::string& why);
   nlohmann::ordered_json calibration() const;
-  std::string warning_of(std::size_t node) const;
 
   const PoseLayout* layout_;
   LiveWorn* worn_;

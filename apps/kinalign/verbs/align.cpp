@@ -270,12 +270,9 @@ Result<int> run(AlignVerb& o, Call& call) {
         return lines;
       });
   // Errors of the plan name no file. The manifest is the one place where the user can mend them.
-  const auto placed = [&path](Error error) {
-    if (error.file.empty()) error.file = path;
-    return error;
-  };
-  const AlignmentReport report = KA_TRY(
-      align_to_file(call, recording, manifest, {out, call.common.overwrite()}).map_error(placed));
+  const AlignmentReport report =
+      KA_TRY(align_to_file(call, recording, manifest, {out, call.common.overwrite()})
+                 .map_error(in_file(path)));
   call.console.wrote(out);
   call.console.print(summary(report, out, call.console));
   call.console.print_json("{\"report\": " + report_json(report) + "}");

@@ -21,7 +21,6 @@
 #include "kinalign/view/show_recording.h"
 #include "kinalign/view/show_xdf.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace kinalign {
@@ -271,8 +270,7 @@ Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
 
 /// Converts a file. The sibling files of a recording are inputs, too, and never overwritten.
 Result<int> run(Convert& o, Call& call) {
-  call.console.if_it_fails(
-      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  call.console.advise("nothing was written");
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
                 o.store_double};
   // The parts of a recording lie next to it under derived names. The new file must not take one of

@@ -112,10 +112,14 @@ std::string smoothing_text(const Smoothing& how) {
 }
 
 /// Names from a model's file are passed through shown(), since they may hold any text.
+std::string name_list(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + shown(name);
+  return out;
+}
+
 std::string joint_lines(std::string_view name, const std::vector<std::string>& joints) {
-  std::string names;
-  for (const std::string& joint : joints) names += (names.empty() ? "" : ", ") + shown(joint);
-  return line(name, fmt::format("{}: {}", counted(joints.size(), "joint"), names));
+  return line(name, fmt::format("{}: {}", counted(joints.size(), "joint"), name_list(joints)));
 }
 
 /// A text member of an object from a file that any program may have written, on one line. Empty if
@@ -223,12 +227,6 @@ std::string_view channels_name(PoseInputs inputs) {
   return inputs == PoseInputs::dip ? "dip" : "ours";
 }
 
-std::string name_list(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + shown(name);
-  return out;
-}
-
 std::string model_line(const ModelFacts& facts) {
   return line("model", fmt::format("{}, method {}", shown(facts.task), shown(facts.method)));
 }
@@ -242,7 +240,7 @@ std::string body_lines(const PoseBody& body, bool smoothing, const Architecture&
          network_lines("net", network) + line("smoothing", smoothing ? "over 5 frames" : "none");
 }
 
-std::string pose_text(const PoseModel& model) {
+std::string model_text(const PoseModel& model) {
   const PoseLayout& layout = model.layout;
   std::string text = model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", layout.rate_hz));
@@ -252,7 +250,7 @@ std::string pose_text(const PoseModel& model) {
   return text + body_lines(model.body, model.smoothing, model.architecture);
 }
 
-std::string fuse_text(const FuseModel& model) {
+std::string model_text(const FuseModel& model) {
   const FuseLayout& layout = model.layout;
   std::string text = model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", layout.nodes.rate_hz));
@@ -270,7 +268,7 @@ Json body_json(const PoseBody& body, bool smoothing) {
           {"smoothing", smoothing}};
 }
 
-Json pose_json(const PoseModel& model) {
+Json model_json(const PoseModel& model) {
   const PoseLayout& layout = model.layout;
   return {{"rate_hz", layout.rate_hz},
           {"input", {{"nodes", layout.nodes}, {"channels", channels_name(layout.inputs)}}},
@@ -278,7 +276,7 @@ Json pose_json(const PoseModel& model) {
           {"networks", {{"net", network_json(model.architecture)}}}};
 }
 
-Json fuse_json(const FuseModel& model) {
+Json model_json(const FuseModel& model) {
   const FuseLayout& layout = model.layout;
   return {{"rate_hz", layout.nodes.rate_hz},
           {"input", {{"nodes", layout.nodes.nodes}, {"joints", layout.joints}}},
@@ -287,7 +285,7 @@ Json fuse_json(const FuseModel& model) {
 }
 
 /// The text about a model that cleans a Kinect.
-std::string denoise_text(const DenoiseModel& model) {
+std::string model_text(const DenoiseModel& model) {
   std::string text = model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", model.layout.rate_hz));
   text += joint_lines("input", model.layout.inputs);
@@ -303,7 +301,7 @@ std::string denoise_text(const DenoiseModel& model) {
 }
 
 /// The JSON about a model that cleans a Kinect.
-Json denoise_json(const DenoiseModel& model) {
+Json model_json(const DenoiseModel& model) {
   Json networks{{"net", network_json(model.architecture)}};
   if (model.second) networks["second"] = network_json(*model.second);
   return {
@@ -342,25 +340,12 @@ Description described(const std::string& path, std::string_view bytes, const Mod
 
 /// Reads, describes and then builds the model as its verb would. A model that can't be used fails
 /// although it could be described.
-Result<Description> describe_pose_model(const std::string& path, std::string_view bytes) {
-  PoseModel model = KA_TRY(read_pose_model(bytes, path));
-  Description out = described(path, bytes, model.facts, pose_text(model), pose_json(model));
+template <class Solver>
+Result<Description> described_by(auto read, const std::string& path, std::string_view bytes) {
+  auto model = KA_TRY(read(bytes, path));
+  Description out = described(path, bytes, model.facts, model_text(model), model_json(model));
   // make() takes the model over, so the description is made before it.
-  KA_TRY(check_usable(PoseSolver::make(std::move(model)), path));
-  return out;
-}
-
-Result<Description> describe_fuse_model(const std::string& path, std::string_view bytes) {
-  FuseModel model = KA_TRY(read_fuse_model(bytes, path));
-  Description out = described(path, bytes, model.facts, fuse_text(model), fuse_json(model));
-  KA_TRY(check_usable(Fuser::make(std::move(model)), path));
-  return out;
-}
-
-Result<Description> describe_denoise_model(const std::string& path, std::string_view bytes) {
-  DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
-  Description out = described(path, bytes, model.facts, denoise_text(model), denoise_json(model));
-  KA_TRY(check_usable(Denoiser::make(std::move(model)), path));
+  KA_TRY(Solver::make(std::move(model)).map_error(in_file(path)));
   return out;
 }
 
@@ -369,8 +354,9 @@ Result<Description> describe_denoise_model(const std::string& path, std::string_
 Result<Description> describe_model(const std::string& path, std::string_view bytes) {
   // The task decides the reader. A model of any other task is read as one that cleans skeletons.
   const std::string task = KA_TRY(task_of_model(bytes, path));
-  if (task == "pose") return describe_pose_model(path, bytes);
-  return task == "fuse" ? describe_fuse_model(path, bytes) : describe_denoise_model(path, bytes);
+  if (task == "pose") return described_by<PoseSolver>(read_pose_model, path, bytes);
+  if (task == "fuse") return described_by<Fuser>(read_fuse_model, path, bytes);
+  return described_by<Denoiser>(read_denoise_model, path, bytes);
 }
 
 }  // namespace kinalign

@@ -18,13 +18,4 @@ inline constexpr std::size_t most_model_bytes = std::size_t{1} << 30U;
 /// can't be used.
 Result<Description> describe_model(const std::string& path, std::string_view bytes);
 
-/// The error of a model that can't be used, with the model's file.
-template <class Usable>
-Result<void> check_usable(const Result<Usable>& usable, const std::string& path) {
-  if (usable) return {};
-  Error error = usable.error();
-  error.file = path;
-  return Failure(std::move(error));
-}
-
 }  // namespace kinalign

@@ -95,10 +95,8 @@ Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths)
   if (out.name.empty()) out.name = "stream";
   for (const std::string& path : paths) out.files.push_back({path, ""});
   for (const std::string& one : select) {
-    const auto [column, value] = KA_TRY(split_pair(one, "COLUMN=VALUE").map_error([](Error error) {
-      error.file = "--select";
-      return error;
-    }));
+    const auto [column, value] =
+        KA_TRY(split_pair(one, "COLUMN=VALUE").map_error(in_file("--select")));
     out.select[column] = value;
   }
   return out;

@@ -47,17 +47,6 @@ bool is_given(std::string_view flag, const Sources& given) {
   return found != given.end() && found->second == Source::flag;
 }
 
-/// Splits a flag's NAME=VALUE. The error's file becomes the flag, so the message begins with the
-/// word that the user typed.
-Result<std::pair<std::string, std::string>> pair_of(const std::string& flag,
-                                                    const std::string& text,
-                                                    std::string_view expected) {
-  return split_pair(text, expected).map_error([&](Error error) {
-    error.file = flag;
-    return error;
-  });
-}
-
 /// Two streams of one name could not be told apart in the take.
 Result<void> check_stream_names(const Manifest& manifest) {
   std::vector<std::string> names;
@@ -74,7 +63,7 @@ Result<void> check_stream_names(const Manifest& manifest) {
 Result<SpaceOptions> space_of(const QuickFlags& flags) {
   SpaceOptions space = flags.space;
   for (const std::string& joint : flags.joints) {
-    const auto pair = KA_TRY(pair_of("--joint", joint, "KINECT=MOCAP"));
+    const auto pair = KA_TRY(split_pair(joint, "KINECT=MOCAP").map_error(in_file("--joint")));
     // Only the Kinect's side must be unique. Two joints of the Kinect may correspond to one joint
     // of the mocap.
     if (!space.joints.insert(pair).second) {
@@ -94,7 +83,7 @@ Result<StreamOptions> nodes_of(const QuickFlags& flags) {
   nodes.layout = flags.imu_layout;
   nodes.root_node = flags.root_node;
   for (const std::string& one : flags.imu) {
-    const auto [node, file] = KA_TRY(pair_of("--imu", one, "NODE=FILE"));
+    const auto [node, file] = KA_TRY(split_pair(one, "NODE=FILE").map_error(in_file("--imu")));
     nodes.files.push_back({file, node});
   }
   return nodes;
@@ -147,14 +136,9 @@ Fields QuickFlags::fields() {
            &mocap_options.start_ns, -4e18, 4e18},
           {"metres_per_unit", "length of the mocap file's unit, m; 0: the format's own (BVH: 0.01)",
            &mocap_options.metres_per_unit, 0.0, 1000.0},
-          {.name = "up",
-           .meaning = "the mocap file's up axis (BVH: y)",
-           .value = &mocap_options.up,
-           .choices = {"", "y", "z"}},
-          {.name = "space",
-           .meaning = "method that moves the Kinect into the mocap's space",
-           .value = &space.method,
-           .choices = {"none", "paper", "fit"}},
+          choice_flag("up", "the mocap file's up axis (BVH: y)", &mocap_options.up, {"", "y", "z"}),
+          choice_flag("space", "method that moves the Kinect into the mocap's space", &space.method,
+                      {"none", "paper", "fit"}),
           {"rotation_y_deg", "with --space paper: rotation about the y axis, degrees",
            &space.rotation_y_deg, -360.0, 360.0},
           {"joint",
@@ -220,7 +204,7 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
     manifest.spaces["kinect"] = KA_TRY(space_of(flags));
   }
   for (const std::string& one : flags.points) {
-    const auto [name, file] = KA_TRY(pair_of("--points", one, "NAME=FILE"));
+    const auto [name, file] = KA_TRY(split_pair(one, "NAME=FILE").map_error(in_file("--points")));
     StreamOptions further;
     further.layout = flags.points_layout;
     add(further, name, file);

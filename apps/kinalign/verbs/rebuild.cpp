@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/cli/json_text.h"
-#include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/text/summary.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/align_job.h"
@@ -13,9 +12,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <filesystem>
 
 namespace kinalign {
 

@@ -61,9 +61,7 @@ std::string head_line(const std::string& out, const Recovered& done) {
 /// Recovers a recording and prints the counts. The exit code is 1 if anything is missing or
 /// damaged.
 Result<int> run(Recover& o, Call& call) {
-  call.console.if_it_fails([](const Error&) {
-    return std::vector<std::string>{"nothing was written; the old files are as they were"};
-  });
+  call.console.advise("nothing was written; the old files are as they were");
   const std::string& out = call.common.out;
   // recover_recording() refuses the named files and their siblings too. This check gives the same
   // message as other verbs.

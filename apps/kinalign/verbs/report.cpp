@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/child_process.h"
 #include "apps/cli/console.h"
 #include "apps/cli/json_text.h"
 #include "apps/kinalign/text/describe_file.h"
@@ -13,12 +14,8 @@
 #include "kinalign/view/page/page_html.h"
 #include "kinalign/view/page/take_figures.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 
@@ -56,9 +53,7 @@ Usage describe_report(Report& o) {
       {"open", "show the page with xdg-open", &o.open}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     // The extension is required so that a browser opens the file as a page.
-    if (common.out.ends_with(".html") || common.out.ends_with(".htm")) return {};
-    return Failure(Error{"-o", 0, "the page's file name, as in -o take.html",
-                         common.out.empty() ? "none" : shown(common.out)});
+    return check_out(common, {".html", ".htm"}, "the page's file name, as in -o take.html");
   };
   return usage;
 }
@@ -67,13 +62,15 @@ Usage describe_report(Report& o) {
 // The functions of this part return text, because only text crosses the border between the
 // processes.
 
-/// Calls use(reader, report) on the take.
+/// The text of use(reader, report) on the take. Runs in a child process.
 template <class Use>
-Result<std::string> with_take(FileSystem& files, const std::string& path, Use use) {
-  TakeReader reader = KA_TRY(TakeReader::open(files, path));
-  const std::string json = KA_TRY(reader.report_json());
-  const AlignmentReport report = KA_TRY(parse_report_json(json, path));
-  return use(reader, report);
+Result<std::string> text_of_take(FileSystem& files, const std::string& path, const Use& use) {
+  return run_guarded(GuardLimits{}, blame(path), [&]() -> Result<std::string> {
+    TakeReader reader = KA_TRY(TakeReader::open(files, path));
+    const std::string json = KA_TRY(reader.report_json());
+    const AlignmentReport report = KA_TRY(parse_report_json(json, path));
+    return use(reader, report);
+  });
 }
 
 /// JSON with the first row's stamp, the begin of the detail of a long take ("begin_s"), and the
@@ -147,11 +144,7 @@ struct RawSamples {
 /// Reads the outline in a child process. `wanted_s`: the value of --detail-s; negative if the verb
 /// chooses the place.
 Result<Outline> outline_of(FileSystem& files, const std::string& path, double wanted_s) {
-  const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] {
-    return with_take(files, path, [](TakeReader& reader, const AlignmentReport& report) {
-      return outline_json(reader, report);
-    });
-  }));
+  const std::string text = KA_TRY(text_of_take(files, path, outline_json));
   try {  // a child process that read a damaged file is not trusted
     const auto json = nlohmann::json::parse(text);
     Outline out;
@@ -290,26 +283,12 @@ std::string summary_text(const std::string& out, std::size_t bytes,
   return text;
 }
 
-/// Opens the page with xdg-open. If that fails, it is only noted: the page is written already.
+/// Opens the page with xdg-open, whose exit code is the only sign of success. If it fails, that is
+/// only noted: the page is written already.
 void show(const std::string& out, Call& call) {
-  std::string program = "xdg-open", path = out;
-  // posix_spawn takes char*, so the words are copies that may be written to.
-  char* words[] = {program.data(), path.data(), nullptr};
-  posix_spawn_file_actions_t quiet;
-  ::posix_spawn_file_actions_init(&quiet);
-  // The viewer must not read the terminal's input, nor write its own messages between the lines of
-  // this program.
-  for (const int fd : {0, 1, 2}) {
-    ::posix_spawn_file_actions_addopen(&quiet, fd, "/dev/null", O_RDWR, 0);
-  }
-  pid_t child = 0;
-  const int failed = ::posix_spawnp(&child, program.c_str(), &quiet, nullptr, words, environ);
-  ::posix_spawn_file_actions_destroy(&quiet);
-  int status = 0;
-  // The exit status of xdg-open is the only sign that the page could not be shown.
-  if (failed != 0 || ::waitpid(child, &status, 0) < 0 || status != 0) {
-    call.console.note(harmless("kinalign report: xdg-open could not show " + out));
-  }
+  const auto child = start_child("xdg-open", {"xdg-open", out}, -1, -1);
+  if (child && wait_for_child(*child) == 0) return;
+  call.console.note(harmless("kinalign report: xdg-open could not show " + out));
 }
 
 /// The page's size, and the JSON about it.
@@ -323,22 +302,25 @@ Result<Written> write_page(const std::string& take, const TakeFigureOptions& opt
   FileSystem& files = call.surroundings.files;
   // The output is created before the long work: a name that exists already fails at once.
   OutputFile out = KA_TRY(OutputFile::create(files, call.common.out, call.common.overwrite()));
-  const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(take), [&] {
-    return with_take(files, take, [&](TakeReader& reader, const AlignmentReport& report) {
-      return page_text(take, reader, report, options);
-    });
-  }));
+  const auto page = [&](TakeReader& reader, const AlignmentReport& report) {
+    return page_text(take, reader, report, options);
+  };
+  const std::string text = KA_TRY(text_of_take(files, take, page));
   // json_text() makes one line, so the first line end separates the JSON from the page.
   const std::size_t line = text.find('\n');
   const std::string_view html = std::string_view(text).substr(line + 1);
-  Written written{html.size(), nlohmann::ordered_json::parse(text.substr(0, line))};
+  // A child process that read a damaged file is not trusted.
+  Written written{html.size(), nlohmann::ordered_json::parse(text.substr(0, line), nullptr, false)};
+  if (!written.about.is_object()) {
+    return Failure(Error{take, 0, "a take that can be read", "an unreadable answer"});
+  }
   KA_TRY(out.write(html));
   KA_TRY(out.commit());
   return written;
 }
 
 /// Prints the text and the JSON about the page, and returns the exit code.
-int say(const Written& written, bool has_raw, Call& call) {
+int print_written(const Written& written, bool has_raw, Call& call) {
   const std::string& out = call.common.out;
   call.console.wrote(out);
   call.console.print(summary_text(out, written.bytes, written.about, call));
@@ -375,8 +357,7 @@ Result<int> run(Report& o, Call& call) {
     return call.console.refuse(
         Error{take, 0, "a take (kinalign align makes one)", "a file of another kind"});
   }
-  call.console.if_it_fails(
-      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  call.console.advise("nothing was written");
   const Origin origin = KA_TRY(origin_of(files, take));
   std::string base = o.inputs.empty() ? std::string(folder(take)) : o.inputs;
   if (!base.empty() && !base.ends_with('/')) base += '/';
@@ -393,7 +374,7 @@ Result<int> run(Report& o, Call& call) {
   options.raw = std::move(raw.points);
   options.raw_nodes = std::move(raw.nodes);
   const Written written = KA_TRY(write_page(take, options, call));
-  const int code = say(written, has_raw, call);
+  const int code = print_written(written, has_raw, call);
   if (o.open) show(call.common.out, call);
   return code;
 }

@@ -150,7 +150,8 @@ bool LiveWorn::take_t_pose(const TPose& t_pose) {
     forget_t_pose(t_pose);
     return false;
   }
-  calibration_ = LiveCalibration{*found, forgotten_ + t_pose.first, t_pose.count, fastest};
+  calibration_ = LiveCalibration{*found, forgotten_ + t_pose.first, t_pose.count, fastest,
+                                 !marked_ && !options_.t_pose};
   return true;
 }
 

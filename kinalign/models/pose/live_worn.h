@@ -30,6 +30,7 @@ struct LiveCalibration {
   NodeCalibration nodes;
   std::size_t first = 0, count = 0;
   double fastest_deg_s = 0.0;  // fastest rotation of a node in these frames
+  bool found = false;          // true: neither a mark nor an option stated the T-pose
 };
 
 /// One frame of the grid with calibrated nodes.

@@ -138,3 +138,10 @@ TEST_CASE("what was given wins over what a file said in the meantime, and only t
   CHECK(manifest.gap_ms == 10);
   CHECK(manifest.rows == 7);
 }
+
+TEST_CASE("an empty choice is not named, wherever it stands") {
+  CHECK(any_of({"y", "z"}) == "y or z");
+  CHECK(any_of({"", "x", "y", "z"}) == "x, y or z");
+  CHECK(any_of({"x", "y", "z", ""}) == "x, y or z");
+  CHECK(any_of({"x"}) == "x");
+}

@@ -21,6 +21,18 @@ Result<int> show(Mix& o, Call& call) {
   return 0;
 }
 
+/// A verb with two positionals that have choices.
+struct Pour {
+  std::vector<std::string> from, to;
+};
+
+Usage describe_pour(Pour& o) {
+  Usage usage;
+  usage.positionals = {{"FROM", "a jug", &o.from, 1, 1, {"jug"}},
+                       {"TO", "a glass", &o.to, 1, 1, {"cup", "glass"}}};
+  return usage;
+}
+
 Machine machine_in(const FreshFolder& folder) {
   return {.variables = {{"HOME", folder.path()}}, .folder = folder / "project/deep"};
 }
@@ -160,6 +172,14 @@ TEST_CASE("the man page and the completions name every verb, flag and choice") {
         std::string::npos);
   CHECK(completion_script("fish", verbs).find("-l rotations -x -a 'spline slerp'") !=
         std::string::npos);
+}
+
+TEST_CASE("completions list the choices of all positionals as words of their own") {
+  const std::vector<Verb> verbs{
+      make_verb<Pour>({.name = "pour", .summary = "", .text = "", .examples = {}, .common = {}},
+                      describe_pour, [](Pour&, Call&) -> Result<int> { return 0; })};
+  CHECK(completion_script("bash", verbs).find("words='jug cup glass' ;;") != std::string::npos);
+  CHECK(completion_script("zsh", verbs).find("'*:word:(jug cup glass)'") != std::string::npos);
 }
 
 TEST_CASE("every verb has a summary and an example that begins with the program's name") {

@@ -73,6 +73,7 @@ TEST_CASE("a marked T-pose puts a node that has slipped onto its bone again") {
   CHECK(run.refusals.empty());
   CHECK(run.worn.calibration()->first == 180);
   CHECK(run.worn.calibration()->count == 61);  // two seconds
+  CHECK_FALSE(run.worn.calibration()->found);  // a mark stated it
   CHECK(run.shank_off(60) < 0.001);
   CHECK(run.shank_off(200) == doctest::Approx(0.4).epsilon(0.01));
   CHECK(run.shank_off(270) < 0.001);
@@ -87,6 +88,7 @@ TEST_CASE("a person who moves in a marked T-pose is refused, and the calibration
   CHECK(run.refusals ==
         std::vector<std::string>{"a node turned at 57 deg/s: the person did not hold still"});
   CHECK(run.worn.calibration()->first == 0);
+  CHECK(run.worn.calibration()->found);
   CHECK(run.shank_off(270) == doctest::Approx(0.4).epsilon(0.01));
 }
 

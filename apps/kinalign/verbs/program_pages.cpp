@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Verbs that print a page about the program itself.
 #include "apps/cli/console.h"
 #include "apps/cli/help.h"
 #include "apps/kinalign/verbs.h"
@@ -12,15 +13,27 @@ struct Completion {
   std::vector<std::string> shell;
 };
 
-Usage describe(Completion& o) {
+Usage describe_completion(Completion& o) {
   Usage usage;
   usage.positionals = {{"SHELL", "name of the shell", &o.shell, 1, 1, {"bash", "zsh", "fish"}}};
   return usage;
 }
 
-Result<int> run(Completion& o, Call& call) {
+Result<int> run_completion(Completion& o, Call& call) {
   // The script is complete: it lists all verbs and flags and does not call kinalign when it runs.
   call.console.put(completion_script(o.shell.front(), call.verbs));
+  return 0;
+}
+
+/// `man` has no options. The page is made from the same descriptions as --help, so both always
+/// agree.
+struct Man {};
+
+Usage describe_man(Man&) { return {}; }
+
+Result<int> run_man(Man&, Call& call) {
+  // put() ignores --quiet: the page is the result itself.
+  call.console.put(man_page(call.verbs));
   return 0;
 }
 
@@ -40,7 +53,16 @@ Verb completion_verb() {
             {"kinalign completion fish > ~/.config/fish/completions/kinalign.fish",
              "for new shells of fish"}},
        .common = {}},
-      describe, run);
+      describe_completion, run_completion);
+}
+
+Verb man_verb() {
+  return make_verb<Man>({.name = "man",
+                         .summary = "print the man page",
+                         .text = "",
+                         .examples = {{"kinalign man | man -l -", "shows the page"}},
+                         .common = {}},
+                        describe_man, run_man);
 }
 
 }  // namespace kinalign
