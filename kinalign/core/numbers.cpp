@@ -159,4 +159,13 @@ char* put_number(char* at, double value, int decimals) {
   return put_decimals(at, magnitude, all, decimals);
 }
 
+std::string grouped(std::string number) {
+  const std::size_t first = number.starts_with('-') ? 1 : 0;
+  for (std::size_t at = std::min(number.find('.'), number.size()); at > first + 3;) {
+    at -= 3;
+    number.insert(at, ",");
+  }
+  return number;
+}
+
 }  // namespace kinalign

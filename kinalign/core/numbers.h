@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -28,5 +29,9 @@ constexpr std::size_t number_room = 40;
 /// Writes `value` with `decimals` (0 to 15) digits after the point if that reads back as the same
 /// double; otherwise in the shortest form that does. Returns the position after the last character.
 char* put_number(char* at, double value, int decimals);
+
+/// Groups the digits before the point by thousands: "-2961581.50" gives "-2,961,581.50".
+std::string grouped(std::string number);
+inline std::string grouped(std::uint64_t number) { return grouped(std::to_string(number)); }
 
 }  // namespace kinalign

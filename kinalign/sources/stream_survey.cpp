@@ -6,7 +6,7 @@
 #include "kinalign/core/utf8.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/input_facts.h"
-#include "kinalign/sources/value_survey.h"
+#include "kinalign/check/value_survey.h"
 
 #include <fmt/format.h>
 

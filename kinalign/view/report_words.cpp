@@ -8,14 +8,6 @@
 
 namespace kinalign {
 
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
-    text.insert(static_cast<std::size_t>(at), 1, ',');
-  }
-  return text;
-}
-
 double take_seconds(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz) {
   const double last = rate_hz > 0.0 ? 1.0 / rate_hz : 0.0;
   return 1e-9 * (static_cast<double>(end_ns) - static_cast<double>(begin_ns)) + last;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/table.h"
 
+#include "kinalign/core/numbers.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -19,18 +21,6 @@ constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
      {"latex", TableFormat::latex},
      {"csv", TableFormat::csv},
      {"json", TableFormat::json}}};
-
-/// The digits grouped by thousands: "2,961,581".
-/// Only the digits before the point are grouped.
-std::string grouped(std::string digits) {
-  const std::size_t first = digits.starts_with('-') ? 1 : 0;
-  const std::size_t point = std::min(digits.find('.'), digits.size());
-  for (std::size_t at = point; at > first + 3;) {
-    at -= 3;
-    digits.insert(at, ",");
-  }
-  return digits;
-}
 
 /// The text with some characters replaced.
 std::string replaced(std::string_view text,

@@ -4,6 +4,7 @@
 
 #include "apps/cli/verb.h"
 
+#include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/survey.h"
 #include "kinalign/take/recording.h"
@@ -23,11 +24,10 @@ enum class Names { no, yes };
 
 Description describe_recording(const std::string& path, const Recording& recording, Names names);
 
-/// Describes a recording.
 Description describe_survey(const std::string& path, const RecordingSurvey& survey,
                             const RecordingParts& parts);
-/// The problems of a recording: damage, a missing end, messages missing in its own numbering.
-Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
+/// With Names::yes the text lists every channel's label and unit.
+Description describe_survey(const std::string& path, const XdfSurvey& survey, Names names);
 
 /// "points, 25 joints"
 std::string contents_line(const RecordedStream& stream);

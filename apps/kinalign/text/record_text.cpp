@@ -45,17 +45,6 @@ PortCounts counts_of(const DeviceOptions& device, const LabStatus& status) {
   return found == status.ports.end() ? PortCounts() : found->second;
 }
 
-/// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
-/// The kernel's filter drops foreign datagrams at a nodes' port, and a full socket drops frames.
-/// The numbers of the lost frames tell how many are surely foreign.
-std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
-  if (!counts.sifted) return "dropped by the kernel";
-  const std::uint64_t least = strays(counts, frames_lost);
-  if (least == counts.dropped) return "thrown away: no frames of nodes";
-  if (least == 0) return "thrown away: no frames of nodes, or no room for them";
-  return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
-}
-
 /// The text about a device from which nothing has come yet.
 std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
   // `links` counts connections, so it is 0 for UDP.
@@ -102,26 +91,6 @@ std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& st
   // Nodes without places are unknown in advance, so the device stands for them.
   if (names.empty() && !is_seen(device, status)) names.push_back(device.name);
   return names;
-}
-
-std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
-  std::string text;
-  for (const auto& [count, what] : {std::pair(counts.dropped, thrown_away(counts, frames_lost)),
-                                    std::pair(counts.refused, std::string("refused, not recorded")),
-                                    std::pair(counts.cut, std::string("cut")),
-                                    std::pair(counts.unsent, std::string("answers not sent"))}) {
-    // A count of 0 has no words.
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
-  }
-  return text;
-}
-
-std::string unusable_data(const PortCounts& counts, const std::string& to) {
-  const std::uint64_t came = counts.dropped + counts.refused;
-  // Only a nodes' port is sifted, so only there can datagrams be foreign.
-  if (!counts.sifted || came == 0) return "";
-  return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
-                     counts.refused == 0 ? "a frame of nodes" : "was let in");
 }
 
 std::string name_of(const StreamStatus& stream) {

@@ -5,7 +5,6 @@
 #include "apps/cli/program.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/text/describe_report.h"
-#include "apps/kinalign/text/describe_xdf.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/inputs.h"
 
@@ -13,6 +12,7 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
+#include "kinalign/check/judge_survey.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/take/take_hdf5.h"
@@ -133,8 +133,8 @@ Result<Checked> check_recording(const Check& o, const std::string& path, Call& c
 
 Result<Checked> check_xdf(const Check& o, const std::string& path, Call& call) {
   KA_TRY(check_flags(o, path, nullptr, call));
-  return Checked{
-      judge_xdf(path, KA_TRY(survey_xdf(call.surroundings.files, path, call.console.progress())))};
+  return Checked{judge_survey(
+      path, KA_TRY(survey_xdf(call.surroundings.files, path, call.console.progress())))};
 }
 
 /// A note about a stream's file whose ending is that of another format.

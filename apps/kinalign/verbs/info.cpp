@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/kinalign/text/describe_file.h"
-#include "apps/kinalign/text/describe_xdf.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
@@ -75,7 +74,7 @@ Result<Description> describe(const Info& o, Call& call) {
       return describe_survey(path, source->survey(), source->parts());
     }
     case FileKind::xdf:
-      return describe_xdf(path, KA_TRY(survey_xdf(files, path, progress)), names);
+      return describe_survey(path, KA_TRY(survey_xdf(files, path, progress)), names);
     case FileKind::take:
       // describe_take() reads HDF5 in a child process.
       return describe_take(files, path, names);

@@ -4,9 +4,9 @@
 // judged by their rest pose instead (formats/bvh/size.cpp).
 #pragma once
 
+#include "kinalign/check/orientation_sense.h"
 #include "kinalign/core/error.h"
 #include "kinalign/formats/reader.h"
-#include "kinalign/sources/orientation_sense.h"
 
 #include <cstdint>
 #include <span>
@@ -30,6 +30,8 @@ class PointSizes {
   struct Frames {
     std::uint64_t count = 0;
     double diagonals_m = 0.0;  // sum of the diagonals, m
+
+    double mean_m() const { return diagonals_m / static_cast<double>(count); }
   };
   /// The places of a joint in the frames in which it was seen.
   struct Seen {
@@ -43,9 +45,9 @@ class PointSizes {
     std::uint64_t lost() const { return lost_at_zero + (far ? now_at_zero : 0); }
   };
 
-  Findings judge_seen(const PointHeader& header, const std::string& file) const;
-  Findings judge_marks(const PointHeader& header, const std::string& file) const;
-  Findings judge_unit(const std::string& file) const;
+  void judge_seen(const PointHeader& header, FileFindings& out) const;
+  void judge_marks(const PointHeader& header, FileFindings& out) const;
+  void judge_unit(FileFindings& out) const;
 
   std::uint64_t all_frames_ = 0, seen_frames_ = 0;
   std::uint64_t inferred_ = 0, tracked_ = 0;  // counts of points
