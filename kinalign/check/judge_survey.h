@@ -2,8 +2,10 @@
 // Judges files by their surveys. Pure functions: no file is read again.
 #pragma once
 
+#include "kinalign/formats/clip_survey.h"
 #include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/recording/survey.h"
+#include "kinalign/take/manifest.h"
 
 #include <string>
 
@@ -16,5 +18,9 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
 /// The problems of an XDF file: damage, stamps that are no numbers or step back, clocks that were
 /// reset, missing streams, samples or clock offsets.
 Findings judge_survey(const std::string& path, const XdfSurvey& survey);
+
+/// A warning if a skeleton's length differs from the time between the clicks on record and stop
+/// (start_ns and end_ns) by more than two steps.
+Findings judge_survey(const ClipSurvey& survey, const StreamOptions& options);
 
 }  // namespace kinalign

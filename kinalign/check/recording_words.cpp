@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 namespace kinalign {
 
 namespace {
@@ -43,15 +41,10 @@ std::string name_of(const CountedSender& sender, const RecordingSurvey& survey) 
 }
 
 std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
-  std::string text;
-  for (const auto& [count, what] : {std::pair(counts.dropped, thrown_away(counts, frames_lost)),
-                                    std::pair(counts.refused, std::string("refused, not recorded")),
-                                    std::pair(counts.cut, std::string("cut")),
-                                    std::pair(counts.unsent, std::string("answers not sent"))}) {
-    // A count of 0 has no words.
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
-  }
-  return text;
+  return counts_in_words({{counts.dropped, thrown_away(counts, frames_lost)},
+                          {counts.refused, "refused, not recorded"},
+                          {counts.cut, "cut"},
+                          {counts.unsent, "answers not sent"}});
 }
 
 std::string unusable_data(const PortCounts& counts, const std::string& to) {

@@ -27,6 +27,16 @@ constexpr double most_angular_velocity = 12.0;
 
 }  // namespace
 
+void MeanSize::add(double size) {
+  ++count;
+  sum += size;
+  squares += size * size;
+}
+
+double MeanSize::deviation() const {
+  return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean() * mean()));
+}
+
 /// Counts zeros of a joint that was far from zero before or after: such zeros mark a lost joint. A
 /// joint that moves to zero in small steps is really there.
 void PointSizes::Seen::add(const Vec3& at) {
@@ -64,9 +74,7 @@ void PointSizes::add(const PointFrames& block) {
     if (seen < 2) continue;
     most_points_ = std::max(most_points_, seen);
     const double diagonal_m = box.diagonal().norm();
-    Frames& frames = diagonal_m > largest_m ? far_ : person_;
-    ++frames.count;
-    frames.diagonals_m += diagonal_m;
+    (diagonal_m > largest_m ? far_ : person_).add(diagonal_m);
   }
 }
 
@@ -136,7 +144,7 @@ void PointSizes::judge_marks(const PointHeader& header, FileFindings& out) const
   if (far_.count > 0 && far_.count <= person_.count) {
     out.add(Severity::warning, "the points of a frame within 20 m",
             fmt::format("{} of {} frames in which they are not, {:.0f} m in the mean", far_.count,
-                        far_.count + person_.count, far_.mean_m()),
+                        far_.count + person_.count, far_.mean()),
             "read as places, as they stand there",
             "missing_point in a layout of the file, where a number stands for not seen");
   }
@@ -146,7 +154,7 @@ void PointSizes::judge_marks(const PointHeader& header, FileFindings& out) const
 void PointSizes::judge_unit(FileFindings& out) const {
   if (far_.count + person_.count < enough) return;
   // The mean diagonal of the larger group stands for the person's size.
-  const double size = (far_.count > person_.count ? far_ : person_).mean_m();
+  const double size = (far_.count > person_.count ? far_ : person_).mean();
   if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return;
   std::string meaning = "they all lie in one place", repair;
   if (size > 0.0) {
@@ -163,17 +171,10 @@ void PointSizes::judge_unit(FileFindings& out) const {
           repair);
 }
 
-double ImuSizes::Norms::deviation() const {
-  return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean() * mean()));
-}
-
-void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, Norms& norms) {
+void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, MeanSize& lengths) {
   for (std::size_t cell = 0; 3 * cell < vectors.size(); ++cell) {
     if (block.valid[cell] == 0) continue;
-    const double square = vec3(vectors, cell).squaredNorm();
-    ++norms.count;
-    norms.sum += std::sqrt(square);
-    norms.squares += square;
+    lengths.add(vec3(vectors, cell).norm());
   }
 }
 

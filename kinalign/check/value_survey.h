@@ -15,6 +15,16 @@
 
 namespace kinalign {
 
+/// The mean of sizes, without keeping them.
+struct MeanSize {
+  std::uint64_t count = 0;
+  double sum = 0.0, squares = 0.0;
+
+  void add(double size);
+  double mean() const { return sum / static_cast<double>(count); }
+  double deviation() const;
+};
+
 /// Sums over the points of a stream; memory does not grow with the file. Frames whose points span
 /// more than 20 m are counted apart, since one number that means "not seen" would spoil a mean.
 class PointSizes {
@@ -26,13 +36,6 @@ class PointSizes {
   Findings judge(const PointHeader& header, const std::string& file) const;
 
  private:
-  /// Frames with two points or more, and the diagonals of the boxes around them.
-  struct Frames {
-    std::uint64_t count = 0;
-    double diagonals_m = 0.0;  // sum of the diagonals, m
-
-    double mean_m() const { return diagonals_m / static_cast<double>(count); }
-  };
   /// The places of a joint in the frames in which it was seen.
   struct Seen {
     bool elsewhere = false;          // once at another place than zero
@@ -51,7 +54,8 @@ class PointSizes {
 
   std::uint64_t all_frames_ = 0, seen_frames_ = 0;
   std::uint64_t inferred_ = 0, tracked_ = 0;  // counts of points
-  Frames person_, far_;                       // frames with a box of up to 20 m, and of more
+  MeanSize person_, far_;                     // diagonals of boxes around a frame's points, m:
+                                              // up to 20 m, and more
   std::uint64_t most_points_ = 0;             // points seen in one frame, at most
   std::vector<Seen> joints_;
 };
@@ -66,16 +70,9 @@ class ImuSizes {
   Findings judge(const ImuHeader& header, const std::string& file) const;
 
  private:
-  struct Norms {
-    std::uint64_t count = 0;
-    double sum = 0.0, squares = 0.0;
+  static void add(std::span<const double> vectors, const ImuSamples& block, MeanSize& lengths);
 
-    double mean() const { return sum / static_cast<double>(count); }
-    double deviation() const;
-  };
-  static void add(std::span<const double> vectors, const ImuSamples& block, Norms& norms);
-
-  Norms acceleration_, angular_velocity_;
+  MeanSize acceleration_, angular_velocity_;
   OrientationSense orientation_;
   std::uint64_t samples_ = 0, valid_ = 0;
 };

@@ -168,4 +168,12 @@ std::string grouped(std::string number) {
   return number;
 }
 
+std::string counts_in_words(const std::vector<std::pair<std::uint64_t, std::string>>& counts) {
+  std::string text;
+  for (const auto& [count, word] : counts) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + grouped(count) + " " + word;
+  }
+  return text;
+}
+
 }  // namespace kinalign

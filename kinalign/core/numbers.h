@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace kinalign {
 
@@ -33,5 +35,8 @@ char* put_number(char* at, double value, int decimals);
 /// Groups the digits before the point by thousands: "-2961581.50" gives "-2,961,581.50".
 std::string grouped(std::string number);
 inline std::string grouped(std::uint64_t number) { return grouped(std::to_string(number)); }
+
+/// "1,234 lost, 3 late": counts with their words. Counts of 0 are left out.
+std::string counts_in_words(const std::vector<std::pair<std::uint64_t, std::string>>& counts);
 
 }  // namespace kinalign

@@ -150,17 +150,17 @@ TEST_CASE("a suit whose frames can mostly not be read is a warning") {
   CHECK(judged(survey) == "frames that can be read in what kinect sent: 134; 266 times none\n");
 }
 
-TEST_CASE("check of a torn file proposes a name for the whole one that is not its own") {
-  for (const auto& [torn, named] :
+TEST_CASE("check of a truncated file proposes a name for the whole one that is not its own") {
+  for (const auto& [truncated, named] :
        {std::pair("take.mcap", "whole.mcap"), std::pair("whole.mcap", "recovered.mcap")}) {
     RecordingSurvey survey = kinect_survey(1000, 1000, 0);
     survey.messages = 1000;
-    survey.truncated = {torn};
+    survey.truncated = {truncated};
     survey.ending = Ending::torn;
-    const Findings found = judge_survey(torn, survey);
+    const Findings found = judge_survey(truncated, survey);
     REQUIRE(found.size() == 1);
     CHECK(found.front().repair ==
-          std::string("kinalign recover ") + torn + " -o " + named + " gives it one");
+          std::string("kinalign recover ") + truncated + " -o " + named + " gives it one");
   }
 }
 

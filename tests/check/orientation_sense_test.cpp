@@ -58,9 +58,7 @@ std::string judged_node(const ImuSamples& block, const ImuContent& content) {
 
 constexpr ImuContent with_gravity{true, true, true, true}, without{true, true, true, false};
 
-bool has(const std::string& text, const char* what) {
-  return text.find(what) != std::string::npos;
-}
+bool has(const std::string& text, const char* what) { return text.find(what) != std::string::npos; }
 
 }  // namespace
 

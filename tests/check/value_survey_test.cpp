@@ -154,7 +154,7 @@ TEST_CASE("points far from all others mark what was not seen") {
         "for not seen\n");
 }
 
-TEST_CASE("accelerations in g, or with gravity where none should be, are told apart from m/s2") {
+TEST_CASE("accelerations in g, or with gravity where none should be, are distinguished from m/s2") {
   CHECK(judged_node(9.81, 1.0, true).empty());
   CHECK(judged_node(20.0, 5.0, true).empty());  // a shank that runs
   CHECK(
@@ -169,7 +169,7 @@ TEST_CASE("accelerations in g, or with gravity where none should be, are told ap
   CHECK(judged_node(9.81, 1.0, false, 2.0).empty());  // jerks of a runner, gravity removed
 }
 
-TEST_CASE("turns in degrees per second are told apart from radians") {
+TEST_CASE("turns in degrees per second are distinguished from radians") {
   CHECK(judged_node(9.81, 57.3, true) ==
         "w.csv: expected turns of at most 12 rad/s in the mean, found 57.3 rad/s\n");
 }
@@ -182,9 +182,9 @@ TEST_CASE(
   missing.state.assign(rows * 25, Tracking::missing);
   PointSizes points;
   points.add(missing);
-  const Findings nobody = points.judge({}, "k.csv");
-  REQUIRE(nobody.size() == 1);
-  CHECK(to_string(nobody[0].what) ==
+  const Findings unseen = points.judge({}, "k.csv");
+  REQUIRE(unseen.size() == 1);
+  CHECK(to_string(unseen[0].what) ==
         "k.csv: expected frames with a point in them, one in ten at least, found 0 of " +
             std::to_string(rows));
   ImuSamples lost;
