@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/report_words.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,16 +42,10 @@ std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool coun
                      1e-6 * static_cast<double>(*interval_ns));
 }
 
-// gmtime_r, because gmtime shares one buffer among all threads.
 std::string date_text(std::int64_t ns) {
   // Rounded to the nearest millisecond before it is split, so that no part can be 1000.
   const std::int64_t ms = (ns + 500'000) / 1'000'000;
-  const std::time_t whole = ms / 1000;
-  std::tm parts{};
-  ::gmtime_r(&whole, &parts);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
-                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
-                     ms % 1000);
+  return fmt::format("{:%F %T}.{:03}", fmt::gmtime(std::time_t{ms / 1000}), ms % 1000);
 }
 
 bool is_date(std::int64_t ns) {
