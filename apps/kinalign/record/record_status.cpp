@@ -46,10 +46,7 @@ RecordStatus status_at_end(RecordingSession& session, HostTime begun) {
   RecordStatus status = status_of(session, {end.at, begun, end.streams, end.nodes, end.ports});
   status.lab.ended = true;
   status.disk = take.disk.status();
-  // unseen() looks at all devices of a lab, so devices that are not required are taken out.
-  Lab required = session.lab();
-  std::erase_if(required.devices, [](const DeviceOptions& device) { return !device.required; });
-  status.missing = unseen(required, status.lab);
+  status.missing = missing(session.lab(), status.lab);
   return status;
 }
 

@@ -9,7 +9,10 @@
 #include "kinalign/recording/survey.h"
 #include "kinalign/take/recording.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace kinalign {
 
@@ -28,6 +31,14 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
                             const RecordingParts& parts);
 /// With Names::yes the text lists every channel's label and unit.
 Description describe_survey(const std::string& path, const XdfSurvey& survey, Names names);
+
+/// A line of a description: "  format      MCAP".
+std::string fact_line(std::string_view name, const std::string& value);
+/// "  size        1.2 MB"
+std::string size_line(std::uint64_t bytes);
+/// "  2 findings: see kinalign check PATH": `check` explains them and their repair. Empty without
+/// findings.
+std::string findings_line(std::size_t count, const std::string& path);
 
 /// "points, 25 joints"
 std::string contents_line(const RecordedStream& stream);

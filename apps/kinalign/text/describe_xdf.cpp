@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/text/summary.h"
 
@@ -7,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <string_view>
 
 namespace kinalign {
 
@@ -41,10 +41,9 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
   double residual = 0.0;
   for (const XdfClockLine& line : one.clock) residual = std::max(residual, line.largest_residual);
   const XdfClockLine& last = one.clock.back();
-  std::string text =
-      fmt::format("{} clock offset{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
-                  grouped(one.clock_offsets), one.clock_offsets == 1 ? "" : "s", last.offset,
-                  1e6 * last.slope, 1e3 * residual);
+  std::string text = fmt::format("{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
+                                 counted(one.clock_offsets, "clock offset"), last.offset,
+                                 1e6 * last.slope, 1e3 * residual);
   // n lines mean n - 1 resets.
   if (one.clock.size() > 1) text += fmt::format("; restarted {} times", one.clock.size() - 1);
   return text;
@@ -53,21 +52,18 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
 /// The lines about a stream of an XDF file.
 std::string stream_lines(const XdfStreamSurvey& one, Names names) {
   const XdfStream& s = one.stream;
-  std::string text;
-  const auto line = [&text](std::string_view name, const std::string& value) {
-    text += fmt::format("  {:<12}{}\n", name, value);
-  };
-  line("stream", fmt::format("{}{}: {} channel{} of {}, {} samples, {}", shown(s.name),
-                             s.type.empty() ? "" : " (" + shown(s.type) + ")", s.channel_count,
-                             s.channel_count == 1 ? "" : "s", name_of(s.format),
-                             grouped(one.samples), rate_text(one)));
-  if (one.first) line("  stamps", stamps_text(one));
-  line("  clock", stream_clock_text(one));
+  std::string text =
+      fact_line("stream", fmt::format("{}{}: {} of {}, {} samples, {}", shown(s.name),
+                                      s.type.empty() ? "" : " (" + shown(s.type) + ")",
+                                      counted(s.channel_count, "channel"), name_of(s.format),
+                                      grouped(one.samples), rate_text(one)));
+  if (one.first) text += fact_line("  stamps", stamps_text(one));
+  text += fact_line("  clock", stream_clock_text(one));
   // An EEG has up to hundreds of channels, so they are listed only if asked for.
   if (names == Names::no) return text;
   for (const XdfChannel& channel : s.channels) {
-    line("  channel", fmt::format("{}{}", shown(channel.label),
-                                  channel.unit.empty() ? "" : ", " + shown(channel.unit)));
+    const std::string unit = channel.unit.empty() ? "" : ", " + shown(channel.unit);
+    text += fact_line("  channel", shown(channel.label) + unit);
   }
   return text;
 }
@@ -118,20 +114,13 @@ Json json_of(const XdfStreamSurvey& one) {
 }  // namespace
 
 Description describe_survey(const std::string& path, const XdfSurvey& survey, Names names) {
-  std::string text = fmt::format("{}\n", path);
-  text += fmt::format("  {:<12}XDF 1.0\n", "format");
-  text += fmt::format("  {:<12}{:.1f} MB\n", "size", static_cast<double>(survey.bytes) / 1e6);
+  std::string text = path + "\n" + fact_line("format", "XDF 1.0") + size_line(survey.bytes);
   Json json{{"file", path}, {"kind", "xdf"}, {"bytes", survey.bytes}, {"streams", Json::array()}};
   for (const XdfStreamSurvey& one : survey.streams) {
     text += stream_lines(one, names);
     json["streams"].push_back(json_of(one));
   }
-  const std::size_t wrong = survey.findings.size();
-  if (wrong > 0) {
-    text +=
-        fmt::format("  {} finding{}: see kinalign check {}\n", wrong, wrong == 1 ? "" : "s", path);
-  }
-  return {std::move(text), json_text(json)};
+  return {text + findings_line(survey.findings.size(), path), json_text(json)};
 }
 
 }  // namespace kinalign

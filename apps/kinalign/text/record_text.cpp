@@ -97,15 +97,6 @@ std::string name_of(const StreamStatus& stream) {
   return sender_name(stream.stream, stream.node, stream.place);
 }
 
-std::vector<std::string> unseen(const Lab& lab, const LabStatus& status) {
-  std::vector<std::string> all;
-  for (const DeviceOptions& device : lab.devices) {
-    const auto names = unseen(device, status);
-    all.insert(all.end(), names.begin(), names.end());
-  }
-  return all;
-}
-
 std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> lines;
   for (const DeviceOptions& device : lab.devices) {
@@ -128,19 +119,20 @@ std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> names;
   for (const DeviceOptions& device : lab.devices) {
     if (!device.required) continue;
-    bool alive = false;
+    const auto nodes = status.ended ? unseen(device, status) : unseen_nodes(device, status);
+    names.insert(names.end(), nodes.begin(), nodes.end());
+    if (status.ended) continue;
+    bool sends = false;
     for (const StreamStatus& stream : status.streams) {
       if (stream.stream != device.name) continue;
       const bool silent = is_silent(stream, status.now);
-      // A restarted program has another port and is another sender, so one live sender is enough.
-      alive = alive || !silent;
+      // A restarted program has another port and is another sender, so one that sends is enough.
+      sends = sends || !silent;
       // A node with a place is required by itself.
       if (silent && !stream.place.empty()) names.push_back(name_of(stream));
     }
-    const auto nodes = unseen_nodes(device, status);
-    names.insert(names.end(), nodes.begin(), nodes.end());
     // A device with stated nodes is missing if a node is; without nodes it is missing as a whole.
-    if (!alive && device.nodes.empty()) names.push_back(device.name);
+    if (!sends && device.nodes.empty()) names.push_back(device.name);
   }
   return names;
 }
@@ -164,22 +156,16 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
 
 /// Counts that are 0 are left out.
 std::string counts_text(const SenderCounts& counts) {
-  std::string text =
-      fmt::format("{} messages, {:.1f} MB", grouped(counts.messages), megabytes(counts.bytes));
-  // The first count is separated by a semicolon, all others by commas.
-  std::string_view between = "; ";
-  for (const auto& [count, what] :
-       {std::pair(counts.order.lost, "lost"), std::pair(counts.order.late, "late"),
-        std::pair(counts.order.duplicates, "twice"), std::pair(counts.refused, "refused")}) {
-    if (count == 0) continue;
-    text += fmt::format("{}{} {}", between, grouped(count), what);
-    between = ", ";
-  }
+  std::string losses = counts_in_words({{counts.order.lost, "lost"},
+                                        {counts.order.late, "late"},
+                                        {counts.order.duplicates, "twice"},
+                                        {counts.refused, "refused"}});
   if (const std::uint64_t restarts = counts.order.restarts) {
-    text += fmt::format("{}started anew {}", between,
-                        restarts == 1 ? "once" : grouped(restarts) + " times");
+    losses += losses.empty() ? "started anew " : ", started anew ";
+    losses += restarts == 1 ? "once" : grouped(restarts) + " times";
   }
-  return text;
+  return fmt::format("{} messages, {:.1f} MB{}{}", grouped(counts.messages),
+                     megabytes(counts.bytes), losses.empty() ? "" : "; ", losses);
 }
 
 std::string end_line(const StreamStatus& stream) {
@@ -213,10 +199,10 @@ Json json_of(const StreamStatus& stream, const LabStatus& status) {
   }
   if (node == nullptr) return json;
   Json clock = Json::parse(status_json(*node));
-  for (const char* said_above :
+  for (const char* in_stream :
        // These members are about the stream and stand in the object already.
        {"event", "stream", "node_id", "address", "accepted", "lost", "rate_hz", "battery_mv"}) {
-    clock.erase(said_above);
+    clock.erase(in_stream);
   }
   json["clock"] = clock;
   return json;

@@ -46,14 +46,12 @@ std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus
 
 /// The device's nodes that have places and sent nothing; the device itself if nothing came from it.
 std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& status);
-/// The devices, and nodes with places, that sent nothing.
-std::vector<std::string> unseen(const Lab& lab, const LabStatus& status);
 /// A line for each of them: "kinect: nobody has connected to port 7201 yet"; at the end "kinect:
 /// nothing came".
 std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status);
 
-/// The required devices, and their nodes with places, from which nothing comes now: "mocap", "imu
-/// waist".
+/// The required devices, and their nodes with places, from which nothing comes now or, at the end
+/// of a take, nothing came: "mocap", "imu waist".
 std::vector<std::string> missing(const Lab& lab, const LabStatus& status);
 
 /// Only the newest of several connections that one device made one after another from one port.
