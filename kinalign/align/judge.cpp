@@ -42,22 +42,16 @@ std::optional<Steps> steps_of(const RecordedStream& s) {
                static_cast<double>(survey.long_time_ns) / all};
 }
 
-Findings warning(const std::string& file, std::string expected, std::string found,
-                 std::string meaning, std::string repair) {
-  return {{Severity::warning, Error{file, 0, std::move(expected), std::move(found)},
-           std::move(meaning), std::move(repair)}};
-}
-
 /// Warns about the unit of stamps. A wrong unit changes the rate by at least a thousand, .NET ticks
 /// by a hundred, and no device in this field is so fast or slow. Cameras reach 1,000 frames per
 /// second, inertial sensors 2,000.
-Findings judge_unit(const Steps& steps, const RecordedStream& s) {
+void judge_unit(const Steps& steps, const RecordedStream& s, FileFindings& out) {
   const double fastest_hz = std::holds_alternative<ImuInput>(s.data) ? 2500.0 : 1200.0;
   constexpr double slowest_hz = 0.5;
   const double rate = 1e9 / steps.median;
-  if (rate <= fastest_hz && rate >= slowest_hz) return {};
-  return warning(
-      file_of(s), fmt::format("{} to {} samples per second", slowest_hz, fastest_hz),
+  if (rate <= fastest_hz && rate >= slowest_hz) return;
+  out.add(
+      Severity::warning, fmt::format("{} to {} samples per second", slowest_hz, fastest_hz),
       fmt::format("{:.4g} according to the stamps", rate),
       "the stamps were probably read in the wrong unit",
       "if a layout reads the stamps, correct the unit in its [time]: ns, us, ms, s or ticks_100ns");
@@ -65,125 +59,125 @@ Findings judge_unit(const Steps& steps, const RecordedStream& s) {
 
 /// Warns if a stated rate fits neither the median step nor the mean step. A device that sends in
 /// bursts fits by its mean only.
-Findings judge_stated(const Steps& steps, double nominal_hz, const std::string& file) {
+void judge_stated(const Steps& steps, double nominal_hz, FileFindings& out) {
   // A step fits the stated one if the two differ by less than this factor.
   constexpr double alike = 1.5;
   const auto fits = [nominal_hz](double step) {
     return step < alike * 1e9 / nominal_hz && alike * step > 1e9 / nominal_hz;
   };
-  if (fits(steps.median) || fits(steps.mean)) return {};
-  return warning(file, fmt::format("steps of {:.3g} ms, as stated by rate_hz", 1e3 / nominal_hz),
-                 fmt::format("a median of {:.3g} ms", 1e-6 * steps.median),
-                 "gaps and invalid samples are judged by the wrong rate",
-                 fmt::format("set rate_hz = {:.3g}, or remove it", 1e9 / steps.median));
+  if (fits(steps.median) || fits(steps.mean)) return;
+  out.add(Severity::warning,
+          fmt::format("steps of {:.3g} ms, as stated by rate_hz", 1e3 / nominal_hz),
+          fmt::format("a median of {:.3g} ms", 1e-6 * steps.median),
+          "gaps and invalid samples are judged by the wrong rate",
+          fmt::format("set rate_hz = {:.3g}, or remove it", 1e9 / steps.median));
 }
 
 /// Warns if a stream stands still for more than half of its time. Either the device paused, or
 /// samples came in bursts and were stamped on arrival. Stamps can't tell which; the user can. Ten
 /// trials have nine pauses.
-Findings judge_rate(const Steps& steps, const std::string& file) {
+void judge_rate(const Steps& steps, FileFindings& out) {
   constexpr double gap_steps = 3.0, burst = 5.0, alike = 1.5;
   constexpr std::uint64_t pauses = 10;
   if (steps.long_ones <= pauses || steps.long_share < 0.5 || steps.mean < alike * steps.median) {
-    return {};
+    return;
   }
-  const std::string median =
-      fmt::format("steps near their median of {:.3g} ms", 1e-6 * steps.median);
   // The mean step counts all time, so it gives the rate if samples came in bursts.
   const double from_mean = 1e9 / steps.mean;
+  std::string found, meaning, repair;
   if (steps.mean < burst * steps.median) {
-    return warning(file, median, fmt::format("a mean of {:.3g} ms", 1e-6 * steps.mean),
-                   "stretches longer than three median steps count as gaps",
-                   fmt::format("if the device sends this way, set rate_hz = {:.3g} or gap_ms = "
-                               "{:.3g}; otherwise many samples are missing",
-                               from_mean, gap_steps * 1e-6 * steps.mean));
+    found = fmt::format("a mean of {:.3g} ms", 1e-6 * steps.mean);
+    meaning = "stretches longer than three median steps count as gaps";
+    repair = fmt::format(
+        "if the device sends this way, set rate_hz = {:.3g} or gap_ms = {:.3g}; otherwise many "
+        "samples are missing",
+        from_mean, gap_steps * 1e-6 * steps.mean);
+  } else {
+    found = fmt::format("{} longer steps, {:.0f} % of the time", steps.long_ones,
+                        100.0 * steps.long_share);
+    meaning = "the device paused, or samples came in bursts and were stamped on arrival";
+    repair = fmt::format(
+        "if the device paused, set rate_hz = {:.3g}; if samples came in bursts, remove the time "
+        "column from the layout and set rate_hz = {:.3g}",
+        1e9 / steps.median, from_mean);
   }
-  return warning(
-      file, median,
-      fmt::format("{} longer steps, {:.0f} % of the time", steps.long_ones,
-                  100.0 * steps.long_share),
-      "the device paused, or samples came in bursts and were stamped on arrival",
-      fmt::format("if the device paused, set rate_hz = {:.3g}; if samples came in bursts, remove "
-                  "the time column from the layout and set rate_hz = {:.3g}",
-                  1e9 / steps.median, from_mean));
+  out.add(Severity::warning,
+          fmt::format("steps near their median of {:.3g} ms", 1e-6 * steps.median), found, meaning,
+          repair);
 }
 
 }  // namespace
 
 /// All judgements about stamps, from the survey's counts. No sample is read.
 Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
-  Findings out;
-  const std::string file = file_of(s);
+  FileFindings out{file_of(s)};
   // Single samples are sometimes sent twice; many duplicates have another cause.
   const bool often = s.survey.duplicates > 10 && 20 * s.survey.duplicates > s.survey.samples;
   if (s.survey.duplicates > 0) {
-    out.push_back(
-        {often ? Severity::warning : Severity::note,
-         Error{file, 0, "rising stamps",
-               fmt::format("{} that repeat the previous stamp", s.survey.duplicates)},
-         "these samples were left out",
-         often ? "the stamps are rounded, or one file contains rows of several nodes" : ""});
+    out.add(often ? Severity::warning : Severity::note, "rising stamps",
+            fmt::format("{} that repeat the previous stamp", s.survey.duplicates),
+            "these samples were left out",
+            often ? "the stamps are rounded, or one file contains rows of several nodes" : "");
   }
   if (s.survey.ahead > 0) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "stamps without jumps",
-                         fmt::format("{} far ahead of their neighbours", s.survey.ahead)},
-                   "these samples were left out", ""});
+    out.add(Severity::warning, "stamps without jumps",
+            fmt::format("{} far ahead of their neighbours", s.survey.ahead),
+            "these samples were left out");
   }
   if (s.survey.backward > 0) {
     // After a clock was set back, all further stamps are before earlier ones, so there are many.
     const bool many = 20 * s.survey.backward > s.survey.samples;
-    out.push_back({many ? Severity::error : Severity::warning,
-                   Error{file, 0, "rising stamps",
-                         fmt::format("{} of {} that step back, by up to {:.3f} s",
-                                     s.survey.backward, s.survey.samples,
-                                     1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
-                   "these samples were left out",
-                   many ? "the device's clock was set back: cut the file there, or remove the time "
-                          "column from its layout and set rate_hz"
-                        : "if there are many, check the device's clock"});
+    out.add(
+        many ? Severity::error : Severity::warning, "rising stamps",
+        fmt::format("{} of {} that step back, by up to {:.3f} s", s.survey.backward,
+                    s.survey.samples, 1e-9 * static_cast<double>(s.survey.largest_step_back_ns)),
+        "these samples were left out",
+        many ? "the device's clock was set back: cut the file there, or remove the time "
+               "column from its layout and set rate_hz"
+             : "if there are many, check the device's clock");
   }
   if (const auto steps = steps_of(s)) {
-    append(out, judge_unit(*steps, s));
-    append(out, options.rate_hz > 0.0 ? judge_stated(*steps, options.rate_hz, file)
-                                      : judge_rate(*steps, file));
+    judge_unit(*steps, s, out);
+    if (options.rate_hz > 0.0) {
+      judge_stated(*steps, options.rate_hz, out);
+    } else {
+      judge_rate(*steps, out);
+    }
   }
-  return out;
+  return out.all;
 }
 
 /// The severities follow the effect: dropped or late samples change the take, an irregular step
 /// only hides them.
 Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role role) {
-  Findings out;
+  FileFindings out{file_of(s)};
   if (arrivals.near > 0) {
     const std::string what = role == Role::reference
                                  ? "this stream is the reference, so they keep their late stamps, "
                                    "and the other streams are resampled onto them"
                                  : "they are dropped when the stream is resampled";
-    append(out, warning(file_of(s), "samples at least a fifth of a step apart",
-                        fmt::format("{} closer to the next sample", arrivals.near),
-                        "these samples were delayed: " + what,
-                        "stamp samples when they are measured, not when they arrive"));
+    out.add(Severity::warning, "samples at least a fifth of a step apart",
+            fmt::format("{} closer to the next sample", arrivals.near),
+            "these samples were delayed: " + what,
+            "stamp samples when they are measured, not when they arrive");
   }
   if (arrivals.late > 0) {
-    append(out,
-           warning(file_of(s), "samples without delay",
-                   fmt::format("{} in a burst after a pause, late by {:.2f} s or more",
-                               arrivals.late, 1e-9 * static_cast<double>(arrivals.worst_late_ns)),
-                   "where these samples are used, the take lags behind the motion by this time",
-                   "use the device's own stamps if the file has them, or remove the time column "
-                   "from its layout and set rate_hz"));
+    out.add(Severity::warning, "samples without delay",
+            fmt::format("{} in a burst after a pause, late by {:.2f} s or more", arrivals.late,
+                        1e-9 * static_cast<double>(arrivals.worst_late_ns)),
+            "where these samples are used, the take lags behind the motion by this time",
+            "use the device's own stamps if the file has them, or remove the time column from its "
+            "layout and set rate_hz");
   }
   if (arrivals.near_only) {
-    out.push_back({Severity::note,
-                   Error{file_of(s), 0, "a regular step, to detect late samples",
-                         fmt::format("a median of {:.4g} ms, a mean of {:.4g}",
-                                     1e-6 * static_cast<double>(s.survey.median_step_ns),
-                                     1e-6 * static_cast<double>(s.survey.usual_step_ns))},
-                   "late samples were not looked for",
-                   "set rate_hz to the device's true rate, or use finer stamps"});
+    out.add(Severity::note, "a regular step, to detect late samples",
+            fmt::format("a median of {:.4g} ms, a mean of {:.4g}",
+                        1e-6 * static_cast<double>(s.survey.median_step_ns),
+                        1e-6 * static_cast<double>(s.survey.usual_step_ns)),
+            "late samples were not looked for",
+            "set rate_hz to the device's true rate, or use finer stamps");
   }
-  return out;
+  return out.all;
 }
 
 /// Findings name a file. If several streams read that file, the file alone does not say which
@@ -211,11 +205,12 @@ Findings judge_start(const RecordedStream& s, const StreamOptions& options,
   if (several && s.survey.first + own_offset(s, options) != start) return {};
   const bool first_kept = several || s.survey.first == start;
   if (first_kept && !arrivals.first_late) return {};
-  return warning(
-      file_of(s), "a first sample that was stamped when it was measured, for start_ns",
-      first_kept ? "a delayed sample" : "a sample whose stamp is far from the others",
-      "the whole stream is shifted by this delay",
-      "remove this sample from the file, and set start_ns to the stamp of the next sample");
+  FileFindings out{file_of(s)};
+  out.add(Severity::warning, "a first sample that was stamped when it was measured, for start_ns",
+          first_kept ? "a delayed sample" : "a sample whose stamp is far from the others",
+          "the whole stream is shifted by this delay",
+          "remove this sample from the file, and set start_ns to the stamp of the next sample");
+  return out.all;
 }
 
 Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {

@@ -89,6 +89,17 @@ inline void add_warning(Findings& all, Error what, std::string meaning, std::str
 inline void add_note(Findings& all, Error what, std::string meaning, std::string repair = {}) {
   all.push_back({Severity::note, std::move(what), std::move(meaning), std::move(repair)});
 }
+/// Findings about one file, added one by one.
+struct FileFindings {
+  std::string file;
+  Findings all{};
+
+  void add(Severity severity, std::string expected, std::string found, std::string meaning,
+           std::string repair = "") {
+    all.push_back({severity, Error{file, 0, std::move(expected), std::move(found)},
+                   std::move(meaning), std::move(repair)});
+  }
+};
 
 /// The word for people and for JSON, for example "warning".
 std::string_view to_string(Severity severity);

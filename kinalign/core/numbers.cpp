@@ -163,4 +163,21 @@ std::string number_text(double value, int decimals) {
   return {room.data(), put_number(room.data(), value, decimals)};
 }
 
+std::string grouped(std::string number) {
+  const std::size_t first = number.starts_with('-') ? 1 : 0;
+  for (std::size_t at = std::min(number.find('.'), number.size()); at > first + 3;) {
+    at -= 3;
+    number.insert(at, ",");
+  }
+  return number;
+}
+
+std::string counts_in_words(const std::vector<std::pair<std::uint64_t, std::string>>& counts) {
+  std::string text;
+  for (const auto& [count, word] : counts) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + grouped(count) + " " + word;
+  }
+  return text;
+}
+
 }  // namespace kinalign

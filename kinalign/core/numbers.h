@@ -5,8 +5,11 @@
 #include <charconv>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace kinalign {
 
@@ -43,5 +46,12 @@ constexpr std::size_t number_room = 40;
 char* put_number(char* at, double value, int decimals);
 /// The characters of put_number() as a text.
 std::string number_text(double value, int decimals);
+
+/// Groups the digits before the point by thousands: "-2961581.50" gives "-2,961,581.50".
+std::string grouped(std::string number);
+inline std::string grouped(std::uint64_t number) { return grouped(std::to_string(number)); }
+
+/// "1,234 lost, 3 late": counts with their words. Counts of 0 are left out.
+std::string counts_in_words(const std::vector<std::pair<std::uint64_t, std::string>>& counts);
 
 }  // namespace kinalign

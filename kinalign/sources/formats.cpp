@@ -18,6 +18,9 @@
 #include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/recording/format.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -52,6 +55,12 @@ struct Format {
 template <bool (*looks)(std::string_view head)>
 bool by_content(std::string_view head, std::string_view) {
   return looks(head);
+}
+
+/// For a reader that needs the options and the file's name alone.
+template <auto make>
+Result<AnyReader> make_reader(const Source& source) {
+  return AnyReader(make(source.options, source.file.path));
 }
 
 /// True for one of a pair of UI-PRMD files. Files of angles, of the Kinect or of the optical
@@ -105,10 +114,10 @@ Result<AnyReader> make_bids(const Source& source) {
 Result<AnyReader> make_mvnx(const Source& source) {
   const auto part = source.options.select.find("part");
   if (part == source.options.select.end() || part->second == "segments") {
-    return AnyReader(make_mvnx_reader(source.options, source.file.path));
+    return make_reader<make_mvnx_reader>(source);
   }
   if (part->second == "sensors") {
-    return AnyReader(make_mvnx_sensor_reader(source.options, source.file.path));
+    return make_reader<make_mvnx_sensor_reader>(source);
   }
   return Failure(
       Error{source.file.path, 0, "select part = segments or sensors", shown(part->second)});
@@ -125,28 +134,15 @@ constexpr std::array<Format, 9> formats{{
      [](const Source& s, const Progress& progress) {
        return survey_bvh(*s.files, s.file.path, bvh_options(s.options), progress);
      }},
-    {"trc", by_content<looks_like_trc>,
-     [](const Source& s) -> Result<AnyReader> {
-       return AnyReader(make_trc_reader(s.options, s.file.path));
-     }},
-    {"c3d", by_content<looks_like_c3d>,
-     [](const Source& s) -> Result<AnyReader> {
-       return AnyReader(make_c3d_reader(s.options, s.file.path));
-     }},
+    {"trc", by_content<looks_like_trc>, make_reader<make_trc_reader>},
+    {"c3d", by_content<looks_like_c3d>, make_reader<make_c3d_reader>},
     {"mvnx", by_content<looks_like_mvnx>, make_mvnx, "part"},
     {"xsens", by_content<looks_like_xsens_text>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_xsens_text_reader(s.options, s.file.path, s.file.node));
      }},
-    {"sto", by_content<looks_like_opensim_sto>,
-     [](const Source& s) -> Result<AnyReader> {
-       return AnyReader(make_opensim_sto_reader(s.options, s.file.path));
-     }},
-    {"ntu", by_content<looks_like_ntu_skeleton>,
-     [](const Source& s) -> Result<AnyReader> {
-       return AnyReader(make_ntu_skeleton_reader(s.options, s.file.path));
-     },
-     "body"},
+    {"sto", by_content<looks_like_opensim_sto>, make_reader<make_opensim_sto_reader>},
+    {"ntu", by_content<looks_like_ntu_skeleton>, make_reader<make_ntu_skeleton_reader>, "body"},
     {"ui_prmd_kinect", is_ui_prmd, make_ui_prmd, "", ui_prmd_files},
     {"bids", is_bids, make_bids, "kind", bids_files},
 }};
@@ -233,15 +229,6 @@ Result<Recognized> recognize(std::string_view head, std::string_view path) {
   return Recognized{nullptr, std::move(named)};  // its reader reports the wrong row
 }
 
-/// The names for an error, in the order in which formats are tried.
-std::string known_formats() {
-  std::string text;
-  for (const std::string_view name : format_names()) {
-    text += (text.empty() ? "" : ", ") + std::string(name);
-  }
-  return text;
-}
-
 /// The format of the option `layout`: a format's name, a built-in layout's, or a layout file.
 Result<FoundFormat> named_format(const Source& source) {
   const std::string& wanted = source.options.layout;
@@ -252,9 +239,10 @@ Result<FoundFormat> named_format(const Source& source) {
     return table_format(KA_TRY(parse_layout(*text, wanted)), source);
   }
   if (!source.options.own_layout()) {
-    return Failure(Error{source.file.path, 0,
-                         "a layout's path (*.toml) or one of " + known_formats(),
-                         "'" + shown(wanted) + "'"});
+    return Failure(
+        Error{source.file.path, 0,
+              fmt::format("a layout's path (*.toml) or one of {}", fmt::join(format_names(), ", ")),
+              "'" + shown(wanted) + "'"});
   }
   // Far more than any layout needs; a file of data that was named by mistake is not read whole.
   constexpr std::size_t longest_layout = std::size_t{1} << 20;

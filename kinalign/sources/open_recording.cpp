@@ -69,65 +69,78 @@ class SharedProgress {
   std::vector<Part> parts_;
 };
 
-/// A file of a stream. The pointers lead into the manifest, which lives longer.
+/// A file of a stream, with the options and paths as seen from the current folder. The manifest
+/// itself is not changed: the take stores it as the user wrote it. `stated` leads into the
+/// manifest, which must outlive it.
 struct NamedFile {
-  const StreamOptions* options = nullptr;
-  const StreamFile* file = nullptr;
-  std::string remembered;  // its name in the take
-  // The name in messages: "mocap", "imu waist".
-  std::string name() const { return options->name + (file->node.empty() ? "" : " " + file->node); }
-};
-
-/// A file with the options and paths as seen from the current folder. The manifest itself is not
-/// changed: the take stores it as the user wrote it.
-struct PlacedFile {
+  const StreamOptions* stated = nullptr;
   StreamOptions options;
   StreamFile file;
+  std::string remembered;  // its name in the take
+  bool is_first = true;    // of its stream
+  // The name in messages: "mocap", "imu waist".
+  std::string name() const { return options.name + (file.node.empty() ? "" : " " + file.node); }
 };
-PlacedFile place_of(const std::string& folder, const NamedFile& named) {
-  PlacedFile place{*named.options, {path_in(folder, named.file->path), named.file->node}};
-  StreamOptions& options = place.options;
-  if (options.own_layout()) options.layout = path_in(folder, options.layout);
-  if (!options.skeleton.empty()) options.skeleton = path_in(folder, options.skeleton);
-  if (options.files.size() > 1) options.start_ns.reset();  // see start_together
-  return place;
-}
 
-/// Gives the files their names in the take, and sets the clock. A file that all nodes of a stream
-/// share, such as a layout, is kept with the first node only.
-SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const NamedFile& named,
-                           const StreamOptions& options) {
-  for (std::size_t i = 0; i < out.paths.size(); ++i) {
-    std::string& name = out.stream.files[i].name;
-    // The order of the names is that of the paths: the stream's own file is first.
-    if (i == 0) {
-      name = named.remembered;
-    } else if (out.paths[i] == options.layout) {
-      name = remembered_path(folder, named.options->layout, out.paths[i]);
-    } else if (out.paths[i] == options.skeleton) {
-      name = remembered_path(folder, named.options->skeleton, out.paths[i]);
-    } else {
-      name = remembered_sibling(named.remembered, out.paths[0], out.paths[i]);
+/// The files of all streams, with their names in the take. Names depend on all paths together,
+/// since equal file names get their folders.
+Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams,
+                                           const std::string& folder) {
+  std::vector<std::string> paths;
+  for (const StreamOptions& stated : streams) {
+    if (stated.files.empty()) {
+      return Failure(Error{"", 0, "a file for stream '" + stated.name + "'", "none"});
+    }
+    for (const StreamFile& file : stated.files) paths.push_back(file.path);
+  }
+  const auto remembered = remembered_paths(paths);
+  std::vector<NamedFile> named;
+  for (const StreamOptions& stated : streams) {
+    StreamOptions options = stated;
+    if (options.own_layout()) options.layout = path_in(folder, options.layout);
+    if (!options.skeleton.empty()) options.skeleton = path_in(folder, options.skeleton);
+    if (options.files.size() > 1) options.start_ns.reset();  // see start_together
+    for (const StreamFile& file : stated.files) {
+      named.push_back({&stated,
+                       options,
+                       {path_in(folder, file.path), file.node},
+                       remembered.at(file.path),
+                       &file == &stated.files.front()});
     }
   }
-  // The files of the first node hold what all nodes share.
-  if (named.file != &named.options->files.front()) {
+  return named;
+}
+
+/// Opens a file; `recording`: the opened recording with its stream, if the file is one. Gives the
+/// stream's files their names in the take, and sets the clock.
+Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
+                               const std::shared_ptr<RecordingSource>& recording,
+                               const Progress& progress) {
+  const StreamOptions& options = named.options;
+  SurveyedFile out =
+      KA_TRY(recording ? survey_device(files, options, named.file, recording, progress)
+                       : survey_file(files, options, named.file, progress));
+  // The files of the first node hold what all nodes share, such as a layout.
+  if (!named.is_first) {
     out.paths.resize(1);
     out.stream.files.resize(1);
+  }
+  // The order of the names is that of the paths: the stream's own file is first.
+  out.stream.files.front().name = named.remembered;
+  for (std::size_t i = 1; i < out.paths.size(); ++i) {
+    const std::string& path = out.paths[i];
+    std::string& name = out.stream.files[i].name;
+    if (path == options.layout) {
+      name = remembered_path(folder, named.stated->layout, path);
+    } else if (path == options.skeleton) {
+      name = remembered_path(folder, named.stated->skeleton, path);
+    } else {
+      name = remembered_sibling(named.remembered, out.paths[0], path);
+    }
   }
   out.stream.clock =
       out.clock ? moved_by(*out.clock, options) : clock_of(options, out.stream.survey);
   return out;
-}
-
-/// Opens a file that is no recording, or one that a layout reads as something else. Its version is
-/// taken before it is opened. A change during the first pass is then noticed by the passes after
-/// it.
-Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
-                               const Progress& progress) {
-  const PlacedFile place = place_of(folder, named);
-  const SurveyJob job{&files, &place.options, &progress, version_of(place.file.path)};
-  return named_as_said(KA_TRY(survey_file(job, place.file)), folder, named, place.options);
 }
 
 /// Fails if two different files would have one name in the take, since `rebuild` could not tell
@@ -198,26 +211,6 @@ Result<void> check_texts(const Manifest& manifest) {
   return {};
 }
 
-/// The files of all streams, with their names in the take. Names depend on all paths together,
-/// since equal file names get their folders.
-Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams) {
-  std::vector<std::string> paths;
-  for (const StreamOptions& options : streams) {
-    for (const StreamFile& file : options.files) paths.push_back(file.path);
-  }
-  const auto remembered = remembered_paths(paths);
-  std::vector<NamedFile> named;
-  for (const StreamOptions& options : streams) {
-    if (options.files.empty()) {
-      return Failure(Error{"", 0, "a file for stream '" + options.name + "'", "none"});
-    }
-    for (const StreamFile& file : options.files) {
-      named.push_back({&options, &file, remembered.at(file.path)});
-    }
-  }
-  return named;
-}
-
 /// Files that are opened together: the streams of one recording, or a single file.
 struct Group {
   std::string path;                // in the spelling of the first file
@@ -235,95 +228,70 @@ std::filesystem::path normal_path(const std::string& path) {
 
 /// Streams without a layout that name one recording form a group, so that it is read once. A layout
 /// states another reader, so such a file is opened by itself.
-std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
-                             const std::vector<NamedFile>& named) {
+std::vector<Group> groups_of(FileSystem& files, const std::vector<NamedFile>& named) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < named.size(); ++i) {
-    const std::string path = path_in(folder, named[i].file->path);
+    const std::string& path = named[i].file.path;
+    const bool has_layout = !named[i].options.layout.empty();
     const std::filesystem::path one_path = normal_path(path);
     const auto known = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
-      return g.is_recording && g.one_path == one_path && named[i].options->layout.empty();
+      return g.is_recording && g.one_path == one_path && !has_layout;
     });
     if (known != groups.end()) {
       known->named.push_back(i);
       continue;
     }
     const auto recording = is_recording(files, path);  // opening reports a fault
-    groups.push_back(
-        {path, one_path, named[i].options->layout.empty() && recording && *recording, {i}});
+    groups.push_back({path, one_path, !has_layout && recording && *recording, {i}});
   }
   return groups;
 }
 
-/// Opens groups and stores the result of each file. Groups run in parallel; each writes only the
-/// results of its own files.
-struct Opening {
-  FileSystem* files = nullptr;
-  const std::string* folder = nullptr;
-  const std::vector<NamedFile>* named = nullptr;
-  std::shared_ptr<RecordingSource> given;
-  std::vector<Result<SurveyedFile>> opened;
-
-  void open_group(const Group& group, const Progress& progress) {
-    if (!group.is_recording) {
-      const std::size_t i = group.named.front();
-      opened[i] = open_file(*files, *folder, (*named)[i], progress);
-      return;
-    }
-    // A recording is opened once for all of its streams.
-    std::vector<PlacedFile> places;
-    std::vector<StreamOptions> wanted;
-    for (const std::size_t i : group.named) {
-      places.push_back(place_of(*folder, (*named)[i]));
-      wanted.push_back(places.back().options);
-      wanted.back().files = {places.back().file};
-    }
-    // A source that the caller has opened already is used if it is this recording.
-    const auto source =
-        given && given->path() == group.path
-            ? given
-            : RecordingSource::open(*files, group.path, RecordingSource::Devices::learned, wanted,
-                                    progress);
-    // If the recording can't be opened, each of its streams gets that error.
-    for (std::size_t k = 0; k < group.named.size(); ++k) {
-      const std::size_t i = group.named[k];
-      opened[i] = source ? open_device(places[k], (*named)[i], *source, progress)
-                         : Result<SurveyedFile>(Failure(source.error()));
-    }
+/// The recording of a group, opened once for all of its streams; nullptr for another file. `given`:
+/// a source that the caller has opened already.
+Result<std::shared_ptr<RecordingSource>> recording_of(FileSystem& files, const Group& group,
+                                                      const std::vector<NamedFile>& named,
+                                                      const std::shared_ptr<RecordingSource>& given,
+                                                      const Progress& progress) {
+  if (!group.is_recording) return std::shared_ptr<RecordingSource>();
+  if (given && given->path() == group.path) return given;
+  std::vector<StreamOptions> wanted;
+  for (const std::size_t i : group.named) {
+    wanted.push_back(named[i].options);
+    wanted.back().files = {named[i].file};
   }
-
- private:
-  Result<SurveyedFile> open_device(const PlacedFile& place, const NamedFile& one,
-                                   const std::shared_ptr<RecordingSource>& source,
-                                   const Progress& progress) const {
-    const SurveyJob job{files, &place.options, &progress, {}};
-    return named_as_said(KA_TRY(survey_device(job, place.file, source)), *folder, one,
-                         place.options);
-  }
-};
-
-/// Opens all groups in parallel and returns the result of each file. Failures stay at their files,
-/// so both callers can treat them as they need.
-std::vector<Result<SurveyedFile>> open_each(FileSystem& files, const std::string& folder,
-                                            const std::vector<NamedFile>& named,
-                                            const OpenWith& with) {
-  const std::vector<Group> groups = groups_of(files, folder, named);
-  SharedProgress shared(with.progress, groups.size());
-  Opening opening{&files, &folder, &named, with.recording,
-                  std::vector<Result<SurveyedFile>>(named.size())};
-  parallel_for(groups.size(), with.jobs,
-               [&](std::size_t g) { opening.open_group(groups[g], shared.part(g)); });
-  return std::move(opening.opened);
+  return RecordingSource::open(files, group.path, RecordingSource::Devices::learned, wanted,
+                               progress);
 }
 
-/// Opens all files; the first failure in their order is returned.
+/// Opens all files, groups in parallel. Failures become warnings in `left_out`; if it is nullptr,
+/// the first failure in the order of the files is returned.
 Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string& folder,
                                            const std::vector<StreamOptions>& streams,
-                                           const OpenWith& with) {
-  auto opened = open_each(files, folder, KA_TRY(named_files(streams)), with);
+                                           const OpenWith& with, Findings* left_out = nullptr) {
+  const std::vector<NamedFile> named = KA_TRY(named_files(streams, folder));
+  const std::vector<Group> groups = groups_of(files, named);
+  std::vector<Result<SurveyedFile>> opened(named.size());
+  SharedProgress shared(with.progress, groups.size());
+  parallel_for(groups.size(), with.jobs, [&](std::size_t g) {
+    const Progress progress = shared.part(g);
+    const auto source = recording_of(files, groups[g], named, with.recording, progress);
+    // If the recording can't be opened, each of its streams gets that error.
+    for (const std::size_t i : groups[g].named) {
+      opened[i] = source ? open_file(files, folder, named[i], *source, progress)
+                         : Result<SurveyedFile>(Failure(source.error()));
+    }
+  });
   std::vector<SurveyedFile> out;
-  out.reserve(opened.size());
-  for (auto& one : opened) out.push_back(KA_TRY(std::move(one)));
+  for (std::size_t i = 0; i < opened.size(); ++i) {
+    // An interruption concerns all files, so it ends the whole call.
+    if (opened[i] || left_out == nullptr || is_interruption(opened[i].error())) {
+      out.push_back(KA_TRY(std::move(opened[i])));
+    } else {
+      left_out->push_back(
+          {Severity::warning, opened[i].error(), named[i].name() + " is left out", ""});
+    }
+  }
   // Only with all files open is the earliest stamp of a stream known.
   for (const StreamOptions& options : streams) KA_TRY(start_together(options, out));
   return out;
@@ -348,8 +316,12 @@ Recording joined(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   return out;
 }
 
-/// The same, but fails if a take could not name the files.
-Result<Recording> recording_of(const Manifest& manifest, std::vector<SurveyedFile> opened) {
+/// Fails if a take could not hold the names in the manifest, or could not name the files.
+Result<Recording> open_manifest(FileSystem& files, const Manifest& manifest,
+                                const std::string& folder, const OpenWith& with,
+                                Findings* left_out) {
+  KA_TRY(check_texts(manifest));
+  auto opened = KA_TRY(open_all(files, folder, manifest.streams, with, left_out));
   KA_TRY(check_names(opened));
   return joined(manifest, std::move(opened));
 }
@@ -364,32 +336,14 @@ Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOption
 
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  const std::string& folder, const OpenWith& with) {
-  KA_TRY(check_texts(manifest));
-  auto opened = KA_TRY(open_all(files, folder, manifest.streams, with));
-  return recording_of(manifest, std::move(opened));
+  return open_manifest(files, manifest, folder, with, nullptr);
 }
 
-/// Opens what can be opened. A file that fails gives a warning and stops no other.
 Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
                                       const std::string& folder, const OpenWith& with) {
-  KA_TRY(check_texts(manifest));
-  const std::vector<NamedFile> named = KA_TRY(named_files(manifest.streams));
-  auto each = open_each(files, folder, named, with);
-  std::vector<SurveyedFile> opened;
-  Findings left_out;
-  for (std::size_t i = 0; i < each.size(); ++i) {
-    if (each[i]) {
-      opened.push_back(*std::move(each[i]));
-    } else if (is_interruption(each[i].error())) {
-      // An interruption concerns all files, so it ends the whole call.
-      return Failure(each[i].error());
-    } else {
-      left_out.push_back(
-          {Severity::warning, each[i].error(), named[i].name() + " is left out", ""});
-    }
-  }
-  for (const StreamOptions& options : manifest.streams) KA_TRY(start_together(options, opened));
-  return OpenedInPart{KA_TRY(recording_of(manifest, std::move(opened))), std::move(left_out)};
+  OpenedInPart out;
+  out.recording = KA_TRY(open_manifest(files, manifest, folder, with, &out.left_out));
+  return out;
 }
 
 Result<void> read_through(const Recording& recording, const Progress& progress) {

@@ -2,15 +2,13 @@
 #include "kinalign/sources/stream_survey.h"
 
 #include "kinalign/core/file_version.h"
+#include "kinalign/check/judge_survey.h"
+#include "kinalign/check/value_survey.h"
 #include "kinalign/core/hash.h"
 #include "kinalign/core/utf8.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/input_facts.h"
-#include "kinalign/sources/value_survey.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -80,8 +78,8 @@ Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const 
 
 /// The first pass: hashes the file and surveys stamps and values; rows are dropped.
 template <class R>
-Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_view head,
-                              const FoundFormat& format, std::unique_ptr<R> reader) {
+Result<RecordedStream> survey(InputFile& file, std::string_view head, std::unique_ptr<R> reader,
+                              Passes<typename R::Frames> passes, const Progress& progress) {
   Sha256 hash;
   StampSurveyor surveyor;
   typename R::Frames block;
@@ -100,7 +98,7 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
     hash.update(piece);
     KA_TRY(reader->feed(piece, block));
     take_block();
-    if (!go_on(*job.progress, "reading", bytes, file.size())) {
+    if (!go_on(progress, "reading", bytes, file.size())) {
       return Failure(interruption(file.path()));
     }
     piece = KA_TRY(file.next());
@@ -108,12 +106,9 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   KA_TRY(reader->finish(block));
   take_block();
   RecordedStream out;
-  out.name = job.options->name;
-  out.format = format.name;
   // The reader knows only now whether the file has stamps, and what its header says.
   out.counted = reader->counted;
-  out.data =
-      input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
+  out.data = input_of(*reader->header(), std::move(passes));
   out.survey = surveyor.result();
   out.files.push_back({std::string(file_name(file.path())), hash.hex(), bytes});
   out.findings = std::move(reader->findings);
@@ -121,38 +116,19 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   return out;
 }
 
-/// A warning if a BVH's length differs from the time between the clicks on record and stop by more
-/// than two steps.
-Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
-  if (!options.start_ns || !options.end_ns || !s.step_ns) return {};
-  const double between = 1e-9 * static_cast<double>(*options.end_ns - *options.start_ns);
-  const double stated = 1e-9 * *s.step_ns * static_cast<double>(s.survey.samples);
-  if (std::abs(between - stated) <= 2e-9 * *s.step_ns) return {};
-  return {{Severity::warning,
-           Error{s.files.front().name, 0, fmt::format("{:.3f} s between the clicks", between),
-                 fmt::format("{} frames of {:.6g} s, {:.3f} s", s.survey.samples, 1e-9 * *s.step_ns,
-                             stated)},
-           "stamps are counted from the first click by the file's step",
-           "the true step may differ from the file's, or frames are missing"}};
-}
-
-/// The first pass of a format with its own survey, for skeletons. A BVH has no stamps: they are
-/// counted by its step.
-Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path,
-                                   const FoundFormat& format) {
-  const ClipSurvey made = KA_TRY(format.survey(*job.progress));
+/// The stream of a format with a first pass of its own, for skeletons. A BVH has no stamps: they
+/// are counted by its step.
+RecordedStream clip_stream(const StreamOptions& options, const ClipSurvey& made,
+                           Passes<ClipFrames> passes) {
   RecordedStream out;
-  out.name = job.options->name;
-  out.format = format.name;
   out.survey = made.survey;
   out.counted = true;
   out.step_ns = made.step_ns;
   out.files.push_back(made.facts);
   out.findings = made.findings;
-  out.data =
-      input_of(made.skeleton, passes_of<ClipReader>(*job.files, path, job.version, format.make));
+  out.data = input_of(made.skeleton, std::move(passes));
   // The clicks belong to the user's manifest, so the reader can't judge them.
-  append(out.findings, judge_clicks(*job.options, out));
+  append(out.findings, judge_survey(made, options));
   return out;
 }
 
@@ -184,49 +160,50 @@ Passes<Frames> device_passes(DevicePasses<Frames> passes,
   };
 }
 
-/// Reads a stream to its end, so that its late findings are known. The rows are dropped.
-template <class Frames>
-Result<void> read_through(const Passes<Frames>& passes) {
-  const Pass<Frames> pass = KA_TRY(passes());
-  Frames block;
-  while (KA_TRY(pass(block))) {
-  }
-  return {};
-}
-
 }  // namespace
 
-/// The version of the file was taken by the caller before opening, so no change can hide between.
-Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) {
-  InputFile file = KA_TRY(InputFile::open(*job.files, named.path));
+Result<SurveyedFile> survey_file(FileSystem& files, const StreamOptions& options,
+                                 const StreamFile& named, const Progress& progress) {
+  // The version is taken before the file is opened. A change during the first pass is then noticed
+  // by the passes after it.
+  const Version version = version_of(named.path);
+  InputFile file = KA_TRY(InputFile::open(files, named.path));
   const std::string head(KA_TRY(file.next()));
-  const FoundFormat format = KA_TRY(find_format(*job.files, *job.options, named, head));
+  const FoundFormat format = KA_TRY(find_format(files, options, named, head));
   SurveyedFile out;
   out.paths = {named.path};
   if (format.survey) {
-    out.stream = KA_TRY(survey_clip(job, named.path, format));
+    out.stream = clip_stream(options, KA_TRY(format.survey(progress)),
+                             passes_of<ClipReader>(files, named.path, version, format.make));
   } else {
-    AnyReader reader = KA_TRY(format.make());
+    AnyReader any = KA_TRY(format.make());
     out.stream = KA_TRY(std::visit(
-        [&](auto& any) { return survey(job, std::move(file), head, format, std::move(any)); },
-        reader));
+        [&]<class R>(std::unique_ptr<R>& reader) {
+          return survey(file, head, std::move(reader),
+                        passes_of<R>(files, named.path, version, format.make), progress);
+        },
+        any));
   }
+  out.stream.name = options.name;
+  out.stream.format = format.name;
   // Files that the reader opens itself are inputs, too: the take stores their names and hashes.
   for (const std::string& further : format.further_files) {
-    out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, "reading", *job.progress)));
+    out.stream.files.push_back(KA_TRY(facts_of(files, further, "reading", progress)));
     out.paths.push_back(further);
   }
   return out;
 }
 
-Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named,
-                                   const std::shared_ptr<RecordingSource>& recording) {
-  DeviceStream made = KA_TRY(recording->stream(*job.options, named, *job.progress));
+Result<SurveyedFile> survey_device(FileSystem& files, const StreamOptions& options,
+                                   const StreamFile& named,
+                                   const std::shared_ptr<RecordingSource>& recording,
+                                   const Progress& progress) {
+  DeviceStream made = KA_TRY(recording->stream(options, named, progress));
   SurveyedFile out;
   out.recording = recording;
   out.clock = std::move(made.clock);
   RecordedStream& stream = out.stream;
-  stream.name = job.options->name;
+  stream.name = options.name;
   stream.format = "recording";
   stream.survey = made.survey;
   // A take's grid is never a stream of nodes; only a grid's rows are counted by these stamps
@@ -244,15 +221,23 @@ Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named
       made.passes);
   // An empty stream has few reasons to be read later, but its findings say why it is empty.
   if (stream.survey.samples == 0) {
-    KA_TRY(std::visit([](const auto& input) { return read_through(input.passes); }, stream.data));
+    KA_TRY(std::visit(
+        [&stream](const auto& input) -> Result<void> {
+          std::uint64_t rows = 0;
+          const ReadNext next = read_on(KA_TRY(input.passes()), stream.clock, rows);
+          while (KA_TRY(next())) {
+          }
+          return {};
+        },
+        stream.data));
   }
   for (std::size_t i = 0; i < recording->facts().size(); ++i) {
     stream.files.push_back(recording->facts()[i]);
     out.paths.push_back(recording->parts()[i].path);
   }
-  if (const std::string& skeleton = job.options->skeleton; !skeleton.empty()) {
-    stream.files.push_back(KA_TRY(facts_of(*job.files, skeleton, "reading", *job.progress)));
-    out.paths.push_back(skeleton);
+  if (!made.skeleton_path.empty()) {
+    stream.files.push_back(KA_TRY(facts_of(files, made.skeleton_path, "reading", progress)));
+    out.paths.push_back(made.skeleton_path);
   }
   return out;
 }

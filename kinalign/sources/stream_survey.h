@@ -2,7 +2,6 @@
 // The first pass over a stream's file: hashes and surveys it; rows are dropped.
 #pragma once
 
-#include "kinalign/core/file_version.h"
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/recording/streams/recording_source.h"
@@ -16,15 +15,6 @@
 
 namespace kinalign {
 
-/// The job of surveying one file. The pointers belong to the caller and must be valid during the
-/// call; `files` as long as the stream.
-struct SurveyJob {
-  FileSystem* files = nullptr;
-  const StreamOptions* options = nullptr;  // with a layout's path that can be opened
-  const Progress* progress = nullptr;
-  std::optional<FileVersion> version;  // the file's, before it was opened
-};
-
 /// A stream that was surveyed, and what its caller needs to name its files and to set its clock.
 struct SurveyedFile {
   RecordedStream stream;           // its files have only their names
@@ -33,11 +23,15 @@ struct SurveyedFile {
   std::shared_ptr<RecordingSource> recording;  // the recording with the stream, if any
 };
 
-/// Surveys a file. `named.path` can be opened from here. Later passes fail if the file has changed.
-Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named);
+/// Surveys a file. The paths in `file` and `options` can be opened from here; `files` must outlive
+/// the stream. Later passes fail if the file has changed.
+Result<SurveyedFile> survey_file(FileSystem& files, const StreamOptions& options,
+                                 const StreamFile& file, const Progress& progress);
 
 /// The same for one device of a recording, which has been read already.
-Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named,
-                                   const std::shared_ptr<RecordingSource>& recording);
+Result<SurveyedFile> survey_device(FileSystem& files, const StreamOptions& options,
+                                   const StreamFile& file,
+                                   const std::shared_ptr<RecordingSource>& recording,
+                                   const Progress& progress);
 
 }  // namespace kinalign

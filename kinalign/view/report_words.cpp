@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/report_words.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ctime>
 
 namespace kinalign {
-
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
-    text.insert(static_cast<std::size_t>(at), 1, ',');
-  }
-  return text;
-}
 
 double take_seconds(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz) {
   const double last = rate_hz > 0.0 ? 1.0 / rate_hz : 0.0;
@@ -49,16 +42,10 @@ std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool coun
                      1e-6 * static_cast<double>(*interval_ns));
 }
 
-// gmtime_r, because gmtime shares one buffer among all threads.
 std::string date_text(std::int64_t ns) {
   // Rounded to the nearest millisecond before it is split, so that no part can be 1000.
   const std::int64_t ms = (ns + 500'000) / 1'000'000;
-  const std::time_t whole = ms / 1000;
-  std::tm parts{};
-  ::gmtime_r(&whole, &parts);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
-                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
-                     ms % 1000);
+  return fmt::format("{:%F %T}.{:03}", fmt::gmtime(std::time_t{ms / 1000}), ms % 1000);
 }
 
 bool is_date(std::int64_t ns) {

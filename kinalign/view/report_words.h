@@ -2,6 +2,8 @@
 // The numbers of a report in words, the same on a terminal and on a page.
 #pragma once
 
+#include "kinalign/core/numbers.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,9 +14,6 @@ namespace kinalign {
 /// accuracy".
 /// `counted`: the stamps were made from the count of samples, not measured.
 std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool counted);
-
-/// The number with groups of digits: 3601 gives "3,601".
-std::string grouped(std::uint64_t number);
 
 /// The time from the first row to the end of the last one, which lasts one usual step.
 /// So a take of one row at 30 Hz lasts 33 ms, and not 0.

@@ -10,7 +10,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace kinalign {
@@ -28,61 +30,41 @@ class Showing {
   virtual Result<void> show(ShownFile& out) = 0;
 };
 
-/// Writes the messages of a skeleton's stream.
-/// Every frame becomes a pose to plot. Transforms are drawn, so only the frames that are due are
-/// written (ShownPace).
-class ShowClip {
+const Skeleton& joints_of(const ClipInput& input) { return input.skeleton; }
+const std::vector<std::string>& joints_of(const PointInput& input) { return input.joint_names; }
+
+/// Writes the messages of a skeleton or of points (Input: ClipInput or PointInput). Every frame
+/// becomes a message to plot. Transforms are drawn, so only the frames that are due are written
+/// (ShownPace).
+template <class Input>
+class ShowJoints {
  public:
-  static Result<ShowClip> begin(const std::string& stream, const ClipInput& input, ShownFile& out) {
-    ShowClip show;
+  static Result<ShowJoints> begin(const std::string& stream, const Input& input, ShownFile& out) {
+    constexpr bool clip = std::is_same_v<Input, ClipInput>;
+    ShowJoints show;
     show.stream_ = stream;
     show.input_ = &input;
     show.transforms_ = KA_TRY(out.add_channel("/" + stream + "/transforms", transforms_schema()));
-    show.poses_ = KA_TRY(out.add_channel("/" + stream + "/pose", pose_schema()));
+    show.plotted_ = KA_TRY(out.add_channel("/" + stream + (clip ? "/pose" : "/points"),
+                                           clip ? pose_schema() : points_schema()));
     return show;
   }
-  Result<void> operator()(const ClipFrames& frames, std::size_t t, const ShownTime& time, bool due,
+  template <class Frames>
+  Result<void> operator()(const Frames& frames, std::size_t t, const ShownTime& time, bool due,
                           ShownFile& out) const {
+    const auto& joints = joints_of(*input_);
     const Time device = frames.stamps[t];
     if (due) {
-      KA_TRY(out.add(transforms_, time.at, device,
-                     transforms_json(stream_, input_->skeleton, frames, t, time)));
+      KA_TRY(
+          out.add(transforms_, time.at, device, transforms_json(stream_, joints, frames, t, time)));
     }
-    return out.add(poses_, time.at, device, pose_json(input_->skeleton, frames, t, time));
+    return out.add(plotted_, time.at, device, joints_json(joints, frames, t, time));
   }
 
  private:
   std::string stream_;
-  const ClipInput* input_ = nullptr;
-  std::uint16_t transforms_ = 0, poses_ = 0;
-};
-
-/// The same for points: states and places to plot, transforms to draw.
-class ShowPoints {
- public:
-  static Result<ShowPoints> begin(const std::string& stream, const PointInput& input,
-                                  ShownFile& out) {
-    ShowPoints show;
-    show.stream_ = stream;
-    show.input_ = &input;
-    show.transforms_ = KA_TRY(out.add_channel("/" + stream + "/transforms", transforms_schema()));
-    show.points_ = KA_TRY(out.add_channel("/" + stream + "/points", points_schema()));
-    return show;
-  }
-  Result<void> operator()(const PointFrames& frames, std::size_t t, const ShownTime& time, bool due,
-                          ShownFile& out) const {
-    const Time device = frames.stamps[t];
-    if (due) {
-      KA_TRY(out.add(transforms_, time.at, device,
-                     transforms_json(stream_, input_->joint_names, frames, t, time)));
-    }
-    return out.add(points_, time.at, device, points_json(input_->joint_names, frames, t, time));
-  }
-
- private:
-  std::string stream_;
-  const PointInput* input_ = nullptr;
-  std::uint16_t transforms_ = 0, points_ = 0;
+  const Input* input_ = nullptr;
+  std::uint16_t transforms_ = 0, plotted_ = 0;
 };
 
 /// One channel for each node. Nodes have no place, so they have no transforms.
@@ -92,9 +74,7 @@ class ShowImu {
     ShowImu show;
     show.input_ = &input;
     for (const std::string& node : input.node_names) {
-      std::string topic = "/" + stream;
-      topic += "/" + node;
-      show.nodes_.push_back(KA_TRY(out.add_channel(std::move(topic), imu_schema())));
+      show.nodes_.push_back(KA_TRY(out.add_channel("/" + stream + "/" + node, imu_schema())));
     }
     return show;
   }
@@ -152,25 +132,15 @@ class StreamShowing final : public Showing {
 };
 
 /// Adds the stream's channels and reads its first block.
-template <class Frames, class Show, class Input>
+template <class Input, class Frames>
 Result<std::unique_ptr<Showing>> showing_of(const RecordedStream& stream, const Input& input,
-                                            ShownFile& out) {
+                                            const Passes<Frames>& passes, ShownFile& out) {
+  using Show = std::conditional_t<std::is_same_v<Input, ImuInput>, ShowImu, ShowJoints<Input>>;
   Show show = KA_TRY(Show::begin(stream.name, input, out));
-  auto showing = std::make_unique<StreamShowing<Frames, Show>>(stream, KA_TRY(input.passes()),
-                                                               std::move(show));
+  auto showing =
+      std::make_unique<StreamShowing<Frames, Show>>(stream, KA_TRY(passes()), std::move(show));
   KA_TRY(showing->begin());
   return std::unique_ptr<Showing>(std::move(showing));
-}
-
-/// The kind of a stream's data decides how it is shown.
-Result<std::unique_ptr<Showing>> begin_stream(const RecordedStream& stream, ShownFile& out) {
-  if (const auto* clip = std::get_if<ClipInput>(&stream.data)) {
-    return showing_of<ClipFrames, ShowClip>(stream, *clip, out);
-  }
-  if (const auto* points = std::get_if<PointInput>(&stream.data)) {
-    return showing_of<PointFrames, ShowPoints>(stream, *points, out);
-  }
-  return showing_of<ImuSamples, ShowImu>(stream, std::get<ImuInput>(stream.data), out);
 }
 
 /// The recording's own JSON: marks, counts, the host's clocks.
@@ -232,36 +202,24 @@ class ShowJson final : public Showing {
   bool ended_ = false;
 };
 
-/// Writes all streams in the order of their samples' times. `own`: the recording's own messages.
+/// Writes all streams in the order of their samples' times. `rows`: the number of their samples.
 /// A merge of sorted streams: `next` is ordered by time and has each stream at most once. Viewers
 /// need messages in this order to play a file.
-Result<void> show_streams(const std::vector<RecordedStream>& recorded, std::unique_ptr<Showing> own,
+Result<void> show_streams(const std::vector<std::unique_ptr<Showing>>& streams, std::uint64_t rows,
                           ShownFile& shown, const Progress& progress) {
-  std::vector<std::unique_ptr<Showing>> streams;
   // Time of the next sample, and the index of its stream.
   std::set<std::pair<Time, std::size_t>> next;
-  std::uint64_t rows = 0, done = 0;
   // A stream that has ended is not put back.
   const auto wait = [&](std::size_t i) {
     if (const auto at = streams[i]->next()) next.emplace(*at, i);
   };
-  for (const RecordedStream& stream : recorded) {
-    auto begun = begin_stream(stream, shown);
-    if (!begun) return Failure(std::move(begun).error());
-    streams.push_back(*std::move(begun));
-    wait(streams.size() - 1);
-    rows += stream.survey.samples;
-  }
-  if (own) {
-    streams.push_back(std::move(own));
-    wait(streams.size() - 1);
-  }
-  while (!next.empty()) {
+  for (std::size_t i = 0; i < streams.size(); ++i) wait(i);
+  for (std::uint64_t done = 1; !next.empty(); ++done) {
     const std::size_t first = next.extract(next.begin()).value().second;
     KA_TRY(streams[first]->show(shown));
     wait(first);
     // A call for each sample would cost more than the sample.
-    if (++done % 1024 == 0 && !go_on(progress, "converting", done, rows)) {
+    if (done % 1024 == 0 && !go_on(progress, "converting", done, rows)) {
       return Failure(interruption());
     }
   }
@@ -270,18 +228,27 @@ Result<void> show_streams(const std::vector<RecordedStream>& recorded, std::uniq
 
 }  // namespace
 
-Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
-                             const Progress& progress) {
+Result<Findings> show_recording(FileSystem& files, const Recording& recording,
+                                const ShowFiles& paths, const Progress& progress) {
   // The file gets its name only at commit(), so a conversion that fails leaves none.
   OutputFile file = KA_TRY(OutputFile::create(files, paths.out, paths.overwrite));
   ShownFile shown(file);
   KA_TRY(shown.begin());
   std::unique_ptr<Showing> own;
   if (paths.recording != nullptr) own = KA_TRY(ShowJson::begin(*paths.recording, shown));
-  KA_TRY(show_streams(recording.streams, std::move(own), shown, progress));
+  std::vector<std::unique_ptr<Showing>> streams;
+  std::uint64_t rows = 0;
+  for (const RecordedStream& stream : recording.streams) {
+    streams.push_back(KA_TRY(std::visit(
+        [&](const auto& input) { return showing_of(stream, input, input.passes, shown); },
+        stream.data)));
+    rows += stream.survey.samples;
+  }
+  if (own) streams.push_back(std::move(own));
+  KA_TRY(show_streams(streams, rows, shown, progress));
   KA_TRY(shown.finish());
   KA_TRY(file.commit());
-  return shown.counts();
+  return shown.findings();
 }
 
 }  // namespace kinalign

@@ -23,9 +23,9 @@ struct ShowFiles {
   Overwrite overwrite = Overwrite::no;
 };
 
-/// Messages are written in the order of their times.
+/// Messages are written in the order of their times. Messages that were left out are a finding.
 /// `recording` is read once, all streams side by side.
-Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
-                             const Progress& progress = {});
+Result<Findings> show_recording(FileSystem& files, const Recording& recording,
+                                const ShowFiles& paths, const Progress& progress = {});
 
 }  // namespace kinalign

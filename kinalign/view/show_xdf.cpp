@@ -72,82 +72,71 @@ std::string topic_of(const XdfStream& stream, bool alone) {
   return alone ? "/" + name : "/" + name + "/" + std::to_string(stream.id);
 }
 
+/// A stream's channel, and its clock.
 struct Channel {
   std::uint16_t id = 0;
   std::vector<XdfClockLine> lines;
 };
+using Channels = std::map<std::uint32_t, Channel>;  // by the stream's id
 
-/// The channels for samples, one for each stream.
-/// The survey must be complete before the first sample: its clock lines correct the stamps, and
-/// attachments come first in the file.
-class Channels {
- public:
-  Channels(const XdfSurvey& survey, ShownFile& out) : survey_(survey), out_(out) {}
-
-  Result<void> begin() {
-    std::map<std::string, std::set<std::uint32_t>> ids;  // by the stream's name
-    for (const XdfStreamSurvey& one : survey_.streams) ids[one.stream.name].insert(one.stream.id);
-    for (const XdfStreamSurvey& one : survey_.streams) {
-      const std::string topic = topic_of(one.stream, ids[one.stream.name].size() == 1);
-      KA_TRY(out_.attach(topic.substr(1) + ".xml", one.stream.xml));
-      channels_[one.stream.id] = {KA_TRY(out_.add_channel(topic, sample_schema())), one.clock};
-    }
-    return {};
+/// Adds a channel and the header of each stream. Attachments come first in the file.
+Result<Channels> add_channels(const XdfSurvey& survey, ShownFile& out) {
+  std::map<std::string, std::set<std::uint32_t>> ids;  // by the stream's name
+  for (const XdfStreamSurvey& one : survey.streams) ids[one.stream.name].insert(one.stream.id);
+  Channels channels;
+  for (const XdfStreamSurvey& one : survey.streams) {
+    const std::string topic = topic_of(one.stream, ids[one.stream.name].size() == 1);
+    KA_TRY(out.attach(topic.substr(1) + ".xml", one.stream.xml));
+    channels[one.stream.id] = {KA_TRY(out.add_channel(topic, sample_schema())), one.clock};
   }
+  return channels;
+}
 
-  /// Called for each item of the file, in its order; only samples become messages.
-  Result<void> take(const XdfItem& item) {
-    const auto* samples = std::get_if<XdfSamples>(&item);
-    if (samples == nullptr) return {};
-    const auto channel = channels_.find(samples->stream);
-    // Samples of a stream without a header can't be described.
-    if (channel == channels_.end()) return {};
-    for (std::size_t t = 0; t < samples->size(); ++t) {
-      const auto at = time_of(corrected_xdf_stamp(channel->second.lines, samples->stamps[t]));
-      if (!at) {
-        // Counted and not refused: the other samples are good.
-        ++timeless;
-        continue;
-      }
-      const Time device = time_of(samples->stamps[t]).value_or(*at);
-      KA_TRY(out_.add(channel->second.id, *at, device, sample_json(*samples, t)));
-    }
-    return {};
-  }
-
+/// Writes samples as messages and returns the number of those whose stamps are no times. They are
+/// counted and not refused: the other samples are good.
+Result<std::uint64_t> add_samples(const XdfSamples& samples, const Channel& channel,
+                                  ShownFile& out) {
   std::uint64_t timeless = 0;
-
- private:
-  const XdfSurvey& survey_;
-  ShownFile& out_;
-  std::map<std::uint32_t, Channel> channels_;
-};
+  for (std::size_t t = 0; t < samples.size(); ++t) {
+    const double stamp = samples.stamps[t];
+    if (const auto at = time_of(corrected_xdf_stamp(channel.lines, stamp))) {
+      KA_TRY(out.add(channel.id, *at, time_of(stamp).value_or(*at), sample_json(samples, t)));
+    } else {
+      ++timeless;
+    }
+  }
+  return timeless;
+}
 
 }  // namespace
 
-Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
+Result<Findings> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
                           Overwrite overwrite, const Progress& progress) {
   // The file is read twice: for the clocks of its streams, then for the samples.
   const XdfSurvey survey = KA_TRY(survey_xdf(files, from, progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   ShownFile shown(file);
   KA_TRY(shown.begin());
-  Channels channels(survey, shown);
-  KA_TRY(channels.begin());
-  ShownXdf done;
-  done.findings = KA_TRY(
-      read_xdf(files, from, progress, [&](const XdfItem& item) { return channels.take(item); }));
-  if (channels.timeless > 0) {
-    done.findings.push_back(
-        {Severity::warning,
-         Error{from, 0, "stamps from 0 to 4e9 s",
-               std::to_string(channels.timeless) + " samples with other stamps"},
-         "these samples were left out", ""});
+  const Channels channels = KA_TRY(add_channels(survey, shown));
+  std::uint64_t timeless = 0;
+  FileFindings found{from};
+  found.all = KA_TRY(read_xdf(files, from, progress, [&](const XdfItem& item) -> Result<void> {
+    const auto* samples = std::get_if<XdfSamples>(&item);
+    if (samples == nullptr) return {};
+    // Samples of a stream without a header can't be described.
+    const auto channel = channels.find(samples->stream);
+    if (channel != channels.end())
+      timeless += KA_TRY(add_samples(*samples, channel->second, shown));
+    return {};
+  }));
+  if (timeless > 0) {
+    found.add(Severity::warning, "stamps from 0 to 4e9 s",
+              std::to_string(timeless) + " samples with other stamps",
+              "these samples were left out");
   }
   KA_TRY(shown.finish());
   KA_TRY(file.commit());
-  done.shown = shown.counts();
-  return done;
+  return found.all;
 }
 
 }  // namespace kinalign

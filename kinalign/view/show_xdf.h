@@ -11,16 +11,10 @@
 
 namespace kinalign {
 
-/// The counts of the new file, and what was wrong in the old one.
-struct ShownXdf {
-  Shown shown;
-  Findings findings;
-};
-
 /// Log times are on the recorder's clock, which has no date in XDF: stamps with the stream's clock
 /// offsets (formats/xdf/xdf.h). Publish times are the stamps in the file. Each stream's header is
-/// an attachment. Messages keep the order of the file.
-Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
+/// an attachment. Messages keep the order of the file. Returns the faults of the old file.
+Result<Findings> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
                           Overwrite overwrite, const Progress& progress = {});
 
 }  // namespace kinalign

@@ -36,7 +36,7 @@ Result<std::uint16_t> ShownFile::add_channel(std::string topic, McapSchema schem
 
 Result<void> ShownFile::add(std::uint16_t channel, Time at, Time device, std::string_view json) {
   if (to_ns(at) < 0) {
-    ++counts_.out_of_range;
+    ++too_early_;
     return {};
   }
   // A chunk must be readable by itself, so the first message of a channel brings its description.
@@ -49,7 +49,6 @@ Result<void> ShownFile::add(std::uint16_t channel, Time at, Time device, std::st
   // A device's own stamp may be negative; MCAP has no negative times.
   const auto published = static_cast<std::uint64_t>(std::max<std::int64_t>(0, to_ns(device)));
   chunk_.add(McapMessage{channel, numbers_[channel - 1U]++, log, published, json});
-  ++counts_.messages;
   constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
   return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
 }
@@ -57,6 +56,16 @@ Result<void> ShownFile::add(std::uint16_t channel, Time at, Time device, std::st
 Result<void> ShownFile::finish() {
   KA_TRY(close_chunk());
   return writer_.finish();
+}
+
+Findings ShownFile::findings() const {
+  FileFindings out{path_};
+  if (too_early_ > 0) {
+    out.add(Severity::warning, "stamps from 1970 on",
+            std::to_string(too_early_) + " messages with earlier stamps",
+            "they were left out: MCAP has no earlier times");
+  }
+  return out.all;
 }
 
 // Compressed with zstd, which viewers read; JSON shrinks a lot.

@@ -15,12 +15,6 @@
 
 namespace kinalign {
 
-/// Printed when the file is done.
-struct Shown {
-  std::uint64_t messages = 0;
-  std::uint64_t out_of_range = 0;  // samples before 1970, which MCAP can't state
-};
-
 /// begin(), attachments, then channels and messages in any order, then finish(). Messages are kept
 /// in chunk_ until it has 1 MiB; each chunk has the channels and schemas that it needs.
 class ShownFile {
@@ -38,7 +32,8 @@ class ShownFile {
   Result<void> add(std::uint16_t channel, Time at, Time device, std::string_view json);
   Result<void> finish();
 
-  const Shown& counts() const { return counts_; }
+  /// A warning if messages before 1970 were left out, because MCAP can't state their times.
+  Findings findings() const;
 
  private:
   Result<void> close_chunk();
@@ -50,7 +45,7 @@ class ShownFile {
   std::map<std::string, std::uint16_t> schema_ids_;  // by the schema's name
   std::vector<std::uint32_t> numbers_;
   McapChunkContent chunk_;
-  Shown counts_;
+  std::uint64_t too_early_ = 0;  // messages before 1970
 };
 
 }  // namespace kinalign

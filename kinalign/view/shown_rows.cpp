@@ -22,7 +22,7 @@ constexpr std::string_view time_properties =
 McapSchema schema(std::string name, const std::string& properties) {
   return {0, std::move(name), "jsonschema",
           R"({"type": "object", "properties": {"timestamp": )" + std::string(time_properties) +
-              ", " + properties + "}}"};
+              R"(, "interval_ns": {"type": "integer"}, )" + properties + "}}"};
 }
 
 Json time_json(Time at) {
@@ -36,12 +36,6 @@ Json time_json(Time at) {
 Json vector_json(const Vec3& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
 Json rotation_json(const Quat& q) {
   return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
-}
-Vec3 vec_at(const std::vector<double>& values, std::size_t i) {
-  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
-Quat quat_at(const std::vector<double>& values, std::size_t i) {
-  return {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
 }
 
 /// Names come from files, so bytes that are not UTF-8 are replaced and do not stop the conversion.
@@ -76,10 +70,11 @@ std::string frames_json(const std::vector<Frame>& frames, const ShownTime& time)
   return text_of({{"transforms", std::move(list)}});
 }
 
-/// Each message states its time itself, for programs that don't look at log times.
-void add_time(const ShownTime& time, Json& json) {
-  json["timestamp"] = time_json(time.at);
+/// A message begins with its time, for programs that don't look at log times.
+Json begun_json(const ShownTime& time) {
+  Json json{{"timestamp", time_json(time.at)}};
   if (time.half_width) json["interval_ns"] = time.half_width->count();
+  return json;
 }
 
 /// The nearest ancestor of a Kinect's joint that is not missing; absent if there is none.
@@ -107,20 +102,12 @@ McapSchema transforms_schema() {
               R"({"type": "number"}, "z": {"type": "number"}, "w": {"type": "number"}}}}}}}})"};
 }
 
-McapSchema pose_schema() {
-  return schema("kinalign.Pose",
-                R"("interval_ns": {"type": "integer"}, "joints": {"type": "object"})");
-}
-McapSchema points_schema() {
-  return schema("kinalign.Points",
-                R"("interval_ns": {"type": "integer"}, "joints": {"type": "object"})");
-}
+McapSchema pose_schema() { return schema("kinalign.Pose", R"("joints": {"type": "object"})"); }
+McapSchema points_schema() { return schema("kinalign.Points", R"("joints": {"type": "object"})"); }
 McapSchema imu_schema() {
-  return schema(
-      "kinalign.ImuSample",
-      R"("interval_ns": {"type": "integer"}, "valid": {"type": "boolean"}, "orientation": )"
-      R"({"type": "object"}, "acceleration": {"type": "object"}, "angular_velocity": )"
-      R"({"type": "object"})");
+  return schema("kinalign.ImuSample",
+                R"("valid": {"type": "boolean"}, "orientation": {"type": "object"}, )"
+                R"("acceleration": {"type": "object"}, "angular_velocity": {"type": "object"})");
 }
 
 std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
@@ -133,8 +120,8 @@ std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
     out.push_back({parent < 0
                        ? std::string(shown_space)
                        : stream + "/" + skeleton.joint_names[static_cast<std::size_t>(parent)],
-                   stream + "/" + skeleton.joint_names[j], vec_at(frames.local_positions, at),
-                   quat_at(frames.local_rotations, at)});
+                   stream + "/" + skeleton.joint_names[j], vec3(frames.local_positions, at),
+                   quat(frames.local_rotations, at)});
   }
   return frames_json(out, time);
 }
@@ -149,10 +136,10 @@ std::string transforms_json(const std::string& stream, const std::vector<std::st
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (frames.state[row + j] == Tracking::missing) continue;
     const auto parent = kinect ? ancestor(frames, row, j) : std::nullopt;
-    const Vec3 place = vec_at(frames.positions, row + j);
+    const Vec3 place = vec3(frames.positions, row + j);
     // Points have places only; the difference is the place in the parent's space, since nothing
     // turns.
-    const Vec3 from = parent ? vec_at(frames.positions, row + *parent) : Vec3(Vec3::Zero());
+    const Vec3 from = parent ? Vec3(vec3(frames.positions, row + *parent)) : Vec3(Vec3::Zero());
     out.push_back({parent ? stream + "/" + joints[*parent] : std::string(shown_space),
                    stream + "/" + joints[j], place - from, Quat::Identity()});
   }
@@ -160,31 +147,29 @@ std::string transforms_json(const std::string& stream, const std::vector<std::st
 }
 
 /// A pose: each joint's position and rotation in its parent's space.
-std::string pose_json(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t,
-                      const ShownTime& time) {
-  Json json, joints = Json::object();
-  add_time(time, json);
+std::string joints_json(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t,
+                        const ShownTime& time) {
+  Json json = begun_json(time), joints = Json::object();
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
     const std::size_t at = t * skeleton.joints() + j;
     joints[skeleton.joint_names[j]] = {
-        {"position", vector_json(vec_at(frames.local_positions, at))},
-        {"rotation", rotation_json(quat_at(frames.local_rotations, at))}};
+        {"position", vector_json(vec3(frames.local_positions, at))},
+        {"rotation", rotation_json(quat(frames.local_rotations, at))}};
   }
   json["joints"] = std::move(joints);
   return text_of(json);
 }
 
 /// Points with their states; a missing point has no position.
-std::string points_json(const std::vector<std::string>& joints, const PointFrames& frames,
+std::string joints_json(const std::vector<std::string>& joints, const PointFrames& frames,
                         std::size_t t, const ShownTime& time) {
   constexpr std::array<std::string_view, 3> states{"missing", "inferred", "tracked"};
-  Json json, shown = Json::object();
-  add_time(time, json);
+  Json json = begun_json(time), shown = Json::object();
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const std::size_t at = t * joints.size() + j;
     Json one = {{"state", states[static_cast<std::size_t>(frames.state[at])]}};
     if (frames.state[at] != Tracking::missing) {
-      one["position"] = vector_json(vec_at(frames.positions, at));
+      one["position"] = vector_json(vec3(frames.positions, at));
     }
     shown[joints[j]] = std::move(one);
   }
@@ -194,15 +179,14 @@ std::string points_json(const std::vector<std::string>& joints, const PointFrame
 
 std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::size_t cell,
                      const ShownTime& time) {
-  Json json;
-  add_time(time, json);
+  Json json = begun_json(time);
   json["valid"] = samples.valid[cell] != 0;
   // A sample that is not valid has no values, but its time is shown.
   if (samples.valid[cell] == 0) return text_of(json);
-  if (content.orientation) json["orientation"] = rotation_json(quat_at(samples.orientation, cell));
-  if (content.acceleration) json["acceleration"] = vector_json(vec_at(samples.acceleration, cell));
+  if (content.orientation) json["orientation"] = rotation_json(quat(samples.orientation, cell));
+  if (content.acceleration) json["acceleration"] = vector_json(vec3(samples.acceleration, cell));
   if (content.angular_velocity) {
-    json["angular_velocity"] = vector_json(vec_at(samples.angular_velocity, cell));
+    json["angular_velocity"] = vector_json(vec3(samples.angular_velocity, cell));
   }
   return text_of(json);
 }

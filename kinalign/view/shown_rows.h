@@ -38,9 +38,10 @@ std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
 std::string transforms_json(const std::string& stream, const std::vector<std::string>& joints,
                             const PointFrames& frames, std::size_t t, const ShownTime& time);
 
-std::string pose_json(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t,
-                      const ShownTime& time);
-std::string points_json(const std::vector<std::string>& joints, const PointFrames& frames,
+/// Each joint's place and rotation in its parent's space; of points, each one's state and place.
+std::string joints_json(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t,
+                        const ShownTime& time);
+std::string joints_json(const std::vector<std::string>& joints, const PointFrames& frames,
                         std::size_t t, const ShownTime& time);
 /// `cell`: the index of row t and node s, t * S + s.
 /// Only quantities that the stream has (`content`) are written.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/table.h"
 
+#include "kinalign/core/numbers.h"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -19,18 +22,6 @@ constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
      {"latex", TableFormat::latex},
      {"csv", TableFormat::csv},
      {"json", TableFormat::json}}};
-
-/// The digits grouped by thousands: "2,961,581".
-/// Only the digits before the point are grouped.
-std::string grouped(std::string digits) {
-  const std::size_t first = digits.starts_with('-') ? 1 : 0;
-  const std::size_t point = std::min(digits.find('.'), digits.size());
-  for (std::size_t at = point; at > first + 3;) {
-    at -= 3;
-    digits.insert(at, ",");
-  }
-  return digits;
-}
 
 /// The text with some characters replaced.
 std::string replaced(std::string_view text,
@@ -74,10 +65,8 @@ std::size_t width_of(std::string_view text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// The table as text, in columns of one width; numbers are right-aligned.
-/// Two passes: the widths of all columns, then the lines.
-std::string text_of(const Table& table) {
-  const std::vector<bool> right = numeric_columns(table);
+/// The titles of the columns, then the cells of each row, for people.
+std::vector<std::vector<std::string>> texts_of(const Table& table) {
   std::vector<std::vector<std::string>> lines(1);
   for (const TableColumn& column : table.columns) lines[0].push_back(column.title);
   for (const auto& row : table.rows) {
@@ -86,6 +75,14 @@ std::string text_of(const Table& table) {
       lines.back().push_back(cell_text(row[c], table.columns[c]));
     }
   }
+  return lines;
+}
+
+/// The table as text, in columns of one width; numbers are right-aligned.
+/// Two passes: the widths of all columns, then the lines.
+std::string text_of(const Table& table) {
+  const std::vector<bool> right = numeric_columns(table);
+  const auto lines = texts_of(table);
   std::vector<std::size_t> widths(table.columns.size(), 0);
   for (const auto& line : lines) {
     for (std::size_t c = 0; c < line.size(); ++c)
@@ -106,27 +103,18 @@ std::string text_of(const Table& table) {
 
 /// The table in Markdown.
 std::string markdown_of(const Table& table) {
-  const std::vector<bool> right = numeric_columns(table);
   std::string out = table.caption.empty() ? "" : for_markdown(table.caption) + "\n\n";
-  out += "|";
-  for (const TableColumn& column : table.columns) out += " " + for_markdown(column.title) + " |";
-  out += "\n|";
-  for (std::size_t c = 0; c < table.columns.size(); ++c) out += right[c] ? " ---: |" : " --- |";
-  for (const auto& row : table.rows) {
-    out += "\n|";
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      out += " " + for_markdown(cell_text(row[c], table.columns[c])) + " |";
-    }
+  const auto lines = texts_of(table);
+  for (const auto& line : lines) {
+    out += "|";
+    for (const std::string& cell : line) out += " " + for_markdown(cell) + " |";
+    out += "\n";
+    if (&line != &lines.front()) continue;
+    out += "|";
+    for (const bool right : numeric_columns(table)) out += right ? " ---: |" : " --- |";
+    out += "\n";
   }
-  return out + "\n";
-}
-
-/// A row of LaTeX's tabular.
-template <class Text>
-std::string latex_row(std::size_t columns, Text text) {
-  std::string out;
-  for (std::size_t c = 0; c < columns; ++c) out += (c == 0 ? "" : " & ") + for_latex(text(c));
-  return out + " \\\\\n";
+  return out;
 }
 
 /// The table in LaTeX; a line separates a row of sums.
@@ -134,15 +122,14 @@ std::string latex_row(std::size_t columns, Text text) {
 std::string latex_of(const Table& table) {
   std::string places;
   for (const bool right : numeric_columns(table)) places += right ? 'r' : 'l';
-  const std::size_t columns = table.columns.size();
   std::string out = "\\begin{table}\n\\centering\n";
   if (!table.caption.empty()) out += "\\caption{" + for_latex(table.caption) + "}\n";
   out += "\\begin{tabular}{" + places + "}\n\\hline\n";
-  out += latex_row(columns, [&](std::size_t c) { return table.columns[c].title; }) + "\\hline\n";
-  for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    if (table.has_sum && r + 1 == table.rows.size()) out += "\\hline\n";
-    out += latex_row(columns,
-                     [&](std::size_t c) { return cell_text(table.rows[r][c], table.columns[c]); });
+  auto lines = texts_of(table);
+  for (std::size_t r = 0; r < lines.size(); ++r) {
+    for (std::string& cell : lines[r]) cell = for_latex(cell);
+    if (table.has_sum && r > 0 && r + 1 == lines.size()) out += "\\hline\n";
+    out += fmt::format("{} \\\\\n{}", fmt::join(lines[r], " & "), r == 0 ? "\\hline\n" : "");
   }
   return out + "\\hline\n\\end{tabular}\n\\end{table}\n";
 }
@@ -172,23 +159,17 @@ std::string csv_of(const Table& table) {
   return out + "\n";
 }
 
-/// A cell as JSON; an unknown value is null.
-nlohmann::ordered_json json_cell(const Cell& cell) {
-  return std::visit(
-      [](const auto& value) -> nlohmann::ordered_json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
-          return nullptr;
-        else
-          return value;
-      },
-      cell);
-}
-
+/// The table as JSON; an unknown value is null.
 std::string json_of(const Table& table) {
   auto rows = nlohmann::ordered_json::array();
   for (const auto& row : table.rows) {
     nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].key] = json_cell(row[c]);
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      auto& value = object[table.columns[c].key];
+      if (const auto* text = std::get_if<std::string>(&row[c])) value = *text;
+      if (const auto* whole = std::get_if<std::int64_t>(&row[c])) value = *whole;
+      if (const auto* number = std::get_if<double>(&row[c])) value = *number;
+    }
     rows.push_back(std::move(object));
   }
   // Bytes that are not UTF-8 are replaced.
@@ -202,13 +183,6 @@ std::optional<TableFormat> table_format(std::string_view name) {
     if (known == name) return format;
   }
   return std::nullopt;
-}
-
-std::vector<std::string> table_format_names() {
-  std::vector<std::string> names;
-  names.reserve(formats.size());
-  for (const auto& [name, format] : formats) names.emplace_back(name);
-  return names;
 }
 
 std::string cell_text(const Cell& cell, const TableColumn& column) {

@@ -43,7 +43,6 @@ enum class TableFormat { text, markdown, latex, csv, json };
 
 /// The format by its name: "text", "markdown", "latex", "csv", "json"; absent for any other word.
 std::optional<TableFormat> table_format(std::string_view name);
-std::vector<std::string> table_format_names();
 
 /// The table in that format; the text ends with a line end. Text, Markdown and LaTeX group digits
 /// by thousands; text has aligned columns; CSV is RFC 4180 with a line of keys and LF; JSON is an

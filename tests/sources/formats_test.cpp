@@ -36,18 +36,20 @@ Outcome found(const std::string& path, const std::string& layout = "") {
 
 }  // namespace
 
-TEST_CASE("UI-PRMD's file of positions leads to its angles: by name, in a folder beside or here") {
+TEST_CASE(
+    "UI-PRMD's file of positions leads to its angles: by name, in a sibling folder or the same "
+    "one") {
   const FreshFolder folder;
   const std::string row = numbers(66, ',');
   const std::string apart = folder.write("positions/Positions/m1_positions.txt", row);
   const std::string angles = folder.write("positions/Angles/m1_angles.txt", row);
   CHECK(found(apart).name == "ui_prmd_kinect");
   CHECK(found(apart).further == std::vector{angles});
-  const std::string beside = folder.write("Positions/positions.d/m2_positions.txt", row);
-  CHECK(found(beside).error == (folder / "Positions/positions.d/m2_angles.txt") +
-                                   ": expected a readable file, found No such file or directory");
+  const std::string sibling = folder.write("Positions/positions.d/m2_positions.txt", row);
+  CHECK(found(sibling).error == (folder / "Positions/positions.d/m2_angles.txt") +
+                                    ": expected a readable file, found No such file or directory");
   const std::string here = folder.write("Positions/positions.d/m2_angles.txt", row);
-  CHECK(found(beside).further == std::vector{here});
+  CHECK(found(sibling).further == std::vector{here});
   const std::string only = folder.write("Positions/m3.txt", row);
   const std::string there = folder.write("Angles/m3.txt", row);
   CHECK(found(only).further == std::vector{there});
@@ -95,17 +97,20 @@ TEST_CASE("UI-PRMD's file of angles by itself is refused, the Kinect's and the o
 
 TEST_CASE("a file of no known kind: what it is, and what to do with a table") {
   const FreshFolder folder;
-  const auto said = [&](std::string_view bytes) { return found(folder.write("f", bytes)).error; };
+  const auto error_of_bytes = [&](std::string_view bytes) {
+    return found(folder.write("f", bytes)).error;
+  };
   const std::string known =
       (folder / "f") +
       ":1: expected a format that kinalign knows (docs/formats); for a table of another kind write "
       "a layout (docs/formats/layouts.md: layout = in a manifest, --layout with one file), found ";
-  CHECK(said("unix_ms,acc_x\n1,2\n") == known + "'unix_ms,acc_x'");
-  CHECK(said("\xff\xfe\x80 \x1b[31m\n") == known + "bytes that are no plain text");
-  CHECK(said("\x1f\x8b\x08") == known + "a gzip archive: unpack it first");
-  CHECK(said("PK\x03\x04 an .npz") == known + "a ZIP archive, such as .npz");
-  CHECK(said(std::string(300, 'x')) == known + "'" + std::string(40, 'x') + "...'");
-  CHECK(said("") == (folder / "f") + ": expected a recording's file, found an empty file");
+  CHECK(error_of_bytes("unix_ms,acc_x\n1,2\n") == known + "'unix_ms,acc_x'");
+  CHECK(error_of_bytes("\xff\xfe\x80 \x1b[31m\n") == known + "bytes that are no plain text");
+  CHECK(error_of_bytes("\x1f\x8b\x08") == known + "a gzip archive: unpack it first");
+  CHECK(error_of_bytes("PK\x03\x04 an .npz") == known + "a ZIP archive, such as .npz");
+  CHECK(error_of_bytes(std::string(300, 'x')) == known + "'" + std::string(40, 'x') + "...'");
+  CHECK(error_of_bytes("") ==
+        (folder / "f") + ": expected a recording's file, found an empty file");
 }
 
 TEST_CASE("a choice of rows that a format does not know is refused, not ignored") {
@@ -127,7 +132,7 @@ TEST_CASE("a choice of rows that a format does not know is refused, not ignored"
   CHECK(refusal(ntu, "ntu", "body").empty());
 }
 
-TEST_CASE("a file's kind is told by its first bytes, whatever its name is") {
+TEST_CASE("a file's kind is decided by its first bytes, whatever its name is") {
   const FreshFolder folder;
   PosixFiles files;
   const auto kind = [&](const std::string& name, const std::string& bytes) {
@@ -189,7 +194,7 @@ TEST_CASE("a folder and a file that is not there have no kind, but an error") {
   CHECK(missing.error().expected == "a readable file");
 }
 
-TEST_CASE("a file is opened once for its kind, and a bad disk is told as such") {
+TEST_CASE("a file is opened once for its kind, and a bad disk is reported as such") {
   const FreshFolder folder;
   const std::string path = folder.write("walk.bvh", "HIERARCHY\nROOT Hips\n");
   FaultyFiles counting;
@@ -221,8 +226,7 @@ TEST_CASE("select takes the sensors of an MVNX file instead of its segments") {
         "a.mvnx: expected select part = segments or sensors, found props");
 }
 
-TEST_CASE(
-    "a tracking system of BIDS-Motion leads to the files beside it, and may be read as nodes") {
+TEST_CASE("a tracking system of BIDS-Motion leads to its sidecar files, and may be read as nodes") {
   const FreshFolder folder;
   PosixFiles files;
   const std::string stem = "sub-1/motion/sub-1_task-a_tracksys-b_";

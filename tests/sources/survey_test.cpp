@@ -104,11 +104,11 @@ TEST_CASE("what is known of a clock comes from the options, counted from the fir
   options.offset_ms = -1.5;
   options.drift_ppm = 20.0;
   options.interval_ms = 0.25;
-  const TimeModelPiece told = piece();
-  CHECK(told.begin == utc_time(5'000));
-  CHECK(told.offset == Duration{-1'500'000});
-  CHECK(told.drift_ppm == 20.0);
-  CHECK(told.half_width == Duration{250'000});
+  const TimeModelPiece stated = piece();
+  CHECK(stated.begin == utc_time(5'000));
+  CHECK(stated.offset == Duration{-1'500'000});
+  CHECK(stated.drift_ppm == 20.0);
+  CHECK(stated.half_width == Duration{250'000});
 }
 
 TEST_CASE("a stream without a file, without the file and without rows") {

@@ -64,7 +64,7 @@ std::map<std::string, std::vector<ShownMessage>> shown_recording(const FreshFold
   const std::string out = folder / "shown.mcap";
   const auto shown = show_recording(files, *recording, {source->get(), out, Overwrite::no});
   REQUIRE(shown);
-  CHECK(shown->out_of_range == 0);
+  CHECK(shown->empty());
   return messages_in(out);
 }
 
@@ -168,7 +168,7 @@ TEST_CASE("an XDF's whole numbers and doubles are shown as they are, on the reco
   const std::string out = folder / "rec.mcap";
   const auto shown = show_xdf(files, path, out, Overwrite::no);
   REQUIRE(shown);
-  CHECK(shown->shown.messages == 2);
+  CHECK(shown->empty());
   auto messages = messages_in(out);
   REQUIRE(messages["/N1"].size() == 1);
   CHECK(messages["/N1"][0].json["values"][0] == large);

@@ -131,3 +131,23 @@ TEST_CASE("streams of an XDF with the same name are distinguished by their ids")
   }
   CHECK(topics == std::vector<std::string>{"/ab/1", "/cd", "/ab/3"});
 }
+
+TEST_CASE("samples before 1970 are left out with a warning") {
+  const FreshFolder folder;
+  PosixFiles files;
+  PointStream points;
+  points.joint_names = {"Hip"};
+  for (const std::int64_t ns : {-2'000'000'000, -1'000'000'000, 0}) {
+    points.frames.stamps.push_back(utc_time(ns));
+    points.frames.positions.insert(points.frames.positions.end(), {0.0, 1.0, 0.0});
+    points.frames.state.push_back(Tracking::tracked);
+  }
+  Recording recording;
+  recording.streams.push_back(recorded("kinect", std::move(points)));
+  const auto found = show_recording(files, recording, {nullptr, folder / "a.mcap", Overwrite::no});
+  REQUIRE(found);
+  REQUIRE(found->size() == 1);
+  CHECK(to_string(found->front().what) == folder / "a.mcap" +
+                                              ": expected stamps from 1970 on, "
+                                              "found 4 messages with earlier stamps");
+}

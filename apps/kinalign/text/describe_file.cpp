@@ -13,10 +13,12 @@
 #include "kinalign/formats/take/take_hdf5.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace kinalign {
 
@@ -32,52 +34,41 @@ struct Contents {
   Json names;
 };
 
-Contents contents(const Skeleton& skeleton) {
-  return {
-      "clip",
-      counted(skeleton.joints(), "joint") + ", " + counted(skeleton.end_sites.size(), "end site"),
-      skeleton.joint_names};
-}
-
-// Points have no skeleton, so the names of joints are all that is known.
-Contents contents(const std::vector<std::string>& joints) {
-  return {"points", counted(joints.size(), "joint"), joints};
-}
-
-/// The quantities that nodes measure. After `root_node` is used, gravity stays in the root's
-/// acceleration only.
-Contents contents(const ImuGroup& group) {
-  const ImuContent& content = group.content;
-  std::string parts = counted(group.node_names.size(), "node") + ":";
-  if (content.orientation) parts += " orientation,";
-  // Quantities that were not measured are left out.
-  if (content.acceleration) {
-    parts += content.gravity ? " acceleration with gravity" : " acceleration without gravity";
-    if (content.gravity && !group.root_node.empty()) parts += " in " + group.root_node + " only";
-    parts += ",";
+/// The contents of a stream (Kind: ClipInput, PointInput, ImuInput) or of a take's group
+/// (ClipGroup, PointGroup, ImuGroup).
+template <class Kind>
+Contents contents_of(const Kind& kind) {
+  if constexpr (requires { kind.skeleton; }) {
+    return {"clip",
+            counted(kind.skeleton.joints(), "joint") + ", " +
+                counted(kind.skeleton.end_sites.size(), "end site"),
+            kind.skeleton.joint_names};
+  } else if constexpr (requires { kind.joint_names; }) {
+    return {"points", counted(kind.joint_names.size(), "joint"), kind.joint_names};
+  } else {
+    // Quantities that were not measured are left out.
+    std::vector<std::string> parts;
+    if (kind.content.orientation) parts.emplace_back("orientation");
+    if (kind.content.acceleration) {
+      parts.emplace_back("acceleration with" + std::string(kind.content.gravity ? "" : "out") +
+                         " gravity");
+      // After `root_node` is used, gravity stays in the root's acceleration only.
+      if constexpr (requires { kind.root_node; }) {
+        if (kind.content.gravity && !kind.root_node.empty()) {
+          parts.back() += " in " + kind.root_node + " only";
+        }
+      }
+    }
+    if (kind.content.angular_velocity) parts.emplace_back("angular velocity");
+    return {"imu",
+            fmt::format("{}: {}", counted(kind.node_names.size(), "node"), fmt::join(parts, ", ")),
+            kind.node_names};
   }
-  if (content.angular_velocity) parts += " angular velocity,";
-  // The last comma belongs to no further word.
-  parts.pop_back();
-  return {"imu", parts, group.node_names};
 }
 
-Contents contents_of(const RecordedStream& stream) {
-  if (const auto* clip = std::get_if<ClipInput>(&stream.data)) return contents(clip->skeleton);
-  if (const auto* points = std::get_if<PointInput>(&stream.data)) {
-    return contents(points->joint_names);
-  }
-  const auto& imu = std::get<ImuInput>(stream.data);
-  // A stream of nodes has no root: the take's group is made with an empty one.
-  return contents({imu.node_names, imu.content, ""});
-}
-
-Contents contents_of(const TakeGroup& group) {
-  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return contents(clip->skeleton);
-  if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
-    return contents(points->joint_names);
-  }
-  return contents(std::get<ImuGroup>(group.kind));
+template <class... Kinds>
+Contents contents_of(const std::variant<Kinds...>& any) {
+  return std::visit([](const auto& kind) { return contents_of(kind); }, any);
 }
 
 Json files_json(const std::vector<InputFacts>& files) {
@@ -168,7 +159,7 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
            {"frames", header.frames},
            {"streams", Json::array()}};
   for (const TakeGroup& group : header.groups) {
-    const Contents c = contents_of(group);
+    const Contents c = contents_of(group.kind);
     out["streams"].push_back({{"name", group.name},
                               {"kind", c.kind},
                               {"parts", c.parts},
@@ -185,8 +176,21 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
 
 }  // namespace
 
+std::string fact_line(std::string_view name, const std::string& value) {
+  return fmt::format("  {:<12}{}\n", name, value);
+}
+
+std::string size_line(std::uint64_t bytes) {
+  return fact_line("size", fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6));
+}
+
+std::string findings_line(std::size_t count, const std::string& path) {
+  return count == 0 ? ""
+                    : fmt::format("  {}: see kinalign check {}\n", counted(count, "finding"), path);
+}
+
 std::string contents_line(const RecordedStream& stream) {
-  const Contents c = contents_of(stream);
+  const Contents c = contents_of(stream.data);
   return (c.kind == "imu" ? "nodes, " : c.kind + ", ") + c.parts;
 }
 
@@ -206,7 +210,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
   std::size_t findings = 0;
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     const RecordedStream& s = recording.streams[i];
-    const Contents c = contents_of(s);
+    const Contents c = contents_of(s.data);
     // Findings of a file belong to its first stream, so each of them is counted once.
     const SharedFile* file = newly_read_file(recording, i);
     Findings found = file == nullptr ? Findings{} : file->findings;
@@ -215,12 +219,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
     text += stream_lines(s, c, names);
     findings += found.size();
   }
-  // Findings are only counted here: `check` explains them and their repair.
-  if (findings > 0) {
-    text += fmt::format("  {} finding{}: see kinalign check {}\n", findings,
-                        findings == 1 ? "" : "s", path);
-  }
-  return {std::move(text), json_text(out)};
+  return {text + findings_line(findings, path), json_text(out)};
 }
 
 Result<Description> describe_take(FileSystem& files, const std::string& path, Names names) {

@@ -4,11 +4,15 @@
 
 #include "apps/cli/verb.h"
 
+#include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/survey.h"
 #include "kinalign/take/recording.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace kinalign {
 
@@ -23,11 +27,18 @@ enum class Names { no, yes };
 
 Description describe_recording(const std::string& path, const Recording& recording, Names names);
 
-/// Describes a recording.
 Description describe_survey(const std::string& path, const RecordingSurvey& survey,
                             const RecordingParts& parts);
-/// The problems of a recording: damage, a missing end, messages missing in its own numbering.
-Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
+/// With Names::yes the text lists every channel's label and unit.
+Description describe_survey(const std::string& path, const XdfSurvey& survey, Names names);
+
+/// A line of a description: "  format      MCAP".
+std::string fact_line(std::string_view name, const std::string& value);
+/// "  size        1.2 MB"
+std::string size_line(std::uint64_t bytes);
+/// "  2 findings: see kinalign check PATH": `check` explains them and their repair. Empty without
+/// findings.
+std::string findings_line(std::size_t count, const std::string& path);
 
 /// "points, 25 joints"
 std::string contents_line(const RecordedStream& stream);

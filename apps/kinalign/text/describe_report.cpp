@@ -2,6 +2,7 @@
 #include "apps/kinalign/text/describe_report.h"
 
 #include "apps/cli/help.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/text/summary.h"
 
 #include "kinalign/core/error.h"
@@ -86,9 +87,9 @@ std::string quality_text(const Json& s) {
   std::optional<std::int64_t> interval_ns;
   // An interval that is missing differs from one that is zero: the clock is then unknown.
   if (has("worst_interval_ns")) interval_ns = stamp_at(s, "worst_interval_ns");
-  const bool counted = has("stamps_counted") && s["stamps_counted"] == true;
+  const bool stamps_counted = has("stamps_counted") && s["stamps_counted"] == true;
   std::string text = fmt::format("{:.4g} Hz, ", number_at(s, "rate_hz"));
-  text += clock_text(interval_ns, counted);
+  text += clock_text(interval_ns, stamps_counted);
   if (count_at(s, "late") > 0) {
     text += fmt::format(", {} samples late by {:.2f} s or more", grouped(count_at(s, "late")),
                         1e-9 * number_at(s, "worst_late_ns"));
@@ -97,8 +98,8 @@ std::string quality_text(const Json& s) {
   const std::uint64_t gaps = count_at(s, "gaps");
   // Gaps are shown with their total length, since one long gap is worse than many short ones.
   if (gaps > 0) {
-    text += fmt::format(", {} gap{} ({:.2f} s)", gaps, gaps == 1 ? "" : "s",
-                        1e-9 * number_at(s, "gap_time_ns"));
+    text +=
+        fmt::format(", {} ({:.2f} s)", counted(gaps, "gap"), 1e-9 * number_at(s, "gap_time_ns"));
   }
   return text + fmt::format(", nearest sample within {:.1f} ms\n",
                             1e-6 * number_at(s, "worst_nearest_ns"));
@@ -189,7 +190,7 @@ Result<Findings> report_findings(const std::string& report, const std::string& p
 
 std::string take_text(const std::string& json, Names names) {
   const Json take = Json::parse(json, nullptr, false);
-  // A reference needs an object that lives on; a temporary one would not.
+  // A reference to a temporary object would dangle.
   const Json none = Json::object();
   const Json& report = take.is_object() && take.contains("report") ? take["report"] : none;
   std::string text = head_text(take, report);

@@ -2,7 +2,6 @@
 #include "apps/cli/json_text.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/text/describe_report.h"
-#include "apps/kinalign/text/node_names.h"
 #include "apps/kinalign/text/record_text.h"
 #include "apps/kinalign/text/summary.h"
 
@@ -58,29 +57,12 @@ std::string mark_text(const RecordedMark& mark, double at_s) {
   return mark_words(kinalign::name_of(mark.mark.kind), mark.mark.text, at_s, mark.source) + latency;
 }
 
-/// Adds the marks, and the counts of senders and ports that the recorder wrote.
-/// The recorder writes both as JSON, so the text is parsed and passed on unchanged.
-void add_told(const RecordingSurvey& survey, Json& json) {
-  json["marks"] = json["senders"] = json["ports"] = Json::array();
-  for (const auto& [mark, log_time] : survey.marks) {
-    Json one = Json::parse(to_json(mark));
-    one["time_ns"] = log_time;
-    json["marks"].push_back(one);
-  }
-  for (const CountedSender& one : survey.senders) {
-    json["senders"].push_back(Json::parse(to_json(one)));
-  }
-  for (const CountedPort& one : survey.ports) {
-    json["ports"].push_back(Json::parse(to_json(one)));
-  }
-}
-
 /// The text about a recording. Times of marks count from its first message.
 std::string text_of(const std::string& path, const RecordingSurvey& survey,
                     const RecordingParts& parts) {
-  std::string text = fmt::format("{}\n", path);
+  std::string text = path + "\n";
   const auto line = [&text](std::string_view name, const std::string& value) {
-    text += fmt::format("  {:<12}{}\n", name, value);
+    text += fact_line(name, value);
   };
   line("format", survey.facts ? "MCAP, a recording of kinalign's" : "MCAP");
   if (survey.facts && !survey.facts->subject.empty()) line("subject", survey.facts->subject);
@@ -93,7 +75,7 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
   // `truncated` lists the files that lack an index.
   line("state", survey.truncated.empty() ? "whole" : "truncated: no index at its end");
   line("messages", grouped(survey.messages));
-  line("size", fmt::format("{:.1f} MB", static_cast<double>(survey.bytes) / 1e6));
+  text += size_line(survey.bytes);
   for (const ChannelSurvey& channel : survey.channels) {
     line("channel",
          fmt::format("{}: {} messages, {:.1f} s, {:.1f} Hz, {:.1f} MB", channel.channel.topic,
@@ -137,7 +119,16 @@ Json json_of(const std::string& path, const RecordingSurvey& survey, const Recor
   // Only a recording that was ended properly knows how many messages were dropped.
   if (survey.end) json["dropped"] = survey.end->dropped;
   for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
-  add_told(survey, json);
+  json["marks"] = json["senders"] = json["ports"] = Json::array();
+  for (const auto& [mark, log_time] : survey.marks) {
+    json["marks"].push_back(Json::parse(to_json(mark)));
+    json["marks"].back()["time_ns"] = log_time;
+  }
+  // The recorder wrote the counts as JSON with the same members.
+  for (const CountedSender& one : survey.senders) {
+    json["senders"].push_back(Json::parse(to_json(one)));
+  }
+  for (const CountedPort& one : survey.ports) json["ports"].push_back(Json::parse(to_json(one)));
   return json;
 }
 

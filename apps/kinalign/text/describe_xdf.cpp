@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/text/describe_xdf.h"
-
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/text/counts_text.h"
+#include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/text/summary.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <string_view>
 
 namespace kinalign {
 
@@ -42,10 +41,9 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
   double residual = 0.0;
   for (const XdfClockLine& line : one.clock) residual = std::max(residual, line.largest_residual);
   const XdfClockLine& last = one.clock.back();
-  std::string text =
-      fmt::format("{} clock offset{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
-                  grouped(one.clock_offsets), one.clock_offsets == 1 ? "" : "s", last.offset,
-                  1e6 * last.slope, 1e3 * residual);
+  std::string text = fmt::format("{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
+                                 counted(one.clock_offsets, "clock offset"), last.offset,
+                                 1e6 * last.slope, 1e3 * residual);
   // n lines mean n - 1 resets.
   if (one.clock.size() > 1) text += fmt::format("; restarted {} times", one.clock.size() - 1);
   return text;
@@ -54,21 +52,18 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
 /// The lines about a stream of an XDF file.
 std::string stream_lines(const XdfStreamSurvey& one, Names names) {
   const XdfStream& s = one.stream;
-  std::string text;
-  const auto line = [&text](std::string_view name, const std::string& value) {
-    text += fmt::format("  {:<12}{}\n", name, value);
-  };
-  line("stream", fmt::format("{}{}: {} channel{} of {}, {} samples, {}", shown(s.name),
-                             s.type.empty() ? "" : " (" + shown(s.type) + ")", s.channel_count,
-                             s.channel_count == 1 ? "" : "s", name_of(s.format),
-                             grouped(one.samples), rate_text(one)));
-  if (one.first) line("  stamps", stamps_text(one));
-  line("  clock", stream_clock_text(one));
+  std::string text =
+      fact_line("stream", fmt::format("{}{}: {} of {}, {} samples, {}", shown(s.name),
+                                      s.type.empty() ? "" : " (" + shown(s.type) + ")",
+                                      counted(s.channel_count, "channel"), name_of(s.format),
+                                      grouped(one.samples), rate_text(one)));
+  if (one.first) text += fact_line("  stamps", stamps_text(one));
+  text += fact_line("  clock", stream_clock_text(one));
   // An EEG has up to hundreds of channels, so they are listed only if asked for.
   if (names == Names::no) return text;
   for (const XdfChannel& channel : s.channels) {
-    line("  channel", fmt::format("{}{}", shown(channel.label),
-                                  channel.unit.empty() ? "" : ", " + shown(channel.unit)));
+    const std::string unit = channel.unit.empty() ? "" : ", " + shown(channel.unit);
+    text += fact_line("  channel", shown(channel.label) + unit);
   }
   return text;
 }
@@ -118,94 +113,14 @@ Json json_of(const XdfStreamSurvey& one) {
 
 }  // namespace
 
-Description describe_xdf(const std::string& path, const XdfSurvey& survey, Names names) {
-  std::string text = fmt::format("{}\n", path);
-  text += fmt::format("  {:<12}XDF 1.0\n", "format");
-  text += fmt::format("  {:<12}{:.1f} MB\n", "size", static_cast<double>(survey.bytes) / 1e6);
+Description describe_survey(const std::string& path, const XdfSurvey& survey, Names names) {
+  std::string text = path + "\n" + fact_line("format", "XDF 1.0") + size_line(survey.bytes);
   Json json{{"file", path}, {"kind", "xdf"}, {"bytes", survey.bytes}, {"streams", Json::array()}};
   for (const XdfStreamSurvey& one : survey.streams) {
     text += stream_lines(one, names);
     json["streams"].push_back(json_of(one));
   }
-  const std::size_t wrong = survey.findings.size();
-  if (wrong > 0) {
-    text +=
-        fmt::format("  {} finding{}: see kinalign check {}\n", wrong, wrong == 1 ? "" : "s", path);
-  }
-  return {std::move(text), json_text(json)};
-}
-
-namespace {
-
-/// Collects the findings about the streams of one file.
-/// Severity: a warning if stamps can't be used as they are, a note if only the user should know.
-class Judge {
- public:
-  Judge(const std::string& path, Findings& out) : path_(path), out_(out) {}
-
-  void judge(const XdfStreamSurvey& one) {
-    const std::string stream = fmt::format(" of stream '{}'", shown(one.stream.name));
-    // A stream without samples has no further faults, so the function ends.
-    if (one.samples == 0) {
-      say(Severity::note, "samples" + stream, "none",
-          "this stream was recorded, but its sender sent no samples");
-      return;
-    }
-    // A stamp that is no number, or too large to be a time, gives no time.
-    if (one.timeless > 0) {
-      say(Severity::warning, "stamps below 1e15" + stream, grouped(one.timeless) + " other stamps",
-          "these samples have no time");
-    }
-    if (one.backward > 0) {
-      say(Severity::warning, "rising stamps" + stream,
-          fmt::format("{} that step back, by up to {:.3f} s", grouped(one.backward),
-                      one.largest_step_back_s),
-          "the sender's clock was set back, or samples arrived out of order");
-    }
-    // NaN is the usual mark of a missing value, so it is no fault.
-    if (one.no_numbers > 0) {
-      say(Severity::note, "finite values" + stream,
-          grouped(one.no_numbers) + " NaN or infinite values",
-          "many senders mark missing measurements this way");
-    }
-    judge_clock(one, stream);
-  }
-
- private:
-  void judge_clock(const XdfStreamSurvey& one, const std::string& stream) {
-    // Without offsets nothing relates both clocks. Taking them as one is right if both ran on one
-    // machine.
-    if (one.clock.empty()) {
-      say(Severity::note, "clock offsets" + stream, "none",
-          "its stamps are treated as stamps of the recorder's clock");
-    }
-    if (one.clock.size() > 1) {
-      say(Severity::warning, "one clock" + stream, fmt::format("{} clocks", one.clock.size()),
-          "the clock was reset during the recording; each stamp is converted by the nearest clock "
-          "line");
-    }
-  }
-  void say(Severity severity, std::string expected, std::string found, std::string meaning) {
-    out_.push_back(
-        {severity, Error{path_, 0, std::move(expected), std::move(found)}, std::move(meaning), ""});
-  }
-
-  const std::string& path_;
-  Findings& out_;
-};
-
-}  // namespace
-
-Findings judge_xdf(const std::string& path, const XdfSurvey& survey) {
-  // The findings of the reader come first.
-  Findings findings = survey.findings;
-  Judge judge(path, findings);
-  for (const XdfStreamSurvey& one : survey.streams) judge.judge(one);
-  if (survey.streams.empty()) {
-    findings.push_back({Severity::warning, Error{path, 0, "a readable stream", "none"},
-                        "this file has no data that can be used", ""});
-  }
-  return findings;
+  return {text + findings_line(survey.findings.size(), path), json_text(json)};
 }
 
 }  // namespace kinalign

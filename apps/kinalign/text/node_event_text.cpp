@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 
 namespace kinalign {
@@ -17,39 +18,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The name of the kind in JSON. A switch, so that the compiler warns about a missing kind.
-const char* name_of(ClockEvent::Kind kind) {
-  using Kind = ClockEvent::Kind;
-  switch (kind) {
-    case Kind::new_boot:
-      return "new_boot";
-    case Kind::step:
-      return "step";
-    case Kind::slip:
-      return "slip";
-    case Kind::uneasy:
-      return "uneasy";
-    case Kind::settled:
-      return "settled";
-    case Kind::host_backwards:
-      return "host_backwards";
-    case Kind::withdrawn:
-      return "withdrawn";
-    case Kind::violator:
-      return "violator";
-    case Kind::relaxed:
-      return "relaxed";
-    case Kind::route:
-      return "route";
-  }
-  return "";
-}
-
-/// The three kinds are suspended, backwards and wall_stepped.
-const char* name_of(HostClockEvent::Kind kind) {
-  if (kind == HostClockEvent::Kind::suspended) return "suspended";
-  return kind == HostClockEvent::Kind::backwards ? "backwards" : "wall_stepped";
-}
+/// The names in JSON, in the order of ClockEvent::Kind and HostClockEvent::Kind.
+constexpr std::array clock_event_names{"new_boot", "step",           "slip",      "uneasy",
+                                       "settled",  "host_backwards", "withdrawn", "violator",
+                                       "relaxed",  "route"};
+constexpr std::array host_event_names{"suspended", "backwards", "wall_stepped"};
 
 /// The event in words, without the node's name.
 /// Sentences begin with the verb, since the node's name comes before them. "warning:" marks what
@@ -62,7 +35,7 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
     case Kind::started:
       return "restarted";
     case Kind::restarted:
-      // A boot id tells the host that the counter began anew. An old one mixes two lives of a node.
+      // A boot id tells the host that the counter began anew. An old one mixes two clocks.
       return "warning: restarted with its old boot id; its firmware must choose a new boot id at "
              "each start";
     case Kind::twins:
@@ -118,9 +91,8 @@ std::string event_text(const NodeEvent& event, const NodeNames& names) {
 
 std::string event_json(const NodeEvent& event) {
   // The keys are the same for all kinds; a kind adds those that it has.
-  Json json{{"event", "node_event"},
-            {"kind", kinalign::name_of(event.kind)},
-            {"warning", is_warning(event.kind)}};
+  Json json{
+      {"event", "node_event"}, {"kind", name_of(event.kind)}, {"warning", is_warning(event.kind)}};
   const bool is_refused = event.kind == NodeEvent::Kind::wrong_key;  // a refused node has no stream
   if (!is_refused) json["stream"] = event.stream;
   json["node_id"] = event.node_id;
@@ -136,37 +108,38 @@ std::string event_json(const NodeEvent& event) {
 /// The event in words. Kinds that need no action give an empty text.
 std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names) {
   using Kind = ClockEvent::Kind;
-  const auto says = [&](const std::string& what) { return names.name(node_id) + ": " + what; };
-  // Without a size the step was found by a contradiction and not by a measurement.
   const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // the direction is not always known
-  if (event.kind == Kind::step && !event.by) {
-    return says("warning: its counter stepped, or its drift changes faster than assumed");
-  }
+  std::string what;
   if (event.kind == Kind::step) {
-    return says(fmt::format("warning: its counter stepped by at least {:.3f} ms", by_ms));
+    // Without a size the step was found by a contradiction and not by a measurement.
+    what = event.by ? fmt::format("warning: its counter stepped by at least {:.3f} ms", by_ms)
+                    : "warning: its counter stepped, or its drift changes faster than assumed";
+  } else if (event.kind == Kind::slip) {
+    what = fmt::format("warning: its counter stepped by {:.3f} ms", by_ms);
+  } else if (event.kind == Kind::withdrawn) {
+    what = fmt::format("warning: the stamps of {:.1f} s are no longer certified",
+                       seconds(event.end - event.begin));
+  } else if (event.kind == Kind::uneasy) {
+    what = fmt::format(
+        "its estimated stamps may be wrong by up to {:.3f} ms; their certified intervals stay "
+        "correct",
+        by_ms);
+  } else if (event.kind == Kind::settled) {
+    what = "its counter runs evenly again";
+  } else if (event.kind == Kind::relaxed) {
+    what = "its drift may change faster than assumed";
   }
-  if (event.kind == Kind::slip) {
-    return says(fmt::format("warning: its counter stepped by {:.3f} ms", by_ms));
-  }
-  if (event.kind == Kind::withdrawn) {
-    return says(fmt::format("warning: the stamps of {:.1f} s are no longer certified",
-                            seconds(event.end - event.begin)));
-  }
-  if (event.kind == Kind::uneasy) {
-    return says(
-        fmt::format("its estimated stamps may be wrong by up to {:.3f} ms; their certified "
-                    "intervals stay correct",
-                    by_ms));
-  }
-  if (event.kind == Kind::settled) return says("its counter runs evenly again");
   // The kinds without a line are of use to programs only.
-  return event.kind == Kind::relaxed ? says("its drift may change faster than assumed") : "";
+  return what.empty() ? "" : names.name(node_id) + ": " + what;
 }
 
 std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id) {
-  Json json{
-      {"event", "clock_event"}, {"kind", name_of(event.kind)},      {"stream", stream},
-      {"node_id", node_id},     {"begin_ns", json_ns(event.begin)}, {"end_ns", json_ns(event.end)}};
+  Json json{{"event", "clock_event"},
+            {"kind", clock_event_names.at(static_cast<std::size_t>(event.kind))},
+            {"stream", stream},
+            {"node_id", node_id},
+            {"begin_ns", json_ns(event.begin)},
+            {"end_ns", json_ns(event.end)}};
   if (event.by) json["by_ms"] = 1e3 * std::abs(*event.by);
   if (event.curvature) json["curvature_ppm_per_s"] = 1e6 * *event.curvature;
   return json_text(json);
@@ -189,7 +162,7 @@ std::string event_text(const HostClockEvent& event) {
 
 std::string event_json(const HostClockEvent& event) {
   return json_text(Json{{"event", "host_event"},
-                        {"kind", name_of(event.kind)},
+                        {"kind", host_event_names.at(static_cast<std::size_t>(event.kind))},
                         {"at_ns", json_ns(event.at)},
                         {"by_ms", 1e3 * seconds(event.by)}});
 }

@@ -7,25 +7,6 @@
 
 namespace kinalign {
 
-// A sender that is no node is called by its device.
-std::string sender_name(const std::string& stream, const std::string& node,
-                        const std::string& place) {
-  if (node.empty()) return stream;
-  return stream + " " + (place.empty() ? node : place);
-}
-
-std::string sender_name(const std::string& stream, const std::string& node,
-                        const RecordingSurvey& survey) {
-  // Places are found by "stream/node", as the recording states them.
-  const auto place = survey.places.find(stream + "/" + node);
-  return sender_name(stream, node, place == survey.places.end() ? "" : place->second);
-}
-
-std::string name_of(const CountedSender& sender, const RecordingSurvey& survey) {
-  return sender_name(sender.stream, sender.node, survey) +
-         (sender.sender.empty() ? "" : " from " + sender.sender);
-}
-
 std::string NodeNames::short_name(std::uint32_t id) const {
   const std::string number = std::to_string(id);
   const auto place = places.find(number);

@@ -3,7 +3,6 @@
 // Users type, and programs read, the id, or "imu/7" as in topics.
 #pragma once
 
-#include "kinalign/recording/survey.h"
 #include "kinalign/take/lab.h"
 
 #include <cstdint>
@@ -11,16 +10,6 @@
 #include <string>
 
 namespace kinalign {
-
-/// "imu waist", "imu 7"; "mocap" for a sender that is no node.
-std::string sender_name(const std::string& stream, const std::string& node,
-                        const std::string& place);
-
-/// The same, with the place that the recording states.
-std::string sender_name(const std::string& stream, const std::string& node,
-                        const RecordingSurvey& survey);
-/// "mocap from 192.168.7.5:51234", "imu waist from 192.168.7.21:4000"
-std::string name_of(const CountedSender& sender, const RecordingSurvey& survey);
 
 /// The names of one device's nodes. A node without a place is called by its id.
 struct NodeNames {

@@ -2,6 +2,7 @@
 #include "apps/kinalign/text/node_text.h"
 
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/text/summary.h"
 #include "apps/kinalign/text/time_server_text.h"
 
@@ -28,12 +29,6 @@ bool is_certified(const NodeStatus& status) {
   return status.stamp && status.stamp->certainty == Certainty::certified;
 }
 
-/// The words are values in JSON.
-const char* certainty_name(Certainty certainty) {
-  if (certainty == Certainty::certified) return "certified";
-  return certainty == Certainty::one_sided ? "one_sided" : "doubtful";
-}
-
 /// False if the least round trip is not positive, which a clock with a large drift can cause; then
 /// it says nothing.
 bool has_round_trip(const NodeStatus& status) {
@@ -54,13 +49,6 @@ std::string_view why_not_locked(const NodeStatus& status) {
   return "its exchanges contradict the assumptions";
 }
 
-/// The refusal in words: "wrong mac".
-std::string words(NodeRefusal refusal) {
-  std::string name = refusal_name(refusal);
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 /// Adds the members about the clock: drift, round trip, and the latest stamp with its certified
 /// interval.
 /// Must not be called before the node has a counter value.
@@ -71,7 +59,8 @@ void add_clock(Json& json, const NodeStatus& status) {
   if (has_round_trip(status)) json["round_trip_ms"] = ms(*status.round_trip);
   if (!status.stamp) return;
   const ClockStamp& stamp = *status.stamp;
-  json["certainty"] = certainty_name(stamp.certainty);
+  const bool one_sided = stamp.certainty == Certainty::one_sided;
+  json["certainty"] = is_certified(status) ? "certified" : one_sided ? "one_sided" : "doubtful";
   json["time_ns"] = json_ns(stamp.time);
   // A one-sided stamp has only one end of the interval.
   if (stamp.earliest) json["earliest_ns"] = json_ns(*stamp.earliest);
@@ -134,10 +123,8 @@ std::string nodes_text(const std::vector<NodeStatus>& all) {
   const auto is_locked = [](const auto& s) { return !s.silent && is_certified(s); };
   const auto locked = std::count_if(all.begin(), all.end(), is_locked);
   const auto silent = std::count_if(all.begin(), all.end(), [](const auto& s) { return s.silent; });
-  std::string text =
-      fmt::format("{} node{}, {} locked", all.size(), all.size() == 1 ? "" : "s", locked);
-  if (silent > 0) text += fmt::format(", {} silent", silent);
-  return text;
+  return fmt::format("{}, {} locked{}", counted(all.size(), "node"), locked,
+                     silent > 0 ? fmt::format(", {} silent", silent) : "");
 }
 
 std::string pair_json(const ClockPair& pair) {
@@ -146,14 +133,13 @@ std::string pair_json(const ClockPair& pair) {
 }
 
 std::string refused_text(const NodeCounts& counts) {
-  std::string text;
+  std::vector<std::pair<std::uint64_t, std::string>> refused;
   // 0 is "not refused".
   for (std::size_t i = 1; i < node_refusals; ++i) {
     const auto refusal = static_cast<NodeRefusal>(i);
-    if (counts.refusals[refusal] == 0) continue;
-    text += (text.empty() ? "" : ", ") + grouped(counts.refusals[refusal]) + " " + words(refusal);
+    refused.emplace_back(counts.refusals[refusal], spaced(refusal_name(refusal)));
   }
-  return text;
+  return counts_in_words(refused);
 }
 
 /// Groups the stated ids by the cause of the refusal. Ids are what a frame states; they are not
@@ -171,8 +157,8 @@ std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCoun
     // The list of claims is limited; further senders are only counted.
     const char* others = refused.others(refusal) ? " and others" : "";
     lines.push_back(fmt::format("{}: senders that call themselves {} {}{} ({} frames)",
-                                words(refusal), names.device, fmt::join(who, ", "), others,
-                                grouped(counts.refusals[refusal])));
+                                spaced(refusal_name(refusal)), names.device, fmt::join(who, ", "),
+                                others, grouped(counts.refusals[refusal])));
   }
   return lines;
 }

@@ -45,17 +45,6 @@ PortCounts counts_of(const DeviceOptions& device, const LabStatus& status) {
   return found == status.ports.end() ? PortCounts() : found->second;
 }
 
-/// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
-/// The kernel's filter drops foreign datagrams at a nodes' port, and a full socket drops frames.
-/// The numbers of the lost frames tell how many are surely foreign.
-std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
-  if (!counts.sifted) return "dropped by the kernel";
-  const std::uint64_t least = strays(counts, frames_lost);
-  if (least == counts.dropped) return "thrown away: no frames of nodes";
-  if (least == 0) return "thrown away: no frames of nodes, or no room for them";
-  return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
-}
-
 /// The text about a device from which nothing has come yet.
 std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
   // `links` counts connections, so it is 0 for UDP.
@@ -104,37 +93,8 @@ std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& st
   return names;
 }
 
-std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
-  std::string text;
-  for (const auto& [count, what] : {std::pair(counts.dropped, thrown_away(counts, frames_lost)),
-                                    std::pair(counts.refused, std::string("refused, not recorded")),
-                                    std::pair(counts.cut, std::string("cut")),
-                                    std::pair(counts.unsent, std::string("answers not sent"))}) {
-    // A count of 0 has no words.
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
-  }
-  return text;
-}
-
-std::string unusable_data(const PortCounts& counts, const std::string& to) {
-  const std::uint64_t came = counts.dropped + counts.refused;
-  // Only a nodes' port is sifted, so only there can datagrams be foreign.
-  if (!counts.sifted || came == 0) return "";
-  return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
-                     counts.refused == 0 ? "a frame of nodes" : "was let in");
-}
-
 std::string name_of(const StreamStatus& stream) {
   return sender_name(stream.stream, stream.node, stream.place);
-}
-
-std::vector<std::string> unseen(const Lab& lab, const LabStatus& status) {
-  std::vector<std::string> all;
-  for (const DeviceOptions& device : lab.devices) {
-    const auto names = unseen(device, status);
-    all.insert(all.end(), names.begin(), names.end());
-  }
-  return all;
 }
 
 std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status) {
@@ -159,19 +119,20 @@ std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> names;
   for (const DeviceOptions& device : lab.devices) {
     if (!device.required) continue;
-    bool alive = false;
+    const auto nodes = status.ended ? unseen(device, status) : unseen_nodes(device, status);
+    names.insert(names.end(), nodes.begin(), nodes.end());
+    if (status.ended) continue;
+    bool sends = false;
     for (const StreamStatus& stream : status.streams) {
       if (stream.stream != device.name) continue;
       const bool silent = is_silent(stream, status.now);
-      // A restarted program has another port and is another sender, so one live sender is enough.
-      alive = alive || !silent;
+      // A restarted program has another port and is another sender, so one that sends is enough.
+      sends = sends || !silent;
       // A node with a place is required by itself.
       if (silent && !stream.place.empty()) names.push_back(name_of(stream));
     }
-    const auto nodes = unseen_nodes(device, status);
-    names.insert(names.end(), nodes.begin(), nodes.end());
     // A device with stated nodes is missing if a node is; without nodes it is missing as a whole.
-    if (!alive && device.nodes.empty()) names.push_back(device.name);
+    if (!sends && device.nodes.empty()) names.push_back(device.name);
   }
   return names;
 }
@@ -195,22 +156,16 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
 
 /// Counts that are 0 are left out.
 std::string counts_text(const SenderCounts& counts) {
-  std::string text =
-      fmt::format("{} messages, {:.1f} MB", grouped(counts.messages), megabytes(counts.bytes));
-  // The first count is separated by a semicolon, all others by commas.
-  std::string_view between = "; ";
-  for (const auto& [count, what] :
-       {std::pair(counts.order.lost, "lost"), std::pair(counts.order.late, "late"),
-        std::pair(counts.order.duplicates, "twice"), std::pair(counts.refused, "refused")}) {
-    if (count == 0) continue;
-    text += fmt::format("{}{} {}", between, grouped(count), what);
-    between = ", ";
-  }
+  std::string losses = counts_in_words({{counts.order.lost, "lost"},
+                                        {counts.order.late, "late"},
+                                        {counts.order.duplicates, "twice"},
+                                        {counts.refused, "refused"}});
   if (const std::uint64_t restarts = counts.order.restarts) {
-    text += fmt::format("{}started anew {}", between,
-                        restarts == 1 ? "once" : grouped(restarts) + " times");
+    losses += losses.empty() ? "started anew " : ", started anew ";
+    losses += restarts == 1 ? "once" : grouped(restarts) + " times";
   }
-  return text;
+  return fmt::format("{} messages, {:.1f} MB{}{}", grouped(counts.messages),
+                     megabytes(counts.bytes), losses.empty() ? "" : "; ", losses);
 }
 
 std::string end_line(const StreamStatus& stream) {
@@ -244,10 +199,10 @@ Json json_of(const StreamStatus& stream, const LabStatus& status) {
   }
   if (node == nullptr) return json;
   Json clock = Json::parse(status_json(*node));
-  for (const char* said_above :
+  for (const char* in_stream :
        // These members are about the stream and stand in the object already.
        {"event", "stream", "node_id", "address", "accepted", "lost", "rate_hz", "battery_mv"}) {
-    clock.erase(said_above);
+    clock.erase(in_stream);
   }
   json["clock"] = clock;
   return json;

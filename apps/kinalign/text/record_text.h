@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/capture/recorder/lab_status.h"
+#include "kinalign/check/recording_words.h"
 #include "kinalign/take/lab.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -29,34 +30,14 @@ const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStat
 /// known of it yet.
 std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus* node);
 
-/// "1,234 dropped by the kernel". Empty if nothing was lost. `frames_lost`: the frames lost by the
-/// numbers of all senders of that port.
-std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost);
-/// The frames that a device's senders lost, by their own numbers.
-template <class Sender>
-std::uint64_t frames_lost(const std::string& device, const std::vector<Sender>& senders) {
-  std::uint64_t lost = 0;
-  for (const Sender& sender : senders) {
-    if (sender.stream == device) lost += sender.counts.order.lost;
-  }
-  return lost;
-}
-
-/// "181 datagrams came to port 6969, none a frame of nodes": for a nodes' port to which something
-/// came, though no node has sent. Empty if nothing came. `to`: "to port 6969".
-/// It tells a wrong port or protocol from a device that is switched off.
-std::string unusable_data(const PortCounts& counts, const std::string& to);
-
 /// The device's nodes that have places and sent nothing; the device itself if nothing came from it.
 std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& status);
-/// The devices, and nodes with places, that sent nothing.
-std::vector<std::string> unseen(const Lab& lab, const LabStatus& status);
 /// A line for each of them: "kinect: nobody has connected to port 7201 yet"; at the end "kinect:
 /// nothing came".
 std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status);
 
-/// The required devices, and their nodes with places, from which nothing comes now: "mocap", "imu
-/// waist".
+/// The required devices, and their nodes with places, from which nothing comes now or, at the end
+/// of a take, nothing came: "mocap", "imu waist".
 std::vector<std::string> missing(const Lab& lab, const LabStatus& status);
 
 /// Only the newest of several connections that one device made one after another from one port.

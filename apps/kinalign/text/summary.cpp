@@ -2,8 +2,10 @@
 #include "apps/kinalign/text/summary.h"
 
 #include "apps/cli/console.h"
+#include "apps/kinalign/text/counts_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +65,7 @@ std::vector<Group> groups_of(const AlignmentReport& report) {
 
 std::string name_of(const Group& group) {
   if (group.nodes == 0) return group.sum.stream;
-  return fmt::format("{} ({} node{})", group.sum.stream, group.nodes, group.nodes == 1 ? "" : "s");
+  return fmt::format("{} ({})", group.sum.stream, counted(group.nodes, "node"));
 }
 
 /// Orders streams by the half-width of their interval in time: an unknown one is the largest.
@@ -88,7 +90,7 @@ std::string time_text(const Group& group, const Console& console) {
   if (group.sum.unsure > 0) {
     sure += ", " + share_text(group.sum.unsure, group.sum.samples) + " unknown";
   }
-  // The colour is that of a warning: without an interval nobody knows how far the times are off.
+  // The colour is that of a warning: without an interval the error of the times is not known.
   if (!known || group.sum.unsure > 0) sure = console.paint(Colour::warning, sure);
   return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
 }
@@ -98,13 +100,12 @@ std::string time_line(std::vector<Group> groups, const std::string& reference,
                       const Console& console) {
   std::stable_sort(groups.begin(), groups.end(),
                    [](const Group& a, const Group& b) { return doubt(a.sum) > doubt(b.sum); });
-  std::string text;
+  std::vector<std::string> texts;
   for (const Group& group : groups) {
     // The reference defines the grid, so its time has no error against it.
-    if (group.sum.stream == reference) continue;
-    text += (text.empty() ? "  time   " : "   ") + time_text(group, console);
+    if (group.sum.stream != reference) texts.push_back(time_text(group, console));
   }
-  return text.empty() ? "" : text + "\n";
+  return texts.empty() ? "" : fmt::format("  time   {}\n", fmt::join(texts, "   "));
 }
 
 /// The line about a stream that was moved into another's space, with the joint of the largest
@@ -135,7 +136,7 @@ std::string gap_line(const Group& group) {
   if (s.gaps == 0 && harm(s) == 0 && s.inferred == 0) return "";
   std::vector<std::string> parts;
   if (s.gaps > 0) {
-    parts.push_back(fmt::format("{} gap{} ({:.2f} s, marked)", s.gaps, s.gaps == 1 ? "" : "s",
+    parts.push_back(fmt::format("{} ({:.2f} s, marked)", counted(s.gaps, "gap"),
                                 1e-9 * static_cast<double>(s.gap_time_ns)));
   }
   const auto share = [&](std::uint64_t part, const char* what) {
@@ -144,10 +145,8 @@ std::string gap_line(const Group& group) {
   share(s.invalid, "invalid");
   share(s.inferred, "inferred");
   share(s.bridged, "interpolated over loss");
-  std::string text = "  gaps   " + harmless(s.stream);
-  // The first part follows a space, all others a comma.
-  for (const std::string& one : parts) text += (&one == parts.data() ? " " : ", ") + one;
-  return text + worst_node(group, harm) + "\n";
+  return fmt::format("  gaps   {} {}{}\n", harmless(s.stream), fmt::join(parts, ", "),
+                     worst_node(group, harm));
 }
 
 /// The lines about gaps, the stream with the largest share of doubtful samples first.
@@ -185,11 +184,11 @@ std::string note_lines(const Findings& findings, const Console& console) {
 std::string summary(const AlignmentReport& report, const std::string& out, const Console& console) {
   const double length = take_seconds(to_ns(report.begin), to_ns(report.end), report.rate_hz);
   const std::vector<Group> groups = groups_of(report);
-  std::string names;
-  for (const Group& group : groups) names += (names.empty() ? "" : " + ") + name_of(group);
+  std::vector<std::string> names;
+  for (const Group& group : groups) names.push_back(harmless(name_of(group)));
   std::string text = fmt::format(
       "{}: {}, {} frames at {:.4g} Hz, {}\n", out.empty() ? "nothing written" : harmless(out),
-      duration_text(length), grouped(report.frames), report.rate_hz, harmless(names));
+      duration_text(length), grouped(report.frames), report.rate_hz, fmt::join(names, " + "));
   text += time_line(groups, report.reference, console);
   for (const SpaceReport& s : report.spaces) text += space_line(s);
   text += gap_lines(groups);

@@ -2,6 +2,7 @@
 #include "apps/kinalign/text/time_server_text.h"
 
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/text/summary.h"
 
 #include "kinalign/capture/net/udp_socket.h"
@@ -12,14 +13,16 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 namespace kinalign {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // The order is that of NTP's leap indicator, 0 to 3 (RFC 5905).
 constexpr std::array<std::string_view, 4> leap_names{"none", "insert", "delete", "unsynchronised"};
@@ -31,21 +34,16 @@ std::string reference_text(std::uint32_t id) {
   return fmt::format("{}.{}.{}.{}", id >> 24, id >> 16 & 0xff, id >> 8 & 0xff, id & 0xff);
 }
 
-nlohmann::ordered_json state_json(const NtpServerState& state) {
-  return {{"leap", name_of(state.leap)},
-          {"stratum", state.stratum},
-          {"reference_id", reference_text(state.reference_id)},
-          // Delays are in milliseconds. The precision is a power of two, in seconds.
-          {"root_delay_ms", 1e3 * seconds(state.root_delay)},
-          {"root_dispersion_ms", 1e3 * seconds(state.root_dispersion)},
-          {"precision_log2_s", state.precision}};
-}
-
-/// "event" comes first, so a program can decide by the first member.
-nlohmann::ordered_json event_json(const std::string& event, const nlohmann::ordered_json& more) {
-  nlohmann::ordered_json json{{"event", event}};
-  json.update(more);
-  return json;
+/// Adds the state of the clock to an event.
+std::string with_state(Json event, const NtpServerState& state) {
+  event.update(Json{{"leap", name_of(state.leap)},
+                    {"stratum", state.stratum},
+                    {"reference_id", reference_text(state.reference_id)},
+                    // Delays are in milliseconds. The precision is a power of two, in seconds.
+                    {"root_delay_ms", 1e3 * seconds(state.root_delay)},
+                    {"root_dispersion_ms", 1e3 * seconds(state.root_dispersion)},
+                    {"precision_log2_s", state.precision}});
+  return json_text(event);
 }
 
 /// The settings that clients need.
@@ -104,20 +102,20 @@ std::string start_lines(const ServedPort& served, const NtpServerState& state) {
 
 /// The event "started" with the addresses, the ports and the state of the clock.
 std::string start_json(const ServedPort& served, const NtpServerState& state) {
-  nlohmann::ordered_json json = event_json(
-      "started",
-      {{"addresses", served.addresses}, {"port", served.port}, {"reachable", served.reachable}});
+  Json json{{"event", "started"},
+            {"addresses", served.addresses},
+            {"port", served.port},
+            {"reachable", served.reachable}};
   // Both members exist only if nodes are served.
   if (served.node_port) {
     json["node_port"] = *served.node_port;
     json["node_keys"] = served.keyed;
   }
-  json.update(state_json(state));
-  return json_text(json);
+  return with_state(std::move(json), state);
 }
 
 std::string clock_json(const NtpServerState& state) {
-  return json_text(event_json("clock", state_json(state)));
+  return with_state({{"event", "clock"}}, state);
 }
 
 std::string utc_text(Time t) {
@@ -131,24 +129,21 @@ std::string live_line(Time now, std::string_view what) {
 }
 
 std::string counts_text(const NtpCounts& counts) {
-  const std::uint64_t answered = counts[NtpOutcome::answered];
-  std::string text =
-      fmt::format("{} NTP request{} answered", grouped(answered), answered == 1 ? "" : "s");
+  std::string text = counted(counts[NtpOutcome::answered], "NTP request") + " answered";
   // Outcome 0 is "answered", which is printed above.
   for (std::size_t i = 1; i < ntp_outcomes; ++i) {
     const auto outcome = static_cast<NtpOutcome>(i);
-    std::string name(name_of(outcome));
-    std::replace(name.begin(), name.end(), '_', ' ');
-    if (counts[outcome] > 0) text += fmt::format(", {} {}", grouped(counts[outcome]), name);
+    if (counts[outcome] == 0) continue;
+    text += ", " + grouped(counts[outcome]) + " " + spaced(name_of(outcome));
   }
   return text;
 }
 
 std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s) {
-  nlohmann::ordered_json json{{"event", event},
-                              // Three decimals are milliseconds.
-                              {"elapsed_s", std::round(elapsed_s * 1e3) / 1e3},
-                              {"received", counts.total()}};
+  Json json{{"event", event},
+            // Three decimals are milliseconds.
+            {"elapsed_s", std::round(elapsed_s * 1e3) / 1e3},
+            {"received", counts.total()}};
   for (std::size_t i = 0; i < ntp_outcomes; ++i) {
     const auto outcome = static_cast<NtpOutcome>(i);
     json[std::string(name_of(outcome))] = counts[outcome];

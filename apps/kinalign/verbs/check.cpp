@@ -3,9 +3,9 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/program.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/text/describe_report.h"
-#include "apps/kinalign/text/describe_xdf.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/inputs.h"
 
@@ -13,6 +13,7 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
+#include "kinalign/check/judge_survey.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/streams/recording_source.h"
@@ -39,10 +40,9 @@ Usage describe_check(Check& o) {
                         "takes, recordings, recording.toml, XDF, streams' files or a BIDS folder",
                         &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
-  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
-    // The call is for its error: a wrong --select is wrong use.
-    KA_TRY(o.stream.stream({}));
-    return {};
+  // A wrong --select is wrong use, found before a file is opened.
+  usage.check = [&o](const Common&, const Sources&) {
+    return o.stream.stream({}).map([](const StreamOptions&) {});
   };
   return usage;
 }
@@ -81,22 +81,13 @@ Findings check_plan(const std::string& path, const Input& input) {
       {Severity::error, std::move(error), "kinalign align can't make a take of this file", repair}};
 }
 
-/// Refuses the call (exit code 2) if a flag does not apply to the file.
-Result<void> check_flags(const Check& o, const std::string& path, const RecordedStream* stream,
-                         Call& call) {
-  auto used = o.stream.check_use(path, stream, call.sources);
-  return used ? Result<void>{} : call.console.refuse(std::move(used).error());
-}
-
 /// The findings, and the number of files they are about.
 struct Checked {
   Findings findings;
   std::size_t files = 1;
 };
 
-Result<Checked> check_take(const Check& o, const std::string& path, Call& call) {
-  FileSystem& files = call.surroundings.files;
-  KA_TRY(check_flags(o, path, nullptr, call));
+Result<Checked> check_take(FileSystem& files, const std::string& path) {
   // A damaged take can crash HDF5, so it is read in a child process that returns the report's JSON.
   const std::string report =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
@@ -119,21 +110,14 @@ void name_as_typed(const std::string& path, const RecordedStream& stream, Findin
 }
 
 /// Checks a recording with all of its parts.
-Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
-  KA_TRY(check_flags(o, path, nullptr, call));
-  FileSystem& files = call.surroundings.files;
+Result<Checked> check_recording(FileSystem& files, const std::string& path,
+                                const Progress& progress) {
   // Checking reads no streams of a recording, so the clocks are not fitted.
-  const auto recording = KA_TRY(RecordingSource::open(
-      files, path, RecordingSource::Devices::surveyed, {}, call.console.progress()));
+  const auto recording =
+      KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::surveyed, {}, progress));
   Checked out{judge_survey(path, recording->survey())};
   append(out.findings, judge_parts(files, recording->parts(), Severity::warning));
   return out;
-}
-
-Result<Checked> check_xdf(const Check& o, const std::string& path, Call& call) {
-  KA_TRY(check_flags(o, path, nullptr, call));
-  return Checked{
-      judge_xdf(path, KA_TRY(survey_xdf(call.surroundings.files, path, call.console.progress())))};
 }
 
 /// A note about a stream's file whose ending is that of another format.
@@ -186,11 +170,10 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
 /// Checks a stream's file, or a manifest with all of its streams.
 Result<Checked> check_input(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
-  // A manifest takes no flags of a stream. This is known before the file is read, and a manifest
-  // can be long to read.
-  if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
-  if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
+  if (!input.manifest) {
+    KA_TRY(o.stream.check_use(path, &input.recording.streams.front(), call));
+  }
   Checked out;
   // The summary counts the files behind a manifest, and not the manifest itself.
   if (input.manifest) out.files = files_named(*input.manifest, "").size();
@@ -209,7 +192,7 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
 /// Checks a folder of BIDS. A kinalign data set is checked by `kinalign dataset verify`.
 Result<Checked> check_folder(const Check& o, const std::string& path, Call& call) {
   namespace fs = std::filesystem;
-  KA_TRY(check_flags(o, path, nullptr, call));
+  KA_TRY(o.stream.check_use(path, nullptr, call));
   // Both kinds of folder may hold takes, but only `dataset verify` knows the catalogue.
   if (fs::exists(path + "/dataset.toml")) {
     return Failure(Error{path, 0, "kinalign dataset verify for a data set", "kinalign check"});
@@ -229,19 +212,20 @@ Result<Checked> check_folder(const Check& o, const std::string& path, Call& call
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
   // A directory can't be opened as a file, so it is recognised before the kind of a file is read.
   if (std::filesystem::is_directory(path)) return check_folder(o, path, call);
-  switch (KA_TRY(kind_of_file(call.surroundings.files, path))) {
-    case FileKind::recording:
-      return check_recording(o, path, call);
-    case FileKind::xdf:
-      return check_xdf(o, path, call);
-    case FileKind::take:
-      return check_take(o, path, call);
-    case FileKind::manifest:
-    case FileKind::stream:
-    case FileKind::model:    // contains no motion: opening it fails with that message
-    case FileKind::unknown:  // opening it fails with the reason, unless --layout states its format
-      break;
+  FileSystem& files = call.surroundings.files;
+  const FileKind kind = KA_TRY(kind_of_file(files, path));
+  // The other kinds state how their streams are read, so flags of a stream are refused before a
+  // long file is read. A model contains no motion: opening it fails with that message.
+  if (kind != FileKind::stream && kind != FileKind::unknown && kind != FileKind::model) {
+    KA_TRY(o.stream.check_use(path, nullptr, call));
   }
+  const Progress progress = call.console.progress();
+  if (kind == FileKind::recording) return check_recording(files, path, progress);
+  if (kind == FileKind::take) return check_take(files, path);
+  if (kind == FileKind::xdf) {
+    return Checked{judge_survey(path, KA_TRY(survey_xdf(files, path, progress)))};
+  }
+  // Opening an unknown file fails with the reason, unless --layout states its format.
   return check_input(o, path, call);
 }
 
@@ -267,8 +251,7 @@ Result<int> run(Check& o, Call& call) {
   }
   call.console.print(finding_lines(all, call.console));
   if (all.empty()) {
-    call.console.print(
-        fmt::format("{} file{} read, nothing found\n", files, files == 1 ? "" : "s"));
+    call.console.print(counted(files, "file") + " read, nothing found\n");
   }
   call.console.print_json("{\"findings\": " + findings_json(all) + "}");
   return usable ? code_of(all) : failed;

@@ -51,8 +51,7 @@ Usage describe_convert(Convert& o) {
     if (o.store_double && !to.ends_with(".npz")) {
       return Failure(Error{"--double", 0, "a new file that ends in .npz", shown(to)});
     }
-    KA_TRY(o.stream.stream({}));
-    return {};
+    return o.stream.stream({}).map([](const StreamOptions&) {});
   };
   return usage;
 }
@@ -167,14 +166,8 @@ Result<Findings> convert_in_child(const Job& job) {
   return report_findings(KA_TRY(run_guarded(GuardLimits{}, blame(job.from), work)), job.from);
 }
 
-/// Refuses the call (exit code 2) if a flag does not apply to the input.
-Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& call) {
-  auto used = o.stream.check_use(o.from.front(), stream, call.sources);
-  return used ? Result<void>{} : call.console.refuse(std::move(used).error());
-}
-
 Result<Findings> convert_take(const Job& job, const Convert& o, Call& call) {
-  KA_TRY(check_flags(o, nullptr, call));
+  KA_TRY(o.stream.check_use(o.from.front(), nullptr, call));
   // Only a child process may read a take, because a damaged one can crash HDF5.
   if (!job.to.ends_with(".mcap")) return convert_in_child(job);
   return call.console.refuse(
@@ -202,17 +195,18 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
         Error{job.to, 0, "a name that ends in .mcap, for a recording",
               "another extension (kinalign align makes a take of a recording)"});
   }
-  KA_TRY(check_flags(o, nullptr, call));
+  KA_TRY(o.stream.check_use(o.from.front(), nullptr, call));
   const auto source = KA_TRY(
       RecordingSource::open(job.files, job.from, RecordingSource::Devices::learned, {}, progress));
   const Manifest manifest = KA_TRY(recorded_manifest(source->survey(), job.from));
   // One device that can't be read must not keep the others from being shown. It becomes a warning.
   const OpenedInPart opened = KA_TRY(open_what_can_be(
       job.files, manifest, std::string(folder(job.from)), {progress, call.jobs, source}));
-  KA_TRY(
+  const Findings left_out = KA_TRY(
       show_recording(job.files, opened.recording, {source.get(), job.to, job.overwrite}, progress));
   Findings findings = findings_of(opened.recording);
   append(findings, opened.left_out);
+  append(findings, left_out);
   return findings;
 }
 
@@ -222,16 +216,15 @@ Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
         Error{job.to, 0, "a name that ends in .mcap, for an XDF file", "another extension"});
   }
   // An XDF describes its own streams, so no flag of a stream applies.
-  KA_TRY(check_flags(o, nullptr, call));
-  return KA_TRY(show_xdf(job.files, job.from, job.to, job.overwrite, call.console.progress()))
-      .findings;
+  KA_TRY(o.stream.check_use(o.from.front(), nullptr, call));
+  return show_xdf(job.files, job.from, job.to, job.overwrite, call.console.progress());
 }
 
 /// Converts the file of a single stream.
 Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   const Input input = KA_TRY(open_input(job.files, job.from, o.stream, call.console.progress()));
   const RecordedStream& stream = input.recording.streams.front();
-  KA_TRY(check_flags(o, &stream, call));
+  KA_TRY(o.stream.check_use(o.from.front(), &stream, call));
   call.console.detail(harmless(read_as(stream)));
   // BVH to BVH copies the text's values, so no number is rounded on its way through a clip.
   if (job.to.ends_with(".bvh")) {
@@ -239,14 +232,17 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
       return copy_bvh(job.files, job.from, sink, call.console.progress());
     });
   }
+  Findings left_out;
   if (job.to.ends_with(".mcap")) {
-    KA_TRY(show_recording(job.files, input.recording, {nullptr, job.to, job.overwrite},
-                          call.console.progress()));
+    left_out = KA_TRY(show_recording(job.files, input.recording, {nullptr, job.to, job.overwrite},
+                                     call.console.progress()));
   } else {
     KA_TRY(stream_to_npz(job, stream, call.console.progress()));
   }
   // The recording has one stream, and `findings` holds those of its file as well.
-  return stream.findings;
+  Findings findings = stream.findings;
+  append(findings, left_out);
+  return findings;
 }
 
 /// Chooses the conversion by the kind of the input.

@@ -2,6 +2,7 @@
 #include "apps/kinalign/verbs/describe_model.h"
 
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/text/counts_text.h"
 
 #include "kinalign/infer/architecture_json.h"
 #include "kinalign/infer/layer_kinds.h"
@@ -25,17 +26,6 @@ namespace {
 // An ordered object prints its members in the order of this file, so the same model gives the same
 // bytes.
 using Json = nlohmann::ordered_json;
-
-/// A line of the description: the name is padded to 12 columns, so that all values start in the
-/// same column.
-std::string line(std::string_view name, const std::string& value) {
-  return fmt::format("  {:<12}{}\n", name, value);
-}
-
-/// "1 joint", "22 joints". Numbers are grouped by thousands.
-std::string counted(std::size_t n, std::string_view word) {
-  return fmt::format("{} {}{}", grouped(n), word, n == 1 ? "" : "s");
-}
 
 /// The number of trained values of a network.
 std::size_t parameters_of(const Architecture& architecture) {
@@ -96,7 +86,7 @@ std::string network_lines(const std::string& name, const Architecture& architect
                   outputs(architecture), counted(parameters_of(architecture), "parameter"),
                   frames_text(look_back(architecture), "before"),
                   frames_text(look_ahead(architecture), "after"));
-  return line("network", about) + layer_lines(architecture.layers, 14);
+  return fact_line("network", about) + layer_lines(architecture.layers, 14);
 }
 
 /// Unlimited is null in JSON; zero would mean that no other frame is seen.
@@ -119,7 +109,8 @@ std::string name_list(const std::vector<std::string>& names) {
 }
 
 std::string joint_lines(std::string_view name, const std::vector<std::string>& joints) {
-  return line(name, fmt::format("{}: {}", counted(joints.size(), "joint"), name_list(joints)));
+  return fact_line(name,
+                   fmt::format("{}: {}", counted(joints.size(), "joint"), name_list(joints)));
 }
 
 /// A text member of an object from a file that any program may have written, on one line. Empty if
@@ -154,8 +145,8 @@ std::string data_lines(const Json& data) {
       about += ", " + frames + " frames";
     const std::string licence = text_of(one, "licence"), citation = text_of(one, "citation");
     about += licence.empty() ? ", no licence stated" : ", licence " + licence;
-    text += line("trained on", about);
-    if (!citation.empty()) text += line("  cite", citation);
+    text += fact_line("trained on", about);
+    if (!citation.empty()) text += fact_line("  cite", citation);
   }
   return text;
 }
@@ -168,12 +159,12 @@ std::string training_lines(const Json& training) {
     const std::string value = number_of(training, key);
     if (!value.empty()) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", key, value);
   }
-  if (!how.empty()) text += line("training", how);
+  if (!how.empty()) text += fact_line("training", how);
   // "from" is set if training continued from another model. The licences of that model's data apply
   // too, so they are listed as well.
   const auto from = training.find("from");
   if (from == training.end() || !from->is_object()) return text;
-  return text + line("continued", "from a model of the same method") +
+  return text + fact_line("continued", "from a model of the same method") +
          data_lines(from->value("data", Json::array()));
 }
 
@@ -181,7 +172,7 @@ std::string training_lines(const Json& training) {
 std::string metric_lines(const Json& metrics) {
   std::string text;
   for (const auto& [name, value] : metrics.items()) {
-    text += line("metric", fmt::format("{} {}", shown(name), shown(value.dump())));
+    text += fact_line("metric", fmt::format("{} {}", shown(name), shown(value.dump())));
   }
   return text;
 }
@@ -228,35 +219,37 @@ std::string_view channels_name(PoseInputs inputs) {
 }
 
 std::string model_line(const ModelFacts& facts) {
-  return line("model", fmt::format("{}, method {}", shown(facts.task), shown(facts.method)));
+  return fact_line("model", fmt::format("{}, method {}", shown(facts.task), shown(facts.method)));
 }
 
 /// The lines about the output, the body and the network of a model for poses or fusion.
 std::string body_lines(const PoseBody& body, bool smoothing, const Architecture& network) {
-  return line("output", fmt::format("rotations of {}", counted(body.bones.size(), "bone"))) +
-         line("body", fmt::format("{}, {:.2f} m from the lowest to the highest at rest",
-                                  counted(body.skeleton.joints(), "joint"),
-                                  height_at_rest(body.skeleton))) +
-         network_lines("net", network) + line("smoothing", smoothing ? "over 5 frames" : "none");
+  return fact_line("output", fmt::format("rotations of {}", counted(body.bones.size(), "bone"))) +
+         fact_line("body", fmt::format("{}, {:.2f} m from the lowest to the highest at rest",
+                                       counted(body.skeleton.joints(), "joint"),
+                                       height_at_rest(body.skeleton))) +
+         network_lines("net", network) +
+         fact_line("smoothing", smoothing ? "over 5 frames" : "none");
 }
 
 std::string model_text(const PoseModel& model) {
   const PoseLayout& layout = model.layout;
   std::string text = model_line(model.facts);
-  text += line("rate", fmt::format("{:g} Hz", layout.rate_hz));
-  text += line("input", fmt::format("{}: {}; {} channels ({})",
-                                    counted(layout.nodes.size(), "node"), name_list(layout.nodes),
-                                    layout.channels(), channels_name(layout.inputs)));
+  text += fact_line("rate", fmt::format("{:g} Hz", layout.rate_hz));
+  text +=
+      fact_line("input", fmt::format("{}: {}; {} channels ({})",
+                                     counted(layout.nodes.size(), "node"), name_list(layout.nodes),
+                                     layout.channels(), channels_name(layout.inputs)));
   return text + body_lines(model.body, model.smoothing, model.architecture);
 }
 
 std::string model_text(const FuseModel& model) {
   const FuseLayout& layout = model.layout;
   std::string text = model_line(model.facts);
-  text += line("rate", fmt::format("{:g} Hz", layout.nodes.rate_hz));
+  text += fact_line("rate", fmt::format("{:g} Hz", layout.nodes.rate_hz));
   text += joint_lines("kinect", layout.joints);
-  text += line("nodes", fmt::format("{}: {}", counted(layout.nodes.nodes.size(), "node"),
-                                    name_list(layout.nodes.nodes)));
+  text += fact_line("nodes", fmt::format("{}: {}", counted(layout.nodes.nodes.size(), "node"),
+                                         name_list(layout.nodes.nodes)));
   return text + body_lines(model.body, model.smoothing, model.architecture);
 }
 
@@ -287,17 +280,17 @@ Json model_json(const FuseModel& model) {
 /// The text about a model that cleans a Kinect.
 std::string model_text(const DenoiseModel& model) {
   std::string text = model_line(model.facts);
-  text += line("rate", fmt::format("{:g} Hz", model.layout.rate_hz));
+  text += fact_line("rate", fmt::format("{:g} Hz", model.layout.rate_hz));
   text += joint_lines("input", model.layout.inputs);
   text += joint_lines("output", model.layout.outputs);
-  text += line("spread", model.states_spread ? "stated for each joint" : "not stated");
+  text += fact_line("spread", model.states_spread ? "stated for each joint" : "not stated");
   text += network_lines("net", model.architecture);
   if (model.second) text += network_lines("second", *model.second);
   const Steadying& steadying = model.steadying;
   return text +
-         line("steadying", fmt::format("{}{}{}", smoothing_text(steadying.smoothing),
-                                       steadying.mirror ? ", mean with the mirror image" : "",
-                                       steadying.bones ? ", bones of constant length" : ""));
+         fact_line("steadying", fmt::format("{}{}{}", smoothing_text(steadying.smoothing),
+                                            steadying.mirror ? ", mean with the mirror image" : "",
+                                            steadying.bones ? ", bones of constant length" : ""));
 }
 
 /// The JSON about a model that cleans a Kinect.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/kinalign/text/describe_file.h"
-#include "apps/kinalign/text/describe_xdf.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
@@ -32,10 +31,9 @@ Usage describe_info(Info& o) {
                         {},
                         "info reads one file; kinalign check reads several"}};
   usage.flags = o.stream.fields();
-  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
-    // The call is for its error: a wrong --select is wrong use, before the file is opened.
-    KA_TRY(o.stream.stream({}));
-    return {};
+  // A wrong --select is wrong use, found before a file is opened.
+  usage.check = [&o](const Common&, const Sources&) {
+    return o.stream.stream({}).map([](const StreamOptions&) {});
   };
   return usage;
 }
@@ -47,8 +45,7 @@ Result<Description> describe_input(const Info& o, Call& call, const std::string&
       KA_TRY(open_input(call.surroundings.files, path, o.stream, call.console.progress()));
   // Only the open stream tells which flags its reader uses.
   if (!input.manifest) {
-    auto used = o.stream.check_use(path, &input.recording.streams.front(), call.sources);
-    if (!used) return call.console.refuse(std::move(used).error());
+    KA_TRY(o.stream.check_use(path, &input.recording.streams.front(), call));
   }
   // Some findings are known only after the last row, for example those about values.
   KA_TRY(read_through(input.recording, call.console.progress()));
@@ -63,8 +60,7 @@ Result<Description> describe(const Info& o, Call& call) {
   const Names names = call.common.verbose ? Names::yes : Names::no;
   const FileKind kind = KA_TRY(kind_of_file(files, path));
   if (kind != FileKind::stream && kind != FileKind::unknown) {
-    auto used = o.stream.check_use(path, nullptr, call.sources);
-    if (!used) return call.console.refuse(std::move(used).error());
+    KA_TRY(o.stream.check_use(path, nullptr, call));
   }
   const Progress progress = call.console.progress();
   switch (kind) {
@@ -75,7 +71,7 @@ Result<Description> describe(const Info& o, Call& call) {
       return describe_survey(path, source->survey(), source->parts());
     }
     case FileKind::xdf:
-      return describe_xdf(path, KA_TRY(survey_xdf(files, path, progress)), names);
+      return describe_survey(path, KA_TRY(survey_xdf(files, path, progress)), names);
     case FileKind::take:
       // describe_take() reads HDF5 in a child process.
       return describe_take(files, path, names);

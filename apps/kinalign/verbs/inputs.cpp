@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/verbs/inputs.h"
 
+#include "apps/cli/console.h"
 #include "apps/cli/field_text.h"
 #include "apps/kinalign/text/describe_file.h"
 
@@ -65,8 +66,8 @@ Fields StreamFlags::fields() {
 }
 
 Result<void> StreamFlags::check_use(const std::string& path, const RecordedStream* stream,
-                                    const Sources& given) const {
-  for (const auto& [name, source] : given) {
+                                    Call& call) const {
+  for (const auto& [name, source] : call.sources) {
     const auto is = [&name = name](std::string_view other) { return name == other; };
     if (source != Source::flag) continue;
     // A manifest, a take or a recording states how its streams are read. Every flag of a stream is
@@ -76,15 +77,15 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
       const Fields own = mine.fields();
       if (std::none_of(own.begin(), own.end(), [&](const Field& f) { return is(f.name); }))
         continue;
-      return Failure(Error{flag_of(name), 0, "a stream's own file",
-                           shown(path) + ", which already states this"});
+      return call.console.refuse(
+          {flag_of(name), 0, "a stream's own file", shown(path) + ", which already states this"});
     }
     // A stream's own kind decides which options its reader ignores. An ignored flag is wrong use,
     // not a silent no-op.
     const auto useless = useless_options(*stream);
     if (std::none_of(useless.begin(), useless.end(), is)) continue;
-    return Failure(Error{flag_of(name), 0, "a file that can use this flag",
-                         shown(path) + ": " + contents_line(*stream)});
+    return call.console.refuse({flag_of(name), 0, "a file that can use this flag",
+                                shown(path) + ": " + contents_line(*stream)});
   }
   return {};
 }

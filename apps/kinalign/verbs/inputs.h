@@ -30,10 +30,9 @@ struct StreamFlags {
   std::vector<std::string> select;  // COLUMN=VALUE
 
   Fields fields();
-  /// Fails if a flag does not apply to the file. `stream`: the file's stream; nullptr for a take or
-  /// a manifest.
-  Result<void> check_use(const std::string& path, const RecordedStream* stream,
-                         const Sources& given) const;
+  /// Refuses the call (exit code 2) if a flag does not apply to the file. `stream`: the file's
+  /// stream; nullptr for a take, a manifest or a recording.
+  Result<void> check_use(const std::string& path, const RecordedStream* stream, Call& call) const;
   /// The options with their files and selections.
   Result<StreamOptions> stream(const std::vector<std::string>& paths) const;
 };

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/text/describe_xdf.h"
-
+#include "apps/kinalign/text/describe_file.h"
 #include "tests/folder.h"
 #include "tests/formats/xdf/xdf_cases.h"
 
 #include <nlohmann/json.hpp>
-
-#include <cmath>
-#include <limits>
 
 using namespace kinalign;
 using Json = nlohmann::json;
@@ -36,20 +32,11 @@ std::string two_streams() {
   return bytes;
 }
 
-std::vector<std::string> told(const std::string& bytes) {
-  std::vector<std::string> out;
-  for (const Finding& f : judge_xdf("rec.xdf", surveyed(bytes))) {
-    out.push_back(std::string(to_string(f.severity)) + ": " + f.what.expected + "; " +
-                  f.what.found);
-  }
-  return out;
-}
-
 }  // namespace
 
 TEST_CASE("info prints an XDF's streams: kind, samples, stamps and clocks") {
   const XdfSurvey survey = surveyed(two_streams());
-  CHECK(describe_xdf("rec.xdf", survey, Names::no).text ==
+  CHECK(describe_survey("rec.xdf", survey, Names::no).text ==
         "rec.xdf\n"
         "  format      XDF 1.0\n"
         "  size        0.0 MB\n"
@@ -60,12 +47,13 @@ TEST_CASE("info prints an XDF's streams: kind, samples, stamps and clocks") {
         "    clock     1 clock offset: -0.125000 s, +0.000 ppm, residuals up to 0.000 ms\n"
         "  stream      N8: 1 channel of string, 0 samples, irregular\n"
         "    clock     no clock offsets\n");
-  CHECK(describe_xdf("rec.xdf", survey, Names::yes)
+  CHECK(describe_survey("rec.xdf", survey, Names::yes)
             .text.find("    channel   Fp1, uV\n    channel   Fp2\n") != std::string::npos);
 }
 
 TEST_CASE("info --json has an XDF's streams with their whole headers") {
-  const Json json = Json::parse(describe_xdf("rec.xdf", surveyed(two_streams()), Names::no).json);
+  const Json json =
+      Json::parse(describe_survey("rec.xdf", surveyed(two_streams()), Names::no).json);
   REQUIRE(json["streams"].size() == 2);
   const Json& one = json["streams"][0];
   CHECK(one["id"] == 7);
@@ -83,27 +71,4 @@ TEST_CASE("info --json has an XDF's streams with their whole headers") {
   CHECK(one["clock_offsets"] == 1);
   CHECK(one["clock"][0]["offset_s"] == -0.125);
   CHECK(json["streams"][1]["first_s"].is_null());
-}
-
-TEST_CASE("check reports the faults of an XDF, and nothing for a sound file") {
-  const std::string sound = xdf_begin + xdf_header(1, "double64", 1) + xdf_offset(1, 1.0, 0.5) +
-                            xdf_samples(1, 1, xdf_sample(1.0, little_text(2.5)));
-  CHECK(told(sound).empty());
-  const std::string more = xdf_samples(1, 1, xdf_sample(0.25, little_text(std::nan(""))));
-  CHECK(told(sound + more) ==
-        std::vector<std::string>{
-            "warning: rising stamps of stream 'N1'; 1 that step back, by up to 0.750 s",
-            "note: finite values of stream 'N1'; 1 NaN or infinite values"});
-  CHECK(told(sound + more.substr(0, 20)).front() ==
-        "warning: a last chunk of 25 bytes; 15 bytes at byte " + std::to_string(sound.size()));
-  CHECK(told(two_streams()) == std::vector<std::string>{"note: samples of stream 'N8'; none"});
-  const double nowhere = std::numeric_limits<double>::infinity();
-  CHECK(told(xdf_begin + xdf_header(1, "double64", 1) +
-             xdf_samples(1, 1, xdf_sample(nowhere, little_text(1.0)))) ==
-        std::vector<std::string>{"warning: stamps below 1e15 of stream 'N1'; 1 other stamps",
-                                 "note: clock offsets of stream 'N1'; none"});
-  CHECK(told(xdf_begin) == std::vector<std::string>{"warning: a readable stream; none"});
-  std::string resets = sound;
-  for (const double offset : {0.5, 0.5, 90.0, 90.0}) resets += xdf_offset(1, 9.0, offset);
-  CHECK(told(resets) == std::vector<std::string>{"warning: one clock of stream 'N1'; 2 clocks"});
 }

@@ -37,7 +37,7 @@ TEST_CASE("a line about a device that has sent nothing names its port") {
   CHECK(linked[2] == "camera: nothing has come to port 7202 yet");
 }
 
-TEST_CASE("missing are required devices that are silent or were never heard, and nodes by place") {
+TEST_CASE("missing are required devices that are silent or never sent, and nodes by place") {
   Scene scene;
   CHECK(missing(scene.lab, scene.status) == std::vector<std::string>{"kinect", "imu wrist"});
   scene.status.streams.clear();
@@ -78,7 +78,7 @@ TEST_CASE("a port's line tells what was not recorded, and nothing else") {
         "  port of mocap: 1,234 dropped by the kernel, 3 refused, not recorded\n");
 }
 
-TEST_CASE("of what a port of nodes threw away it is told what it was, as far as that is known") {
+TEST_CASE("the text about datagrams dropped at a nodes' port names them as far as they are known") {
   PortCounts counts;
   counts.sifted = true;
   counts.dropped = 419;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/sources/value_survey.h"
+#include "kinalign/check/value_survey.h"
 
 #include "kinalign/motion/arrays.h"
 
@@ -19,18 +19,23 @@ constexpr std::uint64_t enough = 10;  // points of a person, or frames or sample
 constexpr double smallest_m = 0.2, largest_m = 20.0;
 /// The step from frame to frame of a root that walks, at 30 Hz. The joints of a hand are at least 6
 /// cm from its wrist.
-constexpr double furthest_step_m = 0.05;
+constexpr double longest_step_m = 0.05;
 /// A node at rest measures 9.8 m/s2, a runner's shank 20 in the mean.
 constexpr double least_with_gravity = 6.0, most_acceleration = 40.0;
 /// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times larger.
 constexpr double most_angular_velocity = 12.0;
 
-/// The factor, a power of ten, by which a size is too large for a person.
-double times_too_large(double size_m) {
-  return std::pow(10.0, std::round(std::log10(size_m / 1.7)));
+}  // namespace
+
+void MeanSize::add(double size) {
+  ++count;
+  sum += size;
+  squares += size * size;
 }
 
-}  // namespace
+double MeanSize::deviation() const {
+  return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean() * mean()));
+}
 
 /// Counts zeros of a joint that was far from zero before or after: such zeros mark a lost joint. A
 /// joint that moves to zero in small steps is really there.
@@ -39,7 +44,7 @@ void PointSizes::Seen::add(const Vec3& at) {
     ++now_at_zero;
     return;
   }
-  const bool comes_far = at.squaredNorm() > furthest_step_m * furthest_step_m;
+  const bool comes_far = at.squaredNorm() > longest_step_m * longest_step_m;
   if (far || comes_far) lost_at_zero += now_at_zero;
   now_at_zero = 0;
   elsewhere = true;
@@ -69,35 +74,32 @@ void PointSizes::add(const PointFrames& block) {
     if (seen < 2) continue;
     most_points_ = std::max(most_points_, seen);
     const double diagonal_m = box.diagonal().norm();
-    Frames& frames = diagonal_m > largest_m ? far_ : person_;
-    ++frames.count;
-    frames.diagonals_m += diagonal_m;
+    (diagonal_m > largest_m ? far_ : person_).add(diagonal_m);
   }
 }
 
 Findings PointSizes::judge(const PointHeader& header, const std::string& file) const {
+  FileFindings out{file};
   // With so few points nothing else can be judged.
   if (all_frames_ >= enough && 10 * seen_frames_ < all_frames_) {
-    return {{Severity::warning,
-             Error{file, 0, "frames with a point in them, one in ten at least",
-                   fmt::format("{} of {}", seen_frames_, all_frames_)},
-             "in the others nothing was seen", "look at the cells that are empty"}};
+    out.add(Severity::warning, "frames with a point in them, one in ten at least",
+            fmt::format("{} of {}", seen_frames_, all_frames_), "in the others nothing was seen",
+            "look at the cells that are empty");
+    return out.all;
   }
-  Findings out = judge_seen(header, file);
-  append(out, judge_marks(header, file));
-  append(out, judge_unit(file));
-  return out;
+  judge_seen(header, out);
+  judge_marks(header, out);
+  judge_unit(out);
+  return out.all;
 }
 
 /// Findings about points that were never tracked or never seen. Both are legal but rarely intended.
-Findings PointSizes::judge_seen(const PointHeader& header, const std::string& file) const {
-  Findings out;
+void PointSizes::judge_seen(const PointHeader& header, FileFindings& out) const {
   if (inferred_ >= enough && tracked_ == 0) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "points that were tracked",
-                         fmt::format("none, and {} that were inferred", inferred_)},
-                   "a fit takes tracked ones only",
-                   "where they were tracked, say under [state] of a layout which value says so"});
+    out.add(Severity::warning, "points that were tracked",
+            fmt::format("none, and {} that were inferred", inferred_),
+            "a fit takes tracked ones only",
+            "where they were tracked, say under [state] of a layout which value says so");
   }
   std::size_t never = 0;
   std::string first;
@@ -106,23 +108,19 @@ Findings PointSizes::judge_seen(const PointHeader& header, const std::string& fi
     if (never++ == 0) first = shown(header.joint_names[j]);
   }
   if (never > 0 && all_frames_ >= enough) {
-    out.push_back({Severity::note,
-                   Error{file, 0, "points that were seen at least once",
-                         fmt::format("{} of {} that never were, the first '{}'", never,
-                                     joints_.size(), first)},
-                   "they are invalid in every row",
-                   "where 0, 0, 0 is its place, as of a body seen from there: a layout without "
-                   "missing_point"});
+    out.add(Severity::note, "points that were seen at least once",
+            fmt::format("{} of {} that never were, the first '{}'", never, joints_.size(), first),
+            "they are invalid in every row",
+            "where 0, 0, 0 is its place, as of a body seen from there: a layout without "
+            "missing_point");
   }
-  return out;
 }
 
 /// Findings about points at exactly zero or far away, which writers use as marks for "not seen". A
 /// point that is always at zero, or moves away from it steadily, is the file's origin instead: a
 /// body seen from its own root, or from its root's first place. Only joints without an offset from
 /// each other can both be the origin.
-Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
-  Findings out;
+void PointSizes::judge_marks(const PointHeader& header, FileFindings& out) const {
   // Joints that were seen, but at zero only. One of them may be the file's origin.
   const auto stays = std::count_if(joints_.begin(), joints_.end(),
                                    [](const Seen& j) { return j.seen() && !j.elsewhere; });
@@ -137,57 +135,46 @@ Findings PointSizes::judge_marks(const PointHeader& header, const std::string& f
     at_zero += zeros;
   }
   if (at_zero > 0) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "points where they were seen",
-                         fmt::format("{} at exactly 0, 0, 0, the first of '{}'", at_zero, first)},
-                   "read as places, as they stand there",
-                   "missing_point = [0, 0, 0] in a layout of the file, where that means not seen"});
+    out.add(Severity::warning, "points where they were seen",
+            fmt::format("{} at exactly 0, 0, 0, the first of '{}'", at_zero, first),
+            "read as places, as they stand there",
+            "missing_point = [0, 0, 0] in a layout of the file, where that means not seen");
   }
   // If most frames are too wide, the unit is wrong instead, and judge_unit() says so.
   if (far_.count > 0 && far_.count <= person_.count) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "the points of a frame within 20 m",
-                         fmt::format("{} of {} frames in which they are not, {:.0f} m in the mean",
-                                     far_.count, far_.count + person_.count,
-                                     far_.diagonals_m / static_cast<double>(far_.count))},
-                   "read as places, as they stand there",
-                   "missing_point in a layout of the file, where a number stands for not seen"});
+    out.add(Severity::warning, "the points of a frame within 20 m",
+            fmt::format("{} of {} frames in which they are not, {:.0f} m in the mean", far_.count,
+                        far_.count + person_.count, far_.mean()),
+            "read as places, as they stand there",
+            "missing_point in a layout of the file, where a number stands for not seen");
   }
-  return out;
 }
 
 /// A finding if the points of a frame lie too far apart or too close together for a person.
-Findings PointSizes::judge_unit(const std::string& file) const {
-  const Frames& most = far_.count > person_.count ? far_ : person_;
-  if (far_.count + person_.count < enough) return {};
+void PointSizes::judge_unit(FileFindings& out) const {
+  if (far_.count + person_.count < enough) return;
   // The mean diagonal of the larger group stands for the person's size.
-  const double size = most.diagonals_m / static_cast<double>(most.count);
-  if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return {};
-  const std::string found =
-      size < 1000.0 ? fmt::format("{:.3g} m", size) : fmt::format("{:.0f} m", size);
-  const Error what{file, 0, "the points of a frame 0.2 to 20 m apart", found};
-  if (!(size > 0.0)) return {{Severity::warning, what, "they all lie in one place", ""}};
-  const double times = times_too_large(size);
-  return {
-      {Severity::warning, what,
-       times > 1.0 ? fmt::format("lengths are about {:g} times too large", times)
-                   : fmt::format("lengths are about {:g} times too small", 1.0 / times),
-       fmt::format("metres_per_unit of this stream, in a manifest or layout, {:g} times that now "
-                   "taken",
-                   1.0 / times)}};
+  const double size = (far_.count > person_.count ? far_ : person_).mean();
+  if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return;
+  std::string meaning = "they all lie in one place", repair;
+  if (size > 0.0) {
+    // The factor, a power of ten, by which the size is too large for a person.
+    const double times = std::pow(10.0, std::round(std::log10(size / 1.7)));
+    meaning = times > 1.0 ? fmt::format("lengths are about {:g} times too large", times)
+                          : fmt::format("lengths are about {:g} times too small", 1.0 / times);
+    repair = fmt::format(
+        "metres_per_unit of this stream, in a manifest or layout, {:g} times that now taken",
+        1.0 / times);
+  }
+  out.add(Severity::warning, "the points of a frame 0.2 to 20 m apart",
+          size < 1000.0 ? fmt::format("{:.3g} m", size) : fmt::format("{:.0f} m", size), meaning,
+          repair);
 }
 
-double ImuSizes::Norms::deviation() const {
-  return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean() * mean()));
-}
-
-void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, Norms& norms) {
+void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, MeanSize& lengths) {
   for (std::size_t cell = 0; 3 * cell < vectors.size(); ++cell) {
     if (block.valid[cell] == 0) continue;
-    const double square = vec3(vectors, cell).squaredNorm();
-    ++norms.count;
-    norms.sum += std::sqrt(square);
-    norms.squares += square;
+    lengths.add(vec3(vectors, cell).norm());
   }
 }
 
@@ -202,18 +189,16 @@ void ImuSizes::add(const ImuSamples& block) {
 
 Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const {
   const bool gravity = header.content.gravity;
-  Findings out;
+  FileFindings out{file};
   // All findings of units have the same effect: values are used as they are in the file.
-  const auto find = [&](const char* expected, const std::string& found, const char* advice) {
-    out.push_back(
-        {Severity::warning, Error{file, 0, expected, found}, "read as they stand there", advice});
+  const auto find = [&out](const char* expected, const std::string& found, const char* repair) {
+    out.add(Severity::warning, expected, found, "read as they stand there", repair);
   };
   if (samples_ >= enough && 10 * valid_ < samples_) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "nodes whose samples are valid, one in ten at least",
-                         fmt::format("{} of {}", valid_, samples_)},
-                   "the others are invalid: a quantity is missing in them",
-                   "look at the cells that are empty"});
+    out.add(Severity::warning, "nodes whose samples are valid, one in ten at least",
+            fmt::format("{} of {}", valid_, samples_),
+            "the others are invalid: a quantity is missing in them",
+            "look at the cells that are empty");
   }
   if (acceleration_.count >= enough) {
     const double mean = acceleration_.mean();
@@ -236,8 +221,8 @@ Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const
          fmt::format("{:.3g} rad/s", angular_velocity_.mean()),
          "angular_velocity_unit = \"deg/s\" in a layout of the file");
   }
-  append(out, orientation_.judge(header, file));
-  return out;
+  orientation_.judge(header, out);
+  return out.all;
 }
 
 }  // namespace kinalign

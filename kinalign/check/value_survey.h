@@ -4,9 +4,9 @@
 // judged by their rest pose instead (formats/bvh/size.cpp).
 #pragma once
 
+#include "kinalign/check/orientation_sense.h"
 #include "kinalign/core/error.h"
 #include "kinalign/formats/reader.h"
-#include "kinalign/sources/orientation_sense.h"
 
 #include <cstdint>
 #include <span>
@@ -14,6 +14,16 @@
 #include <vector>
 
 namespace kinalign {
+
+/// The mean of sizes, without keeping them.
+struct MeanSize {
+  std::uint64_t count = 0;
+  double sum = 0.0, squares = 0.0;
+
+  void add(double size);
+  double mean() const { return sum / static_cast<double>(count); }
+  double deviation() const;
+};
 
 /// Sums over the points of a stream; memory does not grow with the file. Frames whose points span
 /// more than 20 m are counted apart, since one number that means "not seen" would spoil a mean.
@@ -26,11 +36,6 @@ class PointSizes {
   Findings judge(const PointHeader& header, const std::string& file) const;
 
  private:
-  /// Frames with two points or more, and the diagonals of the boxes around them.
-  struct Frames {
-    std::uint64_t count = 0;
-    double diagonals_m = 0.0;  // sum of the diagonals, m
-  };
   /// The places of a joint in the frames in which it was seen.
   struct Seen {
     bool elsewhere = false;          // once at another place than zero
@@ -43,13 +48,14 @@ class PointSizes {
     std::uint64_t lost() const { return lost_at_zero + (far ? now_at_zero : 0); }
   };
 
-  Findings judge_seen(const PointHeader& header, const std::string& file) const;
-  Findings judge_marks(const PointHeader& header, const std::string& file) const;
-  Findings judge_unit(const std::string& file) const;
+  void judge_seen(const PointHeader& header, FileFindings& out) const;
+  void judge_marks(const PointHeader& header, FileFindings& out) const;
+  void judge_unit(FileFindings& out) const;
 
   std::uint64_t all_frames_ = 0, seen_frames_ = 0;
   std::uint64_t inferred_ = 0, tracked_ = 0;  // counts of points
-  Frames person_, far_;                       // frames with a box of up to 20 m, and of more
+  MeanSize person_, far_;                     // diagonals of boxes around a frame's points, m:
+                                              // up to 20 m, and more
   std::uint64_t most_points_ = 0;             // points seen in one frame, at most
   std::vector<Seen> joints_;
 };
@@ -64,16 +70,9 @@ class ImuSizes {
   Findings judge(const ImuHeader& header, const std::string& file) const;
 
  private:
-  struct Norms {
-    std::uint64_t count = 0;
-    double sum = 0.0, squares = 0.0;
+  static void add(std::span<const double> vectors, const ImuSamples& block, MeanSize& lengths);
 
-    double mean() const { return sum / static_cast<double>(count); }
-    double deviation() const;
-  };
-  static void add(std::span<const double> vectors, const ImuSamples& block, Norms& norms);
-
-  Norms acceleration_, angular_velocity_;
+  MeanSize acceleration_, angular_velocity_;
   OrientationSense orientation_;
   std::uint64_t samples_ = 0, valid_ = 0;
 };

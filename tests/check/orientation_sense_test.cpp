@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A node whose orientations fit its other data gives no finding; if they do not, the finding says
 // which part is wrong.
-#include "kinalign/sources/orientation_sense.h"
+#include "kinalign/check/orientation_sense.h"
 
 #include "kinalign/motion/arrays.h"
 
@@ -34,91 +34,88 @@ ImuSamples swinging(const Change& change, double times = 1.0) {
   ImuSamples out;
   for (int k = 0; k < 500; ++k) {
     const double t = step_s * k;
-    const Quat q = turn(t), said = change(q);
+    const Quat q = turn(t), stated = change(q);
     const Quat ahead = turn(t - 1e-4).conjugate() * turn(t + 1e-4);
-    const Vec3 rate = ahead.vec() * 2.0 / 2e-4, felt = q.conjugate() * Vec3(0.3, 9.81, 0.0);
+    const Vec3 rate = ahead.vec() * 2.0 / 2e-4, measured = q.conjugate() * Vec3(0.3, 9.81, 0.0);
     out.stamps.push_back(utc_time(static_cast<std::int64_t>(1e9 * t)));
-    out.orientation.insert(out.orientation.end(), {said.w(), said.x(), said.y(), said.z()});
-    out.acceleration.insert(out.acceleration.end(), felt.begin(), felt.end());
+    out.orientation.insert(out.orientation.end(), {stated.w(), stated.x(), stated.y(), stated.z()});
+    out.acceleration.insert(out.acceleration.end(), measured.begin(), measured.end());
     out.angular_velocity.insert(out.angular_velocity.end(), rate.begin(), rate.end());
     out.valid.push_back(1);
   }
   return out;
 }
 
-std::string with_stream_name(const ImuSamples& block, const ImuContent& content) {
+std::string judged_node(const ImuSamples& block, const ImuContent& content) {
   OrientationSense sense;
   sense.add(block);
+  FileFindings out{"w.csv"};
+  sense.judge({{"wrist"}, content}, out);
   std::string all;
-  for (const Finding& finding : sense.judge({{"wrist"}, content}, "w.csv")) {
-    all += to_string(finding.what) + "\n";
-  }
+  for (const Finding& finding : out.all) all += to_string(finding.what) + "\n";
   return all;
 }
 
 constexpr ImuContent with_gravity{true, true, true, true}, without{true, true, true, false};
 
-bool says(const std::string& said, const char* what) {
-  return said.find(what) != std::string::npos;
-}
+bool has(const std::string& text, const char* what) { return text.find(what) != std::string::npos; }
 
 }  // namespace
 
 TEST_CASE("a node whose orientations, accelerations and turns are one is left alone") {
-  CHECK(with_stream_name(swinging(as_it_is), with_gravity).empty());
-  CHECK(with_stream_name(swinging(as_it_is), without).empty());
+  CHECK(judged_node(swinging(as_it_is), with_gravity).empty());
+  CHECK(judged_node(swinging(as_it_is), without).empty());
 }
 
 TEST_CASE("parts in another order, the inverse and another axis up show in gravity and in turns") {
-  const std::string shifted = with_stream_name(swinging(parts_shifted), with_gravity);
-  CHECK(says(shifted, "w.csv: expected gravity of 'wrist' that points up in the world, found"));
-  CHECK(says(shifted, "w.csv: expected orientations of 'wrist' that turn as the gyroscope says"));
-  CHECK(says(with_stream_name(swinging(other_way), with_gravity), "as the gyroscope says"));
-  CHECK(with_stream_name(swinging(z_up), with_gravity) ==
+  const std::string shifted = judged_node(swinging(parts_shifted), with_gravity);
+  CHECK(has(shifted, "w.csv: expected gravity of 'wrist' that points up in the world, found"));
+  CHECK(has(shifted, "w.csv: expected orientations of 'wrist' that turn as the gyroscope says"));
+  CHECK(has(judged_node(swinging(other_way), with_gravity), "as the gyroscope says"));
+  CHECK(judged_node(swinging(z_up), with_gravity) ==
         "w.csv: expected gravity of 'wrist' that points up in the world, found 90 degrees from it "
         "in the mean\n");
-  CHECK(
-      with_stream_name(swinging(z_up), without).empty());  // without gravity any axis may point up
+  CHECK(judged_node(swinging(z_up), without).empty());  // without gravity any axis may point up
 }
 
-TEST_CASE("one sample that came on the heels of the next, or one wild rate, outweighs no other") {
+TEST_CASE("one sample just before the next, or one wild rate, outweighs no other") {
   for (const std::int64_t ns : {100'000, 1'000, 1}) {
     CAPTURE(ns);
     ImuSamples late = swinging(as_it_is);
     late.stamps[200] = late.stamps[201] - Duration{ns};
-    CHECK(with_stream_name(late, with_gravity).empty());
+    CHECK(judged_node(late, with_gravity).empty());
   }
   ImuSamples wild = swinging(as_it_is);
   wild.angular_velocity[3 * 200] = 2000.0;
-  CHECK(with_stream_name(wild, with_gravity).empty());
+  CHECK(judged_node(wild, with_gravity).empty());
 }
 
 TEST_CASE("gravity may lean by up to 45 degrees") {
   const auto leaning = [](double degrees) {
     const double half = degrees * std::numbers::pi / 360.0;
-    return with_stream_name(
+    return judged_node(
         swinging([half](const Quat& q) { return Quat(std::cos(half), std::sin(half), 0, 0) * q; }),
         with_gravity);
   };
   CHECK(leaning(40).empty());
-  CHECK(says(leaning(50), "gravity of 'wrist'"));
+  CHECK(has(leaning(50), "gravity of 'wrist'"));
 }
 
 TEST_CASE("a node at rest says nothing of its turns, and a few samples nothing at all") {
-  CHECK(!says(with_stream_name(swinging(parts_shifted, 0.02), with_gravity), "gyroscope"));
+  CHECK(!has(judged_node(swinging(parts_shifted, 0.02), with_gravity), "gyroscope"));
   ImuSamples few = swinging(parts_shifted);
   few.stamps.resize(40);
   few.valid.resize(40);
-  CHECK(with_stream_name(few, with_gravity).empty());
+  CHECK(judged_node(few, with_gravity).empty());
 }
 
 TEST_CASE("samples that are not valid, and steps of a second, prove nothing") {
   ImuSamples lost = swinging(parts_shifted);
   for (std::size_t k = 0; k < lost.valid.size(); k += 2) lost.valid[k] = 0;
-  CHECK(!says(with_stream_name(lost, with_gravity), "gyroscope"));
+  CHECK(!has(judged_node(lost, with_gravity), "gyroscope"));
   ImuSamples slow = swinging(parts_shifted);
   for (std::size_t k = 0; k < slow.stamps.size(); ++k) {
     slow.stamps[k] = utc_time(static_cast<std::int64_t>(k) * 1'000'000'000);
   }
-  CHECK(!says(with_stream_name(slow, with_gravity), "gyroscope"));
+  CHECK(!has(judged_node(slow, with_gravity), "gyroscope"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/sources/orientation_sense.h"
+#include "kinalign/check/orientation_sense.h"
 
 #include "kinalign/motion/arrays.h"
 #include "kinalign/motion/rotation.h"
@@ -59,17 +59,16 @@ void OrientationSense::add_turn(Node& node, const Last& now) {
   const Vec3 turn = rotation_vector(node.last->q.conjugate() * now.q);
   if (!(seconds > 0.0) || seconds > longest_s || turn.norm() > farthest_rad) return;
   // The gyroscope's turn between two samples, by the mean of both rates.
-  const Vec3 rate = 0.5 * (node.last->rate + now.rate), felt = rate * seconds;
+  const Vec3 rate = 0.5 * (node.last->rate + now.rate), measured = rate * seconds;
   if (rate.norm() > quickest_rad_s) return;
   ++node.turns;
-  node.both += turn.dot(felt);
+  node.both += turn.dot(measured);
   node.turned += turn.squaredNorm();
-  node.felt += felt.squaredNorm();
+  node.measured += measured.squaredNorm();
   node.times += seconds * seconds;
 }
 
-Findings OrientationSense::judge(const ImuHeader& header, const std::string& file) const {
-  Findings out;
+void OrientationSense::judge(const ImuHeader& header, FileFindings& out) const {
   const char* advice = "are the quaternions w,x,y,z, and world_from_sensor? is up the file's axis?";
   for (std::size_t s = 0; s < nodes_.size(); ++s) {
     const Node& node = nodes_[s];
@@ -79,24 +78,21 @@ Findings OrientationSense::judge(const ImuHeader& header, const std::string& fil
       const double lean = std::atan2(std::hypot(node.up.x(), node.up.z()), node.up.y());
       const double lean_deg = lean * (180.0 / std::numbers::pi);
       if (lean_deg > most_lean_deg) {
-        out.push_back({Severity::warning,
-                       Error{file, 0, "gravity of '" + name + "' that points up in the world",
-                             fmt::format("{:.0f} degrees from it in the mean", lean_deg)},
-                       "orientations and accelerations do not belong together", advice});
+        out.add(Severity::warning, "gravity of '" + name + "' that points up in the world",
+                fmt::format("{:.0f} degrees from it in the mean", lean_deg),
+                "orientations and accelerations do not belong together", advice);
       }
     }
     const double least = node.times * least_turn_rad_s * least_turn_rad_s;
     // Enough samples, and turns that are clearly above the bias: otherwise the likeness is noise.
-    if (node.turns < enough_samples || node.felt < least) continue;
+    if (node.turns < enough_samples || node.measured < least) continue;
     // The correlation of both turns: 1 for equal directions, whatever the scale.
-    const double alike = node.both / std::sqrt(std::max(node.turned * node.felt, 1e-300));
+    const double alike = node.both / std::sqrt(std::max(node.turned * node.measured, 1e-300));
     if (alike >= least_likeness) continue;
-    out.push_back({Severity::warning,
-                   Error{file, 0, "orientations of '" + name + "' that turn as the gyroscope says",
-                         fmt::format("a likeness of {:.2f} (1: the same, 0: none)", alike)},
-                   "orientations and angular velocities do not belong together", advice});
+    out.add(Severity::warning, "orientations of '" + name + "' that turn as the gyroscope says",
+            fmt::format("a likeness of {:.2f} (1: the same, 0: none)", alike),
+            "orientations and angular velocities do not belong together", advice);
   }
-  return out;
 }
 
 }  // namespace kinalign

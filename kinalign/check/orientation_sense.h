@@ -19,9 +19,9 @@ namespace kinalign {
 class OrientationSense {
  public:
   void add(const ImuSamples& block);
-  /// Findings if gravity, turned into the world by the orientations, does not point up, or if the
-  /// orientations turn about other axes than the gyroscope states.
-  Findings judge(const ImuHeader& header, const std::string& file) const;
+  /// Adds findings if gravity, turned into the world by the orientations, does not point up, or if
+  /// the orientations turn about other axes than the gyroscope states.
+  void judge(const ImuHeader& header, FileFindings& out) const;
 
  private:
   struct Last {
@@ -35,8 +35,8 @@ class OrientationSense {
     std::optional<Last> last;  // the last valid sample
     std::uint64_t turns = 0;   // pairs of consecutive samples
     double both = 0.0;         // sum of (turn by the orientations) . (turn by the gyroscope), rad2
-    double turned = 0.0, felt = 0.0;  // sums of their squares
-    double times = 0.0;               // sum of the squared times between, s2
+    double turned = 0.0, measured = 0.0;  // sums of their squares
+    double times = 0.0;                   // sum of the squared times between, s2
   };
 
   void add_turn(Node& node, const Last& now);

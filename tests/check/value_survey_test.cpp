@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which units are recognised as wrong, and which are accepted.
-#include "kinalign/sources/value_survey.h"
+#include "kinalign/check/value_survey.h"
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ constexpr std::size_t rows = 40;
 
 /// The findings about the joints of a person of 1.7 m who walks away, in a file whose unit is taken
 /// for `metres`.
-std::string said_of_person(double metres, std::size_t joints = 25) {
+std::string judged_person(double metres, std::size_t joints = 25) {
   PointFrames block;
   for (std::size_t t = 0; t < rows; ++t) {
     block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
@@ -33,7 +33,7 @@ std::string said_of_person(double metres, std::size_t joints = 25) {
 
 /// The findings about nodes that read `acceleration` (m/s2, up and down by a third of itself) and
 /// `rate` (rad/s).
-std::string said_of_node(double acceleration, double rate, bool gravity, double swing = 0.3) {
+std::string judged_node(double acceleration, double rate, bool gravity, double swing = 0.3) {
   ImuSamples block;
   for (std::size_t t = 0; t < rows; ++t) {
     block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
@@ -53,22 +53,22 @@ std::string said_of_node(double acceleration, double rate, bool gravity, double 
 }  // namespace
 
 TEST_CASE("joints of a person who is a kilometre or a millimetre tall are in another unit") {
-  CHECK(said_of_person(1.0).empty());
-  CHECK(said_of_person(0.5).empty());  // a child
-  CHECK(said_of_person(1000.0) ==
+  CHECK(judged_person(1.0).empty());
+  CHECK(judged_person(0.5).empty());  // a child
+  CHECK(judged_person(1000.0) ==
         "k.csv: expected the points of a frame 0.2 to 20 m apart, found 1700 m; lengths are "
         "about 1000 times too large");
-  CHECK(said_of_person(0.01) ==
+  CHECK(judged_person(0.01) ==
         "k.csv: expected the points of a frame 0.2 to 20 m apart, found 0.017 m; lengths are about "
         "100 times too small");
-  CHECK(said_of_person(0.0) ==
+  CHECK(judged_person(0.0) ==
         "k.csv: expected the points of a frame 0.2 to 20 m apart, found 0 m; they all lie in one "
         "place");
 }
 
 TEST_CASE("fewer points than a person has may be near to each other, not a kilometre apart") {
-  CHECK(said_of_person(0.01, 9).empty());
-  CHECK(said_of_person(1000.0, 2) ==
+  CHECK(judged_person(0.01, 9).empty());
+  CHECK(judged_person(1000.0, 2) ==
         "k.csv: expected the points of a frame 0.2 to 20 m apart, found 1700 m; lengths are about "
         "1000 times too large");
 }
@@ -76,7 +76,7 @@ TEST_CASE("fewer points than a person has may be near to each other, not a kilom
 /// The findings about a hip and a hand, frame by frame. The hip sways along z by `hip_sways` m a
 /// frame.
 template <class Hand>
-std::string said_of_hand(Hand hand, const Vec3& hip = {0.0, 0.9, 2.0}, double hip_sways = 0.0) {
+std::string judged_hand(Hand hand, const Vec3& hip = {0.0, 0.9, 2.0}, double hip_sways = 0.0) {
   PointFrames block;
   for (std::size_t t = 0; t < rows; ++t) {
     block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
@@ -105,22 +105,22 @@ std::string zeros_of_hand(const std::string& count) {
 const Vec3 zero = Vec3::Zero(), in_front{0.4, 1.0, 2.0};
 
 TEST_CASE("zeros that come and go mark what was not seen, at a file's start too") {
-  CHECK(said_of_hand([](auto t) { return t % 7 == 0 ? zero : in_front; }) == zeros_of_hand("6"));
-  CHECK(said_of_hand([](auto t) { return t < 30 ? zero : in_front; }) == zeros_of_hand("30"));
-  CHECK(said_of_hand([](auto t) { return t >= 30 ? zero : in_front; }) == zeros_of_hand("10"));
+  CHECK(judged_hand([](auto t) { return t % 7 == 0 ? zero : in_front; }) == zeros_of_hand("6"));
+  CHECK(judged_hand([](auto t) { return t < 30 ? zero : in_front; }) == zeros_of_hand("30"));
+  CHECK(judged_hand([](auto t) { return t >= 30 ? zero : in_front; }) == zeros_of_hand("10"));
 }
 
 TEST_CASE("zeros among the joints of a hand, all near its wrist, mark what was not seen") {
-  CHECK(said_of_hand([](auto t) { return t / 10 == 2 ? zero : Vec3(0.0, 0.06, 0.0); }, zero) ==
+  CHECK(judged_hand([](auto t) { return t / 10 == 2 ? zero : Vec3(0.0, 0.06, 0.0); }, zero) ==
         zeros_of_hand("10"));
 }
 
 TEST_CASE("one point that stays at zero or moves away and comes back is the file's origin") {
-  CHECK(said_of_hand([](auto) { return in_front; }, zero) == "");
-  CHECK(said_of_hand([](auto) { return in_front; }, zero, 0.01) == "");
+  CHECK(judged_hand([](auto) { return in_front; }, zero) == "");
+  CHECK(judged_hand([](auto) { return in_front; }, zero, 0.01) == "");
   const auto never = [](auto) { return zero; };
-  CHECK(said_of_hand(never) == "");
-  CHECK(said_of_hand(never, zero) ==
+  CHECK(judged_hand(never) == "");
+  CHECK(judged_hand(never, zero) ==
         "k.csv: expected points where they were seen, found 80 at exactly 0, 0, 0, the first of "
         "'Hip'; missing_point = [0, 0, 0] in a layout of the file, where that means not seen\n");
 }
@@ -148,42 +148,43 @@ TEST_CASE("points of which none was tracked are a warning, one that was never se
 
 TEST_CASE("points far from all others mark what was not seen") {
   const Vec3 mark(-9999, -9999, -9999);
-  CHECK(said_of_hand([&](auto t) { return t % 7 == 0 ? mark : in_front; }) ==
+  CHECK(judged_hand([&](auto t) { return t % 7 == 0 ? mark : in_front; }) ==
         "k.csv: expected the points of a frame within 20 m, found 6 of 40 frames in which they are "
         "not, 17320 m in the mean; missing_point in a layout of the file, where a number stands "
         "for not seen\n");
 }
 
-TEST_CASE("accelerations in g, or with gravity where none should be, are told apart from m/s2") {
-  CHECK(said_of_node(9.81, 1.0, true).empty());
-  CHECK(said_of_node(20.0, 5.0, true).empty());  // a shank that runs
+TEST_CASE("accelerations in g, or with gravity where none should be, are distinguished from m/s2") {
+  CHECK(judged_node(9.81, 1.0, true).empty());
+  CHECK(judged_node(20.0, 5.0, true).empty());  // a shank that runs
   CHECK(
-      said_of_node(1.0, 1.0, true) ==
+      judged_node(1.0, 1.0, true) ==
       "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 1.01 m/s2\n");
   CHECK(
-      said_of_node(96.0, 1.0, true) ==
+      judged_node(96.0, 1.0, true) ==
       "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 96.8 m/s2\n");
-  CHECK(said_of_node(2.0, 1.0, false).empty());
-  CHECK(said_of_node(9.81, 1.0, false) ==
+  CHECK(judged_node(2.0, 1.0, false).empty());
+  CHECK(judged_node(9.81, 1.0, false) ==
         "w.csv: expected accelerations without gravity, found 9.89 m/s2 in the mean\n");
-  CHECK(said_of_node(9.81, 1.0, false, 2.0).empty());  // jerks of a runner, gravity removed
+  CHECK(judged_node(9.81, 1.0, false, 2.0).empty());  // jerks of a runner, gravity removed
 }
 
-TEST_CASE("turns in degrees per second are told apart from radians") {
-  CHECK(said_of_node(9.81, 57.3, true) ==
+TEST_CASE("turns in degrees per second are distinguished from radians") {
+  CHECK(judged_node(9.81, 57.3, true) ==
         "w.csv: expected turns of at most 12 rad/s in the mean, found 57.3 rad/s\n");
 }
 
-TEST_CASE("samples that were not seen count for nothing, and where hardly one was that is said") {
+TEST_CASE(
+    "samples that were not seen are left out; if hardly a sample was seen, a finding says so") {
   PointFrames missing;
   missing.stamps.assign(rows, Time{});
   missing.positions.assign(rows * 75, 0.0);
   missing.state.assign(rows * 25, Tracking::missing);
   PointSizes points;
   points.add(missing);
-  const Findings nobody = points.judge({}, "k.csv");
-  REQUIRE(nobody.size() == 1);
-  CHECK(to_string(nobody[0].what) ==
+  const Findings unseen = points.judge({}, "k.csv");
+  REQUIRE(unseen.size() == 1);
+  CHECK(to_string(unseen[0].what) ==
         "k.csv: expected frames with a point in them, one in ten at least, found 0 of " +
             std::to_string(rows));
   ImuSamples lost;

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/check/judge_survey.h"
+#include "kinalign/check/recording_words.h"
+#include "kinalign/core/numbers.h"
+#include "kinalign/protocols/protocols.h"
+#include "kinalign/syntax/toml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+/// True for the recorder's own ports; no device can have such a name.
+bool is_of_marks(const CountedPort& port) {
+  return port.stream == "marks" || port.stream == "trigger";
+}
+
+/// Collects the findings about one recording. Each function judges one kind of fault.
+class RecordingJudge {
+ public:
+  RecordingJudge(const std::string& path, const RecordingSurvey& survey)
+      : survey_(survey), out_{path, survey.findings} {}
+
+  Findings judge() {
+    // The findings of reading come first: they may explain all others.
+    judge_truncated();
+    append(out_.all, judge_end(out_.file, survey_.facts.has_value(), survey_.ending));
+    judge_wall_clock();
+    // Only a recording of kinalign has the numbers that this check needs.
+    if (survey_.facts) judge_messages();
+    if (survey_.more_marks > 0) {
+      out_.add(Severity::note, fmt::format("at most {} marks", grouped(most_marks)),
+               grouped(survey_.more_marks) + " more", "alignment leaves them out");
+    }
+    // The count is in the end record. It is an error: these data existed and are lost.
+    if (survey_.end && survey_.end->dropped > 0) {
+      out_.add(Severity::error, "every message that reached the recorder",
+               grouped(survey_.end->dropped) + " fewer",
+               "the disk was too slow for too long, and memory full",
+               "record to a disk of the machine itself");
+    }
+    for (const auto& [prefix, required] : survey_.expected) {
+      if (required) judge_required(prefix);
+    }
+    for (const CountedSender& one : survey_.senders) judge_numbers(one);
+    for (const CountedPort& one : survey_.ports) judge_port(one);
+    judge_rows();
+    return out_.all;
+  }
+
+ private:
+  void judge_truncated() {
+    for (const std::string& file : survey_.truncated) {
+      // The advice must work as written, so it must not overwrite the damaged file.
+      const char* whole = file == "whole.mcap" ? "recovered.mcap" : "whole.mcap";
+      out_.all.push_back(
+          {Severity::warning,
+           {file, 0, "an index at the recording's end", "none"},
+           "it was not closed: the program or the machine stopped, or the disk did",
+           survey_.messages == 0
+               ? "nothing of it can be read"
+               : fmt::format("kinalign recover {} -o {} gives it one", file, whole)});
+    }
+  }
+
+  /// Several steps of the wall clock are one finding. The largest one shows how bad it was.
+  void judge_wall_clock() {
+    if (survey_.steps.empty()) return;
+    const WallClockStep& worst = *std::max_element(
+        survey_.steps.begin(), survey_.steps.end(), [](const auto& a, const auto& b) {
+          return std::chrono::abs(a.by) < std::chrono::abs(b.by);
+        });
+    out_.add(Severity::warning, "a wall clock that nobody sets while it records",
+             fmt::format("set {} times, by {:+.3f} s at the most", survey_.steps.size(),
+                         seconds(worst.by)),
+             "UTC in it is the clock's of the beginning; time differences are right",
+             "let the machine's clock be set before recording: docs/time_server.md");
+  }
+
+  /// Errors for messages that reached the recorder and are not in the file. A gap in the recorder's
+  /// own numbering shows them; at the ends of a topic the counts do. The recorder counts messages
+  /// before they are written, so its counts also cover what the disk lost.
+  void judge_messages() {
+    const auto add = [this](const std::string& expected, std::uint64_t missing) {
+      if (missing == 0) return;
+      out_.add(Severity::error, expected, grouped(missing) + " missing",
+               "these messages reached the recorder and are not in the file",
+               "a part of the recording in another folder may have them");
+    };
+    for (const ChannelSurvey& channel : survey_.channels) {
+      add(channel.channel.topic + " without a number left out", channel.missing);
+    }
+    // The counts of later parts begin with the recording, not with the file.
+    if (survey_.facts->part != 1) return;
+    for (const CountedSender& one : survey_.senders) {
+      // Messages that are missing in between have their own finding.
+      std::uint64_t known = 0;
+      for (const ChannelSurvey& channel : survey_.channels) {
+        if (channel.channel.topic == one.topic) known += channel.messages + channel.missing;
+      }
+      const std::uint64_t counted = one.counts.messages;
+      add(fmt::format("the {} messages on {} that were counted", grouped(counted), one.topic),
+          counted - std::min(counted, known));
+    }
+  }
+
+  /// A warning if a required device has no message in the recording. `prefix`: that of its topics,
+  /// "mocap" or, for a node, "imu/7".
+  void judge_required(const std::string& prefix) {
+    for (const ChannelSurvey& one : survey_.channels) {
+      // A definition without messages does not count.
+      if (one.channel.topic.starts_with("/" + prefix + "/") && one.messages > 0) return;
+    }
+    // The part before '/' is the device; ports belong to devices.
+    const std::size_t slash = std::min(prefix.find('/'), prefix.size());
+    const std::string device = prefix.substr(0, slash);
+    const std::string node = prefix.substr(std::min(slash + 1, prefix.size()));
+    const std::string unusable = unusable_at(device);
+    out_.add(Severity::warning, "messages of " + sender_name(device, node, survey_),
+             unusable.empty() ? "none" : "none: " + unusable,
+             "a device that the lab requires is not in it",
+             unusable.empty() ? "see that it sends to the recording machine; docs/recording.md"
+                              : "see that it sends to this port, and other devices to theirs; "
+                                "docs/recording.md");
+  }
+
+  /// The text about datagrams at the port of a device of which nothing was recorded. Empty if none
+  /// came. It tells a device at the wrong port from one that is switched off.
+  std::string unusable_at(const std::string& device) const {
+    const auto is_of_device = [&device](const auto& one) { return one.stream == device; };
+    const auto port = std::find_if(survey_.ports.begin(), survey_.ports.end(), is_of_device);
+    const bool sent = std::any_of(survey_.senders.begin(), survey_.senders.end(), is_of_device);
+    return sent || port == survey_.ports.end() ? "" : unusable_data(port->counts, "to its port");
+  }
+
+  /// Notes by a device's own numbers: frames that never reached the recorder, and restarts. These
+  /// losses happened before the recorder, on the network or in the device. They are notes, since
+  /// nothing can be repaired.
+  void judge_numbers(const CountedSender& one) {
+    const SequenceCounts& order = one.counts.order;
+    if (order.lost > 0) {
+      // The share is over all numbers that the sender gave.
+      const std::uint64_t all = order.lost + frames_or_messages(one.counts);
+      out_.add(Severity::note, "every frame that " + name_of(one, survey_) + " sent",
+               fmt::format("{} lost of {}", grouped(order.lost), grouped(all)),
+               "by the sender's own numbers; they did not reach the recorder, or were never sent");
+    }
+    if (order.restarts > 0) {
+      out_.add(Severity::note, "one life of " + name_of(one, survey_),
+               grouped(order.restarts + 1) + ": it was started anew",
+               "each has a clock of its own, and nothing is known of between");
+    }
+  }
+
+  /// Findings about data that came to a port and is not in the recording.
+  void judge_port(const CountedPort& port) {
+    PortCounts counts = port.counts;
+    if (counts.sifted) {
+      judge_nodes_port(port);
+      return;
+    }
+    // Any program of the network may send such datagrams without harm, but one may have been meant
+    // as a mark.
+    if (is_of_marks(port) && counts.refused > 0) {
+      out_.add(Severity::note, "marks alone at the port of " + port.stream,
+               grouped(counts.refused) + " datagrams that are none",
+               "record said why, and answered so", "docs/formats/marks.md says how a mark is sent");
+      counts.refused = 0;
+    }
+    const std::string lost = loss_of(counts, 0);
+    if (lost.empty()) return;
+    out_.add(Severity::warning, "everything that came to the port of " + port.stream, lost,
+             "these reached the recording machine and are not in it",
+             "see what else it does while it records");
+  }
+
+  /// A filter of the kernel drops and counts datagrams that are no frames of nodes, for example of
+  /// another device. Many of them are a warning; `record` uses the same limit.
+  void judge_nodes_port(const CountedPort& port) {
+    // For example frames of a node without the lab's key.
+    if (port.counts.refused > 0) {
+      out_.add(Severity::note, "frames alone of the lab's nodes at the port of " + port.stream,
+               grouped(port.counts.refused) + " that are refused",
+               "a node that is missing may have sent them: without the lab's key, say",
+               "record said of which node, and why");
+    }
+    const std::uint64_t foreign = strays(port.counts, frames_lost(port.stream, survey_.senders));
+    if (foreign == 0) return;
+    out_.add(are_many(foreign) ? Severity::warning : Severity::note,
+             "frames of nodes alone at the port of " + port.stream,
+             fmt::format("{}{} datagrams that are none",
+                         foreign < port.counts.dropped ? "at least " : "", grouped(foreign)),
+             "they were thrown away: nothing of them is in it",
+             "see which port and protocol each device sends to");
+  }
+
+  /// Findings about streams that can't become rows: the messages are not of the stated protocol,
+  /// most frames are refused, or no skeleton is known.
+  void judge_rows() {
+    // A set names each stream once, although it may have had several senders.
+    std::set<std::string> without_skeleton;
+    for (const CountedSender& one : survey_.senders) {
+      const auto channel = std::find_if(
+          survey_.channels.begin(), survey_.channels.end(),
+          [&one](const ChannelSurvey& known) { return known.channel.topic == one.topic; });
+      // A sender without a channel has no message in this file.
+      if (channel == survey_.channels.end()) continue;
+      const std::string& protocol = channel->channel.message_encoding;
+      const SenderCounts& counts = one.counts;
+      if (speaks_another_protocol(protocol, counts)) {
+        out_.add(Severity::warning,
+                 "frames of " + protocol + " in what " + name_of(one, survey_) + " sent",
+                 grouped(counts.messages) + " messages, none of them one",
+                 "nothing of it can be aligned as " + protocol,
+                 "see which port and protocol the device sends to");
+      }
+      const auto known = find_recorded_protocol(protocol);
+      // Only protocols that are decoded count frames.
+      if (!known || counts.frames == 0) continue;
+      const ProtocolRow& row = row_of(*known);
+      // Pieces of a suit's frames over UDP do not state the frame they belong to. If some are lost
+      // or mixed, the frame can't be put together.
+      if (row.losses == LossNumbers::frame_heads && are_many(counts.refused) &&
+          counts.refused > counts.frames) {
+        out_.add(
+            Severity::warning, "frames that can be read in what " + name_of(one, survey_) + " sent",
+            fmt::format("{}; {} times none", grouped(counts.frames), grouped(counts.refused)),
+            "fewer than half of them can be aligned, though their bytes are all in the recording",
+            "prefer TCP, which loses and mixes no pieces of frames");
+      }
+      // The recorder attaches the BVH of a suit under the name of its device.
+      const auto& names = survey_.attachments;
+      const bool has_body =
+          std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();
+      if (row.needs_skeleton && !has_body) without_skeleton.insert(one.stream);
+    }
+    for (const std::string& stream : without_skeleton) {
+      out_.add(Severity::note, "a skeleton for " + stream, "none",
+               "Noitom's stream does not say whose body it moves; alignment needs it",
+               "skeleton = \"a.bvh\" in [stream." + toml_key(stream) + "] of a recording.toml");
+    }
+  }
+
+  const RecordingSurvey& survey_;
+  FileFindings out_;
+};
+
+}  // namespace
+
+Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
+  return RecordingJudge(path, survey).judge();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/check/recording_words.h"
+
+#include "kinalign/core/numbers.h"
+
+#include <fmt/format.h>
+
+namespace kinalign {
+
+namespace {
+
+/// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
+/// The kernel's filter drops foreign datagrams at a nodes' port, and a full socket drops frames.
+/// The numbers of the lost frames tell how many are surely foreign.
+std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
+  if (!counts.sifted) return "dropped by the kernel";
+  const std::uint64_t least = strays(counts, frames_lost);
+  if (least == counts.dropped) return "thrown away: no frames of nodes";
+  if (least == 0) return "thrown away: no frames of nodes, or no room for them";
+  return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
+}
+
+}  // namespace
+
+std::string sender_name(const std::string& stream, const std::string& node,
+                        const std::string& place) {
+  if (node.empty()) return stream;
+  return stream + " " + (place.empty() ? node : place);
+}
+
+std::string sender_name(const std::string& stream, const std::string& node,
+                        const RecordingSurvey& survey) {
+  // Places are found by "stream/node", as the recording states them.
+  const auto place = survey.places.find(stream + "/" + node);
+  return sender_name(stream, node, place == survey.places.end() ? "" : place->second);
+}
+
+std::string name_of(const CountedSender& sender, const RecordingSurvey& survey) {
+  return sender_name(sender.stream, sender.node, survey) +
+         (sender.sender.empty() ? "" : " from " + sender.sender);
+}
+
+std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
+  return counts_in_words({{counts.dropped, thrown_away(counts, frames_lost)},
+                          {counts.refused, "refused, not recorded"},
+                          {counts.cut, "cut"},
+                          {counts.unsent, "answers not sent"}});
+}
+
+std::string unusable_data(const PortCounts& counts, const std::string& to) {
+  const std::uint64_t came = counts.dropped + counts.refused;
+  // Only a nodes' port is sifted, so only there can datagrams be foreign.
+  if (!counts.sifted || came == 0) return "";
+  return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
+                     counts.refused == 0 ? "a frame of nodes" : "was let in");
+}
+
+}  // namespace kinalign
