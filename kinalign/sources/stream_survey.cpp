@@ -235,9 +235,9 @@ Result<SurveyedFile> survey_device(FileSystem& files, const StreamOptions& optio
     stream.files.push_back(recording->facts()[i]);
     out.paths.push_back(recording->parts()[i].path);
   }
-  if (!made.skeleton_path.empty()) {
-    stream.files.push_back(KA_TRY(facts_of(files, made.skeleton_path, "reading", progress)));
-    out.paths.push_back(made.skeleton_path);
+  if (!options.skeleton.empty()) {
+    stream.files.push_back(KA_TRY(facts_of(files, options.skeleton, "reading", progress)));
+    out.paths.push_back(options.skeleton);
   }
   return out;
 }

@@ -44,7 +44,7 @@ struct Value {
 /// It has no file yet, because a Value does not know from which file it came.
 Failure at(const Value& value, Error error);
 inline Failure at(const Value& value, std::string expected, std::string found) {
-  return at(value, std::move(expected), std::move(found));
+  return at(value, Error{"", 0, std::move(expected), std::move(found)});
 }
 /// "expected gap_ms as a number, found "3"".
 Failure wrong(const Value& value, const std::string& wanted);
