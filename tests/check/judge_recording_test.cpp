@@ -156,7 +156,7 @@ TEST_CASE("check of a truncated file proposes a name for the whole one that is n
     RecordingSurvey survey = kinect_survey(1000, 1000, 0);
     survey.messages = 1000;
     survey.truncated = {truncated};
-    survey.ending = Ending::torn;
+    survey.ending = Ending::truncated;
     const Findings found = judge_survey(truncated, survey);
     REQUIRE(found.size() == 1);
     CHECK(found.front().repair ==
