@@ -37,8 +37,8 @@ class Senders {
  public:
   static constexpr std::size_t most = 64;
   static constexpr std::uint64_t little = 10;  // messages; a sender of fewer may be a stranger
-  // each life occupies a channel of the recording
-  static constexpr std::uint64_t most_lives = 1000;
+  // each serial number occupies a channel of the recording
+  static constexpr std::uint64_t most_serials = 1000;
 
   struct Sender {
     HostAddress host{};
@@ -46,19 +46,19 @@ class Senders {
     // Last arrival.
     HostTime last_arrival{};
     // serial number of this sender among all senders that ever had a number
-    std::uint64_t life = 0;
+    std::uint64_t serial = 0;
     std::uint64_t times = 0;  // messages received
     Datagram asked{};         // the newest datagram without its bytes, needed for answers; UDP only
   };
   /// Returns the sender's number; a new sender gets one. Absent if too many other senders are
-  /// active. After most_lives, a new sender continues the life of the sender of the same host that
-  /// was silent longest. Hosts without an earlier sender then share the life most_lives + 1.
+  /// active. After most_serials, a new sender continues as the sender of the same host that
+  /// was silent longest. Hosts without an earlier sender then share the serial most_serials + 1.
   std::optional<std::size_t> number(const HostAddress& host, std::uint16_t port, HostTime now);
   /// The same for a connection. A new connection is a new sender, even from the same port. `known`
-  /// is the connection's number and life; it is set with the first bytes.
+  /// is the connection's number and serial; it is set with the first bytes.
   struct Known {
     std::size_t number = 0;
-    std::uint64_t life = 0;
+    std::uint64_t serial = 0;
   };
   std::optional<std::size_t> number(std::optional<Known>& known, const HostAddress& host,
                                     std::uint16_t port, HostTime now);
@@ -77,7 +77,7 @@ class Senders {
   std::optional<std::size_t> own_past(const HostAddress& host) const;
 
   std::vector<Sender> senders_;
-  std::uint64_t lives_ = 0;
+  std::uint64_t serials_ = 0;
 };
 
 /// A UDP port.
@@ -96,7 +96,7 @@ class UdpPieces {
   const Senders& senders() const { return senders_; }
   PortCounts counts() const;
   /// Received datagrams, including refused ones. Needs no system call.
-  std::uint64_t heard() const { return counts_.pieces + counts_.refused; }
+  std::uint64_t received() const { return counts_.pieces + counts_.refused; }
 
  private:
   explicit UdpPieces(std::vector<UdpSocket> sockets);
@@ -124,7 +124,7 @@ class TcpPieces {
   std::uint16_t port() const { return port_; }
   const Senders& senders() const { return senders_; }
   PortCounts counts() const { return counts_; }
-  std::uint64_t heard() const { return counts_.pieces + counts_.refused; }
+  std::uint64_t received() const { return counts_.pieces + counts_.refused; }
 
  private:
   /// One connection. While `connected` is false, it is still being made.

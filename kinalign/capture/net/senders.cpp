@@ -17,11 +17,11 @@ std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_
 /// new one.
 std::optional<std::size_t> Senders::number(std::optional<Known>& known, const HostAddress& host,
                                            std::uint16_t port, HostTime now) {
-  if (known && senders_[known->number].life != known->life) known.reset();
+  if (known && senders_[known->number].serial != known->serial) known.reset();
   if (!known) {
     const auto number = add(host, port, now);
     if (!number) return std::nullopt;
-    known = {*number, senders_[*number].life};
+    known = {*number, senders_[*number].serial};
   }
   note_arrival(known->number, now);
   return known->number;
@@ -32,9 +32,9 @@ void Senders::note_arrival(std::size_t number, HostTime now) {
   ++senders_[number].times;
 }
 
-// The limit on lives keeps the number of channels limited.
+// The limit on serials keeps the number of channels limited.
 std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t port, HostTime now) {
-  if (lives_ >= most_lives) {
+  if (serials_ >= most_serials) {
     if (const auto past = own_past(host)) {
       // The host's oldest sender continues under a new port, with its number and its channel.
       senders_[*past].port = port;
@@ -43,8 +43,8 @@ std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t p
   }
   const auto number = place_for(host, now);
   if (!number) return std::nullopt;
-  lives_ = std::min(lives_ + 1, most_lives + 1);
-  senders_[*number] = {host, port, now, lives_};
+  serials_ = std::min(serials_ + 1, most_serials + 1);
+  senders_[*number] = {host, port, now, serials_};
   return number;
 }
 

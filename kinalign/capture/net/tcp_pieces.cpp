@@ -146,7 +146,7 @@ void TcpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
   for (const Link& link : links_) {
     if (!link.sender || link.sender->number != sender) continue;
     // The number belongs to another sender now, so the bytes are not for this connection.
-    if (link.sender->life != senders_.at(sender).life) continue;
+    if (link.sender->serial != senders_.at(sender).serial) continue;
     const ssize_t sent =
         ::send(link.socket.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent == static_cast<ssize_t>(bytes.size())) return;

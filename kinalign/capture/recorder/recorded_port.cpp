@@ -87,13 +87,13 @@ const Senders::Sender& RecordedPort::sender_of(const Piece& piece) const {
 /// A new sender gets its own channel, also if it takes the number of a sender that fell silent.
 RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std::size_t number,
                                               Recorder& recorder) {
-  const bool is_shared = sender.life > Senders::most_lives;
+  const bool is_shared = sender.serial > Senders::most_serials;
   if (sources_.size() <= number) sources_.resize(number + 1);
   // The number now stands for several senders, so it has no source of its own.
   if (is_shared) sources_[number].reset();
   std::optional<Source>& source = is_shared ? others_ : sources_[number];
   const NodeAddress address{sender.host, sender.port};
-  if (source && source->life == sender.life) {
+  if (source && source->life == sender.serial) {
     source->address = address;
     return *source;
   }
@@ -104,16 +104,16 @@ RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std
                        "",
                        ""};
   // The old source of this number ends here. Its channel stays in the recording.
-  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw), raw,
-                        StreamWatch(protocol_->protocol, has_datagrams(), raw.sender), sender.life,
-                        address});
+  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.serial), raw), raw,
+                        StreamWatch(protocol_->protocol, has_datagrams(), raw.sender),
+                        sender.serial, address});
   return *source;
 }
 
 /// Returns "/kinect/raw" for the first sender of the port, "/kinect/raw/2" for the next one.
 std::string RecordedPort::topic(const char* content, std::uint64_t life) const {
   const std::string first = "/" + device_.name + "/" + content;
-  if (life > Senders::most_lives) return first + "/others";
+  if (life > Senders::most_serials) return first + "/others";
   return life == 1 ? first : first + "/" + std::to_string(life);
 }
 
@@ -257,7 +257,7 @@ PortCounts RecordedPort::counts() const {
 }
 
 std::uint64_t RecordedPort::heard() const {
-  return std::visit([](const auto& pieces) { return pieces.heard(); }, pieces_);
+  return std::visit([](const auto& pieces) { return pieces.received(); }, pieces_);
 }
 
 void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {

@@ -93,7 +93,7 @@ class RecordedPort {
   const ProtocolRow* protocol_;
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // indexed by the sender's number
-  std::optional<Source> others_;                // shared by senders beyond Senders::most_lives
+  std::optional<Source> others_;                // shared by senders beyond Senders::most_serials
   NewestKinectFrames newest_frames_;
   FindingsOnce findings_;
   std::unique_ptr<SlimeDesk> slimes_;

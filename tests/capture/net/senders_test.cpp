@@ -20,13 +20,13 @@ constexpr HostTime begin{100s};
 
 }  // namespace
 
-TEST_CASE("a sender keeps its number and its life while it sends") {
+TEST_CASE("a sender keeps its number and its serial while it sends") {
   Senders senders;
   CHECK(senders.number(host(0, 1), 7, begin) == 0);
   CHECK(senders.number(host(0, 1), 8, begin) == 1);
   CHECK(senders.number(host(0, 1), 7, begin + 1h) == 0);
-  CHECK(senders.at(0).life == 1);
-  CHECK(senders.at(1).life == 2);
+  CHECK(senders.at(0).serial == 1);
+  CHECK(senders.at(1).serial == 2);
   CHECK(senders.find(host(0, 2), 7) == std::nullopt);
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("a device that returned 64 times within a minute is not locked out by 
   }
 }
 
-TEST_CASE("after 1000 lives a device continues an earlier life, and unknown senders share one") {
+TEST_CASE("after 1000 serials a device continues an earlier one, and unknown senders share one") {
   Senders senders;
   const HostAddress device = host(0, 1);
   for (std::uint16_t k = 0; k < 3000; ++k) {
@@ -71,13 +71,13 @@ TEST_CASE("after 1000 lives a device continues an earlier life, and unknown send
     REQUIRE(number);
     CHECK(senders.at(*number).host == device);
     CHECK(senders.at(*number).port == k);
-    CHECK(senders.at(*number).life <= Senders::most_lives);
+    CHECK(senders.at(*number).serial <= Senders::most_serials);
   }
   const HostTime later = begin + 3000 * 28s;
   for (const std::uint8_t stranger : std::array<std::uint8_t, 2>{1, 2}) {
     const auto number = senders.number(host(3, stranger), 7, later);
     REQUIRE(number);
-    CHECK(senders.at(*number).life == Senders::most_lives + 1);
+    CHECK(senders.at(*number).serial == Senders::most_serials + 1);
     CHECK(senders.number(host(3, stranger), 8, later + 1s) == number);
   }
 }
