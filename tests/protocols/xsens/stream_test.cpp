@@ -180,8 +180,8 @@ TEST_CASE("xsens stream: a lost piece costs its own sample alone") {
     Bytes bytes(one.begin(), one.end() - static_cast<std::ptrdiff_t>(lost));
     bytes += one;
     bytes += one;
-    // The next datagram's header ends the interrupted datagram if at least six of its bytes lie in the
-    // interrupted one's room.
+    // The next datagram's header ends the interrupted datagram if at least six of its bytes lie in
+    // the interrupted one's room.
     CHECK(read_xsens(bytes).samples.size() >= (lost < 6 ? 1U : 2U));
   }
 }
