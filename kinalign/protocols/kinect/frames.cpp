@@ -83,7 +83,7 @@ bool KinectFrameJoiner::is_newer(const KinectFrame& message) const {
   return newest_ && has_newer_ticks(moment_of(message), *newest_);
 }
 
-/// Begins a new frame, unless its number shows that it is old, or far away without a restart.
+/// Begins a new frame, unless its number shows that it is old or an outlier.
 void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
   const bool only = message.part == 0 && !message.more_parts;
   const Order order = sequence_.push(message.origin.sequence, is_newer(message));
