@@ -9,12 +9,8 @@ namespace kinalign {
 
 namespace {
 
-struct TransportName {
-  Transport transport;
-  std::string_view name;
-};
-constexpr std::array<TransportName, 3> transport_table{
-    {{Transport::udp, "udp"}, {Transport::tcp, "tcp"}, {Transport::tcp_listen, "tcp-listen"}}};
+// In the order of the enum.
+constexpr std::array<std::string_view, 3> transport_table{"udp", "tcp", "tcp-listen"};
 
 constexpr std::array udp_only{Transport::udp};
 constexpr std::array any_transport{Transport::udp, Transport::tcp, Transport::tcp_listen};
@@ -27,38 +23,23 @@ constexpr std::array<ProtocolRow, 5> table{{
      .rows = ProtocolRows::imu,
      .losses = LossNumbers::datagrams,
      .answers = Answers::node_requests,
-     .usual_rate_hz = 0.0,
-     .needs_skeleton = false,
-     .has_trackers = false,
-     .has_frame_decoder = false,  // a datagram of another sender is refused and not recorded
-     .has_node_ids = true,
-     .is_named_by_address = false},
+     .has_node_ids = true},
     {.protocol = Protocol::noitom,
      .name = "noitom",
      .recorded_name = "noitom",
      .transports = any_transport,
      .rows = ProtocolRows::clip,
      .losses = LossNumbers::frame_heads,
-     .answers = Answers::none,
-     .usual_rate_hz = 0.0,
      .needs_skeleton = true,
-     .has_trackers = false,
-     .has_frame_decoder = true,
-     .has_node_ids = false,
-     .is_named_by_address = false},
+     .has_frame_decoder = true},
     {.protocol = Protocol::xsens,
      .name = "xsens",
      .recorded_name = "xsens",
      .transports = any_transport,
      .rows = ProtocolRows::clip,
      .losses = LossNumbers::frames,
-     .answers = Answers::none,
-     .usual_rate_hz = 0.0,
-     .needs_skeleton = false,
      .has_trackers = true,
-     .has_frame_decoder = true,
-     .has_node_ids = false,
-     .is_named_by_address = false},
+     .has_frame_decoder = true},
     {.protocol = Protocol::kinect,
      .name = "kinect",
      .recorded_name = "kinect",
@@ -67,11 +48,7 @@ constexpr std::array<ProtocolRow, 5> table{{
      .losses = LossNumbers::frames,
      .answers = Answers::kinect_pings,
      .usual_rate_hz = 30.0,
-     .needs_skeleton = false,
-     .has_trackers = false,
-     .has_frame_decoder = true,
-     .has_node_ids = false,
-     .is_named_by_address = false},
+     .has_frame_decoder = true},
     {.protocol = Protocol::slimevr,
      .name = "slimevr",
      .recorded_name = "slimevr",
@@ -79,11 +56,7 @@ constexpr std::array<ProtocolRow, 5> table{{
      .rows = ProtocolRows::imu,
      .losses = LossNumbers::datagrams,
      .answers = Answers::tracker_handshakes,
-     .usual_rate_hz = 0.0,
-     .needs_skeleton = false,
-     .has_trackers = false,
      .has_frame_decoder = true,
-     .has_node_ids = false,
      .is_named_by_address = true},
 }};
 
@@ -128,13 +101,13 @@ std::vector<std::string> protocol_names() {
 }
 
 std::string_view name_of(Transport transport) {
-  return transport_table[static_cast<std::size_t>(transport)].name;
+  return transport_table[static_cast<std::size_t>(transport)];
 }
 
 std::optional<Transport> find_transport(std::string_view name) {
-  const auto* found = std::find_if(transport_table.begin(), transport_table.end(),
-                                   [&](const TransportName& one) { return one.name == name; });
-  return found == transport_table.end() ? std::nullopt : std::optional(found->transport);
+  const auto found = std::find(transport_table.begin(), transport_table.end(), name);
+  if (found == transport_table.end()) return std::nullopt;
+  return static_cast<Transport>(found - transport_table.begin());
 }
 
 Error unknown_transport(std::string_view name) {
@@ -142,9 +115,7 @@ Error unknown_transport(std::string_view name) {
 }
 
 std::vector<std::string> transport_names() {
-  std::vector<std::string> names;
-  for (const TransportName& one : transport_table) names.emplace_back(one.name);
-  return names;
+  return {transport_table.begin(), transport_table.end()};
 }
 
 bool is_datagrams(std::string_view transport) {

@@ -51,14 +51,16 @@ struct ProtocolRow {
   std::span<const Transport> transports;  // the first one is the default
   ProtocolRows rows;
   LossNumbers losses;
-  Answers answers;
-  double usual_rate_hz;    // 0: differs from device to device
-  bool needs_skeleton;     // the stream does not name a skeleton; a BVH file must describe it
-  bool has_trackers;       // the same stream also has inertial samples: select.kind = "trackers"
-  bool has_frame_decoder;  // the recorder decodes frames, so a stream without any is noticed
-  bool has_node_ids;  // senders state their ids; one device of a lab then stands for all of them
-  bool is_named_by_address;  // senders state no ids; the name is made of the address and a sensor's
-                             // number
+  Answers answers = Answers::none;
+  double usual_rate_hz = 0.0;   // 0: differs from device to device
+  bool needs_skeleton = false;  // the stream does not name a skeleton; a BVH file must describe it
+  bool has_trackers = false;  // the same stream also has inertial samples: select.kind = "trackers"
+  bool has_frame_decoder =
+      false;                  // the recorder decodes frames, so a stream without any is noticed
+  bool has_node_ids = false;  // senders state their ids; one device of a lab then stands for all of
+                              // them
+  bool is_named_by_address = false;  // senders state no ids; the name is made of the address and a
+                                     // sensor's number
 };
 
 /// Every row, in the order of the enum.

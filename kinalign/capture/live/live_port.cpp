@@ -100,7 +100,7 @@ void LivePort::turn() {
   std::erase_if(clients_, [this](Client& client) { return !is_silent(client) || !send(client); });
 }
 
-// Each client is told how many messages it lost.
+// The end states how many messages the client lost.
 void LivePort::end() {
   for (Client& client : clients_) {
     append_mcap(client.waiting, to_metadata(RecordingEnd{client.lost}));

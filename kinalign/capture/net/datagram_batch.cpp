@@ -26,8 +26,8 @@ void read_control(const cmsghdr& control, Datagram& datagram) {
   } else if (control.cmsg_level == IPPROTO_IP && control.cmsg_type == IP_PKTINFO) {
     const auto info = read_as<in_pktinfo>(control);
     datagram.to = host_of(info.ipi_addr);
-    // For a datagram to a broadcast address, the kernel gives the local address of the interface
-    // beside it.
+    // For a datagram to a broadcast address, the kernel also gives the local address of the
+    // interface.
     datagram.unicast = info.ipi_addr.s_addr == info.ipi_spec_dst.s_addr;
   } else if (control.cmsg_level == IPPROTO_IPV6 && control.cmsg_type == IPV6_PKTINFO) {
     const auto info = read_as<in6_pktinfo>(control);

@@ -15,7 +15,7 @@ std::optional<Time> transmit_stamp(Time received, Time now) {
 NtpPacket ntp_answer(const NtpPacket& request, Time received, Time transmit,
                      const NtpServerState& state) {
   constexpr std::int64_t seldom = 66'667;  // 1 / 15 ppm
-  // The clock's error grows while nobody corrects it.
+  // The clock's error grows while no program corrects it.
   const Duration age = std::max(transmit - state.read, Duration{0});
   NtpPacket answer;
   answer.leap = state.leap;

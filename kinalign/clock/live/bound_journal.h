@@ -24,7 +24,7 @@ class BoundJournal {
     double s, x;
   };
   std::array<Place, capacity> places_{};
-  /// The side of each bound is kept apart, because a bool beside two doubles would take eight
+  /// The side of each bound is kept apart, because a bool next to two doubles would take eight
   /// bytes.
   std::bitset<capacity> below_;
   std::size_t next_ = 0, size_ = 0;

@@ -15,19 +15,19 @@ Duration duration_of(std::int64_t ticks) { return Duration{ticks * 100}; }
 
 /// Appends a body's joints; returns the number of joints that are not finite.
 std::size_t append_body(const KinectBody& body, PointFrames& out) {
-  std::size_t wild = 0;
+  std::size_t not_finite = 0;
   for (std::size_t j = 0; j < joints; ++j) {
     const float* at = &body.positions[3 * j];
     const bool finite = std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
-    const auto said = static_cast<Tracking>(body.states[j]);
-    const Tracking state = finite ? said : Tracking::missing;
-    if (!finite && said != Tracking::missing) ++wild;
+    const auto sent = static_cast<Tracking>(body.states[j]);
+    const Tracking state = finite ? sent : Tracking::missing;
+    if (!finite && sent != Tracking::missing) ++not_finite;
     out.state.push_back(state);
     for (std::size_t k = 0; k < 3; ++k) {
       out.positions.push_back(state == Tracking::missing ? 0.0 : static_cast<double>(at[k]));
     }
   }
-  return wild;
+  return not_finite;
 }
 
 // The sensor's ticks count from its start, so this stamp is no UTC. Alignment fits the sensor's

@@ -198,19 +198,19 @@ Refusal take_pong(const Json& json, const KinectOrigin& origin, KinectMessage& m
 /// Reads the common fields and then those of the type. `room`: bytes of the line with its end.
 Refusal take_message(const Json& json, std::size_t room, KinectMessage& message) {
   if (!json.is_object()) return Refusal::bad_json;
-  std::string said;
-  if (!take(json, "schema", said)) return Refusal::wrong_fields;
-  if (said != schema) return Refusal::unknown_version;
-  if (!take(json, "type", said)) return Refusal::wrong_fields;
+  std::string stated, type;
+  if (!take(json, "schema", stated)) return Refusal::wrong_fields;
+  if (stated != schema) return Refusal::unknown_version;
+  if (!take(json, "type", type)) return Refusal::wrong_fields;
   KinectOrigin origin;
   if (!take(json, "sensor", origin.sensor) || !take(json, "session", origin.session) ||
       !take(json, "sequence", origin.sequence)) {
     return Refusal::wrong_fields;
   }
-  if (said == "hello") return take_hello(json, origin, message);
-  if (said == "frame") return take_frame(json, origin, message);
-  if (said == "pong") return take_pong(json, origin, message);
-  if (said != "ping") return Refusal::unknown_type;
+  if (type == "hello") return take_hello(json, origin, message);
+  if (type == "frame") return take_frame(json, origin, message);
+  if (type == "pong") return take_pong(json, origin, message);
+  if (type != "ping") return Refusal::unknown_type;
   return room < least_kinect_ping_line ? Refusal::too_short : take_ping(json, origin, message);
 }
 

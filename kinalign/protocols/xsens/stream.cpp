@@ -41,7 +41,7 @@ void append(XsensSample& all, XsensSample& more) {
 }
 
 constexpr std::array<std::string_view, 6> names{
-    "wrong_size", "torn", "incomplete", "repeated", "too_many_items", "too_many_characters"};
+    "wrong_size", "interrupted", "incomplete", "repeated", "too_many_items", "too_many_characters"};
 constexpr std::array<std::string_view, 6> meanings{
     "datagrams of an unknown layout were dropped",
     "datagrams that lacked a piece were dropped",
@@ -86,11 +86,11 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
   }
   // A header that is cut by another datagram states no valid size, so this is checked before the
   // size is read.
-  if (torn(xsens_header_size)) return true;
+  if (skip_interrupted(xsens_header_size)) return true;
   if (bytes.size() < xsens_header_size) return false;
   const XsensHeader header = parse_xsens_header(bytes);
   const std::size_t size = xsens_header_size + header.payload;
-  if (torn(size)) return true;
+  if (skip_interrupted(size)) return true;
   if (bytes.size() < size) return false;
   if (is_read(header.type)) {
     auto items = parse_xsens_items(header, bytes.subspan(xsens_header_size, header.payload));
@@ -110,12 +110,12 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
 
 // Skips the datagram at the front if another one begins within its next `size` bytes, as far as
 // they have arrived.
-bool XsensDecoder::torn(std::size_t size) {
+bool XsensDecoder::skip_interrupted(std::size_t size) {
   const auto bytes = ahead();
   const std::size_t end = std::min(size, bytes.size());
   for (std::size_t at = std::max(searched_, marker); at + marker <= end; ++at) {
     if (begins_xsens_header(bytes.subspan(at))) {
-      refuse(XsensRefusal::torn);
+      refuse(XsensRefusal::interrupted);
       counts_.bytes_skipped += at;
       take(at);
       return true;

@@ -17,7 +17,7 @@ namespace kinalign {
 /// Reasons for a datagram, or a sample of several datagrams, to be dropped.
 enum class XsensRefusal : std::uint8_t {
   wrong_size,      // the payload does not fit the type and the number of items
-  torn,            // another datagram begins before this one is complete
+  interrupted,     // another datagram begins before this one is complete
   incomplete,      // a sample of which some datagrams did not arrive
   repeated,        // a datagram of a sample that was output, or a datagram that is kept already
   too_many_items,  // more than 256 in a sample
@@ -91,7 +91,7 @@ class XsensDecoder {
   /// needed.
   bool step(std::vector<XsensArrival>& out);
   /// True if another datagram began within this one, which was then skipped.
-  bool torn(std::size_t size);
+  bool skip_interrupted(std::size_t size);
   /// Handles a complete datagram: outputs its sample, or joins it with others.
   void datagram(const XsensHeader& header, XsensItems items, std::vector<XsensArrival>& out);
   void join(Channel& channel, const XsensHeader& header, XsensSample piece,

@@ -5,6 +5,7 @@
 #include "kinalign/capture/net/udp_socket.h"
 
 #include <doctest/doctest.h>
+#include <netinet/in.h>
 
 #include <algorithm>
 #include <vector>

@@ -170,7 +170,7 @@ TEST_CASE("xsens stream: a wrong size swallows nothing behind it") {
     bytes += bytes_of(xsens_pose(23, 1001));
     const auto read = read_xsens(bytes);
     CHECK(read.samples == std::vector{xsens_pose(23, 1001)});
-    CHECK(read.counts[XsensRefusal::wrong_size] + read.counts[XsensRefusal::torn] == 1);
+    CHECK(read.counts[XsensRefusal::wrong_size] + read.counts[XsensRefusal::interrupted] == 1);
   }
 }
 
@@ -180,8 +180,8 @@ TEST_CASE("xsens stream: a lost piece costs its own sample alone") {
     Bytes bytes(one.begin(), one.end() - static_cast<std::ptrdiff_t>(lost));
     bytes += one;
     bytes += one;
-    // The next datagram's header ends the torn datagram if at least six of its bytes lie in the
-    // torn one's room.
+    // The next datagram's header ends the interrupted datagram if at least six of its bytes lie in
+    // the interrupted one's room.
     CHECK(read_xsens(bytes).samples.size() >= (lost < 6 ? 1U : 2U));
   }
 }
