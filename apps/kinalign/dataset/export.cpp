@@ -139,8 +139,9 @@ Result<int> run_export(Export& o, Call& call) {
   call.console.print(harmless(fmt::format(
       "{}: {}, {}\n", job.target, counted(job.takes.size(), "take"), counted(made.files, "file"))));
   const auto formats = export_formats();
+  const ExportFormat& format = *find_named(formats, o.format);
   // Every format loses something. The line is printed always, so that nobody has to look it up.
-  call.console.print(fmt::format("lost   {}\n", find_named(formats, o.format)->lost));
+  call.console.print(fmt::format("lost   {}\n", format.lost));
   const auto left_out = print_left_out(made, call);
   // The files exist already at this point. An error among these findings changes only the exit
   // code.
@@ -150,7 +151,7 @@ Result<int> run_export(Export& o, Call& call) {
       nlohmann::ordered_json{{"takes", job.takes.size()},
                              {"files", made.files},
                              {"format", o.format},
-                             {"lost", format->lost},
+                             {"lost", format.lost},
                              {"left_out", left_out},
                              {"findings", nlohmann::ordered_json::parse(findings_json(findings))}},
       1));
