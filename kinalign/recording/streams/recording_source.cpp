@@ -138,24 +138,8 @@ Result<void> report_chunk(const Progress& progress, const MessagePass& pass) {
   return Failure(interruption());
 }
 
-/// Reads the messages of a device again, if the first pass did not listen to all of its channels.
-Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& state,
-                                                     const Chosen& chosen,
-                                                     std::unique_ptr<DeviceListener> listener,
-                                                     const Progress& progress) {
-  MessagePass pass(state.chunks, chosen.ids());
-  const auto take = [&](const ChunkMessage& message) -> Result<void> {
-    listener->take({&state.channels.at(message.channel).raw, message.channel,
-                    arrival_of(message.log_time, state.survey.facts->utc_minus_host()),
-                    message.data});
-    return {};
-  };
-  while (KA_TRY(pass.next_chunk(take))) KA_TRY(report_chunk(progress, pass));
-  return listener;
-}
-
-/// Returns the listener of the first pass if it has the same channels. Otherwise makes another
-/// pass.
+/// Returns the listener of the first pass if it has the same channels. Otherwise another listener
+/// reads the device's messages again.
 Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, const Chosen& chosen,
                                                     const DeviceProtocol& protocol,
                                                     ListenVariant variant,
@@ -165,7 +149,16 @@ Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, con
   const bool is_same = found != state.listening.end() && found->second.listener &&
                        found->second.channels == chosen.ids();
   if (is_same) return std::move(found->second.listener);
-  return listen_again(state, chosen, protocol.listen(variant.body), progress);
+  auto listener = protocol.listen(variant.body);
+  MessagePass pass(state.chunks, chosen.ids());
+  const auto take = [&](const ChunkMessage& message) -> Result<void> {
+    listener->take({&state.channels.at(message.channel).raw, message.channel,
+                    arrival_of(message.log_time, state.survey.facts->utc_minus_host()),
+                    message.data});
+    return {};
+  };
+  while (KA_TRY(pass.next_chunk(take))) KA_TRY(report_chunk(progress, pass));
+  return listener;
 }
 
 /// A device whose clock was learnt, ready for its rows.
