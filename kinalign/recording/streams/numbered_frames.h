@@ -311,15 +311,4 @@ class NumberedRows : public DeviceRows<Frames> {
   std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
 };
 
-/// Makes the clock of numbered frames. A rate in the options has precedence over `step_ns`.
-inline void count_clock(std::vector<CountedFrame> frames, double step_ns, const DeviceWish& wish,
-                        HeardDevice& heard) {
-  const double rate = wish.options.rate_hz;
-  CountedClock clock = counted_clock(std::move(frames), rate > 0.0 ? 1e9 / rate : step_ns,
-                                     heard.utc_minus_host, wish.file.path);
-  append(heard.findings, clock.findings);
-  heard.step_ns = clock.step_ns;
-  heard.clock = std::move(clock.clock);
-}
-
 }  // namespace kinalign
