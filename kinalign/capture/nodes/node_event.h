@@ -37,12 +37,13 @@ struct NodeEvent {
   std::uint8_t version = 0;
   NodeRefusal refusal = NodeRefusal::none;
 };
+inline constexpr std::size_t node_event_kinds = 11;
 
 /// The same word as in --json: "newer_version".
 inline const char* name_of(NodeEvent::Kind kind) {
-  static constexpr std::array names{"joined",        "started",  "restarted", "twins",
-                                    "renamed",       "moved",    "left",      "returned",
-                                    "newer_version", "too_many", "wrong_key"};
+  static constexpr std::array<const char*, node_event_kinds> names{
+      "joined", "started",  "restarted",     "twins",    "renamed",  "moved",
+      "left",   "returned", "newer_version", "too_many", "wrong_key"};
   return names[static_cast<std::size_t>(kind)];
 }
 
