@@ -4,6 +4,7 @@
 #include "apps/cli/command_line.h"
 #include "apps/cli/field_text.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/syntax/toml.h"
 
 #include <unistd.h>
@@ -89,12 +90,6 @@ std::string projects_file(std::string folder) {
   }
 }
 
-const Field* named(const Fields& fields, const std::string& name) {
-  const auto found = std::find_if(fields.begin(), fields.end(),
-                                  [&](const Field& field) { return field.name == name; });
-  return found == fields.end() ? nullptr : &*found;
-}
-
 Result<void> set_all(const Field& field, const std::vector<std::string>& values) {
   auto* const* many = std::get_if<std::vector<std::string>*>(&field.value);
   // A list in a file replaces the list of a weaker source; it does not add to it.
@@ -130,7 +125,8 @@ Result<void> check_name(const SettingsFile& file, const Setting& setting, const 
     return unknown(file, setting, known, "a verb");
   }
   // One file serves all verbs, and only the running verb's fields are known here.
-  if (setting.verb != settable.page.name || named(settable.settings, setting.name) != nullptr) {
+  if (setting.verb != settable.page.name ||
+      find_named(settable.settings, setting.name) != nullptr) {
     return {};
   }
   known.clear();
@@ -185,7 +181,7 @@ Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
     KA_TRY(check_name(file, setting, settable, verbs));
     if (!setting.verb.empty() && setting.verb != settable.page.name) continue;
     const Fields& fields = setting.verb.empty() ? settable.common : settable.settings;
-    const Field* field = named(fields, setting.name);
+    const Field* field = find_named(fields, setting.name);
     if (field == nullptr) continue;  // a common setting that this verb does not take
     const auto known = sources.find(setting.name);
     // Files are applied from the weakest on, and flags were set before them.

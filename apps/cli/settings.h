@@ -51,7 +51,7 @@ Result<std::vector<SettingsFile>> parse_settings(const std::vector<SettingsText>
 
 /// The pages to read after an error in a settings file.
 inline constexpr std::string_view settings_pages =
-    "docs/commands.md describes a settings file, docs/recording.md describes a lab file";
+    "docs/commands.md describes a settings file, docs/formats/lab_toml.md describes a lab file";
 
 /// The options that a verb's table and the beginning of a file may set.
 struct Settable {

@@ -3,6 +3,7 @@
 
 #include "apps/kinalign-learn/marks.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/core/hash.h"
 #include "kinalign/learn/checkpoint.h"
 #include "kinalign/learn/fit_denoise.h"
@@ -55,22 +56,14 @@ Result<void> write_file(const std::string& path, const std::string& bytes) {
   return {};
 }
 
-/// The method with that name; nullptr if there is none. Names are unique over all three lists.
-template <class Method>
-const Method* find_method(const std::vector<Method>& all, const std::string& name) {
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Method& one) { return one.name == name; });
-  return found == all.end() ? nullptr : &*found;
-}
-
 /// The default settings of a method of any task.
 Result<TrainingOptions> options_of(const std::string& method, const std::string& name) {
   const auto denoise = denoise_methods();
   const auto pose = pose_methods();
   const auto fuse = fuse_methods();
-  if (const auto* found = find_method(denoise, method)) return found->options;
-  if (const auto* found = find_method(pose, method)) return found->options;
-  if (const auto* found = find_method(fuse, method)) return found->options;
+  if (const auto* found = find_named(denoise, method)) return found->options;
+  if (const auto* found = find_named(pose, method)) return found->options;
+  if (const auto* found = find_named(fuse, method)) return found->options;
   return Failure(Error{name, 0, "a known method", method});
 }
 
@@ -359,20 +352,20 @@ Result<void> project_bodies(const TrainingJob& job) {
 }
 
 /// Trains by the task of the method, which read_job() has checked.
-/// The lists must outlive the pointers that find_method() gives.
+/// The lists must outlive the pointers that find_named() gives.
 Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingState state,
                        const TrainingHooks& hooks) {
   const auto denoise = denoise_methods();
   const auto pose = pose_methods();
   const auto fuse = fuse_methods();
   // The order of the lists does not matter, since names are unique.
-  if (const auto* method = find_method(pose, job.method)) {
+  if (const auto* method = find_named(pose, job.method)) {
     return fit_pose_job(job, *method, windows, std::move(state), hooks);
   }
-  if (const auto* method = find_method(fuse, job.method)) {
+  if (const auto* method = find_named(fuse, job.method)) {
     return fit_fuse_job(job, *method, windows, std::move(state), hooks);
   }
-  return fit_denoise_job(job, *find_method(denoise, job.method), windows, std::move(state), hooks);
+  return fit_denoise_job(job, *find_named(denoise, job.method), windows, std::move(state), hooks);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 constexpr double least_gflops = 20.0;  // speed of a matrix product on one core of 2015 or later
 
 /// The speed of a product of two 256 x 256 matrices, GFLOP/s: the best of ten.
-/// models.md 9.1 compares BLAS libraries in this way. The best of ten counts, because other work on
+/// BLAS libraries can be compared in this way. The best of ten counts, because other work on
 /// the machine slows single products.
 double product_gflops() {
   using Clock = std::chrono::steady_clock;

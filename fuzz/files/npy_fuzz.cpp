@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An array that is accepted has the bytes that its header promises, and each value can be read.
-#include "kinalign/formats/archive/npy.h"
+#include "kinalign/numpy/npy.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/pieces.h"
 
-#include "kinalign/formats/points/ntu_bodies.h"
 #include "kinalign/formats/points/ntu_skeleton.h"
 
 #include <utility>

@@ -226,7 +226,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.name = "s";
   const std::string path = "/proc/self/fd/" + std::to_string(fd);
   const auto source =
-      RecordingSource::open(files, path, RecordingSource::Devices::heard, {options});
+      RecordingSource::open(files, path, RecordingSource::Devices::learned, {options});
   if (source) {
     const auto stream = (*source)->stream(options, {path, ""});
     // The stamps that the first pass finds are those of the rows, in every pass.

@@ -3,9 +3,10 @@
 // line to the same content. A connection's messages do not depend on where it is cut, and joining
 // them ends. No fuzzer guesses a CRC, so with an odd first byte the CRCs of binary messages are
 // repaired.
+#include "tests/protocols/kinect/kinect_lines.h"
+
 #include "kinalign/protocols/kinect/binary.h"
 #include "kinalign/protocols/kinect/frames.h"
-#include "kinalign/protocols/kinect/lines.h"
 #include "kinalign/protocols/kinect/stream.h"
 #include "kinalign/wire/crc32.h"
 

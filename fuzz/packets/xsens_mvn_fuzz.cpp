@@ -2,6 +2,7 @@
 // Samples do not depend on where the bytes are cut, few bytes wait, and a sample that was read is
 // sent and read again as the same. Poses and nodes made of the samples hold only finite numbers.
 #include "fuzz/pieces.h"
+#include "tests/protocols/xsens/xsens_datagrams.h"
 
 #include "kinalign/protocols/xsens/stream.h"
 #include "kinalign/recording/streams/xsens_pose.h"
@@ -31,10 +32,8 @@ Decoded decode(std::span<const std::uint8_t> bytes, std::size_t piece) {
 }
 
 std::vector<std::uint8_t> sent(const XsensSample& sample) {
-  const auto datagrams = xsens_datagrams(sample, {});
-  if (!datagrams) std::abort();
   std::vector<std::uint8_t> bytes;
-  for (const auto& datagram : *datagrams) {
+  for (const auto& datagram : xsens_datagrams(sample, {})) {
     bytes.insert(bytes.end(), datagram.begin(), datagram.end());
   }
   return bytes;

@@ -2,6 +2,7 @@
 #include "kinalign/align/nodes.h"
 
 #include "kinalign/clock/time_model.h"
+#include "kinalign/motion/index_of.h"
 
 #include <algorithm>
 
@@ -109,9 +110,7 @@ void turn_node(const RootPose& root, bool is_root, std::size_t i, ImuRows& rows)
 
 void bring_to_root(const ImuGroup& group, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
-  const auto root = static_cast<std::size_t>(
-      std::find(group.node_names.begin(), group.node_names.end(), group.root_node) -
-      group.node_names.begin());
+  const std::size_t root = *index_of(group.node_names, group.root_node);
   for (std::size_t first = 0; first < rows.valid.size(); first += nodes) {
     if (rows.valid[first + root] == 0) {
       clear_row(group, first, rows);
@@ -148,9 +147,7 @@ void turn_back(const Quat& from_root, const Vec3& root_acceleration, std::size_t
 
 void bring_from_root(const ImuGroup& group, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
-  const auto root = static_cast<std::size_t>(
-      std::find(group.node_names.begin(), group.node_names.end(), group.root_node) -
-      group.node_names.begin());
+  const std::size_t root = *index_of(group.node_names, group.root_node);
   for (std::size_t first = 0; first < rows.valid.size(); first += nodes) {
     if (rows.valid[first + root] == 0) continue;
     const Quat from_root = quat(rows.orientation, first + root);

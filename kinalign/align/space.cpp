@@ -2,6 +2,7 @@
 #include "kinalign/align/space.h"
 
 #include "kinalign/core/nearest_name.h"
+#include "kinalign/motion/index_of.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +17,6 @@ const std::vector<std::string>* joint_names(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return &clip->skeleton.joint_names;
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) return &points->joint_names;
   return nullptr;
-}
-
-/// The index of a name, or the number of names if it is absent.
-std::size_t find_joint(const std::vector<std::string>& names, std::string_view name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 Result<std::size_t> find_group(const TakeHeader& header, const std::string& name) {
@@ -38,8 +34,7 @@ Result<std::size_t> find_group(const TakeHeader& header, const std::string& name
 Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name,
                                 std::int64_t line) {
   const auto& names = *joint_names(group);
-  const std::size_t j = find_joint(names, name);
-  if (j < names.size()) return j;
+  if (const auto j = index_of(names, name)) return *j;
   Error error = unknown_name(name, "a joint of '" + group.name + "'", names);
   error.kind = ErrorKind::no_such_joint;
   error.line = line;
@@ -65,8 +60,8 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
   if (!pairs.empty()) return pairs;
   const auto &theirs = *joint_names(onto), &ours = *joint_names(from);
   const auto add = [&](std::string_view a, std::string_view b) {
-    const JointPair pair{find_joint(ours, a), find_joint(theirs, b)};
-    if (pair.from < ours.size() && pair.onto < theirs.size()) pairs.push_back(pair);
+    const auto from_joint = index_of(ours, a), onto_joint = index_of(theirs, b);
+    if (from_joint && onto_joint) pairs.push_back({*from_joint, *onto_joint});
   };
   // Kinect to mocap pairs first: both have a Neck and a Head, but at different places.
   for (const auto& [a, b] : usual_pairs()) add(a, b);

@@ -2,6 +2,7 @@
 #include "kinalign/align/unused_options.h"
 
 #include "kinalign/align/plan.h"
+#include "kinalign/core/find_named.h"
 
 #include <fmt/format.h>
 
@@ -61,8 +62,7 @@ const Method& method_named(std::string_view name) {
        {"given", {"onto", "joints", "rotation", "translation"}},
        {"paper", {"onto", "joints", "rotation_y_deg", "magnification", "root", "onto_root"}}}};
   // The manifest allows only these four methods (take/manifest.cpp).
-  return *std::find_if(methods.begin(), methods.end(),
-                       [name](const Method& method) { return method.name == name; });
+  return *find_named(methods, name);
 }
 
 bool contains(std::span<const std::string_view> names, std::string_view name) {

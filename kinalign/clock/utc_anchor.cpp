@@ -26,8 +26,4 @@ std::optional<UtcAnchor> utc_anchor(std::span<const ClockPair> pairs) {
   return anchor;
 }
 
-Time utc_from_host(const UtcAnchor& anchor, HostTime t) {
-  return Time{t.time_since_epoch() + anchor.utc_minus_raw};
-}
-
 }  // namespace kinalign

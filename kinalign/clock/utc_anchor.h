@@ -35,6 +35,4 @@ struct UtcAnchor {
 /// Pairs in the order of reading; absent if there is none.
 std::optional<UtcAnchor> utc_anchor(std::span<const ClockPair> pairs);
 
-Time utc_from_host(const UtcAnchor& anchor, HostTime t);
-
 }  // namespace kinalign

@@ -75,6 +75,13 @@ inline void append(Findings& all, const Findings& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
+inline void add_warning(Findings& all, Error what, std::string meaning, std::string repair = {}) {
+  all.push_back({Severity::warning, std::move(what), std::move(meaning), std::move(repair)});
+}
+inline void add_note(Findings& all, Error what, std::string meaning, std::string repair = {}) {
+  all.push_back({Severity::note, std::move(what), std::move(meaning), std::move(repair)});
+}
+
 /// The word for people and for JSON, for example "warning".
 std::string_view to_string(Severity severity);
 
@@ -83,6 +90,15 @@ std::string_view to_string(Severity severity);
 template <class T>
 using Result = tl::expected<T, Error>;  // replace by std::expected when it is available
 using Failure = tl::unexpected<Error>;
+
+/// A failure at a file as a whole.
+inline Failure refuse(std::string_view file, std::string expected, std::string found) {
+  return Failure(Error{std::string(file), 0, std::move(expected), std::move(found)});
+}
+/// A failure without a place, which a caller adds.
+inline Failure refuse(std::string expected, std::string found) {
+  return refuse("", std::move(expected), std::move(found));
+}
 
 /// The value of KA_TRY. A function, because a Result<void> has no value that could be dereferenced.
 template <class T>

@@ -13,7 +13,7 @@
 namespace kinalign {
 
 inline Failure failed(const std::string& path, std::string expected, int code) {
-  return Failure(Error{path, 0, std::move(expected), std::strerror(code)});
+  return refuse(path, std::move(expected), std::strerror(code));
 }
 
 /// The error for a file that could not be opened or read.

@@ -14,6 +14,11 @@ std::optional<FileVersion> version_of(const std::string& path) {
                      status.st_mtim.tv_sec * second_ns + status.st_mtim.tv_nsec};
 }
 
+Result<void> unchanged(const std::string& path, const std::optional<FileVersion>& version) {
+  if (version_of(path) == version) return {};
+  return refuse(path, "a file that does not change while it is read", "a changed file");
+}
+
 bool same_file(const std::string& a, const std::string& b) {
   const auto one = version_of(a), other = version_of(b);
   return one && other && one->device == other->device && one->number == other->number;

@@ -2,6 +2,8 @@
 // Tells whether two paths are the same file, and whether a file has changed.
 #pragma once
 
+#include "kinalign/core/error.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +22,10 @@ struct FileVersion {
 
 /// The version of the file at `path`, links followed; empty if there is none.
 std::optional<FileVersion> version_of(const std::string& path);
+
+/// Fails if the file at `path` no longer has the version `version`. A take contains the hashes of
+/// its inputs, so every pass must read the bytes that were hashed.
+Result<void> unchanged(const std::string& path, const std::optional<FileVersion>& version);
 
 /// True if both paths lead to the same existing file.
 bool same_file(const std::string& a, const std::string& b);

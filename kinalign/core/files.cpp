@@ -62,52 +62,21 @@ int PosixFiles::close(int fd) { return ::close(fd); }
 Result<InputFile> InputFile::open(FileSystem& files, std::string path, std::size_t piece) {
   // O_NONBLOCK: without it, opening a pipe without a writer would wait for ever. Regular files
   // ignore it.
-  const int fd = files.open(path.c_str(), O_RDONLY | O_NONBLOCK, 0);
-  if (fd < 0) return unreadable(path, errno);
+  OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_NONBLOCK, 0));
   struct stat status {};
-  if (::fstat(fd, &status) != 0) {
-    const int code = errno;
-    files.close(fd);
-    return unreadable(path, code);
-  }
+  if (file.fd() < 0 || ::fstat(file.fd(), &status) != 0) return unreadable(path, errno);
   if (!S_ISREG(status.st_mode)) {
-    files.close(fd);
     const ErrorKind kind = S_ISDIR(status.st_mode) ? ErrorKind::directory : ErrorKind::other;
     return Failure(Error{path, 0, "a regular file", kind_of(status.st_mode), kind});
   }
-  return InputFile(files, std::move(path), fd, static_cast<std::uint64_t>(status.st_size), piece);
-}
-
-InputFile::InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size,
-                     std::size_t piece)
-    : files_(&files), path_(std::move(path)), fd_(fd), size_(size), buffer_(piece) {}
-
-InputFile::InputFile(InputFile&& other) noexcept
-    : files_(other.files_),
-      path_(std::move(other.path_)),
-      fd_(std::exchange(other.fd_, -1)),
-      size_(other.size_),
-      buffer_(std::move(other.buffer_)),
-      at_(other.at_) {}
-
-InputFile& InputFile::operator=(InputFile&& other) noexcept {
-  std::swap(files_, other.files_);
-  std::swap(path_, other.path_);
-  std::swap(fd_, other.fd_);
-  std::swap(size_, other.size_);
-  std::swap(buffer_, other.buffer_);
-  std::swap(at_, other.at_);
-  return *this;
-}
-
-InputFile::~InputFile() {
-  if (fd_ >= 0) files_->close(fd_);
+  return InputFile(std::move(file), std::move(path), static_cast<std::uint64_t>(status.st_size),
+                   piece);
 }
 
 Result<std::string_view> InputFile::next() {
   for (;;) {
     // One read(2) a piece, so a piece may be shorter than the buffer before the end, too.
-    const ssize_t got = files_->read(fd_, buffer_.data(), buffer_.size());
+    const ssize_t got = file_.files().read(file_.fd(), buffer_.data(), buffer_.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {  // a disk may be unable to read a single page
       Failure failure = unreadable(path_, errno);
@@ -120,22 +89,21 @@ Result<std::string_view> InputFile::next() {
 }
 
 Result<std::size_t> InputFile::read_at(std::uint64_t at, std::span<char> to) const {
-  return fill(*files_, path_, fd_, at, to);
+  return fill(file_.files(), path_, file_.fd(), at, to);
 }
 
 Result<void> make_new_folder(const std::string& path) {
   // mkdir(2) checks and creates in one step, so of two programs only one succeeds.
   if (::mkdir(path.c_str(), 0777) == 0) return {};
-  if (errno == EEXIST)
-    return Failure(Error{path, 0, "no file or folder of that name", "an existing one"});
-  return Failure(Error{path, 0, "a folder that can be made", std::strerror(errno)});
+  if (errno == EEXIST) return refuse(path, "no file or folder of that name", "an existing one");
+  return refuse(path, "a folder that can be made", std::strerror(errno));
 }
 
 Result<void> make_folders(const std::string& path) {
   std::error_code fault;
   std::filesystem::create_directories(path, fault);
   if (!fault) return {};
-  return Failure(Error{path, 0, "a folder that can be made", fault.message()});
+  return refuse(path, "a folder that can be made", fault.message());
 }
 
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most) {
@@ -146,7 +114,7 @@ Result<std::string> read_whole(FileSystem& files, const std::string& path, std::
     if (piece.empty()) return text;
     // The bytes that arrive are counted. size() may be wrong by now.
     if (text.size() + piece.size() > most) {
-      return Failure(Error{path, 0, "at most " + std::to_string(most) + " bytes", "more"});
+      return refuse(path, "at most " + std::to_string(most) + " bytes", "more");
     }
     text += piece;
   }
@@ -171,18 +139,16 @@ Result<void> copy_file(FileSystem& files, const std::string& from, const std::st
 
 Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overwrite overwrite) {
   // A path such as "takes/" names a folder only.
-  if (file_name(path).empty())
-    return Failure(Error{path, 0, "the name of a file", "the name of a folder"});
+  if (file_name(path).empty()) return refuse(path, "the name of a file", "the name of a folder");
   struct stat status {};
   // lstat() does not follow links. A link is refused, because commit() would replace the link and
   // not its target.
   if (::lstat(path.c_str(), &status) == 0) {
     if (!S_ISREG(status.st_mode)) {
-      return Failure(Error{path, 0, "a regular file or no file", kind_of(status.st_mode)});
+      return refuse(path, "a regular file or no file", kind_of(status.st_mode));
     }
     if (overwrite == Overwrite::no) {
-      return Failure(
-          Error{path, 0, "no file of that name (--force overwrites)", "an existing file"});
+      return refuse(path, "no file of that name (--force overwrites)", "an existing file");
     }
   }
   OutputFile file(files, std::move(path), overwrite);
@@ -279,8 +245,7 @@ Result<void> OutputFile::place() {
   if (files_->link(from.c_str(), path_.c_str()) == 0) return {};
   if (errno != EEXIST) return failed(path_, "a folder that can be written", errno);
   if (overwrite_ == Overwrite::no) {
-    return Failure(
-        Error{path_, 0, "no file of that name (--force overwrites)", "an existing file"});
+    return refuse(path_, "no file of that name (--force overwrites)", "an existing file");
   }
   // The name is taken and may be overwritten.
   if (hidden_path_.empty()) {

@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -55,6 +56,32 @@ class PosixFiles : public FileSystem {
   int close(int fd) override;
 };
 
+/// Owns a descriptor of a file, and closes it.
+class OpenFile {
+ public:
+  OpenFile(FileSystem& files, int fd) : files_(&files), fd_(fd) {}
+  OpenFile(OpenFile&& other) noexcept : files_(other.files_), fd_(std::exchange(other.fd_, -1)) {}
+  OpenFile& operator=(OpenFile&& other) noexcept {
+    std::swap(files_, other.files_);
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() { close(); }
+
+  void close() {
+    if (fd_ >= 0) files_->close(std::exchange(fd_, -1));
+  }
+  FileSystem& files() const { return *files_; }
+  /// -1 after close(), after the object was moved from, or if the file could not be opened.
+  int fd() const { return fd_; }
+
+ private:
+  FileSystem* files_;
+  int fd_;
+};
+
 /// A regular file, read from front to back in pieces of at most 256 KiB. Such a piece stays in the
 /// second-level cache while it is hashed and parsed.
 class InputFile {
@@ -65,11 +92,6 @@ class InputFile {
   /// `piece`: the size of a piece, for a caller that needs only the beginning.
   static Result<InputFile> open(FileSystem& files, std::string path,
                                 std::size_t piece = piece_size);
-  InputFile(InputFile&& other) noexcept;
-  InputFile& operator=(InputFile&& other) noexcept;
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
-  ~InputFile();
 
   /// The next piece; empty at the end. Valid until the next call.
   Result<std::string_view> next();
@@ -83,13 +105,12 @@ class InputFile {
   const std::string& path() const { return path_; }
 
  private:
-  InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size, std::size_t piece);
+  InputFile(OpenFile file, std::string path, std::uint64_t size, std::size_t piece)
+      : file_(std::move(file)), path_(std::move(path)), size_(size), buffer_(piece) {}
 
-  // fd_ is open, or -1 after the object was moved from. next() returns views of buffer_, whose size
-  // is that of a piece.
-  FileSystem* files_;
+  // next() returns views of buffer_, whose size is that of a piece.
+  OpenFile file_;
   std::string path_;
-  int fd_;
   std::uint64_t size_;
   std::vector<char> buffer_;
   std::uint64_t at_ = 0;  // position of next()

@@ -10,45 +10,25 @@
 namespace kinalign {
 
 Result<GrowingFile> GrowingFile::create(FileSystem& files, std::string path) {
-  if (file_name(path).empty())
-    return Failure(Error{path, 0, "the name of a file", "the name of a folder"});
+  if (file_name(path).empty()) return refuse(path, "the name of a file", "the name of a folder");
   int fd = -1;
   do {
     fd = files.open(path.c_str(), O_RDWR | O_CREAT | O_EXCL, 0644);
   } while (fd < 0 && errno == EINTR);
   if (fd < 0) {
-    if (errno == EEXIST) return Failure(Error{path, 0, "no file of that name", "an existing file"});
+    if (errno == EEXIST) return refuse(path, "no file of that name", "an existing file");
     return failed(path, "a folder that can be written", errno);
   }
-  return GrowingFile(files, std::move(path), fd);
+  return GrowingFile(OpenFile(files, fd), std::move(path));
 }
-
-GrowingFile::GrowingFile(GrowingFile&& other) noexcept
-    : files_(other.files_),
-      path_(std::move(other.path_)),
-      fd_(std::exchange(other.fd_, -1)),
-      size_(other.size_),
-      named_(other.named_),
-      ragged_(other.ragged_) {}
-
-GrowingFile& GrowingFile::operator=(GrowingFile&& other) noexcept {
-  std::swap(files_, other.files_);
-  std::swap(path_, other.path_);
-  std::swap(fd_, other.fd_);
-  std::swap(size_, other.size_);
-  std::swap(named_, other.named_);
-  std::swap(ragged_, other.ragged_);
-  return *this;
-}
-
-GrowingFile::~GrowingFile() { close(); }
 
 // The bytes are written at size_, not at the file's end, so bytes of a failed append can't shift
 // them.
 Result<void> GrowingFile::append(std::string_view bytes) {
   if (ragged_) KA_TRY(cut(size_));
   const int code = put_all(bytes, [&, end = size_ + bytes.size()](std::string_view rest) {
-    return files_->write_at(fd_, rest.data(), rest.size(), static_cast<off_t>(end - rest.size()));
+    return file_.files().write_at(file_.fd(), rest.data(), rest.size(),
+                                  static_cast<off_t>(end - rest.size()));
   });
   if (code != 0) {
     ragged_ = true;
@@ -61,7 +41,7 @@ Result<void> GrowingFile::append(std::string_view bytes) {
 }
 
 Result<void> GrowingFile::cut(std::uint64_t size) {
-  while (files_->truncate(fd_, static_cast<off_t>(size)) != 0) {
+  while (file_.files().truncate(file_.fd(), static_cast<off_t>(size)) != 0) {
     if (errno != EINTR) return failed(path_, "a file that can be truncated", errno);
   }
   size_ = size;
@@ -70,31 +50,30 @@ Result<void> GrowingFile::cut(std::uint64_t size) {
 }
 
 Result<void> GrowingFile::read_at(std::uint64_t at, std::span<char> to) const {
-  const std::size_t got = KA_TRY(fill(*files_, path_, fd_, at, to));
+  const std::size_t got = KA_TRY(fill(file_.files(), path_, file_.fd(), at, to));
   if (got == to.size()) return {};
-  return Failure(Error{path_, 0, "the bytes that were written", "the file's end"});
+  return refuse(path_, "the bytes that were written", "the file's end");
 }
 
 Result<void> GrowingFile::sync() const {
-  while (files_->sync(fd_) != 0) {
+  while (file_.files().sync(file_.fd()) != 0) {
     if (errno != EINTR) return failed(path_, "data that reach the disk", errno);
   }
   // Some file systems can't sync a folder; the sync of the file itself matters.
-  if (!std::exchange(named_, true)) sync_folder(*files_, path_);
+  if (!std::exchange(named_, true)) sync_folder(file_.files(), path_);
   // Writes to a removed file succeed, but its data are lost when it is closed.
   struct stat status {};
   const bool removed =
-      ::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;
-  if (removed)
-    return Failure(Error{path_, 0, "a file that exists until the end", "no file: it was removed"});
+      ::fstat(file_.fd(), &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;
+  if (removed) return refuse(path_, "a file that exists until the end", "no file: it was removed");
   return {};
 }
 
 void GrowingFile::close() {
-  if (fd_ < 0) return;
+  if (file_.fd() < 0) return;
   // Bytes of a failed append must not remain in the finished file.
   if (ragged_) (void)cut(size_);
-  files_->close(std::exchange(fd_, -1));
+  file_.close();
 }
 
 }  // namespace kinalign

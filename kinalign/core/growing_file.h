@@ -17,11 +17,11 @@ class GrowingFile {
   /// Creates an empty file of that name without waiting for the disk. Fails if the name exists;
   /// nothing is ever overwritten.
   static Result<GrowingFile> create(FileSystem& files, std::string path);
-  GrowingFile(GrowingFile&& other) noexcept;
-  GrowingFile& operator=(GrowingFile&& other) noexcept;
+  GrowingFile(GrowingFile&&) = default;
+  GrowingFile& operator=(GrowingFile&&) = delete;
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
-  ~GrowingFile();
+  ~GrowingFile() { close(); }
 
   /// Appends all bytes, or none if it fails: partly written bytes are cut off again.
   Result<void> append(std::string_view bytes);
@@ -40,14 +40,12 @@ class GrowingFile {
   const std::string& path() const { return path_; }
 
  private:
-  GrowingFile(FileSystem& files, std::string path, int fd)
-      : files_(&files), path_(std::move(path)), fd_(fd) {}
+  GrowingFile(OpenFile file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
 
   // The first size_ bytes of the file are those appended so far. If ragged_, bytes of a failed
   // append may follow them; the next append() or close() cuts them off.
-  FileSystem* files_;
+  OpenFile file_;
   std::string path_;
-  int fd_;
   std::uint64_t size_ = 0;
   mutable bool named_ = false;  // the name has been synced
   bool ragged_ = false;         // bytes of a failed append may follow the end

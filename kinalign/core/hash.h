@@ -6,25 +6,20 @@
 #include <string>
 #include <string_view>
 
+struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX; only hash.cpp includes OpenSSL
+
 namespace kinalign {
 
-/// The state is hidden in a pointer, so that only hash.cpp includes OpenSSL.
 class Sha256 {
  public:
   Sha256();
-  Sha256(Sha256&&) noexcept;
-  Sha256& operator=(Sha256&&) noexcept;
-  Sha256(const Sha256&) = delete;
-  Sha256& operator=(const Sha256&) = delete;
-  ~Sha256();
 
   void update(std::string_view bytes);
   /// Ends the hash and returns 64 lower-case hexadecimal digits.
   std::string hex();
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<evp_md_ctx_st, void (*)(evp_md_ctx_st*)> context_;
 };
 
 }  // namespace kinalign

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -157,6 +156,11 @@ char* put_number(char* at, double value, int decimals) {
   }
   if (std::signbit(value)) *at++ = '-';
   return put_decimals(at, magnitude, all, decimals);
+}
+
+std::string number_text(double value, int decimals) {
+  std::array<char, number_room> room{};
+  return {room.data(), put_number(room.data(), value, decimals)};
 }
 
 }  // namespace kinalign

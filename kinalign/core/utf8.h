@@ -19,6 +19,11 @@ Character first_character(std::string_view text);
 
 bool is_utf8(std::string_view text);
 
+/// The text without the mark that some programs write in front of UTF-8.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  return text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
+}
+
 /// Converts text to UTF-8: bytes that begin no valid character are read as Latin-1.
 std::string as_utf8(std::string_view text);
 

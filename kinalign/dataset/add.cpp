@@ -207,7 +207,7 @@ Result<TakeAdder::Known> TakeAdder::read_known(const std::string& subject,
     if (name.action != action) continue;
     out.runs.insert(name.run);
     const auto text =
-        read_whole(files_, folder_ + "/" + path_of(name, TakeFile::manifest), longest_manifest);
+        read_whole(files_, path_of(folder_, name, TakeFile::manifest), longest_manifest);
     // A take without a readable manifest can't be recognised, but its run is taken.
     if (text) out.by_text.emplace(without_own_name(*text, name), name);
   }
@@ -268,7 +268,7 @@ Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
       there.runs.insert(name.run);  // its raw files belong to another take
       continue;
     }
-    const std::string path = folder_ + "/" + path_of(name, TakeFile::manifest);
+    const std::string path = path_of(folder_, name, TakeFile::manifest);
     // Creating the manifest reserves the run: only one process can create it.
     const Result<void> written = write_whole(files_, path, text, Overwrite::no);
     if (written) {
@@ -286,8 +286,8 @@ Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
 /// Subject and action come from the recording, if it states them.
 Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress& progress) {
   // The clocks need not be learnt to list the devices.
-  const auto source = KA_TRY(
-      RecordingSource::open(files_, request.path, RecordingSource::Devices::unheard, {}, progress));
+  const auto source = KA_TRY(RecordingSource::open(
+      files_, request.path, RecordingSource::Devices::surveyed, {}, progress));
   const RecordingSurvey survey = source->survey();
   Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(request.path))));
   if (survey.facts) {
@@ -322,13 +322,13 @@ Result<Added> TakeAdder::add_take(const AddRequest& request) {
   Known& there = *KA_TRY(known(subject, action));
   for (const std::uint32_t run : there.runs) {
     const TakeName one{subject, action, run};
-    const RawCopy copy{request.path, folder_ + "/" + path_of(one, TakeFile::take)};
+    const RawCopy copy{request.path, path_of(folder_, one, TakeFile::take)};
     // The same take was added before, under this run.
     if (is_there(copy.to) && KA_TRY(same_bytes(files_, copy))) return Added{one, true};
   }
   const TakeName name{subject, action, free_run(there.runs, 0)};
   // The take is copied unchanged, so its hash stays the same.
-  KA_TRY(copy_file(files_, request.path, folder_ + "/" + path_of(name, TakeFile::take)));
+  KA_TRY(copy_file(files_, request.path, path_of(folder_, name, TakeFile::take)));
   there.runs.insert(name.run);
   return Added{name, false};
 }

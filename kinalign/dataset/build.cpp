@@ -13,23 +13,12 @@
 #include "kinalign/sources/open_recording.h"
 
 #include <algorithm>
-#include <map>
 #include <mutex>
 #include <optional>
 
 namespace kinalign {
 
 namespace {
-
-/// The path of a take's file, with the data set's folder.
-std::string place(const std::string& folder, const TakeName& name, TakeFile file) {
-  return folder + "/" + path_of(name, file);
-}
-
-/// The folder of a take's manifest, to which the manifest's paths are relative.
-std::string folder_of(const std::string& folder, const TakeName& name) {
-  return folder + "/sub-" + name.subject + "/";
-}
 
 /// A take of the data set that may have to be made.
 struct Candidate {
@@ -56,7 +45,7 @@ class Planner {
   Result<Candidate> look(const TakeName& name, const TakeFiles& there) const {
     Candidate out{name, there, {}, {}, there.summary ? known(name) : std::nullopt, 0};
     if (!there.manifest) {  // it was added without raw files
-      out.bytes = size_of(place(folder_, name, TakeFile::take));
+      out.bytes = size_of(path_of(folder_, name, TakeFile::take));
       return out;
     }
     out.manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
@@ -81,11 +70,11 @@ class Planner {
     if (options_.all) return BuildReason::asked;
     if (recipe_of(one.manifest) != one.summary->recipe) return BuildReason::changed_parameters;
     // The take was replaced or truncated, so its summary says nothing about it.
-    if (size_of(place(folder_, one.name, TakeFile::take)) != one.summary->bytes) {
+    if (size_of(path_of(folder_, one.name, TakeFile::take)) != one.summary->bytes) {
       return BuildReason::first;
     }
     // Inputs that are older than the summary can't have changed since.
-    const auto made = version_of(place(folder_, one.name, TakeFile::summary));
+    const auto made = version_of(path_of(folder_, one.name, TakeFile::summary));
     const bool same = KA_TRY(
         same_inputs(files_, one.inputs, *one.summary, made ? made->changed_ns : 0, progress_));
     return same ? BuildReason::up_to_date : BuildReason::changed_inputs;
@@ -163,7 +152,7 @@ Result<TakeSummary> TakeMaker::make(const TakeName& name, const Manifest& manife
   // One thread for each take: several takes are made at once.
   const Recording recording =
       KA_TRY(open_recording(files_, manifest, base, {progress, 1, nullptr}));
-  const std::string path = place(folder_, name, TakeFile::take);
+  const std::string path = path_of(folder_, name, TakeFile::take);
   std::optional<TakeWriter> writer;
   TakeHeader header;
   TakeSink sink;
@@ -189,7 +178,7 @@ Result<TakeSummary> TakeMaker::make(const TakeName& name, const Manifest& manife
 
 Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
                                const Catalogue& catalogue, const TakeName& name) {
-  const std::string path = place(folder, name, TakeFile::manifest);
+  const std::string path = path_of(folder, name, TakeFile::manifest);
   Manifest manifest = KA_TRY(read_manifest(KA_TRY(read_whole(files, path, longest_manifest)),
                                            path_of(name, TakeFile::manifest), catalogue.align));
   // The name decides, whatever the manifest's text says.

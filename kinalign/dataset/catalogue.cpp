@@ -133,14 +133,6 @@ std::string hfut_template() {
   return text;
 }
 
-template <class One>
-const One* find_id(const std::vector<One>& all, std::string_view id) {
-  // Lists are short, so a search from the front is fast enough.
-  const auto found =
-      std::find_if(all.begin(), all.end(), [id](const One& one) { return one.id == id; });
-  return found == all.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 Fields describe(Catalogue& c) {

@@ -7,6 +7,7 @@
 #include "kinalign/core/options.h"
 #include "kinalign/take/manifest.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -60,7 +61,13 @@ Fields describe(Subject& subject);
 Fields describe(ActionClass& one);
 Fields describe(Action& action);
 
-/// nullptr if there is none with that id.
+/// The entry with that id; nullptr if there is none.
+template <class One>
+const One* find_id(const std::vector<One>& all, std::string_view id) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [id](const One& one) { return one.id == id; });
+  return found == all.end() ? nullptr : &*found;
+}
 const Subject* find_subject(const Catalogue& catalogue, std::string_view id);
 const Action* find_action(const Catalogue& catalogue, std::string_view id);
 

@@ -2,8 +2,11 @@
 #include "kinalign/dataset/scan.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 namespace kinalign {
 
@@ -21,6 +24,32 @@ Failure unreadable(const std::string& folder, const std::error_code& fault) {
 bool is_there(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
+}
+
+Result<void> remove_file(FileSystem& files, const std::string& path) {
+  if (files.remove(path.c_str()) == 0 || errno == ENOENT) return {};
+  return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
+}
+
+void remove_if_empty(const std::string& path) {
+  std::error_code ignored;  // not empty, or missing
+  if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
+}
+
+UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
+  for (fs::path up = fs::path(path_).parent_path(); !up.empty() && !is_there(up.string());
+       up = up.parent_path()) {
+    // Only folders that do not exist yet are remembered.
+    above_.push_back(up.string());
+  }
+}
+
+UnfinishedFolder::~UnfinishedFolder() {
+  // A failed import removes what it made, and no folder that existed before.
+  if (kept_) return;
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  for (const std::string& one : above_) fs::remove(one, ignored);  // only if it is empty
 }
 
 Result<std::vector<std::string>> names_in_folder(const std::string& path) {

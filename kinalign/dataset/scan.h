@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the files of takes in a data set's folder. No function throws: a folder that can't be
-// entered is an Error.
+// Lists the files of takes in a data set's folder, and removes files and unfinished folders. No
+// function throws: a folder that can't be entered is an Error.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -19,6 +19,29 @@ inline constexpr std::size_t longest_manifest = std::size_t{4} << 20;
 
 /// True if a file or folder exists; false also if that can't be found out.
 bool is_there(const std::string& path);
+/// Removes a file; a file that does not exist is no fault.
+Result<void> remove_file(FileSystem& files, const std::string& path);
+
+/// Removes a folder if it exists and is empty.
+void remove_if_empty(const std::string& path);
+
+/// A new folder. Unless it is kept, it is removed at the end with all its files, and so are parent
+/// folders that did not exist before.
+class UnfinishedFolder {
+ public:
+  explicit UnfinishedFolder(std::string path);
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+  ~UnfinishedFolder();
+
+  void keep() { kept_ = true; }
+
+ private:
+  std::string path_;
+  std::vector<std::string> above_;  // the deepest first
+  bool kept_ = false;
+};
+
 /// The names in a folder, sorted. Fails if it can't be read.
 Result<std::vector<std::string>> names_in_folder(const std::string& path);
 /// The names of people's folders, "sub-03". Fails if the data set's folder can't be read.

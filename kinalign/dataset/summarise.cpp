@@ -2,6 +2,7 @@
 #include "kinalign/dataset/summarise.h"
 
 #include "kinalign/dataset/contents.h"
+#include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/guarded.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/sources/input_facts.h"
@@ -15,10 +16,6 @@ namespace kinalign {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string take_path(const std::string& folder, const TakeName& name) {
-  return folder + "/" + path_of(name, TakeFile::take);
-}
 
 /// An error crosses from the child process as JSON.
 Json error_json(const Error& error) {
@@ -62,7 +59,7 @@ std::vector<Result<std::string>> ask_takes(
     const std::function<Result<std::string>(TakeReader&)>& ask) {
   std::vector<Result<std::string>> out;
   const auto answer = [&](const TakeName& name) -> Result<std::string> {
-    TakeReader reader = KA_TRY(TakeReader::open(files, take_path(folder, name)));
+    TakeReader reader = KA_TRY(TakeReader::open(files, path_of(folder, name, TakeFile::take)));
     return ask(reader);
   };
   // Each round starts one child, which answers for all remaining takes. If it ends early, the take
@@ -84,10 +81,11 @@ std::vector<Result<std::string>> ask_takes(
       }
       return {};
     };
-    auto done = run_guarded(GuardLimits{}, blame(take_path(folder, names[first])), work, receive);
+    auto done = run_guarded(GuardLimits{}, blame(path_of(folder, names[first], TakeFile::take)),
+                            work, receive);
     // If the child fails after its last answer, all takes are answered nevertheless.
     if (done || out.size() == names.size()) continue;
-    done.error().file = take_path(folder, names[out.size()]);
+    done.error().file = path_of(folder, names[out.size()], TakeFile::take);
     out.push_back(Failure(std::move(done).error()));
   }
   return out;
@@ -103,10 +101,11 @@ Result<TakeSummary> summary_of(TakeReader& reader) {
 Result<TakeSummary> keep_summary(FileSystem& files, const std::string& folder, const TakeName& name,
                                  TakeSummary summary) {
   // The hash is that of the file on the disk, not of what was meant to be written.
-  const InputFacts facts = KA_TRY(facts_of(files, take_path(folder, name), "hashing", {}));
+  const InputFacts facts =
+      KA_TRY(facts_of(files, path_of(folder, name, TakeFile::take), "hashing", {}));
   summary.sha256 = facts.sha256;
   summary.bytes = facts.bytes;
-  KA_TRY(write_whole(files, folder + "/" + path_of(name, TakeFile::summary), summary_json(summary),
+  KA_TRY(write_whole(files, path_of(folder, name, TakeFile::summary), summary_json(summary),
                      Overwrite::yes));
   return summary;
 }
@@ -117,35 +116,25 @@ std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::s
   const auto texts = ask_takes(files, folder, names, summary_text);
   for (std::size_t i = 0; i < names.size(); ++i) {
     // The child may have read a hostile file, so its text is parsed like any foreign text.
-    out.push_back(texts[i] ? parse_summary_json(*texts[i], take_path(folder, names[i]))
-                           : Failure(texts[i].error()));
+    out.push_back(texts[i]
+                      ? parse_summary_json(*texts[i], path_of(folder, names[i], TakeFile::take))
+                      : Failure(texts[i].error()));
   }
   return out;
 }
 
 Result<Findings> check_rows(FileSystem& files, const std::string& folder, const TakeName& name,
                             double rate_hz) {
-  const std::string path = take_path(folder, name);
+  const std::string path = path_of(folder, name, TakeFile::take);
   const std::string text =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&]() -> Result<std::string> {
         TakeReader reader = KA_TRY(TakeReader::open(files, path));
         ContentCheck check(reader.header(), rate_hz);
         TakeSlab slab;
         while (KA_TRY(reader.next(slab))) check.add(slab);
-        // Findings cross to the parent as JSON.
-        Json all = Json::array();
-        for (const Finding& finding : check.findings(path_of(name, TakeFile::take))) {
-          Json one = error_json(finding.what);
-          one["severity"] = static_cast<int>(finding.severity);
-          all.push_back(std::move(one));
-        }
-        return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+        return findings_json(check.findings(path_of(name, TakeFile::take)));
       }));
-  Findings out;
-  for (const Json& one : Json::parse(text)) {
-    out.push_back({static_cast<Severity>(one.at("severity").get<int>()), error_from(one), "", ""});
-  }
-  return out;
+  return parse_findings_json(text);
 }
 
 }  // namespace kinalign

@@ -2,6 +2,7 @@
 #include "kinalign/dataset/take_inputs.h"
 
 #include "kinalign/core/file_version.h"
+#include "kinalign/core/find_named.h"
 #include "kinalign/dataset/build.h"
 #include "kinalign/dataset/scan.h"
 #include "kinalign/sources/formats.h"
@@ -33,9 +34,7 @@ namespace {
 
 /// Adds an input once: several streams may read one file.
 void add_input(const TakeInput& input, std::vector<TakeInput>& out) {
-  const bool has = std::any_of(out.begin(), out.end(),
-                               [&](const TakeInput& one) { return one.name == input.name; });
-  if (!has) out.push_back(input);
+  if (find_named(out, input.name) == nullptr) out.push_back(input);
 }
 
 using Names = std::map<std::string, std::string>;  // by path as in the manifest
@@ -95,11 +94,9 @@ Result<bool> same_inputs(FileSystem& files, const std::vector<TakeInput>& inputs
   // A file more or less makes another take.
   if (inputs.size() != summary.inputs.size()) return false;
   for (const TakeInput& input : inputs) {
-    const auto known =
-        std::find_if(summary.inputs.begin(), summary.inputs.end(),
-                     [&](const InputFacts& facts) { return facts.name == input.name; });
+    const InputFacts* const known = find_named(summary.inputs, input.name);
     const auto version = version_of(input.path);
-    if (known == summary.inputs.end() || !version || version->size != known->bytes) return false;
+    if (known == nullptr || !version || version->size != known->bytes) return false;
     // The file is older than the take's summary and has the same length.
     if (version->changed_ns < made_ns) continue;
     if (KA_TRY(facts_of(files, input.path, "hashing", progress)).sha256 != known->sha256)
@@ -135,12 +132,12 @@ bool is_unpacked(const std::string& place) {
 Result<std::vector<TakeInput>> raw_files_of(FileSystem& files, const std::string& folder,
                                             const TakeName& name) {
   std::error_code fault;
-  if (!fs::exists(folder + "/" + path_of(name, TakeFile::manifest), fault)) {
+  if (!fs::exists(path_of(folder, name, TakeFile::manifest), fault)) {
     return std::vector<TakeInput>{};
   }
   // Defaults of dataset.toml do not change which files are named.
   const Manifest manifest = KA_TRY(take_manifest(files, folder, Catalogue{}, name));
-  const std::string base = folder + "/sub-" + name.subject + "/";
+  const std::string base = folder_of(folder, name);
   const auto summary = read_summary(files, folder, name);
   // A take that was built states its further files; otherwise readers are asked.
   return summary ? inputs_of(files, manifest, base, summary->inputs)

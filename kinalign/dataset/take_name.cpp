@@ -60,6 +60,14 @@ std::string path_of(const TakeName& name, TakeFile file) {
   return fmt::format("sub-{}/{}{}", name.subject, to_string(name), ending->second);
 }
 
+std::string path_of(const std::string& folder, const TakeName& name, TakeFile file) {
+  return folder + "/" + path_of(name, file);
+}
+
+std::string folder_of(const std::string& folder, const TakeName& name) {
+  return folder + "/sub-" + name.subject + "/";
+}
+
 std::optional<std::pair<TakeName, TakeFile>> parse_take_path(std::string_view path) {
   const auto slash = path.find('/');
   if (slash == std::string_view::npos) return std::nullopt;

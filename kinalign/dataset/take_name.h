@@ -38,6 +38,10 @@ std::optional<TakeName> parse_take_name(std::string_view text);
 
 /// The path below the data set's folder: "sub-03/sub-03_task-S2A03_run-01_take.h5".
 std::string path_of(const TakeName& name, TakeFile file);
+/// The same path with the data set's folder before it.
+std::string path_of(const std::string& folder, const TakeName& name, TakeFile file);
+/// The folder of a person's takes, ending in '/', to which the paths in manifests are relative.
+std::string folder_of(const std::string& folder, const TakeName& name);
 /// The folder of raw files that were copied with their take: "sourcedata/sub-03/NAME/".
 std::string raw_folder(const TakeName& name);
 /// The take and kind of a file at a path of path_of(); absent for any other path.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/take_summary.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/core/hash.h"
 #include "kinalign/documents/parameters_json.h"
 #include "kinalign/documents/report_json.h"
@@ -60,9 +61,8 @@ void add_report(const StreamReport& report, StreamSummary& stream, Sums& sums) {
 void add_streams(const AlignmentReport& report, TakeSummary& out) {
   std::map<std::string, Sums> sums;
   for (const StreamReport& one : report.streams) {
-    const auto stream = std::find_if(out.streams.begin(), out.streams.end(),
-                                     [&](const StreamSummary& s) { return s.name == one.stream; });
-    if (stream != out.streams.end()) add_report(one, *stream, sums[one.stream]);
+    StreamSummary* const stream = find_named(out.streams, one.stream);
+    if (stream != nullptr) add_report(one, *stream, sums[one.stream]);
   }
   for (StreamSummary& stream : out.streams) {
     const Sums& of = sums[stream.name];

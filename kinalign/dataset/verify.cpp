@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/verify.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/build.h"
 #include "kinalign/dataset/scan.h"
@@ -140,7 +141,7 @@ class Verifier {
     // The hash is checked later, with all others; here it must not differ.
     made.sha256 = stored->sha256;
     std::error_code fault;
-    made.bytes = std::filesystem::file_size(folder_ + "/" + path_of(name, TakeFile::take), fault);
+    made.bytes = std::filesystem::file_size(path_of(folder_, name, TakeFile::take), fault);
     // Everything in a summary follows from the take's bytes, so the texts must be equal.
     if (summary_json(made) != *text) {
       report(Severity::error, file, "the contents of the take", "other values", again);
@@ -149,7 +150,7 @@ class Verifier {
       report(Severity::error, path_of(name, TakeFile::take),
              "subject and action as in the take's name", made.subject + " and " + made.action);
     }
-    hashes_.push_back({folder_ + "/" + path_of(name, TakeFile::take), stored->sha256,
+    hashes_.push_back({path_of(folder_, name, TakeFile::take), stored->sha256,
                        path_of(name, TakeFile::take), stored->bytes});
     // Only takes with a good summary are compared with their manifests.
     summaries_.emplace(name, *stored);
@@ -186,7 +187,7 @@ class Verifier {
       report(Severity::warning, file, "the parameters of the take", "other parameters", build);
     }
     for (const TakeInput& input :
-         inputs_of(files_, *manifest, folder_ + "/sub-" + name.subject + "/", summary.inputs)) {
+         inputs_of(files_, *manifest, folder_of(folder_, name), summary.inputs)) {
       check_input(file, input, summary);
     }
   }
@@ -194,14 +195,13 @@ class Verifier {
   // Sizes are always compared. Raw files are hashed only in a deep check, since they may be large.
   void check_input(const std::string& manifest, const TakeInput& input,
                    const TakeSummary& summary) {
-    const auto known = std::find_if(summary.inputs.begin(), summary.inputs.end(),
-                                    [&](const InputFacts& one) { return one.name == input.name; });
+    const InputFacts* const known = find_named(summary.inputs, input.name);
     std::error_code fault;
     const auto size = fs::file_size(input.path, fault);
     if (fault) {
       report(Severity::warning, manifest, "the raw file " + input.name, "no such file",
              "the take can't be made again without this file");
-    } else if (known == summary.inputs.end() || known->bytes != size) {
+    } else if (known == nullptr || known->bytes != size) {
       report(Severity::warning, manifest,
              "the raw file " + input.name + " that the take was made from", "another file",
              "kinalign dataset build");

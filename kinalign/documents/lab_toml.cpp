@@ -17,8 +17,8 @@ constexpr std::size_t most_devices = 64;
 Result<DeviceOptions> read_device(const Value& device, const std::string& in) {
   // A frequent mistake: [device] with the keys of a device, but without a name.
   if (!device.is_table()) {
-    return at(device, Error{"", 0, "[device.NAME], a table of its own for each",
-                            device.key + ", " + shown(device)});
+    return at(device, "[device.NAME], a table of its own for each",
+              device.key + ", " + shown(device));
   }
   DeviceOptions out;
   out.name = device.key;
@@ -43,7 +43,7 @@ Result<std::vector<DeviceOptions>> read_devices(std::string_view toml, std::stri
       const auto good = validate(lab);
       if (!good) return at(device, good.error());
       if (lab.devices.size() > most_devices) {
-        return at(device, Error{"", 0, std::to_string(most_devices) + " devices at most", "more"});
+        return at(device, std::to_string(most_devices) + " devices at most", "more");
       }
     }
     return {};

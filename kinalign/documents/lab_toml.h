@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// lab.toml: the devices of a lab, docs/recording.md. Its other tables are settings of verbs, which
-// the program reads.
+// lab.toml: the devices of a lab, docs/formats/lab_toml.md. Its other tables are settings of verbs,
+// which the program reads.
 #pragma once
 
 #include "kinalign/core/error.h"

@@ -15,8 +15,8 @@ namespace {
 Result<void> check_purpose(const Value& top) {
   const Value* devices = top.find({"device"});
   if (devices == nullptr) return {};
-  return at(*devices, Error{"", 0, "a manifest, recording.toml, with [stream.NAME]",
-                            "[device], of a lab.toml: kinalign record takes it as --config"});
+  return at(*devices, "a manifest, recording.toml, with [stream.NAME]",
+            "[device], of a lab.toml: kinalign record takes it as --config");
 }
 
 /// Reads files = { waist = "w.csv" } or files = ["a.csv", "b.csv"].
@@ -52,7 +52,7 @@ Result<void> read_stream(const Value& stream, Manifest& manifest) {
   keep_lines(stream, out.lines);
   // A stream without a file is refused here, at the line of its table.
   if (!out.files.empty()) return {};
-  return at(stream, Error{"", 0, "file or files in [" + stream.path + "]", "none"});
+  return at(stream, "file or files in [" + stream.path + "]", "none");
 }
 
 Result<void> read_streams(const Value& streams, Manifest& out) {

@@ -56,17 +56,13 @@ Value value_of(const Json& json, std::string key, std::string path) {
   // line stays 0: JSON values are named by their path, such as streams[0].gap_ms.
   using Kind = Value::Kind;
   Value out{Kind::null, {}, {}, std::move(key), std::move(path)};
-  const auto scalar = [&](Kind kind, auto value) {
-    out.kind = kind;
-    out.scalar = std::move(value);
-  };
   // An integer above INT64_MAX is read as a double, so it is no whole number for an option.
   const bool whole = json.is_number_integer() &&
                      (!json.is_number_unsigned() || json.get<std::uint64_t>() <= INT64_MAX);
-  if (json.is_boolean()) scalar(Kind::truth, json.get<bool>());
-  if (json.is_string()) scalar(Kind::text, json.get<std::string>());
-  if (whole) scalar(Kind::whole, json.get<std::int64_t>());
-  if (json.is_number() && !whole) scalar(Kind::number, json.get<double>());
+  if (json.is_boolean()) out.set(Kind::truth, json.get<bool>());
+  if (json.is_string()) out.set(Kind::text, json.get<std::string>());
+  if (whole) out.set(Kind::whole, json.get<std::int64_t>());
+  if (json.is_number() && !whole) out.set(Kind::number, json.get<double>());
   if (json.is_array()) {
     out.kind = Kind::list;
     for (const Json& one : json) {
@@ -117,10 +113,10 @@ Result<Manifest> manifest_from(const Value& top) {
     if (KA_TRY(text_of(value)) == schema) return {};
     return wrong(value, std::string("\"") + schema + "\"");
   };
-  if (!top.is_table()) return Failure(Error{"", 0, "parameters as a table", shown(top)});
+  if (!top.is_table()) return refuse("parameters as a table", shown(top));
   // A text without a schema could be of any version, and its keys could mean something else.
   if (top.find({"schema"}) == nullptr) {
-    return Failure(Error{"", 0, std::string("schema ") + schema, "none"});
+    return refuse(std::string("schema ") + schema, "none");
   }
   KA_TRY(
       read_options(top, describe(out),
@@ -131,30 +127,11 @@ Result<Manifest> manifest_from(const Value& top) {
   return out;
 }
 
-/// True if brackets outside of strings are nested deeper than `most`. The parser recurses; this
-/// check does not.
-/// The bracket count may go below 0 in a text that is no JSON. The parser refuses that text later.
-bool deeper_than(std::string_view json, int most) {
-  int depth = 0;
-  bool in_text = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    // The character after a backslash never ends a text.
-    if (in_text && c == '\\') ++i;
-    if (c == '"') in_text = !in_text;
-    if (in_text) continue;
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (depth > most) return true;
-  }
-  return false;
-}
-
 /// A take from another person must not make the program read files elsewhere.
 Result<void> check_path(const std::string& path) {
   // A path that points nowhere else is remembered unchanged.
   if (remembered_path(path) == path) return {};
-  return Failure(Error{"", 0, "a path below the folder of the inputs", "'" + shown(path) + "'"});
+  return refuse("a path below the folder of the inputs", "'" + shown(path) + "'");
 }
 
 }  // namespace
@@ -173,13 +150,17 @@ std::string parameters_json(const Manifest& manifest) {
 }
 
 Result<Manifest> parse_parameters_json(std::string_view json) {
-  // The parameters of this program are nested only a few levels deep.
-  if (deeper_than(json, 32))
-    return Failure(Error{"", 0, "parameters as JSON", "too many brackets"});
-  const Json parsed = Json::parse(json, nullptr, false);
+  // The parameters of this program are nested only a few levels deep. value_of() recurses.
+  constexpr int deepest = 32;
+  bool deeper = false;
+  const auto keep = [&deeper](int depth, Json::parse_event_t, const Json&) {
+    deeper = deeper || depth > deepest;
+    return !deeper;
+  };
+  const Json parsed = Json::parse(json, keep, false);
+  if (deeper) return refuse("parameters as JSON", "too many brackets");
   if (parsed.is_discarded()) {
-    return Failure(
-        Error{"", 0, "parameters as JSON", json.empty() ? "an empty text" : shown(json)});
+    return refuse("parameters as JSON", json.empty() ? "an empty text" : shown(json));
   }
   Manifest manifest = KA_TRY(manifest_from(value_of(parsed, "", "")));
   for (const StreamOptions& stream : manifest.streams) {

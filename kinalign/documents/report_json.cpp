@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/documents/report_json.h"
 
+#include "kinalign/documents/json_values.h"
+
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 namespace kinalign {
 
@@ -100,6 +105,133 @@ std::string written(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+// ---- from JSON, which may come from another program: a member of a wrong type is ignored, and
+// control characters in texts become '?'
+
+/// A stamp or duration, ns. 0 if there is none, or one that a take can't have.
+std::int64_t ns_at(const Json& json, const char* key) {
+  // About 126 years. The difference of two such numbers still fits into 64 bits.
+  return whole_at(json, key, 4'000'000'000'000'000'000);
+}
+
+template <std::size_t count>
+std::array<double, count> numbers_at(const Json& json, const char* key) {
+  // Numbers that are missing stay 0.
+  std::array<double, count> out{};
+  const Json& list = list_at(json, key);
+  for (std::size_t i = 0; i < std::min(count, list.size()); ++i) {
+    if (list[i].is_number()) out[i] = list[i].get<double>();
+  }
+  return out;
+}
+
+/// The counts are checked against each other, because shares and differences are computed from
+/// them.
+StampSurvey survey_from(const Json& json) {
+  StampSurvey out;
+  out.samples = count_at(json, "samples");
+  out.duplicates = count_at(json, "duplicates");
+  out.backward = count_at(json, "backward");
+  out.ahead = count_at(json, "ahead");
+  out.largest_step_back_ns = ns_at(json, "largest_step_back_ns");
+  out.first = utc_time(ns_at(json, "first_ns"));
+  out.last = utc_time(ns_at(json, "last_ns"));
+  out.median_step_ns = ns_at(json, "median_step_ns");
+  out.long_steps = count_at(json, "long_steps");
+  out.long_time_ns = ns_at(json, "long_time_ns");
+  if (out.duplicates > out.samples || out.backward > out.samples - out.duplicates ||
+      out.ahead > out.samples - out.duplicates - out.backward) {
+    out.duplicates = out.backward = out.ahead = 0;  // kept() must not wrap around
+  }
+  return out;
+}
+
+/// A stream of the report. Its invalid samples are limited to all samples, since shares follow.
+StreamReport stream_from(const Json& json) {
+  StreamReport out;
+  out.stream = text_at(json, "stream");
+  for (const Json& node : list_at(json, "nodes")) {
+    if (node.is_string()) out.nodes.push_back(node.get<std::string>());
+  }
+  if (json.is_object() && json.contains("stamps")) out.survey = survey_from(json["stamps"]);
+  out.counted =
+      json.is_object() && json.contains("stamps_counted") && json["stamps_counted"] == true;
+  out.rate_hz = number_at(json, "rate_hz");
+  out.gap_ns = ns_at(json, "gap_ns");
+  // A count that is missing reads as 0, which is also the count of a take that knew no such fault.
+  out.held_back = count_at(json, "held_back");
+  out.arrivals.near = count_at(json, "near");
+  out.arrivals.late = count_at(json, "late");
+  out.arrivals.worst_late_ns = ns_at(json, "worst_late_ns");
+  out.gaps = count_at(json, "gaps");
+  out.gap_time_ns = ns_at(json, "gap_time_ns");
+  out.samples = count_at(json, "samples");
+  out.invalid = std::min(out.samples, count_at(json, "invalid"));
+  out.empty_rows = count_at(json, "empty_rows");
+  out.inferred = count_at(json, "inferred");
+  out.bridged = count_at(json, "bridged");
+  out.worst_nearest_ns = ns_at(json, "worst_nearest_ns");
+  if (json.is_object() && json.contains("worst_interval_ns")) {
+    out.worst_interval_ns = ns_at(json, "worst_interval_ns");
+  }
+  out.unsure = count_at(json, "unsure");
+  return out;
+}
+
+/// A space of the report. A rotation that is no unit quaternion is ignored.
+SpaceReport space_from(const Json& json) {
+  SpaceReport out;
+  out.stream = text_at(json, "stream");
+  out.onto = text_at(json, "onto");
+  out.method = text_at(json, "method");
+  const auto q = numbers_at<4>(json, "rotation");
+  // Zeros, and thus a missing rotation, fail this test; the identity stays.
+  const Quat rotation(q[0], q[1], q[2], q[3]);
+  if (rotation.norm() > 0.5 && rotation.norm() < 2.0) {
+    out.transform.rotation = rotation.normalized();
+  }
+  const auto t = numbers_at<3>(json, "translation_m");
+  out.transform.translation = Vec3(t[0], t[1], t[2]);
+  // A magnification of 0 would make all points equal.
+  const double magnification = number_at(json, "magnification");
+  if (magnification > 0.0) out.magnification = magnification;
+  out.before_m = number_at(json, "before_m");
+  out.after_m = number_at(json, "after_m");
+  for (const Json& joint : list_at(json, "joints")) {
+    out.joints.push_back({text_at(joint, "joint"), text_at(joint, "onto"), count_at(joint, "rows"),
+                          number_at(joint, "before_m"), number_at(joint, "after_m")});
+  }
+  return out;
+}
+
+/// A mark of the report.
+TakeMark mark_from(const Json& json) {
+  TakeMark out;
+  out.at = utc_time(ns_at(json, "time_ns"));
+  out.kind = text_at(json, "kind");
+  out.text = text_at(json, "text");
+  out.source = text_at(json, "source");
+  if (json.is_object() && json.contains("latency_ms")) {
+    // The limit keeps the product below from overflowing.
+    const double ms = std::clamp(number_at(json, "latency_ms"), -1e9, 1e9);
+    out.latency = Duration{std::llround(1e6 * ms)};
+  }
+  return out;
+}
+
+/// A finding; an unknown severity counts as a warning.
+Finding finding_from(const Json& json) {
+  const std::string severity = text_at(json, "severity");
+  Finding out;
+  if (severity == "note") out.severity = Severity::note;
+  if (severity == "error") out.severity = Severity::error;
+  out.what = {text_at(json, "file"), ns_at(json, "line"), text_at(json, "expected"),
+              text_at(json, "found")};
+  out.meaning = text_at(json, "meaning");
+  out.repair = text_at(json, "repair");
+  return out;
+}
+
 }  // namespace
 
 /// The whole report as JSON.
@@ -116,5 +248,36 @@ std::string report_json(const AlignmentReport& report) {
 }
 
 std::string findings_json(const Findings& findings) { return written(findings_array(findings)); }
+
+Findings parse_findings_json(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  Findings out;
+  // A text that is no list has no elements.
+  for (const Json& finding : json.is_array() ? json : Json::array()) {
+    out.push_back(finding_from(finding));
+  }
+  return out;
+}
+
+Result<AlignmentReport> parse_report_json(std::string_view text, const std::string& path) {
+  const Json json = Json::parse(text, nullptr, false);
+  // Only this is a failure. All else that is wrong gives a report with fewer members.
+  if (json.is_discarded()) {
+    return refuse(path, "a report as JSON", "text that is not JSON");
+  }
+  AlignmentReport out;
+  out.frames = count_at(json, "frames");
+  out.begin = utc_time(ns_at(json, "begin_ns"));
+  out.end = utc_time(ns_at(json, "end_ns"));
+  out.rate_hz = number_at(json, "rate_hz");
+  out.reference = text_at(json, "reference");
+  for (const Json& stream : list_at(json, "streams")) out.streams.push_back(stream_from(stream));
+  for (const Json& space : list_at(json, "spaces")) out.spaces.push_back(space_from(space));
+  for (const Json& mark : list_at(json, "marks")) out.marks.push_back(mark_from(mark));
+  for (const Json& finding : list_at(json, "findings")) {
+    out.findings.push_back(finding_from(finding));
+  }
+  return out;
+}
 
 }  // namespace kinalign

@@ -18,5 +18,7 @@ Result<AlignmentReport> parse_report_json(std::string_view text, const std::stri
 
 /// An array of findings, the same in reports and in `kinalign check --json`.
 std::string findings_json(const Findings& findings);
+/// Reads the text of findings_json(). Anything that is wrong in it is left out.
+Findings parse_findings_json(std::string_view text);
 
 }  // namespace kinalign

@@ -161,12 +161,11 @@ bool within_limits(const std::vector<std::int64_t>& values) {
 
 Result<void> check(const std::string& name, const std::string& stream, const TrueClock& clock) {
   if (!within_limits(clock.stamps_ns) || !within_limits(clock.times_ns)) {
-    return Failure(Error{name, 0, "stamps and times of " + stream + " within 2e18 ns", "others"});
+    return refuse(name, "stamps and times of " + stream + " within 2e18 ns", "others");
   }
   // The times need not rise: with stamps by arrival they may step back (docs/formats/truth.md).
   if (clock.stamps_ns.size() == clock.times_ns.size() && rises(clock.stamps_ns)) return {};
-  return Failure(
-      Error{name, 0, "a clock of " + stream + " with a time for each of rising stamps", "another"});
+  return refuse(name, "a clock of " + stream + " with a time for each of rising stamps", "another");
 }
 
 }  // namespace
@@ -192,18 +191,17 @@ Result<TrueRecording> read_truth(std::string_view text, const std::string& name)
   try {
     const Json json = Json::parse(text);
     const std::string found = json.at("schema");
-    if (found != truth_schema) return Failure(Error{name, 0, truth_schema, shown(found)});
+    if (found != truth_schema) return refuse(name, truth_schema, shown(found));
     truth = truth_from(json);
   } catch (const Json::exception& fault) {
-    return Failure(
-        Error{name, 0, std::string("JSON as ") + truth_schema + " has it", reason(fault)});
+    return refuse(name, std::string("JSON as ") + truth_schema + " has it", reason(fault));
   }
   KA_TRY(check(name, truth.kinect.stream, truth.kinect.clock));
   for (const TrueNode& node : truth.nodes) KA_TRY(check(name, node.node, node.clock));
   const TrueMocap& mocap = truth.mocap;
   if (!(mocap.rate_hz >= 1.0 && mocap.rate_hz <= 1e6) || mocap.frames > 1'000'000'000 ||
       !within_limits({mocap.first_frame_ns, truth.start_ns})) {
-    return Failure(Error{name, 0, "a mocap of 1 Hz to 1 MHz, 1e9 frames at the most", "another"});
+    return refuse(name, "a mocap of 1 Hz to 1 MHz, 1e9 frames at the most", "another");
   }
   return truth;
 }

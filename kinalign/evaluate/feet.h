@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foot skate: motion of feet that stand on the floor (models.md 8.8).
+// Foot skate: motion of feet that stand on the floor.
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Position errors (models.md 8.1 to 8.3).
+// Position errors of joints, with and without a rigid fit.
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"

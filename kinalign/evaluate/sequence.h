@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The input of all metrics: a ground truth with its validity, and a method's prediction. The
-// metrics are those of the reference (models.md section 8, UI-PRMD's protocol). Lengths are metres.
+// metrics are those of UI-PRMD's protocol and of docs/eval.md. Lengths are metres.
 #pragma once
 
 #include "kinalign/motion/arrays.h"

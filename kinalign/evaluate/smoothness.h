@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smoothness, delay and amplitude of a prediction, compared with the truth (models.md 8.5 to 8.7).
+// Smoothness, delay and amplitude of a prediction, compared with the truth.
 // Differences use only frames whose cells are all valid, without padding.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistics over sequences and people (models.md 8.11): quantiles, paired tests, intervals.
+// Statistics over sequences and people: quantiles, paired tests, intervals.
 #pragma once
 
 #include <cstddef>

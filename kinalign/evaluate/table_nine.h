@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three columns of the paper's table 9, literally (models.md 2.6; definitions from BRA_DGN,
+// The three columns of the paper's table 9, literally (definitions from the code of BRA_DGN,
 // because the paper states no units). Use the other metrics to judge methods: E_s does not depend
 // on the truth, and a frozen pose scores 0.
 #pragma once

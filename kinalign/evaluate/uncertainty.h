@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of a stated uncertainty (models.md 8.10).
+// Tests of a stated uncertainty.
 #pragma once
 
 #include <cstddef>

@@ -10,8 +10,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr double largest = 1e15;  // no length, angle or rate in a file can be meant above it
-
 std::string_view unquoted(std::string_view cell) {
   if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
   return trimmed(cell.substr(1, cell.size() - 2));
@@ -68,7 +66,7 @@ const char* RowParser::cell_end(const char* at, const char* end) const {
 }
 
 /// The slow path of number(): a cell in quotes, a missing value, or a fault. Returns the cell's
-/// end; nullptr if the cell is neither a number below `largest` nor missing.
+/// end; nullptr if the cell is neither a number below `largest_number` nor missing.
 const char* RowParser::odd_number(const char* at, const char* end, int slot) {
   const auto i = static_cast<std::size_t>(slot);
   // A quote at the cell's beginning hides the delimiters up to the closing quote.
@@ -81,7 +79,7 @@ const char* RowParser::odd_number(const char* at, const char* end, int slot) {
     any_missing = true;
     return behind;
   }
-  if (!parse_number(cell, values[i]) || !(std::abs(values[i]) < largest)) return nullptr;
+  if (!parse_number(cell, values[i]) || !(std::abs(values[i]) < largest_number)) return nullptr;
   return behind;
 }
 
@@ -90,7 +88,7 @@ const char* RowParser::odd_number(const char* at, const char* end, int slot) {
 inline const char* RowParser::number(const char* at, const char* end, int slot) {
   double& value = values[static_cast<std::size_t>(slot)];
   const char* behind = parse_number(at, end, value);
-  if (behind == nullptr || !(std::abs(value) < largest)) return odd_number(at, end, slot);
+  if (behind == nullptr || !(std::abs(value) < largest_number)) return odd_number(at, end, slot);
   // The number ends at a delimiter; anything between them goes the slow way.
   if (behind == end || *behind == delimiter_) return behind;
   if (delimiter_ == runs_of_blanks && delimits(*behind)) return behind;
@@ -140,12 +138,11 @@ Result<void> RowParser::read(std::string_view line) {
 }
 
 Failure RowParser::no_number(std::size_t column, std::string_view cell) {
-  return Failure(
-      Error{"", 0, "a number in column " + std::to_string(column + 1), shown(trimmed(cell))});
+  return refuse("a number in column " + std::to_string(column + 1), shown(trimmed(cell)));
 }
 
 Failure RowParser::wrong_count(std::size_t cells) const {
-  return Failure(Error{"", 0, std::to_string(columns_.size()) + " cells", std::to_string(cells)});
+  return refuse(std::to_string(columns_.size()) + " cells", std::to_string(cells));
 }
 
 std::vector<std::string> split_cells(std::string_view line, char delimiter) {

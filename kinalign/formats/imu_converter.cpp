@@ -55,18 +55,17 @@ void ImuConverter::append(const RawImuSample& sample, ImuSamples& out) {
 
 void ImuConverter::report(const std::string& file, Findings& findings) const {
   if (zero_ > 0) {
-    findings.push_back({Severity::note,
-                        Error{file, 0, "quaternions of length 1",
-                              std::to_string(zero_) + " of " + std::to_string(samples_) +
-                                  " samples with length 0"},
-                        "these samples are invalid", ""});
+    add_note(findings,
+             {file, 0, "quaternions of length 1",
+              std::to_string(zero_) + " of " + std::to_string(samples_) + " samples with length 0"},
+             "these samples are invalid");
   }
   if (not_unit_ > 0) {
-    findings.push_back({Severity::warning,
-                        Error{file, 0, "quaternions of length 1",
-                              std::to_string(not_unit_) + " of " + std::to_string(samples_) +
-                                  " samples that differ by more than 2 %"},
-                        "these quaternions were normalised", "check the columns in the layout"});
+    add_warning(findings,
+                {file, 0, "quaternions of length 1",
+                 std::to_string(not_unit_) + " of " + std::to_string(samples_) +
+                     " samples that differ by more than 2 %"},
+                "these quaternions were normalised", "check the columns in the layout");
   }
 }
 

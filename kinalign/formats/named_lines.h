@@ -4,6 +4,7 @@
 
 #include "kinalign/core/error.h"
 #include "kinalign/core/lines.h"
+#include "kinalign/core/utf8.h"
 
 #include <string>
 #include <string_view>
@@ -36,8 +37,8 @@ class NamedLines {
   Result<void> finish(Use&& use, Findings& incomplete) {
     auto last = finish_head(std::forward<Use>(use), incomplete);
     if (!last) {
-      incomplete.push_back({Severity::warning, std::move(last).error(),
-                            "the last line is incomplete and was dropped", ""});
+      add_warning(incomplete, std::move(last).error(),
+                  "the last line is incomplete and was dropped");
     }
     return {};
   }
@@ -64,8 +65,7 @@ class NamedLines {
 
  private:
   std::string_view unmarked(std::string_view line) const {
-    if (lines_.number() == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
-    return line;
+    return lines_.number() == 1 ? without_byte_order_mark(line) : line;
   }
 
   Result<void> placed(Result<void> result) const {

@@ -51,12 +51,12 @@ void MirrorWatch::watch(const double* positions, const Tracking* states) {
 
 void MirrorWatch::report(const std::string& file, Findings& findings) const {
   if (mirrored_ * 2 <= rows_) return;
-  findings.push_back({Severity::warning,
-                      Error{file, 0, "the left shoulder at smaller x than the right one",
-                            "the left shoulder at larger x in " + std::to_string(mirrored_) +
-                                " of " + std::to_string(rows_) + " rows"},
-                      "the file is mirrored, or the person stood with the back to the sensor",
-                      "if the file is mirrored, use a layout with x = \"-x\" and mirrored = true"});
+  add_warning(findings,
+              {file, 0, "the left shoulder at smaller x than the right one",
+               "the left shoulder at larger x in " + std::to_string(mirrored_) + " of " +
+                   std::to_string(rows_) + " rows"},
+              "the file is mirrored, or the person stood with the back to the sensor",
+              "if the file is mirrored, use a layout with x = \"-x\" and mirrored = true");
 }
 
 }  // namespace kinalign

@@ -115,7 +115,7 @@ Result<Time> RowStamps::next(std::int64_t ns) {
   std::int64_t shifted = 0;
   const bool overflow = __builtin_add_overflow(ns, shift_, &shifted);
   if (overflow || shifted > largest_stamp_ns || shifted < -largest_stamp_ns) {
-    return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(ns) + " ns"});
+    return refuse("a stamp inside +-4e18 ns", std::to_string(ns) + " ns");
   }
   return utc_time(shifted);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/formats/unknown_file.h"
 
+#include "kinalign/core/utf8.h"
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -43,7 +45,7 @@ std::string beginning_of(std::string_view head) {
   for (const auto& [mark, name] : marks) {
     if (head.starts_with(mark)) return std::string(name);
   }
-  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
+  head = without_byte_order_mark(head);
   const std::string_view line = head.substr(0, head.find('\n'));
   // Only the beginning is looked at; the rest may be long.
   return is_text(line.substr(0, 200)) ? "'" + shown(line) + "'" : "bytes that are no plain text";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/infer/architecture_json.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/infer/layer_kinds.h"
 #include "kinalign/infer/shapes.h"
 #include "kinalign/infer/strict_json.h"
@@ -117,10 +118,8 @@ class Reader {
     if (!json.is_object()) return wrong_type(at, "a JSON object", json);
     if (!json.contains("kind") || !json["kind"].is_string()) return wrong(at, "a kind", "none");
     const auto kind = json["kind"].get<std::string>();
-    const auto* const row = std::find_if(kind_rows.begin(), kind_rows.end(),
-                                         [&](const KindRow& r) { return r.name == kind; });
-    if (row == kind_rows.end())
-      return wrong(at, "a known kind of layer", "\"" + shown(kind) + "\"");
+    const KindRow* const row = find_named(kind_rows, kind);
+    if (row == nullptr) return wrong(at, "a known kind of layer", "\"" + shown(kind) + "\"");
     Layer out;
     out.kind = row->kind;
     for (const auto& [key, value] : json.items()) {

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 
 namespace kinalign {
 
@@ -51,8 +50,8 @@ void read_numbers(const Json& json, TrainingState& out) {
 }
 
 // --- TensorBoard: protobuf records, each with a masked CRC-32C of its length and of its data.
-// Protobuf is written by hand, because few kinds of field are needed. models.md 9.10 has the layout
-// of the file.
+// Protobuf is written by hand, because few kinds of field are needed. The
+// layout is that of event.proto and tfrecord in the source of TensorFlow.
 
 /// CRC-32C (Castagnoli), bit by bit: 0x82f63b78 is its polynomial in reversed order.
 std::uint32_t crc32c(std::string_view bytes) {

@@ -11,8 +11,8 @@ namespace kinalign {
 
 namespace {
 
-// The paper gives no sizes; these are the definitions of models.md 2.3 (noise 1 cm, one joint in
-// ten dropped).
+// The paper gives no sizes; these are our choice (noise 1 cm, one joint in ten
+// dropped).
 constexpr std::size_t clean_units = 256, latent_layers = 5;
 constexpr std::int64_t batch = 32, crop = 61;
 constexpr double noise = 0.01, dropped = 0.1;  // m; share of dropped joints

@@ -86,7 +86,7 @@ DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
     bone_weights.push_back(weights[j]);
   }
   // With a mean of 1, other weights of joints change neither the learning rate nor the balance of
-  // the terms (models.md 2.5).
+  // the terms.
   const auto of_mean_one = [&](const std::vector<float>& values) {
     const auto tensor = torch::tensor(values);
     return (tensor / tensor.mean()).to(device_);
@@ -98,7 +98,7 @@ DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
 }
 
 // The truth goes into the frame that was found from the input, not into its own. So errors of root
-// and heading stay in the loss, and the network can repair them (models.md 1.3).
+// and heading stay in the loss, and the network can repair them.
 DenoiseTask::Example DenoiseTask::example_of(const Pair& pair) const {
   const DenoiseFeatures features = denoise_features(layout_, pair.input);
   std::vector<float> truth = pair.truth;

@@ -29,7 +29,7 @@ DenoiseModel begun_model(const DenoiseMethod& method, const DenoiseLayout& layou
 
 }  // namespace
 
-// A residual that begins at 0 makes the network start as good as its base (models.md 11.1).
+// A residual that begins at 0 makes the network start as good as its base.
 void begin_network(const DenoiseMethod& method, const DenoiseTask& task, TorchNetwork& network) {
   if (method.begins == Begins::as_base) network.zero_last(task.first_answer());
   if (method.begins != Begins::linear) return;

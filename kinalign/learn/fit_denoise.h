@@ -20,8 +20,7 @@ struct FitOptions {
 };
 
 /// Pairs to train on, and pairs to judge the network during training.
-/// The two parts should not share people, else the judgement rewards a network for knowing them
-/// (models.md 9.4).
+/// The two parts should not share people, else the judgement rewards a network for knowing them.
 struct DividedPairs {
   std::vector<Pair> learnt, judged;
 };

@@ -241,7 +241,7 @@ Result<Projected> project(const DenoiseModel& model, const JointFrames& body,
     const Constraints constraints(model.layout, body, features, answer);
     out.before = errors_of(constraints.squares(answer));
     code.set_requires_grad(true);
-    // An epsilon of 1e-5, as in the released code (models.md 2.1).
+    // An epsilon of 1e-5, as in the released code.
     torch::optim::Adam adam({code}, torch::optim::AdamOptions(options.rate).eps(1e-5));
     for (std::int64_t step = 0; step < options.steps; ++step) {
       adam.zero_grad();

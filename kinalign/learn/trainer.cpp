@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace kinalign {
 
@@ -16,7 +15,7 @@ using WeightMap = std::map<std::string, torch::Tensor>;
 
 /// Adam's decay of the first and the second moment.
 constexpr double first_decay = 0.9, second_decay = 0.98, epsilon = 1e-8;
-// models.md 9.5: the average follows quickly at first and slowly later.
+// The average follows quickly at first and slowly later.
 constexpr double average_decay = 0.999;
 // A single step that is not finite is skipped; several in a row mean that training has failed.
 constexpr int most_failures = 5;

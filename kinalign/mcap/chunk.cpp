@@ -91,15 +91,6 @@ std::size_t room_for(std::string_view stored, const McapChunkContent& content) {
   return room;
 }
 
-/// The checksum of a chunk and its indexes. That of the stored part is known already.
-/// CRC-32 of a whole follows from those of its parts and their lengths, so the stored part is not
-/// read again.
-std::uint32_t crc_of_chunk(std::string_view bytes, std::size_t chunk_bytes, std::string_view stored,
-                           std::uint32_t of_stored) {
-  const std::string_view front = bytes.substr(0, chunk_bytes - stored.size());
-  return crc_of(bytes.substr(chunk_bytes), joined_crc(crc_of(front), of_stored, stored.size()));
-}
-
 }  // namespace
 
 // Compressed records that cannot be made, for lack of memory, are stored uncompressed.
@@ -127,9 +118,7 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
     append_mcap_message_index(chunk.bytes, channel, entries);
   }
   chunk.index.message_index_length = chunk.bytes.size() - chunk.index.chunk_length;
-  // Without compression the stored bytes are the records, so one checksum serves both.
-  chunk.crc = crc_of_chunk(chunk.bytes, chunk.index.chunk_length, stored,
-                           is_packed ? crc_of(stored) : head.uncompressed_crc);
+  chunk.crc = crc_of(chunk.bytes);
   return chunk;
 }
 
@@ -147,7 +136,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   if (head.compression.empty() && chunk.stored_size != head.uncompressed_size) {
     return misfit(head, chunk.stored_size);  // checked before the records are copied
   }
-  std::string records = unpack_torn(chunk, most);
+  std::string records = unpack_truncated(chunk, most);
   // A zstd stream may end early or hold more than the head states.
   if (records.size() != head.uncompressed_size) return misfit(head, records.size());
   if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc_of(records)) {
@@ -156,7 +145,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   return records;
 }
 
-std::string unpack_torn(const McapChunkView& chunk, std::uint64_t most) {
+std::string unpack_truncated(const McapChunkView& chunk, std::uint64_t most) {
   // A truncated chunk has no checksum that could be compared.
   most = std::min(most, chunk.head.uncompressed_size);
   if (chunk.head.compression == "zstd") return decompressed(chunk.stored, most);

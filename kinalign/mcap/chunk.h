@@ -72,6 +72,6 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
 /// `most` is the caller's limit on memory, whatever the chunk states.
 Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most);
 /// Unpacks the beginning of a truncated chunk, as far as it is present. Nothing is checked.
-std::string unpack_torn(const McapChunkView& chunk, std::uint64_t most);
+std::string unpack_truncated(const McapChunkView& chunk, std::uint64_t most);
 
 }  // namespace kinalign

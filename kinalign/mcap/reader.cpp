@@ -19,7 +19,7 @@ constexpr std::size_t longest_chunk_head = mcap_record_head + McapChunkView::fie
 
 void McapReader::feed(std::string_view piece) {
   // After the last state all further bytes are ignored.
-  if (state_ > State::behind_footer) return;
+  if (state_ > State::after_footer) return;
   buffer_.erase(0, taken_);
   taken_ = 0;
   buffer_ += piece;
@@ -35,8 +35,8 @@ void McapReader::skip(std::size_t size) {
   skipped_ += size;
 }
 
-void McapReader::say(Severity severity, std::string expected, std::string found,
-                     std::string meaning) {
+void McapReader::report(Severity severity, std::string expected, std::string found,
+                        std::string meaning) {
   // A badly damaged file would otherwise give one finding for every few bytes.
   if (findings_.size() >= most_findings) return;
   found += " at byte " + std::to_string(offset_);
@@ -45,9 +45,9 @@ void McapReader::say(Severity severity, std::string expected, std::string found,
 }
 
 /// Reports that no record is at this position. Reading continues at the next chunk.
-void McapReader::lose(std::string expected, std::string found) {
-  say(Severity::error, std::move(expected), std::move(found),
-      "what stands there is left out, up to the next whole chunk");
+void McapReader::report_damage(std::string expected, std::string found) {
+  report(Severity::error, std::move(expected), std::move(found),
+         "what stands there is left out, up to the next whole chunk");
   state_ = State::lost;
   // The checksum of the section would be wrong because of the skipped bytes.
   crc_counts_ = false;
@@ -69,13 +69,13 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
     const auto head = decode_mcap_head(bytes);
     const bool whole = head && head->length <= bytes.size() - mcap_record_head;
     // In a truncated chunk this is the expected end.
-    if (!whole && in_torn_chunk_) break;
+    if (!whole && in_truncated_chunk_) break;
     std::optional<McapRecord> record;
     const bool fits = whole && take(head->op, bytes.substr(mcap_record_head, head->length), record);
     const bool ends = !whole || head->op == McapOp{};  // a power failure may leave zeros
     if (!fits) {
-      say(Severity::error, "records in the chunk", "something else",
-          ends ? "the chunk's rest is left out" : "it is left out");
+      report(Severity::error, "records in the chunk", "something else",
+             ends ? "the chunk's rest is left out" : "it is left out");
     }
     if (!fits && ends) break;
     chunk_taken_ += mcap_record_head + head->length;
@@ -112,7 +112,7 @@ void McapReader::start() {
   const std::size_t some = std::min(bytes.size(), mcap_magic.size());
   if (bytes.substr(0, some) != mcap_magic.substr(0, some) || (ended_ && some < mcap_magic.size())) {
     state_ = State::foreign;
-    say(Severity::error, "an MCAP file", "another beginning", "nothing was read");
+    report(Severity::error, "an MCAP file", "another beginning", "nothing was read");
     return;
   }
   if (some < mcap_magic.size()) return;
@@ -128,16 +128,16 @@ std::optional<McapRecord> McapReader::next_in_file() {
   for (;;) {
     if (state_ == State::start) start();
     if (state_ == State::lost) find_chunk();
-    if (state_ == State::behind_footer) find_magic();
+    if (state_ == State::after_footer) find_magic();
     if (state_ != State::records) return std::nullopt;
     switch (look()) {
-      case Stand::nothing:
+      case Look::nothing:
         return std::nullopt;
-      case Stand::torn:
+      case Look::truncated:
         return next_in_chunk();
-      case Stand::damaged:
+      case Look::damaged:
         continue;
-      case Stand::whole:
+      case Look::whole:
         break;
     }
     if (auto record = read_record()) return record;
@@ -147,23 +147,23 @@ std::optional<McapRecord> McapReader::next_in_file() {
 /// Examines the bytes at this position. Damage is reported and skipped.
 /// The tests go from cheap to expensive. A length that is impossible is damage, and a length that
 /// reaches past the bytes may need more of them.
-McapReader::Stand McapReader::look() {
+McapReader::Look McapReader::look() {
   const std::string_view bytes = rest();
   const auto head = decode_mcap_head(bytes);
   if (head && head->op == McapOp{}) {
-    lose("a record", "a byte 0");
-    return Stand::damaged;
+    report_damage("a record", "a byte 0");
+    return Look::damaged;
   }
   if (head && head->length > longest_) {
-    lose("a record of at most " + std::to_string(longest_ >> 20) + " MiB",
-         std::to_string(head->length >> 20) + " MiB");
-    return Stand::damaged;
+    report_damage("a record of at most " + std::to_string(longest_ >> 20) + " MiB",
+                  std::to_string(head->length >> 20) + " MiB");
+    return Look::damaged;
   }
-  if (head && head->length <= bytes.size() - mcap_record_head) return Stand::whole;
+  if (head && head->length <= bytes.size() - mcap_record_head) return Look::whole;
   // More bytes may still arrive, or the file ends exactly here.
-  if (!ended_ || bytes.empty()) return Stand::nothing;
+  if (!ended_ || bytes.empty()) return Look::nothing;
   end_in_record();
-  return state_ == State::records ? Stand::damaged : Stand::torn;
+  return state_ == State::records ? Look::damaged : Look::truncated;
 }
 
 /// Reads the complete record at this position. Absent if readers do not need it, or if it is
@@ -178,7 +178,7 @@ std::optional<McapRecord> McapReader::read_record() {
   std::optional<McapRecord> record;
   const bool is_chunk = head.op == McapOp::chunk;
   if (!(is_chunk ? open_chunk(content) : take(head.op, content, record))) {
-    lose("a record whose fields and checksum fit", "another one");
+    report_damage("a record whose fields and checksum fit", "another one");
     return std::nullopt;
   }
   // A record outside of chunks is covered by the section's checksum only.
@@ -192,7 +192,7 @@ std::optional<McapRecord> McapReader::read_record() {
     crc_ = 0;
     crc_counts_ = true;  // valid for the summary, whatever was skipped before it
   }
-  if (head.op == McapOp::footer) state_ = State::behind_footer;
+  if (head.op == McapOp::footer) state_ = State::after_footer;
   consume(whole.size());
   return record;
 }
@@ -202,7 +202,7 @@ std::optional<McapRecord> McapReader::read_record() {
 void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
   // After skipped bytes the checksum can't fit. The summary's data are then not trusted either.
   if (!crc_counts_) {
-    if (std::holds_alternative<McapFooter>(record)) summary_spoilt_ = true;
+    if (std::holds_alternative<McapFooter>(record)) is_summary_damaged_ = true;
     return;
   }
   std::uint32_t stated = 0, covered = crc_;
@@ -214,11 +214,11 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
     stated = footer->summary_crc;
     // The checksum covers the footer up to the checksum itself.
     covered = crc_of(bytes.substr(0, fields), crc_);
-    summary_spoilt_ = stated != 0 && stated != covered;
+    is_summary_damaged_ = stated != 0 && stated != covered;
   }
   if (stated != 0 && stated != covered) {
-    say(Severity::error, "a checksum that fits what stands before it", "another one",
-        "something there was altered");
+    report(Severity::error, "a checksum that fits what stands before it", "another one",
+           "something there was altered");
   }
 }
 
@@ -234,8 +234,8 @@ bool McapReader::open_chunk(std::string_view content) {
     chunk_ = *std::move(records);
   } else {
     // Only this chunk is lost: its sizes fit, so the next record's place is known.
-    say(Severity::error, records.error().expected, records.error().found,
-        "the chunk's messages are left out");
+    report(Severity::error, records.error().expected, records.error().found,
+           "the chunk's messages are left out");
     skipped_ += content.size();
   }
   return true;
@@ -258,8 +258,8 @@ void McapReader::end_in_record() {
   offset_ = offset;
   skipped_ = skipped_before;
   if (damaged) {
-    say(Severity::error, "a record", "one that is longer than the file",
-        "what stands there is left out, up to the next whole chunk");
+    report(Severity::error, "a record", "one that is longer than the file",
+           "what stands there is left out, up to the next whole chunk");
     crc_counts_ = false;
     skip(skipped);
     return;
@@ -269,12 +269,12 @@ void McapReader::end_in_record() {
   const auto chunk = decode_mcap_head(bytes) && decode_mcap_head(bytes)->op == McapOp::chunk
                          ? decode_mcap_chunk(bytes.substr(mcap_record_head))
                          : std::nullopt;
-  say(Severity::warning, "a whole record", "the file's end in the midst of one",
-      chunk ? "messages of the chunk are read as far as they go, unchecked" : "it is left out");
+  report(Severity::warning, "a whole record", "the file's end in the midst of one",
+         chunk ? "messages of the chunk are read as far as they go, unchecked" : "it is left out");
   record_at_ = offset_;
   record_size_ = bytes.size();
-  in_torn_chunk_ = true;
-  if (chunk) chunk_ = unpack_torn(*chunk, longest_);
+  in_truncated_chunk_ = true;
+  if (chunk) chunk_ = unpack_truncated(*chunk, longest_);
   consume(bytes.size());
 }
 
@@ -319,10 +319,10 @@ void McapReader::find_magic() {
   // Exactly the magic must follow. One more byte shows whether something follows it.
   if (bytes.size() <= mcap_magic.size() && !ended_) return;
   if (bytes != mcap_magic) {
-    say(Severity::error, "the file's last eight bytes behind its footer", "others",
-        "they are left out");
+    report(Severity::error, "the file's last eight bytes behind its footer", "others",
+           "they are left out");
   }
-  state_ = bytes == mcap_magic ? State::closed : State::spoilt;
+  state_ = bytes == mcap_magic ? State::closed : State::bad_end;
   consume(bytes.size());
 }
 

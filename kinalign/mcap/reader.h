@@ -44,14 +44,14 @@ class McapReader {
   bool is_mcap() const { return state_ != State::foreign; }
   /// Returns whether no chunk's checksum covers the last record: it is in a truncated chunk, in a
   /// chunk without a checksum, or outside of chunks.
-  bool unchecked() const { return in_torn_chunk_ || uncovered_; }
+  bool unchecked() const { return in_truncated_chunk_ || uncovered_; }
   /// Returns whether the last record is in the chunk in which the file ends.
-  bool in_torn_chunk() const { return in_torn_chunk_; }
+  bool in_truncated_chunk() const { return in_truncated_chunk_; }
   /// Returns whether the checksum of the data section covers every message. Known at the end of the
   /// section.
   bool all_checked() const { return all_checked_; }
   /// Returns whether the summary's checksum is wrong. Known at the end of the file.
-  bool summary_spoilt() const { return summary_spoilt_; }
+  bool is_summary_damaged() const { return is_summary_damaged_; }
   /// Bytes of the file that were skipped: not a record, or with a wrong checksum. Bytes that a
   /// truncated file lacks are not counted.
   std::uint64_t skipped() const { return skipped_; }
@@ -60,12 +60,12 @@ class McapReader {
 
  private:
   // start: before the magic. records: at a record. lost: searching for the next chunk.
-  // behind_footer: before the last magic. closed, spoilt, foreign: final states.
-  enum class State : std::uint8_t { start, records, lost, behind_footer, closed, spoilt, foreign };
+  // after_footer: before the last magic. closed, bad_end, foreign: final states.
+  enum class State : std::uint8_t { start, records, lost, after_footer, closed, bad_end, foreign };
   // The result of look(): too few bytes, a complete record, the file's truncated end, or damage
   // that was skipped.
-  enum class Stand : std::uint8_t { nothing, whole, torn, damaged };
-  Stand look();
+  enum class Look : std::uint8_t { nothing, whole, truncated, damaged };
+  Look look();
   std::optional<McapRecord> read_record();
   std::optional<McapRecord> next_in_chunk();
   std::optional<McapRecord> next_in_file();
@@ -79,8 +79,8 @@ class McapReader {
   void check_crc(const McapRecord& record, std::string_view bytes);
   void consume(std::size_t size);
   void skip(std::size_t size);
-  void lose(std::string expected, std::string found);
-  void say(Severity severity, std::string expected, std::string found, std::string meaning);
+  void report_damage(std::string expected, std::string found);
+  void report(Severity severity, std::string expected, std::string found, std::string meaning);
   std::string_view rest() const { return std::string_view(buffer_).substr(taken_); }
 
   std::uint64_t longest_;
@@ -96,9 +96,9 @@ class McapReader {
   bool crc_counts_ = true;  // no byte covered by crc_ was skipped
   std::string chunk_;       // records of the present chunk
   std::size_t chunk_taken_ = 0;
-  bool in_torn_chunk_ = false, uncovered_ = false;
-  // all_checked_ and summary_spoilt_ stay false until the record with the checksum is read.
-  bool all_checked_ = false, summary_spoilt_ = false;
+  bool in_truncated_chunk_ = false, uncovered_ = false;
+  // all_checked_ and is_summary_damaged_ stay false until the record with the checksum is read.
+  bool all_checked_ = false, is_summary_damaged_ = false;
   std::uint64_t skipped_ = 0;
   std::uint64_t tried_ = 0;  // bytes tried as a chunk without success
   Findings findings_;
@@ -108,7 +108,6 @@ class McapReader {
 /// file. Absent after the last record, or if the file is not an MCAP file. Fails if `next_piece`
 /// fails.
 template <class NextPiece>
-/// The loop that callers of McapReader need: next(), and feed() or end() if it has no record.
 Result<std::optional<McapRecord>> pull(McapReader& reader, const NextPiece& next_piece) {
   for (;;) {
     if (auto record = reader.next()) return record;

@@ -4,6 +4,8 @@
 #include "kinalign/core/crc.h"
 #include "kinalign/wire/little_endian_reader.h"
 
+#include <concepts>
+#include <map>
 #include <type_traits>
 
 namespace kinalign {
@@ -74,40 +76,14 @@ void put(std::string& out, const std::map<Key, Value>& entries) {
 }
 void put(std::string& out, McapOp op) { out += static_cast<char>(op); }
 
-/// The fields of each record, in the order of their bytes. Reading and writing share this list.
-/// One list can't drift apart in reading and writing. The order of the fields is that of the
-/// specification.
-template <class Record, class Visit>
-void fields(Record& r, Visit visit) {
-  using T = std::remove_const_t<Record>;
-  if constexpr (std::is_same_v<T, McapHeader>) {
-    visit(r.profile, r.library);
-  } else if constexpr (std::is_same_v<T, McapSchema>) {
-    visit(r.id, r.name, r.encoding, r.data);
-  } else if constexpr (std::is_same_v<T, McapChannel>) {
-    visit(r.id, r.schema_id, r.topic, r.message_encoding, r.metadata);
-  } else if constexpr (std::is_same_v<T, McapMetadata>) {
-    visit(r.name, r.texts);
-  } else if constexpr (std::is_same_v<T, McapChunkHead>) {
-    visit(r.start, r.end, r.uncompressed_size, r.uncompressed_crc, r.compression);
-  } else if constexpr (std::is_same_v<T, McapChunkIndex>) {
-    visit(r.start, r.end, r.chunk_offset, r.chunk_length, r.message_index_offsets,
-          r.message_index_length, r.compression, r.compressed_size, r.uncompressed_size);
-  } else if constexpr (std::is_same_v<T, McapAttachmentIndex>) {
-    visit(r.offset, r.length, r.log_time, r.create_time, r.data_size, r.name, r.media_type);
-  } else if constexpr (std::is_same_v<T, McapMetadataIndex>) {
-    visit(r.offset, r.length, r.name);
-  } else if constexpr (std::is_same_v<T, McapStatistics>) {
-    visit(r.messages, r.schemas, r.channels, r.attachments, r.metadata, r.chunks, r.start, r.end,
-          r.channel_messages);
-  } else if constexpr (std::is_same_v<T, McapSummaryOffset>) {
-    visit(r.group, r.start, r.length);
-  } else if constexpr (std::is_same_v<T, McapDataEnd>) {
-    visit(r.data_crc);
-  } else {
-    static_assert(std::is_same_v<T, McapFooter>);
-    visit(r.summary_start, r.summary_offset_start, r.summary_crc);
-  }
+/// Reads all fields of a record.
+template <class Record>
+void take_fields(LittleEndianReader& from, Record& record) {
+  std::apply([&](auto&... field) { (take(from, field), ...); }, Record::fields(record));
+}
+template <class Record>
+void put_fields(std::string& out, const Record& record) {
+  std::apply([&](const auto&... field) { (put(out, field), ...); }, Record::fields(record));
 }
 
 template <class Record>
@@ -115,31 +91,18 @@ std::optional<McapRecord> decoded(std::string_view content) {
   LittleEndianReader from(octets(content));
   Record record;
   // Bytes after the known fields are allowed, so only missing ones are an error.
-  fields(record, [&](auto&... field) { (take(from, field), ...); });
+  take_fields(from, record);
+  if constexpr (std::is_same_v<Record, McapMessage>) record.data = text_of(from.rest());
   if (!from.complete()) return std::nullopt;
   return record;
 }
 
-std::optional<McapRecord> message(std::string_view content) {
-  LittleEndianReader from(octets(content));
-  McapMessage message;
-  message.channel = from.take<std::uint16_t>();
-  message.sequence = from.take<std::uint32_t>();
-  message.log_time = from.take<std::uint64_t>();
-  message.publish_time = from.take<std::uint64_t>();
-  message.data = text_of(from.rest());
-  if (!from.complete()) return std::nullopt;
-  return message;
-}
-
 /// Absent also if the checksum is wrong.
-std::optional<McapRecord> attachment(std::string_view content) {
+template <>
+std::optional<McapRecord> decoded<McapAttachment>(std::string_view content) {
   LittleEndianReader from(octets(content));
   McapAttachment attachment;
-  take(from, attachment.log_time);
-  take(from, attachment.create_time);
-  take(from, attachment.name);
-  take(from, attachment.media_type);
+  take_fields(from, attachment);
   attachment.data = text_of(from.take_bytes(from.take<std::uint64_t>()));
   // The checksum covers all fields before it.
   const std::string_view covered = content.substr(0, content.size() - from.left());
@@ -159,47 +122,19 @@ void record(std::string& out, McapOp op, Content content) {
   put_little(static_cast<std::uint64_t>(out.size() - at - mcap_record_head), out.data() + at + 1);
 }
 
-template <class Record>
-void append_fields(std::string& out, McapOp op, const Record& from) {
-  record(out, op, [&] { fields(from, [&](const auto&... field) { (put(out, field), ...); }); });
+/// Decodes the record of the variant that has this opcode.
+template <class... Records>
+std::optional<McapRecord> decoded_as(McapOp op, std::string_view content,
+                                     const std::variant<Records...>*) {
+  std::optional<McapRecord> record;
+  ((Records::op == op ? void(record = decoded<Records>(content)) : void()), ...);
+  return record;
 }
 
 }  // namespace
 
 std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content) {
-  switch (op) {
-    case McapOp::header:
-      return decoded<McapHeader>(content);
-    case McapOp::footer:
-      return decoded<McapFooter>(content);
-    case McapOp::schema:
-      return decoded<McapSchema>(content);
-    case McapOp::channel:
-      return decoded<McapChannel>(content);
-    case McapOp::message:
-      return message(content);
-    case McapOp::chunk_index:
-      return decoded<McapChunkIndex>(content);
-    case McapOp::attachment:
-      return attachment(content);
-    case McapOp::attachment_index:
-      return decoded<McapAttachmentIndex>(content);
-    case McapOp::statistics:
-      return decoded<McapStatistics>(content);
-    case McapOp::metadata:
-      return decoded<McapMetadata>(content);
-    case McapOp::metadata_index:
-      return decoded<McapMetadataIndex>(content);
-    case McapOp::summary_offset:
-      return decoded<McapSummaryOffset>(content);
-    case McapOp::data_end:
-      return decoded<McapDataEnd>(content);
-    case McapOp::chunk:
-    case McapOp::message_index:
-    case McapOp::index_page:
-      break;
-  }
-  return std::nullopt;
+  return decoded_as(op, content, static_cast<const McapRecord*>(nullptr));
 }
 
 std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes) {
@@ -213,7 +148,7 @@ std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes) {
 std::optional<McapChunkView> decode_mcap_chunk(std::string_view content) {
   LittleEndianReader from(octets(content));
   McapChunkView chunk;
-  fields(chunk.head, [&](auto&... field) { (take(from, field), ...); });
+  take_fields(from, chunk.head);
   take(from, chunk.stored_size);
   // substr() cuts at the end of the bytes; whole() shows whether it did.
   chunk.stored = text_of(from.rest()).substr(0, chunk.stored_size);
@@ -221,39 +156,21 @@ std::optional<McapChunkView> decode_mcap_chunk(std::string_view content) {
   return chunk;
 }
 
-void append_mcap(std::string& out, const McapHeader& header) {
-  append_fields(out, McapOp::header, header);
+template <class Record>
+void append_mcap(std::string& out, const Record& from) {
+  record(out, Record::op, [&] { put_fields(out, from); });
 }
-void append_mcap(std::string& out, const McapSchema& schema) {
-  append_fields(out, McapOp::schema, schema);
-}
-void append_mcap(std::string& out, const McapChannel& channel) {
-  append_fields(out, McapOp::channel, channel);
-}
-void append_mcap(std::string& out, const McapMetadata& metadata) {
-  append_fields(out, McapOp::metadata, metadata);
-}
-void append_mcap(std::string& out, const McapChunkIndex& index) {
-  append_fields(out, McapOp::chunk_index, index);
-}
-void append_mcap(std::string& out, const McapAttachmentIndex& index) {
-  append_fields(out, McapOp::attachment_index, index);
-}
-void append_mcap(std::string& out, const McapMetadataIndex& index) {
-  append_fields(out, McapOp::metadata_index, index);
-}
-void append_mcap(std::string& out, const McapStatistics& statistics) {
-  append_fields(out, McapOp::statistics, statistics);
-}
-void append_mcap(std::string& out, const McapSummaryOffset& offset) {
-  append_fields(out, McapOp::summary_offset, offset);
-}
-void append_mcap(std::string& out, const McapDataEnd& end) {
-  append_fields(out, McapOp::data_end, end);
-}
-void append_mcap(std::string& out, const McapFooter& footer) {
-  append_fields(out, McapOp::footer, footer);
-}
+template void append_mcap(std::string&, const McapHeader&);
+template void append_mcap(std::string&, const McapSchema&);
+template void append_mcap(std::string&, const McapChannel&);
+template void append_mcap(std::string&, const McapMetadata&);
+template void append_mcap(std::string&, const McapChunkIndex&);
+template void append_mcap(std::string&, const McapAttachmentIndex&);
+template void append_mcap(std::string&, const McapMetadataIndex&);
+template void append_mcap(std::string&, const McapStatistics&);
+template void append_mcap(std::string&, const McapSummaryOffset&);
+template void append_mcap(std::string&, const McapDataEnd&);
+template void append_mcap(std::string&, const McapFooter&);
 
 void append_mcap(std::string& out, const McapMessage& message) {
   constexpr std::size_t head = mcap_record_head + 2 + 4 + 8 + 8;
@@ -273,10 +190,7 @@ void append_mcap(std::string& out, const McapAttachment& attachment) {
   // The checksum needs the position of the first field.
   record(out, McapOp::attachment, [&] {
     const std::size_t at = out.size();
-    put(out, attachment.log_time);
-    put(out, attachment.create_time);
-    put(out, attachment.name);
-    put(out, attachment.media_type);
+    put_fields(out, attachment);
     append_little(static_cast<std::uint64_t>(attachment.data.size()), out);
     out += attachment.data;
     append_little(crc_of(std::string_view(out).substr(at)), out);
@@ -285,7 +199,7 @@ void append_mcap(std::string& out, const McapAttachment& attachment) {
 
 void append_mcap(std::string& out, const McapChunkHead& head, std::string_view stored) {
   record(out, McapOp::chunk, [&] {
-    fields(head, [&](const auto&... field) { (put(out, field), ...); });
+    put_fields(out, head);
     append_little(static_cast<std::uint64_t>(stored.size()), out);
     out += stored;
   });

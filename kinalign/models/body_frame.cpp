@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/body_frame.h"
 
+#include "kinalign/motion/index_of.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -9,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-// A Kinect's left-right line shrinks or flips if a person stands sideways to it (models.md 1.3).
+// A Kinect's left-right line shrinks or flips if a person stands sideways to it.
 // The direction of a shorter line is noise, so it does not change the heading.
 constexpr double least_width = 0.15;  // m, summed over the left/right pairs
 
@@ -17,8 +19,7 @@ constexpr double least_width = 0.15;  // m, summed over the left/right pairs
 std::optional<std::size_t> find(const std::vector<std::string>& names,
                                 std::initializer_list<std::string_view> words) {
   for (const std::string_view word : words) {
-    const auto at = std::find(names.begin(), names.end(), word);
-    if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+    if (const auto at = index_of(names, word)) return at;
   }
   return std::nullopt;
 }

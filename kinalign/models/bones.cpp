@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/bones.h"
 
+#include "kinalign/motion/median.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace kinalign {
 
 namespace {
 
-// Both values are those of models.md 11.2. There, this projection improved positions on UI-PRMD and
+// Both values are chosen by trials, in which this projection improved positions on UI-PRMD and
 // halved the bone error. Setting lengths outward from the root alone made hands and feet worse.
 constexpr int sweeps = 40;
 /// Over-relaxation of a joint's mean move; the sweeps converge sooner.
@@ -111,9 +112,7 @@ std::vector<float> typical_lengths(const std::vector<int>& parents,
     for (std::size_t t = 0; t < frames; ++t) {
       all[t] = distance(&positions[(t * joints + p) * 3], &positions[(t * joints + j) * 3]);
     }
-    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(frames / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    out[j] = *middle;
+    out[j] = upper_median(all);
   }
   for (std::size_t j = 0; j < joints; ++j) {
     // Both sides of a body are taken to be equally long, so two medians give a better length than

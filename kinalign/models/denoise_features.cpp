@@ -52,8 +52,7 @@ Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
   out.rate_hz = rate_hz;
   out.parents = parents.empty() ? kinect_parents_of(kinect_names(out.outputs)) : std::move(parents);
   out.bases = inputs_standing_for(out);
-  // A window of 0.3 s, made odd because the value at its centre is used. models.md 6.2 has the
-  // cut-off frequencies of such windows.
+  // A window of 0.3 s, made odd because the value at its centre is used.
   const auto window = static_cast<std::size_t>(std::lround(rate_hz * 0.3));
   out.smoothing.window = window + (window % 2 == 0 ? 1 : 0);
   return out;

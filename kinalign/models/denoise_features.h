@@ -15,7 +15,7 @@ namespace kinalign {
 
 /// The joints of the input and of the output, and the settings for the body's frame.
 /// The network's answer is an offset: an output joint is its base joint plus the answer. A network
-/// that answers 0 therefore already gives the smoothed input (models.md 11.1: a residual on a
+/// that answers 0 therefore already gives the smoothed input (a residual on a
 /// baseline).
 struct DenoiseLayout {
   std::vector<std::string> inputs;   // joint names

@@ -17,7 +17,7 @@ Steadier::Steadier(const Steadying& how, const DenoiseLayout& layout)
       outputs_(mirror_partners(layout.outputs)) {}
 
 // A mirrored person also moves like a person. The mean of both answers cancels errors that prefer
-// one side (mirror averaging, models.md 11.6). Smoothing comes before the bones, because smoothing
+// one side (mirror averaging). Smoothing comes before the bones, because smoothing
 // changes their lengths.
 Denoised Steadier::steadied(const Answer& answer, const JointFrames& body, Denoised plain) const {
   std::vector<float>& positions = plain.positions;

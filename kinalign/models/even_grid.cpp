@@ -3,6 +3,7 @@
 
 #include "kinalign/models/body_frame.h"
 #include "kinalign/models/joint_names.h"
+#include "kinalign/motion/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,9 +35,7 @@ double usual_step(const std::vector<Time>& stamps) {
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     steps.push_back(static_cast<double>(to_ns(stamps[i]) - to_ns(stamps[i - 1])) * 1e-9);
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upper_median(std::move(steps));
 }
 
 /// Fails if the stamps can't be brought onto a grid of that rate.
@@ -96,10 +95,7 @@ double body_size(const JointFrames& body) {
     }
     if (2 * seen > body.joints) sizes.push_back(high - low);
   }
-  if (sizes.empty()) return 0.0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return sizes.empty() ? 0.0 : upper_median(std::move(sizes));
 }
 
 /// The head and the root of a body, where the model has both.

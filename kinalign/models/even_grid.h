@@ -18,12 +18,13 @@ struct EvenSpan {
   std::size_t frames = 0;
 };
 
-/// The span from a device's first stamp to its last stamp.
+/// The span from a device's first stamp to its last stamp, which may lie up to half a step before
+/// the last frame.
 EvenSpan span_of(Time first, Time last, double rate_hz);
 
 struct EvenGrid {
   double rate_hz = 30.0;
-  double gap_s = 0.2;  // longest gap between two samples that is interpolated
+  double gap_s = 0.2;  // a frame farther than this from both samples around it is missing
   /// The frames to fill; if absent, from the first to the last sample.
   std::optional<EvenSpan> span{};
 };
@@ -47,12 +48,13 @@ JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places
 
 /// Resamples the joints `wanted`, the model's inputs, found by name among `names` (kinect_names()).
 /// A wanted joint without that name is missing in every frame. Positions are interpolated linearly;
-/// the state is the worse one of the two samples. A frame farther than the gap from both samples is
-/// missing, and so is a joint more than 1.6 m from the root.
+/// the state is the worse one of the two samples. If the model has a head and a root, a joint more
+/// than 1.6 m from the root is missing, too.
 ///
-/// Fails if there are fewer than two samples, if stamps fall, if root or hips are absent, if the
-/// median period is more than 2 times or less than 1/4 of the grid's period, if the body is smaller
-/// than 0.4 m or larger than 2.6 m, or if the head is below the root in most frames.
+/// Fails if there are fewer than two samples, if stamps fall, if the root or the first left/right
+/// pair of body_joints() is absent, if the median period is more than 2 times or less than 1/4 of
+/// the grid's period, if the grid has 10,000,000 frames or more, if the body is smaller than 0.4 m
+/// or larger than 2.6 m, or if the head is more than 0.2 m below the root in nine of ten frames.
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
                                const EvenGrid& grid);

@@ -37,7 +37,7 @@ struct Step {
 };
 
 /// The Kalman filter and smoother of one axis of one joint.
-/// The model is a point with constant acceleration that white jerk disturbs (models.md 6.4); the
+/// The model is a point with constant acceleration that white jerk disturbs; the
 /// state is position, speed and acceleration. begin() starts a joint, add() takes frames in order,
 /// and smoothed() goes backwards over the kept steps.
 class AxisSmoother {
@@ -123,8 +123,7 @@ void hold(JointFrames& body, double rate_hz) {
   fill_missing(body, true);
 }
 
-// The formulas of models.md 6.3. The derivative uses the previous filtered position, as in the
-// paper.
+// The paper's formulas. The derivative uses the previous filtered position, as there.
 void one_euro(const OneEuro& how, JointFrames& body, double rate_hz) {
   fill_missing(body, true);
   const double slow = share_of(how.derivative_hz, rate_hz);

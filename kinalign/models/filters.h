@@ -9,11 +9,11 @@
 
 namespace kinalign {
 
-/// Repeats the last position at which a joint was tracked. A joint that stays inferred for more
-/// than 0.2 s counts as missing. Causal.
+/// Repeats the last position at which a joint was seen. A joint that stays inferred for more than
+/// 0.2 s counts as missing from then on. Causal.
 void hold(JointFrames& body, double rate_hz);
 
-/// Values in the ranges of models.md 6.3. `least_hz` sets how calm a still joint is; `slope` lets
+/// Values chosen by trials on UI-PRMD. `least_hz` sets how calm a still joint is; `slope` lets
 /// the filter follow a fast one.
 struct OneEuro {
   double least_hz = 1.2;       // cut-off frequency at rest

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/joint_frames.h"
 
+#include "kinalign/motion/index_of.h"
+
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 namespace kinalign {
@@ -35,8 +36,7 @@ std::string other_side(const std::string& name) {
 std::vector<std::size_t> mirror_partners(const std::vector<std::string>& names) {
   std::vector<std::size_t> out(names.size());
   for (std::size_t j = 0; j < names.size(); ++j) {
-    const auto found = std::find(names.begin(), names.end(), other_side(names[j]));
-    out[j] = found == names.end() ? j : static_cast<std::size_t>(found - names.begin());
+    out[j] = index_of(names, other_side(names[j])).value_or(j);
   }
   return out;
 }

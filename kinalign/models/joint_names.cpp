@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/joint_names.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>
@@ -66,18 +67,11 @@ constexpr std::array<Word, 22> mocap_words{{{"Hips", "SpineBase"},
 
 template <std::size_t N>
 std::string translated(const std::array<Word, N>& words, const std::string& name) {
-  const auto found =
-      std::find_if(words.begin(), words.end(), [&](const Word& word) { return word.name == name; });
-  return found == words.end() ? name : std::string(found->kinect);
+  const Word* const found = find_named(words, name);
+  return found == nullptr ? name : std::string(found->kinect);
 }
 
 }  // namespace
-
-std::optional<std::size_t> index_of(const std::vector<std::string>& names, std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - names.begin());
-}
 
 std::vector<std::string> kinect_names(const std::vector<std::string>& names) {
   // Each vocabulary is recognised by its root. The two must not be mixed: "Head" means the neck in

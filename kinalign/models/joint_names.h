@@ -3,7 +3,8 @@
 // by name.
 #pragma once
 
-#include <optional>
+#include "kinalign/motion/index_of.h"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +18,5 @@ std::vector<std::string> kinect_names(const std::vector<std::string>& names);
 
 /// For each of these Kinect joints the index of its nearest ancestor among `names`; -1: none.
 std::vector<int> kinect_parents_of(const std::vector<std::string>& names);
-
-/// The index of `name` in `names`; empty if absent.
-std::optional<std::size_t> index_of(const std::vector<std::string>& names, std::string_view name);
 
 }  // namespace kinalign

@@ -2,11 +2,11 @@
 #include "kinalign/models/skeleton_of_points.h"
 
 #include "kinalign/models/joint_names.h"
+#include "kinalign/motion/stamps.h"
 
 #include <Eigen/SVD>
 
 #include <array>
-#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -217,9 +217,7 @@ Result<Clip> skeleton_of_points(const PointBody& body, std::span<const float> po
   const std::size_t row = 3 * body.parents.size(), frames = positions.size() / row;
   if (frames > 0) poser.set_lengths(positions.data());
   for (std::size_t t = 0; t < frames; ++t) {
-    const auto after =
-        static_cast<std::int64_t>(std::llround(static_cast<double>(t) * 1e9 / rate_hz));
-    poser.append(&positions[t * row], start + Duration(after));
+    poser.append(&positions[t * row], grid_stamp(start, rate_hz, t));
   }
   return clip;
 }

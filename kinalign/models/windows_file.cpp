@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/windows_file.h"
 
+#include "kinalign/core/find_named.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -20,9 +20,7 @@ constexpr std::uint32_t end_mark = 0x06054b50, entry_mark = 0x02014b50, local_ma
                         end64_mark = 0x06064b50;
 /// Bytes of the fixed part of a ZIP record.
 constexpr std::size_t end_size = 22, entry_size = 46, local_size = 30;
-// Limits that keep sums and products of untrusted lengths within 64 bits.
-constexpr std::size_t most_dimensions = 8;
-constexpr std::size_t most_length = std::size_t{1} << 40U;  // length of one dimension
+// A limit that keeps sums and products of untrusted numbers within 64 bits.
 constexpr std::int64_t most_rows = std::int64_t{1} << 40U;
 
 /// Little-endian numbers of the file. Beyond its end they are 0, which the callers' checks then
@@ -122,148 +120,30 @@ Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& nam
   return out;
 }
 
-/// The text after `key` in a NumPy header such as {'descr': '<f4', 'fortran_order': False, 'shape':
-/// (2,)}.
-std::string_view after(std::string_view header, std::string_view key) {
-  const std::size_t at = header.find(key);
-  return at == std::string_view::npos ? std::string_view{} : header.substr(at + key.size());
-}
+using Arrays = std::map<std::string, NpyArray>;
 
-/// Reads type and shape of a NumPy header; empty if it is not valid or in Fortran order.
-/// The header is the text of a Python dictionary (NumPy's format .npy). NumPy always writes it in
-/// one form, so this searches for the keys and does not parse Python.
-std::optional<StoredArray> read_header(std::string_view header) {
-  StoredArray out;
-  std::string_view type = after(header, "'descr': '");
-  out.type = type.substr(0, type.find('\''));
-  if (after(header, "'fortran_order': ").substr(0, 5) != "False") return std::nullopt;
-  std::string_view shape = after(header, "'shape': (");
-  while (!shape.empty() && shape.front() != ')') {
-    if (shape.front() == ' ' || shape.front() == ',') {
-      shape.remove_prefix(1);
-      continue;
-    }
-    std::size_t value = 0;
-    const auto [end, fault] = std::from_chars(shape.data(), shape.data() + shape.size(), value);
-    if (fault != std::errc() || value > most_length || out.shape.size() == most_dimensions) {
-      return std::nullopt;
-    }
-    out.shape.push_back(value);
-    shape.remove_prefix(static_cast<std::size_t>(end - shape.data()));
+/// Appends `count` of the array's `rows` rows as floats, from row `first` on. False if the values
+/// are texts. Networks compute in float, so values of all types are converted.
+bool append_rows(const NpyArray& array, std::size_t rows, std::size_t first, std::size_t count,
+                 std::vector<float>& out) {
+  if (array.header.kind == 'U') return false;
+  const std::size_t row = rows == 0 ? 0 : array.header.values() / rows;
+  for (std::size_t i = first * row; i < (first + count) * row; ++i) {
+    out.push_back(static_cast<float>(number_at(array, i)));
   }
-  if (shape.empty()) return std::nullopt;
-  return out;
-}
-
-/// Bytes per value, for example 48 for "<U12".
-std::size_t value_size(const std::string& type) {
-  if (type.size() < 3) return 0;
-  std::size_t count = 0;
-  std::from_chars(type.data() + 2, type.data() + type.size(), count);
-  return type[1] == 'U' ? 4 * count : count;
-}
-
-/// Reads one member. Each length is checked against the bytes present before it is multiplied.
-Result<StoredArray> read_array(std::string_view npy, const std::string& what) {
-  const Bytes bytes(npy);
-  if (npy.size() < 12 || npy.substr(0, 6) != "\x93NUMPY") {
-    return broken(what, "an array of NumPy", "none");
-  }
-  // Version 1 of the format has a length of 2 bytes, later versions one of 4.
-  const bool wide = npy[6] > 1;
-  const std::size_t begin = wide ? 12 : 10, length = bytes.number(8, wide ? 4 : 2);
-  if (!bytes.holds(begin, length)) return broken(what, "a complete header", "the end of the array");
-  auto array = read_header(npy.substr(begin, length));
-  if (!array) return broken(what, "a header of NumPy, in C order", "another header");
-  std::size_t size = value_size(array->type);
-  const std::size_t there = npy.size() - begin - length;
-  for (const std::size_t one : array->shape) {
-    if (one != 0 && size > there / one) return broken(what, "all of its values", "fewer");
-    size *= one;
-  }
-  // Too many bytes are refused as well: the shape is then not that of the values.
-  if (size != there)
-    return broken(what, std::to_string(size) + " bytes of values", std::to_string(there));
-  array->bytes = npy.substr(begin + length);
-  return *array;
-}
-
-template <class Value>
-void append_as_float(std::string_view bytes, std::vector<float>& out) {
-  for (std::size_t at = 0; at + sizeof(Value) <= bytes.size(); at += sizeof(Value)) {
-    Value value;
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    out.push_back(static_cast<float>(value));
-  }
-}
-
-/// Appends `count` rows as floats; false if the type is not a number.
-/// Networks compute in float, so values of all types are converted.
-bool append_row(const StoredArray& array, std::size_t first, std::size_t count,
-                std::vector<float>& out) {
-  const std::size_t rows = array.shape.empty() ? 0 : array.shape[0];
-  const std::size_t size = rows == 0 ? 0 : array.bytes.size() / rows;
-  const std::string_view bytes = array.bytes.substr(first * size, count * size);
-  if (array.type == "<f4")
-    append_as_float<float>(bytes, out);
-  else if (array.type == "<f8")
-    append_as_float<double>(bytes, out);
-  else if (array.type == "|u1")
-    append_as_float<std::uint8_t>(bytes, out);
-  else if (array.type == "<i4")
-    append_as_float<std::int32_t>(bytes, out);
-  else if (array.type == "<i8")
-    append_as_float<std::int64_t>(bytes, out);
-  else
-    return false;
   return true;
 }
 
-Result<std::vector<std::int64_t>> integers(const std::map<std::string, StoredArray>& arrays,
-                                           const std::string& key, const std::string& name) {
+Result<std::vector<std::int64_t>> integers(const Arrays& arrays, const std::string& key,
+                                           const std::string& name) {
   const auto found = arrays.find(key);
   if (found == arrays.end()) return broken(name, "an array " + key, "none");
-  const StoredArray& array = found->second;
-  const std::size_t size = value_size(array.type);
-  const bool has_sign = array.type.size() > 1 && array.type[1] == 'i';
-  if (size == 0 || size > 8 || (!has_sign && array.type[1] != 'u')) {
-    return broken(name, key + " of integers", array.type);
+  const NpyArray& array = found->second;
+  if (array.header.kind != 'i' && array.header.kind != 'u') {
+    return broken(name, key + " of integers", "values of another type");
   }
-  // Bits above the value; the shifts extend its sign into them.
-  const std::size_t unused = 8 * (8 - size);
   std::vector<std::int64_t> out;
-  for (std::size_t at = 0; at + size <= array.bytes.size(); at += size) {
-    const std::uint64_t bits = Bytes(array.bytes).number(at, size);
-    const auto value = static_cast<std::int64_t>(bits << unused) >> unused;
-    out.push_back(has_sign ? value : static_cast<std::int64_t>(bits));
-  }
-  return out;
-}
-
-/// Converts NumPy's UTF-32 text to UTF-8.
-/// The manifest is such a text: NumPy has no other type for a single string.
-std::string utf8_of(const StoredArray& array) {
-  std::string out;
-  for (std::size_t at = 0; at + 4 <= array.bytes.size(); at += 4) {
-    const auto code = static_cast<std::uint32_t>(Bytes(array.bytes).number(at, 4));
-    // NumPy fills texts shorter than the type's length with zeros.
-    if (code == 0) continue;
-    if (code < 0x80) {
-      out += static_cast<char>(code);
-    } else if (code < 0x800) {
-      out += static_cast<char>(0xc0U | code >> 6U);
-      out += static_cast<char>(0x80U | (code & 0x3fU));
-    } else {
-      if (code < 0x10000) {
-        out += static_cast<char>(0xe0U | code >> 12U);
-      } else {
-        out += static_cast<char>(0xf0U | (code >> 18U & 0x07U));
-        out += static_cast<char>(0x80U | (code >> 12U & 0x3fU));
-      }
-      out += static_cast<char>(0x80U | (code >> 6U & 0x3fU));
-      out += static_cast<char>(0x80U | (code & 0x3fU));
-    }
-  }
+  for (std::size_t i = 0; i < array.header.values(); ++i) out.push_back(integer_at(array, i));
   return out;
 }
 
@@ -304,11 +184,10 @@ struct Places {
 };
 
 /// True if the array `key` has one row of the stream for each row of a window: [N,T,...].
-bool is_of_rows(const std::string& key, const std::string& stream, const StoredArray& array) {
-  return key.starts_with(stream + "_") && array.shape.size() > 2 && !key.ends_with("_rest_offsets");
+bool is_of_rows(const std::string& key, const std::string& stream, const NpyArray& array) {
+  return key.starts_with(stream + "_") && array.header.shape.size() > 2 &&
+         !key.ends_with("_rest_offsets");
 }
-
-using Arrays = std::map<std::string, StoredArray>;
 
 /// Rows `skip` ... `skip` + `rows` - 1 of a window.
 struct Piece {
@@ -323,16 +202,14 @@ Result<void> append_piece(const Arrays& arrays, const Piece& piece, Windows& out
     const std::string& stream = about.name;
     for (const auto& [key, array] : arrays) {
       if (!is_of_rows(key, stream, array)) continue;
-      const std::size_t length = array.shape[1];
-      std::vector<std::size_t> flat{array.shape[0] * length};
-      flat.insert(flat.end(), array.shape.begin() + 2, array.shape.end());
-      const StoredArray lines{array.type, flat, array.bytes};
-      if (piece.skip + piece.rows > length || piece.window >= array.shape[0]) {
+      const std::vector<std::uint64_t>& shape = array.header.shape;
+      const std::size_t length = shape[1];
+      if (piece.skip + piece.rows > length || piece.window >= shape[0]) {
         return broken(name, key + " with a row for each", "fewer");
       }
-      if (!append_row(lines, piece.window * length + piece.skip, piece.rows,
-                      stretch.streams[stream].arrays[key.substr(stream.size() + 1)])) {
-        return broken(name, key + " of numbers", array.type);
+      if (!append_rows(array, shape[0] * length, piece.window * length + piece.skip, piece.rows,
+                       stretch.streams[stream].arrays[key.substr(stream.size() + 1)])) {
+        return broken(name, key + " of numbers", "texts");
       }
     }
   }
@@ -405,21 +282,13 @@ Result<Places> places_of(const Arrays& arrays, const std::string& name) {
 }  // namespace
 
 const WindowsFacts::Stream* WindowsFacts::find(const std::string& stream) const {
-  const auto found = std::find_if(streams.begin(), streams.end(),
-                                  [&](const Stream& one) { return one.name == stream; });
-  return found == streams.end() ? nullptr : &*found;
+  return find_named(streams, stream);
 }
 
-std::size_t StoredArray::row() const {
-  std::size_t out = 1;
-  for (std::size_t i = 1; i < shape.size(); ++i) out *= shape[i];
-  return out;
-}
-
-Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
-                                                         const std::string& name) {
+Result<std::map<std::string, NpyArray>> stored_arrays(std::string_view npz,
+                                                      const std::string& name) {
   const Bytes bytes(npz);
-  std::map<std::string, StoredArray> out;
+  std::map<std::string, NpyArray> out;
   for (const Entry& entry : KA_TRY(entries_of(bytes, name))) {
     if (!bytes.holds(entry.at, local_size) || bytes.number(entry.at, 4) != local_mark) {
       return broken(name, entry.name + " where the ZIP directory says", "another entry");
@@ -431,7 +300,7 @@ Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
       return broken(name, "all of " + entry.name, "the end of the file");
     }
     const std::string key = entry.name.substr(0, entry.name.rfind(".npy"));
-    out[key] = KA_TRY(read_array(bytes.piece(begin, entry.size), name + ": " + entry.name));
+    out[key] = KA_TRY(read_npy(bytes.piece(begin, entry.size), name + ": " + entry.name));
   }
   return out;
 }
@@ -439,18 +308,21 @@ Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
 Result<Windows> read_windows(std::string_view npz, const std::string& name) {
   const auto arrays = KA_TRY(stored_arrays(npz, name));
   const auto manifest = arrays.find("manifest");
-  if (manifest == arrays.end()) {
+  const bool is_text = manifest != arrays.end() && manifest->second.header.kind == 'U' &&
+                       manifest->second.header.values() == 1;
+  if (!is_text) {
     return broken(name, "a file of kinalign dataset windows", "no array manifest");
   }
   Windows out;
-  out.facts = KA_TRY(read_facts(utf8_of(manifest->second), name));
+  out.facts = KA_TRY(read_facts(text_at(manifest->second, 0), name));
   const Places places = KA_TRY(places_of(arrays, name));
   KA_TRY(join(arrays, places, out, name));
   for (const auto& [key, array] : arrays) {
     const std::size_t at = key.rfind("_rest_offsets");
     // Rest offsets have a row for each take, not for each window, so join() leaves them out.
-    if (at == std::string::npos || array.shape.empty()) continue;
-    append_row(array, 0, array.shape[0], out.rest_offsets[key.substr(0, at)]);
+    if (at == std::string::npos || array.header.shape.empty()) continue;
+    const std::size_t takes = array.header.shape[0];
+    append_rows(array, takes, 0, takes, out.rest_offsets[key.substr(0, at)]);
   }
   return out;
 }

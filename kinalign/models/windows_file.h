@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a file of windows (schema kinalign.windows/1, docs/windows.md) and joins the windows to the
 // whole stretches of each take. Reads NPZ with stored (uncompressed) members, as kinalign and
-// numpy.savez write it. It needs only the standard library and JSON, so that `learn` also builds on
-// a GPU machine.
+// numpy.savez write it. It does not need libarchive, so that `learn` also builds on a GPU
+// machine.
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/numpy/npy.h"
 
 #include <cstdint>
 #include <map>
@@ -14,16 +15,6 @@
 #include <vector>
 
 namespace kinalign {
-
-/// An array of a file. `bytes` points into the file's bytes.
-struct StoredArray {
-  std::string type;  // NumPy's type name, for example "<f4"
-  std::vector<std::size_t> shape;
-  std::string_view bytes;
-
-  /// Values per row (the product of all lengths except the first).
-  std::size_t row() const;
-};
 
 /// One stream's arrays in a stretch of T rows.
 struct StretchStream {
@@ -65,10 +56,10 @@ struct Windows {
   std::map<std::string, std::vector<float>> rest_offsets;  // by stream name: [takes,J,3] m
 };
 
-/// All arrays of an NPZ. Fails if it is not an NPZ, if a member is compressed, or if a length is
-/// wrong.
-Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
-                                                         const std::string& name);
+/// All arrays of an NPZ; they view the bytes of `npz`. Fails if it is not an NPZ, if a member is
+/// compressed, or if a length is wrong.
+Result<std::map<std::string, NpyArray>> stored_arrays(std::string_view npz,
+                                                      const std::string& name);
 
 /// `npz`: the file's bytes. Windows that overlap or follow each other are joined to one stretch.
 Result<Windows> read_windows(std::string_view npz, const std::string& name);

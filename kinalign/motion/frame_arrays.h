@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the arrays of each type of frame blocks, for code that treats all of them alike.
+// Arrays of rows: which ones each type of frame blocks has, for code that treats all of them
+// alike, and windows of rows that move on. Windows are short, so moving the rest costs little, and
+// spans over a window stay possible.
 #pragma once
 
 #include "kinalign/motion/clip.h"
 #include "kinalign/motion/streams.h"
 
+#include <cstddef>
 #include <tuple>
+#include <vector>
 
 namespace kinalign {
 
@@ -32,6 +36,24 @@ template <class Frames, class Use>
 void for_each_frame_array(Use&& use) {
   // A quantity that a stream does not have is an empty array; users skip it by its size.
   std::apply([&use](auto... array) { (use(array), ...); }, frame_arrays<Frames>);
+}
+
+/// Removes the first `count` values.
+template <class T>
+void erase_first(std::vector<T>& all, std::size_t count) {
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+template <class T>
+void append_to(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// A copy of one row of `width` values.
+template <class T>
+std::vector<T> row_of(const std::vector<T>& all, std::size_t row, std::size_t width) {
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row * width);
+  return {begin, begin + static_cast<std::ptrdiff_t>(width)};
 }
 
 }  // namespace kinalign

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sources of the tables. Heights above the hips, cm: Kinect SpineMid 32, SpineShoulder 55, Neck 63,
-// Head 78 (18 recordings, formats.md 2.1). Perception Neuron, for a person of 175: Spine1 24.0,
+// Head 78 (means of 18 recordings). Perception Neuron, for a person of 175: Spine1 24.0,
 // Spine2 34.1, Spine3 43.9, Neck 54.3, Head 63.7, end 79.7. Axis Studio: Spine1 25.1, Spine2 37.4,
 // Neck 55.8, Neck1 60.6, Head 65.3, end 81.2. Kinect hips are 15.7 cm apart, Perception Neuron's
-// 18.5 cm, hence 15 % of the way to the middle. CMU's names are those of its table in formats.md 7.
+// 18.5 cm, hence 15 % of the way to the middle. CMU's names are those of
+// its BVH files by cgspeed.
 #include "kinalign/motion/kinect_map.h"
+
+#include "kinalign/motion/index_of.h"
 
 #include <algorithm>
 #include <optional>
@@ -75,13 +78,6 @@ struct Known {
 constexpr std::array<Known, 3> known{
     {{"Perception Neuron's", legacy}, {"Axis Studio's", studio}, {"CMU's", cmu}}};
 
-std::optional<std::size_t> find_joint(const Skeleton& skeleton, std::string_view name) {
-  const auto& names = skeleton.joint_names;
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - names.begin());
-}
-
 const EndSite* find_end(const Skeleton& skeleton, std::size_t joint) {
   const auto found =
       std::find_if(skeleton.end_sites.begin(), skeleton.end_sites.end(),
@@ -91,12 +87,12 @@ const EndSite* find_end(const Skeleton& skeleton, std::size_t joint) {
 
 /// Fills `place`. Returns the name of the missing joint or end site; empty if none is missing.
 std::string fill(const Skeleton& skeleton, const Way& way, KinectPlace& place) {
-  const auto from = find_joint(skeleton, way.from);
+  const auto from = index_of(skeleton.joint_names, way.from);
   if (!from) return std::string(way.from);
   // share 0 and no vector along: the place is the joint itself.
   place = {*from, *from, 0.0, Vec3::Zero()};
   if (!way.to.empty()) {
-    const auto to = find_joint(skeleton, way.to);
+    const auto to = index_of(skeleton.joint_names, way.to);
     if (!to) return std::string(way.to);
     place.towards = *to;
     place.share = way.share;

@@ -35,7 +35,4 @@ struct Motion {
   std::function<void(double t, Pose& pose)> pose_at;
 };
 
-/// Frames at t = k / rate_hz for all k within the motion; `first` is the stamp of t = 0.
-ClipFrames sample_frames(const Motion& motion, double rate_hz, Time first);
-
 }  // namespace kinalign

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/motion/shared_joints.h"
 
+#include "kinalign/motion/index_of.h"
+
 #include <algorithm>
 
 namespace kinalign {
@@ -9,16 +11,10 @@ namespace {
 
 using Names = std::array<std::string_view, shared_joint_count>;
 
-std::size_t place_of(std::span<const std::string> joint_names, std::string_view name) {
-  return static_cast<std::size_t>(std::find(joint_names.begin(), joint_names.end(), name) -
-                                  joint_names.begin());
-}
-
 /// UI-PRMD's files also have a joint Head, at another place. Only these files have a Waist, which
 /// identifies them.
 const Names& names_among(std::span<const std::string> joint_names) {
-  const bool ui_prmd = place_of(joint_names, "Waist") < joint_names.size();
-  return ui_prmd ? shared_joints_in_ui_prmd : shared_joints;
+  return index_of(joint_names, "Waist") ? shared_joints_in_ui_prmd : shared_joints;
 }
 
 }  // namespace
@@ -28,8 +24,7 @@ std::array<std::optional<std::size_t>, shared_joint_count> shared_joints_there(
   const Names& names = names_among(joint_names);
   std::array<std::optional<std::size_t>, shared_joint_count> places;
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
-    const std::size_t place = place_of(joint_names, names[j]);
-    if (place < joint_names.size()) places[j] = place;
+    places[j] = index_of(joint_names, names[j]);
   }
   return places;
 }

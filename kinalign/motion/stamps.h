@@ -5,6 +5,7 @@
 #include "kinalign/wire/time.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,6 +14,11 @@ namespace kinalign {
 
 /// The stamp of a frame at a fixed step. It is at most 4e18 ns (126 years) after the first one.
 Time frame_stamp(Time first, double step_ns, std::uint64_t frame);
+
+/// The stamp of a frame of a grid at a fixed rate.
+inline Time grid_stamp(Time first, double rate_hz, std::uint64_t frame) {
+  return first + Duration{std::llround(1e9 * static_cast<double>(frame) / rate_hz)};
+}
 
 /// The decision on a sample, from its stamp and the stamps before it.
 enum class StampFate {

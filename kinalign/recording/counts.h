@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts that the recorder stores in a recording: docs/formats/recording.md.
+// Counts that the recorder stores in a recording: docs/formats/recording_channels.md.
 #pragma once
 
 #include "kinalign/mcap/records.h"

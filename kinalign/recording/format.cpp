@@ -148,7 +148,7 @@ std::optional<RecordingEnd> to_end(const McapMetadata& metadata) {
 
 Ending ending_of(const McapMetadata& metadata) {
   if (metadata.name == end_metadata) return Ending::ended;
-  return metadata.name == torn_metadata ? Ending::torn : Ending::none;
+  return metadata.name == truncated_metadata ? Ending::truncated : Ending::none;
 }
 
 McapChannel to_channel(std::string topic, const RawChannel& raw) {
@@ -170,6 +170,11 @@ std::optional<RawChannel> to_raw(const McapChannel& channel) {
                     text_of(channel.metadata, "sender"),
                     text_of(channel.metadata, "node"),
                     text_of(channel.metadata, "place")};
+}
+
+std::optional<Protocol> protocol_of(const RawChannel& raw) {
+  if (raw.protocol != exchange_encoding) return find_recorded_protocol(raw.protocol);
+  return raw.node.empty() ? Protocol::kinect : Protocol::nodes;
 }
 
 McapSchema clock_pair_schema() {

@@ -8,6 +8,7 @@
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/mcap/records.h"
 #include "kinalign/protocols/marks/mark.h"
+#include "kinalign/protocols/protocols.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -35,6 +36,9 @@ struct RecordingFacts {
   int part = 1;            // number of this file in the recording, from 1
   ClockPair anchor;        // log times are UTC = host time + (utc - raw), in the whole recording
   std::set<int> joined{};  // numbers of the parts that recover joined into this file; else empty
+  Duration utc_minus_host() const {
+    return anchor.utc.time_since_epoch() - anchor.raw.time_since_epoch();
+  }
   int last_part() const { return joined.empty() ? part : std::max(part, *joined.rbegin()); }
 };
 McapMetadata to_metadata(const RecordingFacts& facts);
@@ -63,10 +67,10 @@ std::optional<RecordingEnd> to_end(const McapMetadata& metadata);
 
 /// The metadata record kinalign.torn. `recover` writes it in place of kinalign.end if the recording
 /// was truncated.
-inline constexpr std::string_view torn_metadata = "kinalign.torn";
+inline constexpr std::string_view truncated_metadata = "kinalign.torn";
 
 /// The end of a recording by its records: no end found, truncated, or ended properly.
-enum class Ending : std::uint8_t { none, torn, ended };
+enum class Ending : std::uint8_t { none, truncated, ended };
 Ending ending_of(const McapMetadata& metadata);
 
 /// The description of a channel of raw payloads, stored as its metadata.
@@ -82,6 +86,9 @@ struct RawChannel {
 };
 McapChannel to_channel(std::string topic, const RawChannel& raw);
 std::optional<RawChannel> to_raw(const McapChannel& channel);
+/// The protocol of the channel's device. Absent if it is not known. Exchanges of a channel with a
+/// node belong to that node, and others to a Kinect.
+std::optional<Protocol> protocol_of(const RawChannel& raw);
 
 /// The channel of the host's two clocks, one pair per second.
 inline constexpr std::string_view host_clock_topic = "/clock/host";
@@ -111,7 +118,11 @@ struct RecordedExchange {
   Exchange exchange;
 };
 /// The key of a clock model. A new epoch of the host's axis needs a new model for the same boot.
-inline BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 40U); }
+/// The lower 32 bits of `boot` are a node's boot id, and the next 16 count restarts under one boot
+/// id (capture/nodes/node_table.cpp).
+inline BootKey boot_in_epoch(BootKey boot, std::uint32_t epoch) {
+  return boot ^ (BootKey{epoch} << 48U);
+}
 std::string to_bytes(const RecordedExchange& recorded);
 /// Absent if the bytes are not an exchange, or if one of its clocks has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);

@@ -8,23 +8,23 @@ namespace kinalign {
 
 void KinectSurvey::add(std::uint16_t channel, const RawChannel& raw) {
   if (find_recorded_protocol(raw.protocol) != Protocol::kinect) return;
-  ways_.try_emplace(channel, Way{raw, {}});
+  channels_.try_emplace(channel, Channel{raw, {}});
 }
 
 // Sensors beyond most_sensors are ignored.
 void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
-  const auto way = ways_.find(channel);
-  if (way == ways_.end()) return;
+  const auto from = channels_.find(channel);
+  if (from == channels_.end()) return;
   messages_.clear();
-  way->second.decoder.feed(octets(payload), messages_);
+  from->second.decoder.feed(octets(payload), messages_);
   // A datagram never continues in the next one, so what is left of it is ended here.
-  if (is_datagrams(way->second.raw.transport)) way->second.decoder.finish(messages_);
+  if (is_datagrams(from->second.raw.transport)) from->second.decoder.finish(messages_);
   for (const KinectMessage& message : messages_) {
     const auto* frame = std::get_if<KinectFrame>(&message);
     if (frame == nullptr) continue;
-    const Sensor sensor{way->second.raw.stream, frame->origin.sensor};
+    const Sensor sensor{from->second.raw.stream, frame->origin.sensor};
     if (sensors_.size() == most_sensors && !sensors_.contains(sensor)) continue;
-    sensors_[sensor].take(moment_of(*frame), way->second.raw.sender);
+    sensors_[sensor].take(moment_of(*frame), from->second.raw.sender);
   }
 }
 

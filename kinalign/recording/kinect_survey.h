@@ -28,13 +28,13 @@ class KinectSurvey {
 
  private:
   static constexpr std::size_t most_sensors = 64;
-  struct Way {
+  struct Channel {
     RawChannel raw;
     KinectStreamDecoder decoder;
   };
   using Sensor = std::pair<std::string, std::uint32_t>;  // stream and sensor id
 
-  std::map<std::uint16_t, Way> ways_;
+  std::map<std::uint16_t, Channel> channels_;
   std::map<Sensor, KinectSessions> sensors_;
   std::vector<KinectMessage> messages_;
 };

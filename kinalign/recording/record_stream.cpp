@@ -86,7 +86,8 @@ std::optional<std::size_t> RecordStream::first() const {
     const auto* message = std::get_if<McapMessage>(&*part.head);
     // Records without a time come first: they are definitions and metadata that later messages
     // need.
-    const std::tuple rank(part.reader.in_torn_chunk(), message != nullptr && waits(part, *message),
+    const std::tuple rank(part.reader.in_truncated_chunk(),
+                          message != nullptr && waits(part, *message),
                           message == nullptr ? 0 : message->log_time);
     if (first && rank >= least) continue;
     first = k;
@@ -146,7 +147,7 @@ bool RecordStream::passes(Part& part, const McapMessage& message) {
     ++repeated_;
     return false;
   }
-  if (part.is_ours && part.reader.in_torn_chunk() && last && message.sequence > *last &&
+  if (part.is_ours && part.reader.in_truncated_chunk() && last && message.sequence > *last &&
       message.sequence - *last > most_ahead) {
     ++part.impossible;
     return false;
@@ -165,7 +166,7 @@ std::uint64_t RecordStream::missing() const {
   const std::uint64_t by_number = part.is_ours ? numbers_.missing() : 0;
   // The file's own statistics count messages that numbers can't know of: those at its very end.
   const bool is_counted =
-      parts_.size() == 1 && part.reader.closed() && !part.reader.summary_spoilt();
+      parts_.size() == 1 && part.reader.closed() && !part.reader.is_summary_damaged();
   return is_counted && part.counted > part.passed ? std::max(by_number, part.counted - part.passed)
                                                   : by_number;
 }
@@ -184,7 +185,7 @@ std::uint64_t RecordStream::skipped() const {
 
 Ending RecordStream::ending() const {
   // The last part decides, since only it may have the recording's end.
-  return parts_.back().reader.closed() ? ending_ : std::max(ending_, Ending::torn);
+  return parts_.back().reader.closed() ? ending_ : std::max(ending_, Ending::truncated);
 }
 
 std::vector<std::string> RecordStream::truncated() const {

@@ -55,8 +55,8 @@ class Copier {
   /// Writes index and end. `ending`: the end of the recording.
   Result<void> finish(Ending ending) {
     KA_TRY(close_chunk());
-    if (ending == Ending::torn && parts_.front().facts) {
-      KA_TRY(writer_.write(McapMetadata{std::string(torn_metadata), {}}));
+    if (ending == Ending::truncated && parts_.front().facts) {
+      KA_TRY(writer_.write(McapMetadata{std::string(truncated_metadata), {}}));
     }
     return writer_.finish();
   }
@@ -84,7 +84,7 @@ class Copier {
     return {};
   }
   Result<void> add(const McapMetadata& metadata) {
-    if (metadata.name == torn_metadata) return {};  // finish() writes it
+    if (metadata.name == truncated_metadata) return {};  // finish() writes it
     is_empty_ = false;
     KA_TRY(close_chunk());
     return writer_.write(to_facts(metadata) ? of_all_parts(metadata) : metadata);
@@ -213,15 +213,9 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   // Until commit() the new file has a temporary name, so a failure here leaves nothing behind.
   KA_TRY(prove(file, copier, progress));
 
-  Recovered done;
-  done.messages = copier.contents().messages;
-  done.channels = copier.channels();
-  done.unchecked = stream.unchecked();
-  done.twice = stream.repeated();
-  done.nameless = copier.nameless();
-  done.skipped = stream.skipped();
-  done.missing = stream.missing();
-  done.findings = stream.findings();
+  Recovered done{copier.contents().messages, copier.channels(), stream.unchecked(),
+                 stream.repeated(),          copier.nameless(), stream.skipped(),
+                 stream.missing(),           stream.findings()};
   append(done.findings,
          judge_end(parts.back().path, parts.front().facts.has_value(), stream.ending()));
   append(done.findings, judge_parts(files, parts, Severity::note));

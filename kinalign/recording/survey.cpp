@@ -31,150 +31,115 @@ std::uint32_t rotating_sensors(std::string_view payload) {
 // A limit on memory: a damaged or foreign file may name any number of senders.
 constexpr std::size_t most_counted = 4096;
 
-/// The part of a message on a channel of counts that identifies the counted sender or port. The
-/// message begins with it.
-std::string_view counted(std::string_view json) {
-  return json.substr(0, std::min(json.find("\"messages\":"), json.find("\"pieces\":")));
+/// Keeps the counts in place of earlier ones of the same key. Counts grow within a take, so the
+/// last message of a sender says all. Messages that can't be decoded are damaged and are left out.
+template <class Key, class Counted>
+void keep_last(const Key& key, const Counted& counted, std::map<Key, Counted>& last) {
+  if (last.size() < most_counted || last.contains(key)) last.insert_or_assign(key, counted);
 }
 
-/// The last message of each sender or port.
-using LastCounts = std::map<std::string, std::string, std::less<>>;
-
-/// Messages that can't be decoded are left out; they are damaged.
-template <class Counted>
-std::vector<Counted> all_of(const LastCounts& last,
-                            std::optional<Counted> (*decode)(std::string_view)) {
-  std::vector<Counted> all;
-  for (const auto& [who, json] : last) {
-    if (auto one = decode(json)) all.push_back(*std::move(one));
+/// Adds the places of all nodes, including nodes that were never received. A lab.toml that cannot
+/// be read is ignored.
+void add_places(std::string_view lab_toml, std::map<std::string, std::string>& places) {
+  const auto devices = read_devices(lab_toml, "lab.toml");
+  if (!devices) return;
+  for (const DeviceOptions& device : *devices) {
+    for (const auto& [id, place] : device.nodes) places[device.name + "/" + id] = place;
   }
-  return all;
 }
 
 }  // namespace
 
-class RecordingSurveyor::State {
- public:
-  void take(const McapRecord& record) {
-    std::visit([this](const auto& one) { add(one); }, record);
+/// Completes the survey after the last record.
+RecordingSurvey RecordingSurveyor::finish(const std::string& path, const RecordStream& stream) {
+  for (auto& [id, channel] : channels_) {
+    channel.missing = stream.numbers().missing(id);
+    survey_.channels.push_back(std::move(channel));
   }
+  // Topics sort by stream and node; the stable sort keeps channels of equal topic in the order of
+  // their ids.
+  std::stable_sort(survey_.channels.begin(), survey_.channels.end(),
+                   [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
+  for (auto& [key, counted] : senders_) survey_.senders.push_back(std::move(counted));
+  for (auto& [key, counted] : ports_) survey_.ports.push_back(std::move(counted));
+  survey_.unchecked = stream.unchecked();
+  if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
+  survey_.findings = stream.findings();
+  append(survey_.findings, kinects_.findings(path));
+  survey_.bytes = stream.bytes();
+  survey_.truncated = stream.truncated();
+  survey_.ending = stream.ending();
+  return std::move(survey_);
+}
 
-  /// Completes the survey after the last record.
-  RecordingSurvey finish(const std::string& path, const RecordStream& stream) {
-    for (auto& [id, channel] : channels_) {
-      channel.missing = stream.numbers().missing(id);
-      survey_.channels.push_back(std::move(channel));
-    }
-    // Topics sort by stream and node; the stable sort keeps channels of equal topic in the order of
-    // their ids.
-    std::stable_sort(
-        survey_.channels.begin(), survey_.channels.end(),
-        [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
-    survey_.senders = all_of(senders_, to_counted_sender);
-    survey_.ports = all_of(ports_, to_counted_port);
-    survey_.unchecked = stream.unchecked();
-    if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
-    survey_.findings = stream.findings();
-    append(survey_.findings, kinects_.findings(path));
-    survey_.bytes = stream.bytes();
-    survey_.truncated = stream.truncated();
-    survey_.ending = stream.ending();
-    return std::move(survey_);
-  }
+/// A damaged summary must not override the definitions in the data section, so the first
+/// definition is kept.
+void RecordingSurveyor::add(const McapChannel& channel) {
+  const auto [known, is_new] = channels_.try_emplace(channel.id);
+  // A channel may have been created by a message before its definition; it then has no topic yet.
+  if (!is_new && !known->second.channel.topic.empty()) return;
+  known->second.channel = channel;
+  const auto raw = to_raw(channel);
+  if (raw) kinects_.add(channel.id, *raw);
+  if (raw && !raw->place.empty()) survey_.places[raw->stream + "/" + raw->node] = raw->place;
+}
 
- private:
-  /// A damaged summary must not override the definitions in the data section, so the first
-  /// definition is kept.
-  void add(const McapChannel& channel) {
-    const auto [known, is_new] = channels_.try_emplace(channel.id);
-    // A channel may have been created by a message before its definition; it then has no topic yet.
-    if (!is_new && !known->second.channel.topic.empty()) return;
-    known->second.channel = channel;
-    const auto raw = to_raw(channel);
-    if (raw) kinects_.add(channel.id, *raw);
-    if (raw && !raw->place.empty()) survey_.places[raw->stream + "/" + raw->node] = raw->place;
+void RecordingSurveyor::add(const McapMetadata& metadata) {
+  if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
+  if (const auto end = to_end(metadata)) survey_.end = end;
+  if (survey_.facts) return;
+  survey_.facts = to_facts(metadata);
+  // The anchor is the first of the pairs by which steps of the wall clock are found.
+  if (survey_.facts) clock_.push_back(survey_.facts->anchor);
+}
+
+void RecordingSurveyor::add(const McapAttachment& attachment) {
+  survey_.attachments.push_back(attachment.name);
+  if (attachment.name == "lab.toml") add_places(attachment.data, survey_.places);
+}
+
+void RecordingSurveyor::add(const McapMessage& message) {
+  ++survey_.messages;
+  ChannelSurvey& channel = channels_[message.channel];
+  channel.channel.id = message.channel;  // the channel may have no definition
+  if (channel.messages == 0) channel.first = message.log_time;
+  channel.first = std::min(channel.first, message.log_time);
+  channel.last = std::max(channel.last, message.log_time);
+  ++channel.messages;
+  channel.bytes += message.data.size();
+  if (find_recorded_protocol(channel.channel.message_encoding) == Protocol::slimevr) {
+    channel.sensors |= rotating_sensors(message.data);
   }
-  void add(const McapMetadata& metadata) {
-    if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
-    if (const auto end = to_end(metadata)) survey_.end = end;
-    if (survey_.facts) return;
-    survey_.facts = to_facts(metadata);
-    // The anchor is the first of the pairs by which steps of the wall clock are found.
-    if (survey_.facts) clock_.push_back(survey_.facts->anchor);
+  kinects_.take(message.channel, message.data);
+  // Files of other programs may use the same topics with other contents.
+  if (survey_.facts && channel.channel.message_encoding == "json") {
+    add_own(channel.channel.topic, message);
   }
-  void add(const McapAttachment& attachment) {
-    survey_.attachments.push_back(attachment.name);
-    if (attachment.name == "lab.toml") add_places(attachment.data);
-  }
-  /// Adds the places of all nodes, including nodes that were never received. A lab.toml that cannot
-  /// be read is ignored.
-  void add_places(std::string_view lab_toml) {
-    const auto devices = read_devices(lab_toml, "lab.toml");
-    if (!devices) return;
-    for (const DeviceOptions& device : *devices) {
-      for (const auto& [id, place] : device.nodes) survey_.places[device.name + "/" + id] = place;
-    }
-  }
-  void add(const McapMessage& message) {
-    ++survey_.messages;
-    ChannelSurvey& channel = channels_[message.channel];
-    channel.channel.id = message.channel;  // the channel may have no definition
-    if (channel.messages == 0) channel.first = message.log_time;
-    channel.first = std::min(channel.first, message.log_time);
-    channel.last = std::max(channel.last, message.log_time);
-    ++channel.messages;
-    channel.bytes += message.data.size();
-    if (find_recorded_protocol(channel.channel.message_encoding) == Protocol::slimevr) {
-      channel.sensors |= rotating_sensors(message.data);
-    }
-    kinects_.take(message.channel, message.data);
-    // Files of other programs may use the same topics with other contents.
-    if (survey_.facts && channel.channel.message_encoding == "json") {
-      add_own(channel.channel.topic, message);
-    }
-  }
-  /// Takes messages of the recorder itself: counts, marks and clocks.
-  void add_own(std::string_view topic, const McapMessage& message) {
-    if (topic == sender_counts_topic) return keep_last(message.data, senders_);
-    if (topic == port_counts_topic) return keep_last(message.data, ports_);
-    if (topic == marks_topic) return add_mark(message);
-    if (topic != host_clock_topic) return;
+}
+
+/// Takes messages of the recorder itself: counts, marks and clocks.
+void RecordingSurveyor::add_own(std::string_view topic, const McapMessage& message) {
+  if (topic == sender_counts_topic) {
+    const auto one = to_counted_sender(message.data);
+    if (one) keep_last({one->topic, one->stream, one->sender, one->node}, *one, senders_);
+  } else if (topic == port_counts_topic) {
+    const auto one = to_counted_port(message.data);
+    if (one) keep_last(one->stream, *one, ports_);
+  } else if (topic == marks_topic) {
+    add_mark(message);
+  } else if (topic == host_clock_topic) {
     if (const auto pair = to_clock_pair(message.data)) clock_.push_back(*pair);
   }
-  void add_mark(const McapMessage& message) {
-    auto mark = to_mark(message.data);
-    if (!mark) return;
-    if (survey_.marks.size() < most_marks) {
-      survey_.marks.emplace_back(*std::move(mark), message.log_time);
-    } else {
-      ++survey_.more_marks;
-    }
-  }
-  // Counts grow within a take, so the last message of a sender says all.
-  static void keep_last(std::string_view json, LastCounts& last) {
-    const std::string_view who = counted(json);
-    const auto known = last.find(who);
-    if (known != last.end()) {
-      known->second = json;
-    } else if (last.size() < most_counted) {
-      last.emplace(who, json);
-    }
-  }
-  template <class Other>
-  void add(const Other&) {}
+}
 
-  std::map<std::uint16_t, ChannelSurvey> channels_;
-  std::vector<ClockPair> clock_;
-  LastCounts senders_, ports_;
-  KinectSurvey kinects_;
-  RecordingSurvey survey_;
-};
-
-RecordingSurveyor::RecordingSurveyor() : state_(std::make_unique<State>()) {}
-RecordingSurveyor::~RecordingSurveyor() = default;
-void RecordingSurveyor::take(const McapRecord& record) { state_->take(record); }
-RecordingSurvey RecordingSurveyor::finish(const std::string& path, const RecordStream& stream) {
-  return state_->finish(path, stream);
+void RecordingSurveyor::add_mark(const McapMessage& message) {
+  auto mark = to_mark(message.data);
+  if (!mark) return;
+  if (survey_.marks.size() < most_marks) {
+    survey_.marks.emplace_back(*std::move(mark), message.log_time);
+  } else {
+    ++survey_.more_marks;
+  }
 }
 
 Findings judge_end(const std::string& path, bool is_ours, Ending ending) {
@@ -182,15 +147,6 @@ Findings judge_end(const std::string& path, bool is_ours, Ending ending) {
   return {{Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
            "the disk took no more: what came later is in another file, if it took one",
            "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"}};
-}
-
-Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
-                                         const Progress& progress) {
-  const RecordingParts parts = KA_TRY(find_parts(files, {path}));
-  RecordStream stream = KA_TRY(RecordStream::open(files, parts, progress));
-  RecordingSurveyor surveyor;
-  while (const McapRecord* record = KA_TRY(stream.next())) surveyor.take(*record);
-  return surveyor.finish(path, stream);
 }
 
 Result<bool> is_recording(FileSystem& files, const std::string& path) {

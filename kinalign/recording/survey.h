@@ -5,17 +5,19 @@
 
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/core/files.h"
-#include "kinalign/core/progress.h"
 #include "kinalign/recording/counts.h"
 #include "kinalign/recording/format.h"
+#include "kinalign/recording/kinect_survey.h"
 #include "kinalign/recording/record_stream.h"
 
+#include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace kinalign {
@@ -43,7 +45,7 @@ struct RecordingSurvey {
   ExpectedDevices expected;
   std::map<std::string, std::string> places;  // places of nodes, if the lab names them, by "imu/7"
   std::optional<RecordingEnd> end;     // absent: truncated, or continued in a file that is missing
-  Ending ending = Ending::none;        // `torn` for a truncated last file
+  Ending ending = Ending::none;        // `truncated` if the last file is
   std::vector<CountedSender> senders;  // the last counts of each sender
   std::vector<CountedPort> ports;      // the last counts of each port
   std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times, ns
@@ -55,29 +57,37 @@ struct RecordingSurvey {
 /// Surveys a recording from its records, for a caller that reads them for other purposes too.
 class RecordingSurveyor {
  public:
-  RecordingSurveyor();
-  RecordingSurveyor(const RecordingSurveyor&) = delete;
-  RecordingSurveyor& operator=(const RecordingSurveyor&) = delete;
-  ~RecordingSurveyor();
-
   /// Takes a record. Call for every record of the stream, in order.
-  void take(const McapRecord& record);
+  void take(const McapRecord& record) {
+    std::visit([this](const auto& one) { add(one); }, record);
+  }
   /// Call after the last record of the stream. `path`: the file to name in findings.
   RecordingSurvey finish(const std::string& path, const RecordStream& stream);
+  /// Absent until they were read.
+  const std::optional<RecordingFacts>& facts() const { return survey_.facts; }
 
  private:
-  class State;
-  std::unique_ptr<State> state_;
+  void add(const McapChannel& channel);
+  void add(const McapMetadata& metadata);
+  void add(const McapAttachment& attachment);
+  void add(const McapMessage& message);
+  template <class Other>
+  void add(const Other&) {}
+  void add_own(std::string_view topic, const McapMessage& message);
+  void add_mark(const McapMessage& message);
+
+  std::map<std::uint16_t, ChannelSurvey> channels_;
+  std::vector<ClockPair> clock_;
+  // The last counts of each sender, by topic, stream, address and node, and of each port.
+  std::map<std::array<std::string, 4>, CountedSender> senders_;
+  std::map<std::string, CountedPort> ports_;
+  KinectSurvey kinects_;
+  RecordingSurvey survey_;
 };
 
 /// Reports a recording of kinalign that was closed properly but does not end: the rest, if a disk
 /// stored it, is missing.
 Findings judge_end(const std::string& path, bool is_ours, Ending ending);
-
-/// Surveys all parts of the recording to which the file belongs. Fails if a file cannot be read or
-/// is not an MCAP file.
-Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
-                                         const Progress& progress = {});
 
 /// Returns whether a file begins as an MCAP file. Fails if it cannot be read.
 Result<bool> is_recording(FileSystem& files, const std::string& path);

@@ -56,6 +56,11 @@ struct Neighbours {
 Neighbours find_neighbours(std::span<const std::int64_t> stamps,
                            std::span<const std::int64_t> grid);
 
+/// The interval of each row's time, ns, by the clock at the sample that it is known by. Empty if
+/// the clock knows no interval. `stamps`: of the samples, as the device gave them.
+std::vector<std::int64_t> intervals_at(const TimeModel& clock, std::span<const Time> stamps,
+                                       const Neighbours& near);
+
 /// The parts that the resamplers of all three kinds share.
 /// A stream is read once, from its front, so the stamps of the grid must rise from call to call.
 template <class Frames>

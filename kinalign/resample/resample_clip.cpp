@@ -67,12 +67,7 @@ Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& o
     resample(s, window_, grid, rule_.curve, out);
   }
   Neighbours near = find_neighbours(stamps, grid);
-  // Without any known interval of the clock the array stays empty.
-  const bool known = any_known(*clock_);
-  for (std::size_t r = 0; known && r < grid.size(); ++r) {
-    out.distance.time_interval_ns.push_back(
-        interval_ns(*clock_, window_.rows.stamps[near.known_by[r]]));
-  }
+  out.distance.time_interval_ns = intervals_at(*clock_, window_.rows.stamps, near);
   out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
   return {};
 }

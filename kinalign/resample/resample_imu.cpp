@@ -158,12 +158,10 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
     put_distances(samples, grid, rule_, column, out);
   }
   // The clock belongs to the stream and not to a node, so all rows of samples count here.
-  const Neighbours near = find_neighbours(stamps, grid);
-  const bool known = any_known(*clock_);
-  for (std::size_t r = 0; known && r < grid.size(); ++r) {
-    auto& intervals = out.distance.time_interval_ns;
-    intervals.insert(intervals.end(), nodes,
-                     interval_ns(*clock_, window_.rows.stamps[near.known_by[r]]));
+  auto& intervals = out.distance.time_interval_ns;
+  for (const std::int64_t interval :
+       intervals_at(*clock_, window_.rows.stamps, find_neighbours(stamps, grid))) {
+    intervals.insert(intervals.end(), nodes, interval);
   }
   return {};
 }

@@ -112,6 +112,14 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
   return out;
 }
 
+std::vector<std::int64_t> intervals_at(const TimeModel& clock, std::span<const Time> stamps,
+                                       const Neighbours& near) {
+  std::vector<std::int64_t> out;
+  if (!any_known(clock)) return out;
+  for (const std::size_t k : near.known_by) out.push_back(interval_ns(clock, stamps[k]));
+  return out;
+}
+
 /// A row has the worse state of its two neighbours. It counts as over a loss if a sample is missing
 /// between them.
 Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows& out) {
@@ -131,13 +139,9 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
   const Neighbours near = find_neighbours(stamps, grid);
   // A frame without any joint is no sample for this distance, but its stamp is known all the same.
   out.distance.nearest_raw_ns = find_neighbours(stamps_seen(window_), grid).nearest_raw_ns;
-  const bool known = any_known(*clock_);
+  out.distance.time_interval_ns = intervals_at(*clock_, window_.rows.stamps, near);
   for (std::size_t r = 0; r < grid.size(); ++r) {
     const std::size_t left = near.left[r];
-    if (known) {
-      const Time stamp = window_.rows.stamps[near.known_by[r]];
-      out.distance.time_interval_ns.push_back(interval_ns(*clock_, stamp));
-    }
     if (left == stamps.size()) continue;
     // A row at a sample's stamp has that sample's state alone.
     const std::size_t right = stamps[left] == grid[r] ? left : left + 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/sources/formats.h"
 
-#include "kinalign/core/unchanged.h"
+#include "kinalign/core/file_version.h"
 #include "kinalign/formats/bids/system.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/c3d/c3d.h"

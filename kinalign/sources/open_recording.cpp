@@ -282,7 +282,7 @@ struct Opening {
     const auto source =
         given && given->path() == group.path
             ? given
-            : RecordingSource::open(*files, group.path, RecordingSource::Devices::heard, wanted,
+            : RecordingSource::open(*files, group.path, RecordingSource::Devices::learned, wanted,
                                     progress);
     // If the recording can't be opened, each of its streams gets that error.
     for (std::size_t k = 0; k < group.named.size(); ++k) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/sources/stream_survey.h"
 
+#include "kinalign/core/file_version.h"
 #include "kinalign/core/hash.h"
-#include "kinalign/core/unchanged.h"
 #include "kinalign/core/utf8.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/input_facts.h"
@@ -250,10 +250,9 @@ Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named
     stream.files.push_back(recording->facts()[i]);
     out.paths.push_back(recording->parts()[i].path);
   }
-  if (!made.skeleton_path.empty()) {
-    stream.files.push_back(
-        KA_TRY(facts_of(*job.files, made.skeleton_path, "reading", *job.progress)));
-    out.paths.push_back(made.skeleton_path);
+  if (const std::string& skeleton = job.options->skeleton; !skeleton.empty()) {
+    stream.files.push_back(KA_TRY(facts_of(*job.files, skeleton, "reading", *job.progress)));
+    out.paths.push_back(skeleton);
   }
   return out;
 }

@@ -86,14 +86,10 @@ Value value_of(const toml::node& node, std::string key, std::string path) {
   out.line = std::max<std::int64_t>(node.source().begin.line, 1);
   // A date or time is the only kind of node that the tests below do not recognise.
   out.kind = Kind::date;
-  const auto scalar = [&](Kind kind, auto value) {
-    out.kind = kind;
-    out.scalar = std::move(value);
-  };
-  if (const auto* truth = node.as_boolean()) scalar(Kind::truth, truth->get());
-  if (const auto* whole = node.as_integer()) scalar(Kind::whole, whole->get());
-  if (const auto* number = node.as_floating_point()) scalar(Kind::number, number->get());
-  if (const auto* text = node.as_string()) scalar(Kind::text, text->get());
+  if (const auto* truth = node.as_boolean()) out.set(Kind::truth, truth->get());
+  if (const auto* whole = node.as_integer()) out.set(Kind::whole, whole->get());
+  if (const auto* number = node.as_floating_point()) out.set(Kind::number, number->get());
+  if (const auto* text = node.as_string()) out.set(Kind::text, text->get());
   if (const auto* list = node.as_array()) {
     out.kind = Kind::list;
     for (const toml::node& one : *list) out.items.push_back(value_of(one, out.key, out.path));

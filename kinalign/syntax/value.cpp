@@ -120,12 +120,11 @@ class Setter {
     std::vector<double> out;
     for (const Value& one : all) {
       const auto number = number_in(one);
-      if (!number) return at(one, {"", 0, value_.name() + " as " + wanted, shown(one)});
+      if (!number) return at(one, value_.name() + " as " + wanted, shown(one));
       out.push_back(*number);
     }
     if (field_.count != 0 && out.size() != field_.count) {
-      return at(value_,
-                {"", 0, value_.name() + " as " + wanted, fmt::format("{} numbers", out.size())});
+      return at(value_, value_.name() + " as " + wanted, fmt::format("{} numbers", out.size()));
     }
     // Four numbers are a rotation. Zeros or degrees would have a length far from 1.
     if (field_.count == 4) KA_TRY(check_rotation(out));
@@ -135,8 +134,8 @@ class Setter {
   Result<void> check_rotation(const std::vector<double>& q) const {
     const double length = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
     if (length >= 0.5 && length <= 2.0) return {};
-    return at(value_, {"", 0, value_.name() + " as w,x,y,z of a length from 0.5 to 2",
-                       fmt::format("a length of {:.6g}", length)});
+    return at(value_, value_.name() + " as w,x,y,z of a length from 0.5 to 2",
+              fmt::format("a length of {:.6g}", length));
   }
 
   /// An option without a lower limit has no range in its message, even if it has an upper one.
@@ -177,7 +176,7 @@ Failure at(const Value& value, Error error) {
 }
 
 Failure wrong(const Value& value, const std::string& wanted) {
-  return at(value, {"", 0, value.name() + " as " + wanted, shown(value)});
+  return at(value, value.name() + " as " + wanted, shown(value));
 }
 
 std::string shown(const Value& value) {

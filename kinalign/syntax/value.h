@@ -29,6 +29,11 @@ struct Value {
   std::int64_t line = 0;     // 0: JSON
 
   bool is_table() const { return kind == Kind::table; }
+  /// Makes this a value of a simple kind.
+  void set(Kind new_kind, auto value) {
+    kind = new_kind;
+    scalar = std::move(value);
+  }
   /// The name in messages: the key if the line tells the place, else the path.
   const std::string& name() const { return line > 0 ? key : path; }
   /// The value below these keys; nullptr if there is none.
@@ -38,6 +43,9 @@ struct Value {
 /// An error at the value's line. The file's name is added by the reader of the file.
 /// It has no file yet, because a Value does not know from which file it came.
 Failure at(const Value& value, Error error);
+inline Failure at(const Value& value, std::string expected, std::string found) {
+  return at(value, std::move(expected), std::move(found));
+}
 /// "expected gap_ms as a number, found "3"".
 Failure wrong(const Value& value, const std::string& wanted);
 /// The value in a few words: "-1", a text in quotes, "a table".

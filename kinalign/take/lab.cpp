@@ -177,7 +177,7 @@ Result<DeviceOptions> parse_device(const std::string& text) {
   return device;
 }
 
-void come_from(Lab& lab, const DeviceOptions& stated) {
+void set_device(Lab& lab, const DeviceOptions& stated) {
   const auto known =
       std::find_if(lab.devices.begin(), lab.devices.end(),
                    [&](const DeviceOptions& device) { return device.name == stated.name; });

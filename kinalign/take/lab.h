@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The devices of a lab and how to record them. lab.toml and the flags of `kinalign record` fill
-// these structures. Documented for users in docs/recording.md.
+// these structures. Documented for users in docs/formats/lab_toml.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -47,7 +47,7 @@ Result<DeviceOptions> parse_device(const std::string& text);
 
 /// Gives the lab's device of that name the protocol, transport, address and port of `stated`; its
 /// other options stay. A new name is added as a device.
-void come_from(Lab& lab, const DeviceOptions& stated);
+void set_device(Lab& lab, const DeviceOptions& stated);
 
 /// Fails if an option is missing or has no meaning, or if two devices have one name or one port.
 Result<void> validate(const Lab& lab);

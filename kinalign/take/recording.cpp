@@ -5,43 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <set>
 #include <utility>
 
 namespace kinalign {
 
 namespace {
-
-/// Streams in memory get the same survey as files, so alignment does not differ.
-StampSurvey survey(const std::vector<Time>& stamps) {
-  StampSurveyor surveyor;
-  surveyor.add(stamps);
-  return surveyor.result();
-}
-
-/// Passes over frames in memory; each pass has all frames in one block.
-template <class Frames>
-Passes<Frames> from_memory(Frames frames) {
-  // All passes share one copy of the frames.
-  return [all = std::make_shared<const Frames>(std::move(frames))]() -> Result<Pass<Frames>> {
-    return Pass<Frames>([all, done = false](Frames& block) mutable -> Result<bool> {
-      if (done || all->stamps.empty()) return false;
-      block = *all;
-      done = true;
-      return true;
-    });
-  };
-}
-
-template <class Input>
-RecordedStream stream(std::string name, const StampSurvey& survey, Input input) {
-  RecordedStream out;
-  out.name = std::move(name);
-  out.survey = survey;
-  out.data = std::move(input);
-  return out;
-}
 
 /// The step rounded to a whole number, limited so that sums of a few steps fit into 64 bits.
 std::int64_t step_of(double ns) {
@@ -94,25 +63,6 @@ Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
     KA_TRY(go());
   }
   return {};
-}
-
-RecordedStream recorded(std::string name, Clip clip) {
-  const StampSurvey found = survey(clip.frames.stamps);
-  return stream(std::move(name), found,
-                ClipInput{std::move(clip.skeleton), from_memory(std::move(clip.frames))});
-}
-
-RecordedStream recorded(std::string name, PointStream points) {
-  const StampSurvey found = survey(points.frames.stamps);
-  return stream(std::move(name), found,
-                PointInput{std::move(points.joint_names), from_memory(std::move(points.frames))});
-}
-
-RecordedStream recorded(std::string name, ImuStream imu) {
-  const StampSurvey found = survey(imu.samples.stamps);
-  return stream(
-      std::move(name), found,
-      ImuInput{std::move(imu.node_names), imu.content, from_memory(std::move(imu.samples))});
 }
 
 }  // namespace kinalign

@@ -142,9 +142,4 @@ ReadNext read_on(Pass<Frames> pass, const TimeModel& clock, std::uint64_t& rows)
 Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
                                const std::function<Result<void>()>& go);
 
-/// Streams from memory, for tests and small jobs. Their stamps are surveyed here.
-RecordedStream recorded(std::string name, Clip clip);
-RecordedStream recorded(std::string name, PointStream points);
-RecordedStream recorded(std::string name, ImuStream imu);
-
 }  // namespace kinalign

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes the bytes of datagrams. All layouts of wire are in network order (big-endian,
-// RFC 1700). Running past the end is not reported at once: one check after a layout replaces a
-// check for each field.
+// Reads the fields of messages, in network order (big-endian, RFC 1700) or in little-endian order,
+// and writes datagrams in network order. Running past the end is not reported at once: one check
+// after a layout replaces a check for each field.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
@@ -12,8 +13,7 @@
 
 namespace kinalign {
 
-/// Reads fields from the front, in either byte order. Past the end it returns zeros, and `complete`
-/// is false.
+/// Reads fields from the front. Past the end it returns zeros, and `complete` is false.
 template <std::endian order>
 class FieldReader {
  public:
@@ -22,13 +22,21 @@ class FieldReader {
   template <std::integral T>
   T take() {
     const auto bytes = take_bytes(sizeof(T));
+    if (bytes.empty()) return T{0};
     std::uint64_t value = 0;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-      value = value << 8 | bytes[order == std::endian::big ? i : bytes.size() - 1 - i];
+    // Byte by byte: neither the alignment nor the byte order of the machine matters.
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      value = value << 8 | bytes[order == std::endian::big ? i : sizeof(T) - 1 - i];
     }
     return static_cast<T>(value);
   }
   float take_float() { return std::bit_cast<float>(take<std::uint32_t>()); }
+  template <std::size_t n>
+  std::array<float, n> take_floats() {
+    std::array<float, n> values{};
+    for (float& value : values) value = take_float();
+    return values;
+  }
   /// Returns `count` bytes, or none if fewer are left.
   std::span<const std::uint8_t> take_bytes(std::uint64_t count) {
     if (count > left()) {
@@ -37,8 +45,9 @@ class FieldReader {
       complete_ = false;
       return {};
     }
-    at_ += static_cast<std::size_t>(count);
-    return bytes_.subspan(at_ - static_cast<std::size_t>(count), static_cast<std::size_t>(count));
+    const auto taken = bytes_.subspan(at_, static_cast<std::size_t>(count));
+    at_ += taken.size();
+    return taken;
   }
   /// The bytes that are not read yet.
   std::span<const std::uint8_t> rest() const { return bytes_.subspan(at_); }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the fields of a message in little-endian order. Running past the end is not reported at
-// once; check `complete` after the last field.
+// Reads the fields of a message in little-endian order, and takes text for bytes.
 #pragma once
 
 #include "kinalign/wire/bytes.h"
@@ -10,8 +9,6 @@
 
 namespace kinalign {
 
-using LittleEndianReader = FieldReader<std::endian::little>;
-
 /// The same bytes as another type.
 inline std::span<const std::uint8_t> octets(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -20,5 +17,7 @@ inline std::string_view text_of(std::span<const std::uint8_t> bytes) {
   // The bytes are not copied; the view is valid as long as they are.
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
+
+using LittleEndianReader = FieldReader<std::endian::little>;
 
 }  // namespace kinalign

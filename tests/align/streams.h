@@ -2,6 +2,8 @@
 // Small recordings of closed formulas for the tests of alignment.
 #pragma once
 
+#include "tests/take/recorded.h"
+
 #include "kinalign/resample/window.h"
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"

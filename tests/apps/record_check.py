@@ -76,7 +76,7 @@ def a_port_that_cannot_be_used_is_told_of_while_it_is_recorded(folder):
 @case
 def the_page_names_every_kind_of_line(_):
     root = pathlib.Path(__file__).parents[2]
-    table = (root / "docs/recording.md").read_text().split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
+    table = (root / "docs/recording_json.md").read_text().split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
     listed = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1])}
     source = (root / "apps/kinalign/record/record_printer.cpp").read_text()
     made = set(re.findall(r'"(\w+)"', " ".join(re.findall(r'"event", ([^}]+)}', source))))
@@ -115,7 +115,7 @@ MOTION
 
 
 def example_of_the_page():
-    page = (pathlib.Path(__file__).parents[2] / "docs/recording.md").read_text()
+    page = (pathlib.Path(__file__).parents[2] / "docs/formats/lab_toml.md").read_text()
     return page.split("```toml\n")[1].split("```")[0]
 
 

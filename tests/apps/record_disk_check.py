@@ -41,8 +41,8 @@ def a_kill_at_any_moment_costs_at_most_the_last_second_and_recover_closes_what_i
         recording = Recording(folder / f"takes{k}")
         with Sender(recording.port) as sender:
             time.sleep(draw.uniform(0.1, 10 if LONG else 3))
+            killed = time.monotonic()  # before the signal: a loaded machine may stop this program after it
             recording.program.send_signal(signal.SIGKILL)
-            killed = time.monotonic()
             recording.program.communicate()
         torn = recording.path.read_bytes()
         found = set(numbers(Walk(recording.path)))

@@ -12,7 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from cases import Skip, case, done_with, kinalign, main, wrong
 from recording_program import Recording
 
-PAGES = "docs/commands.md describes a settings file, docs/recording.md describes a lab file"
+PAGES = "docs/commands.md describes a settings file, docs/formats/lab_toml.md describes a lab file"
 HELP = "kinalign record --help lists its arguments and flags, with examples"
 
 

@@ -25,7 +25,8 @@ TEST_CASE("fault 17 host_step: an hour's step of the wall clock moves no stamp, 
   for (const Duration step : {Duration{3600s}, Duration{-3600s}}) {
     const auto anchor = utc_anchor(a_minute(step, 0s));
     REQUIRE(anchor);
-    CHECK(utc_from_host(*anchor, HostTime{555s}) == noon + 55s);
+    CHECK(HostTime{555s}.time_since_epoch() + anchor->utc_minus_raw ==
+          (noon + 55s).time_since_epoch());
     REQUIRE(anchor->steps.size() == 1);
     CHECK(anchor->steps[0].at == HostTime{530s});
     CHECK(anchor->steps[0].by == step);
@@ -36,7 +37,8 @@ TEST_CASE("fault 18 host_slew: 500 ppm are no step and move no stamp") {
   const auto anchor = utc_anchor(a_minute(0s, 500us));
   REQUIRE(anchor);
   CHECK(anchor->steps.empty());
-  CHECK(utc_from_host(*anchor, HostTime{555s}) == noon + 55s);
+  CHECK(HostTime{555s}.time_since_epoch() + anchor->utc_minus_raw ==
+        (noon + 55s).time_since_epoch());
 }
 
 TEST_CASE("without a pair there is no UTC") { CHECK(!utc_anchor({})); }

@@ -150,8 +150,8 @@ TEST_CASE("two devices share a port at addresses of their own alone") {
 
 TEST_CASE("what a flag says of a device's port wins, and leaves what else is known of it") {
   Lab lab{*read_devices(mocap + "skeleton = \"rig.bvh\"\n", "lab.toml"), {}};
-  come_from(lab, *parse_device("mocap=noitom:tcp:10.0.0.1:7001"));
-  come_from(lab, *parse_device("imu=nodes:5005"));
+  set_device(lab, *parse_device("mocap=noitom:tcp:10.0.0.1:7001"));
+  set_device(lab, *parse_device("imu=nodes:5005"));
   REQUIRE(lab.devices.size() == 2);
   CHECK(lab.devices[0].transport == "tcp");
   CHECK(lab.devices[0].port == 7001);

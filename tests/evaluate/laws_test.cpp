@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules for every metric (models.md 8.13).
+// Rules for every metric.
 #include "tests/evaluate/moving_body.h"
 #include "tests/seeds.h"
 

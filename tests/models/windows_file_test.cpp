@@ -45,10 +45,11 @@ struct Arrays {
     const auto stored = stored_arrays(file, "w.npz");
     REQUIRE(stored);
     for (const auto& [name, array] : *stored) {
-      const std::size_t size = array.type[1] == 'U' ? 4 * std::stoul(array.type.substr(2))
-                                                    : std::stoul(array.type.substr(2));
-      all[name] = {{name, array.type, size, {array.shape.begin(), array.shape.end()}},
-                   std::string(array.bytes)};
+      const NpyHeader& header = array.header;
+      const std::size_t size = header.value_bytes;
+      const std::string type = std::string(1, size == 1 ? '|' : '<') + header.kind +
+                               std::to_string(header.kind == 'U' ? size / 4 : size);
+      all[name] = {{name, type, size, header.shape}, std::string(array.bytes)};
     }
   }
 
@@ -165,7 +166,10 @@ TEST_CASE("windows file: what is damaged is refused") {
   CHECK(windows_of(arrays.written()).stretches.size() == 3);  // a gap of 146 years
   arrays = {};
   arrays.all["rows"] = {{"rows", "<i0", 0, {4}}, ""};
-  CHECK(refusal(arrays.written()) == "w.npz: expected rows of integers, found <i0");
+  CHECK(refusal(arrays.written()).starts_with("w.npz: rows.npy: expected an NPY of numbers"));
+  arrays.all["rows"] = {{"rows", "<f4", 4, {4}}, std::string(16, '\0')};
+  CHECK(refusal(arrays.written()) ==
+        "w.npz: expected rows of integers, found values of another type");
   arrays = {};
   arrays.all.at("take").about.shape = {3};
   arrays.all.at("take").bytes.resize(12);

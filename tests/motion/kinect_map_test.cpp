@@ -32,7 +32,7 @@ Skeleton skeleton_of(std::initializer_list<Given> joints) {
   return skeleton;
 }
 
-/// The joints that the map needs, of a person of 1.75 m, from formats.md 1.3.
+/// The joints that the map needs, of a person of 1.75 m, as Axis Neuron writes it.
 Skeleton legacy() {
   return skeleton_of({{"Hips", -1, {0, 93.02, 0}},
                       {"RightUpLeg", 0, {-9.25, -1.59, 0}},
@@ -125,7 +125,7 @@ TEST_CASE("end sites turn with their joint") {
 
 TEST_CASE("Axis Studio's second neck tells its hierarchy from the older one") {
   Skeleton skeleton = legacy();
-  // Heights 7.8, 25.1, 37.4, 55.8, 60.6, 65.3 above the hips: formats.md 7.
+  // Heights 7.8, 25.1, 37.4, 55.8, 60.6, 65.3 above the hips, as in Axis Studio.
   rename(skeleton, "Neck", "Neck1");
   rename(skeleton, "Spine3", "Neck");
   const double heights[] = {7.8, 17.3, 12.3, 18.4, 4.8, 4.7};

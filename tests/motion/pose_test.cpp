@@ -43,19 +43,3 @@ TEST_CASE("rotations of a chain multiply from the root outwards") {
   CHECK(angle_between(global.rotations[1], first * second) < 1e-15);
   CHECK((global.positions[1] - Vec3(std::cos(0.5), 0.0, -std::sin(0.5))).norm() < 1e-15);
 }
-
-TEST_CASE("frames of a motion are its poses at whole steps, both ends among them") {
-  const Skeleton skeleton{{"a"}, {-1}, {Vec3::Zero()}, {}};
-  const Motion motion{skeleton, 2.0, [](double t, Pose& pose) {
-                        pose.local_positions = {Vec3(t, t * t, 0.0)};
-                        pose.local_rotations = {Quat(Eigen::AngleAxisd(t, Vec3::UnitZ()))};
-                      }};
-  const ClipFrames frames = sample_frames(motion, 30.0, utc_time(1'000));
-  REQUIRE(frames.size() == 61);
-  CHECK(to_ns(frames.stamps[0]) == 1'000);
-  CHECK(to_ns(frames.stamps[1]) == 33'334'333);
-  CHECK(to_ns(frames.stamps[60]) == 2'000'001'000);
-  CHECK(frames.local_positions[3 * 45 + 1] == about(2.25));
-  CHECK(angle_between(quat(frames.local_rotations, 45),
-                      Quat(Eigen::AngleAxisd(1.5, Vec3::UnitZ()))) < 1e-14);
-}

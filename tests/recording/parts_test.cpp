@@ -4,6 +4,7 @@
 #include "tests/folder.h"
 #include "tests/recording/part_files.h"
 #include "tests/recording/recorded_lab.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/recording/recover.h"
 #include "kinalign/recording/streams/recording_source.h"

@@ -4,6 +4,7 @@
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
 #include "tests/recording/part_files.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/recover.h"
@@ -65,7 +66,7 @@ TEST_CASE("a file of parts up to the third ends the recording, not the second pa
   const std::string c = folder.write("a.part3.mcap", cut(part_of(3, 57, 90, false)));
   const std::string joined = folder / "joined.mcap";
   REQUIRE(recover_recording(files, {a, c}, joined, Overwrite::no));
-  CHECK(survey_recording(files, joined)->ending == Ending::torn);
+  CHECK(survey_recording(files, joined)->ending == Ending::truncated);
   std::filesystem::remove(a);
   std::filesystem::remove(c);
   const std::string b = folder.write("a.part2.mcap", part_of(2, 27, 60, false));
@@ -74,12 +75,12 @@ TEST_CASE("a file of parts up to the third ends the recording, not the second pa
     REQUIRE(recovered);
     CHECK(recovered->messages == 90);
     const auto survey = survey_recording(files, folder / "b.mcap");
-    CHECK(survey->ending == Ending::torn);
+    CHECK(survey->ending == Ending::truncated);
     CHECK(survey->facts->part == 1);
     CHECK(survey->facts->last_part() == 3);
   }
   const auto survey = survey_recording(files, joined);
-  CHECK(survey->ending == Ending::torn);
+  CHECK(survey->ending == Ending::truncated);
 }
 
 TEST_CASE("messages that follow later ones of their channel are reported, and not missing") {

@@ -3,6 +3,7 @@
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
 #include "tests/recording/part_files.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/recover.h"
@@ -94,7 +95,7 @@ TEST_CASE(
   const std::string cut = other.write("c.mcap", torn.substr(0, torn.size() - 20));
   REQUIRE(recover_recording(files, {cut}, other / "d.mcap", Overwrite::no));
   const auto survey = survey_recording(files, other / "d.mcap");
-  CHECK(survey->ending == Ending::torn);
+  CHECK(survey->ending == Ending::truncated);
   CHECK(!ends_before(*survey));
 }
 
@@ -125,7 +126,7 @@ TEST_CASE("torn for good is what recover made of a recording whose last file is 
   const auto cut = [](const std::string& bytes) { return bytes.substr(0, bytes.size() - 20); };
   const auto was_torn = [&](const std::vector<std::string>& paths, const std::string& out) {
     REQUIRE(recover_recording(files, paths, folder / out, Overwrite::no));
-    return survey_recording(files, folder / out)->ending == Ending::torn;
+    return survey_recording(files, folder / out)->ending == Ending::truncated;
   };
   const std::string a = folder.write("a.mcap", cut(part_of(1, 0, 20, false)));
   CHECK(was_torn({a}, "torn.mcap"));
@@ -150,7 +151,7 @@ TEST_CASE("a torn file that only repeats changes neither the order of messages n
     CHECK(recovered->missing == 0);
     for (const Finding& one : recovered->findings) CHECK(one.what.found != "one that ends before");
     const auto survey = survey_recording(files, folder / "b.mcap");
-    CHECK(survey->ending == Ending::torn);
+    CHECK(survey->ending == Ending::truncated);
     for (const ChannelSurvey& channel : survey->channels) CHECK(channel.missing == 0);
     const ReadMcap read = read_mcap(folder.read("b.mcap"));
     REQUIRE(read.messages.size() == 20);
@@ -293,7 +294,7 @@ TEST_CASE("which file is the last one tells how a recording of several ends") {
   const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
   REQUIRE(recovered);
   CHECK(recovered->messages == 60);
-  CHECK(survey_recording(files, folder / "b.mcap")->ending == Ending::torn);
+  CHECK(survey_recording(files, folder / "b.mcap")->ending == Ending::truncated);
 }
 
 TEST_CASE("a file with a part's name that does not say that it is one is told, and kept") {

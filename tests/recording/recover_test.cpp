@@ -6,6 +6,7 @@
 #include "tests/mcap/mcap_files.h"
 #include "tests/recording/part_files.h"
 #include "tests/recording/recorded_lab.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/recording/survey.h"
 

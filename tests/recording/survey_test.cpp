@@ -4,6 +4,7 @@
 
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
+#include "tests/recording/survey_recording.h"
 
 #include <doctest/doctest.h>
 

@@ -4,6 +4,7 @@
 #include "tests/counting_files.h"
 #include "tests/folder.h"
 #include "tests/recording/recorded_lab.h"
+#include "tests/recording/survey_recording.h"
 #include "tests/seeds.h"
 
 #include "kinalign/align/align.h"

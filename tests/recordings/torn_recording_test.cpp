@@ -2,6 +2,7 @@
 // A recording of several devices that breaks off or is damaged, aligned.
 #include "tests/folder.h"
 #include "tests/recording/recorded_lab.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/align/align.h"
 #include "kinalign/recording/streams/recording_source.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rules for any stream in memory.
 #include "tests/seeds.h"
+#include "tests/take/recorded.h"
 
 #include "kinalign/motion/frame_arrays.h"
 #include "kinalign/take/recording.h"

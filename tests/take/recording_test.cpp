@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/take/recording.h"
 
+#include "tests/take/recorded.h"
+
 #include <doctest/doctest.h>
 
 using namespace kinalign;

@@ -55,7 +55,7 @@ double seconds_of(std::uint64_t log_time) {
 std::map<std::string, std::vector<ShownMessage>> shown_recording(const FreshFolder& folder,
                                                                  const std::string& path) {
   PosixFiles files;
-  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::heard);
+  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::learned);
   REQUIRE(source);
   const auto manifest = manifest_of((*source)->survey(), "take.mcap");
   REQUIRE(manifest);

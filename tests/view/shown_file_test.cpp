@@ -100,7 +100,7 @@ TEST_CASE("so is a recording of as many JSON channels") {
   const FreshFolder folder;
   PosixFiles files;
   const std::string path = folder.write("many_in.mcap", mcap_of_all_channels());
-  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::unheard);
+  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::surveyed);
   REQUIRE(source);
   const ShowFiles paths{source->get(), folder / "many.mcap", Overwrite::no};
   const auto shown = show_recording(files, {}, paths);

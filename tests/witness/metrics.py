@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Metrics of motion by NumPy and SciPy, from the reference's formulas (models.md section 8 and 2.6)."""
+"""Metrics of motion by NumPy and SciPy, from the formulas in the headers of kinalign/evaluate."""
 from arrays import answer, given
 import numpy as np
 from scipy.spatial.transform import Rotation

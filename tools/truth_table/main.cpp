@@ -42,7 +42,7 @@ Result<Opened> open(FileSystem& files, const std::string& path) {
   Manifest manifest;
   std::shared_ptr<RecordingSource> source;
   if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
-    source = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard));
+    source = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::learned));
     opened.facts = source->survey().facts;
     manifest = KA_TRY(manifest_of(source->survey(), std::string(file_name(path))));
   } else {

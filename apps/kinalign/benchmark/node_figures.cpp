@@ -201,7 +201,7 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
   for (const SplitTake& take : takes) {
     if (!take.summary.has(Modality::imu)) continue;
     const std::pair one{
-        ComparedTake{to_string(take.name), o.data + "/" + path_of(take.name, TakeFile::take)},
+        ComparedTake{to_string(take.name), path_of(o.data, take.name, TakeFile::take)},
         tested.contains(take.name)};
     // A take with a Kinect and nodes serves all three figures.
     nodes.push_back(one);

@@ -81,21 +81,6 @@ Result<int> run_program_on(const std::string& program, std::string question, std
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// The numbers of an array of float32 or float64; empty for another type.
-/// NumPy writes float64 unless told otherwise, so both types are accepted.
-std::vector<float> floats_of(const StoredArray& array) {
-  std::vector<float> out;
-  if (array.type == "<f4") {
-    out.resize(array.bytes.size() / sizeof(float));
-    std::memcpy(out.data(), array.bytes.data(), out.size() * sizeof(float));
-  } else if (array.type == "<f8") {
-    std::vector<double> values(array.bytes.size() / sizeof(double));
-    std::memcpy(values.data(), array.bytes.data(), values.size() * sizeof(double));
-    for (const double value : values) out.push_back(static_cast<float>(value));
-  }
-  return out;
-}
-
 /// Reads "positions" from the program's NPZ. Fails for another shape and for numbers that are not
 /// finite.
 Result<std::vector<float>> read_answer(const std::string& path, std::size_t frames,
@@ -104,13 +89,15 @@ Result<std::vector<float>> read_answer(const std::string& path, std::size_t fram
   const auto arrays = KA_TRY(stored_arrays(bytes, path));
   const auto positions = arrays.find("positions");
   // The program must answer each frame of the stretch for each joint in output_names.
-  const std::vector<std::size_t> shape{frames, joints, 3};
-  if (positions != arrays.end() && positions->second.shape == shape) {
-    auto out = floats_of(positions->second);
-    const auto is_number = [](float value) { return std::isfinite(value); };
-    if (out.size() == 3 * frames * joints && std::all_of(out.begin(), out.end(), is_number)) {
-      return out;
+  const std::vector<std::uint64_t> shape{frames, joints, 3};
+  if (positions != arrays.end() && positions->second.header.shape == shape &&
+      positions->second.header.kind == 'f') {
+    std::vector<float> out(3 * frames * joints);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] = static_cast<float>(number_at(positions->second, i));
     }
+    const auto is_number = [](float value) { return std::isfinite(value); };
+    if (std::all_of(out.begin(), out.end(), is_number)) return out;
   }
   return Failure(Error{
       path, 0, fmt::format("\"positions\" [{},{},3] of finite float32 or float64", frames, joints),

@@ -72,7 +72,7 @@ std::optional<TakeSummary> TwinMaker::known(const TwinTake& take) const {
   if (!summary) return std::nullopt;
   // The length is compared with the summary, so a take that was cut or replaced is made again.
   std::error_code fault;
-  const auto bytes = fs::file_size(folder + "/" + path_of(take.name, TakeFile::take), fault);
+  const auto bytes = fs::file_size(path_of(folder, take.name, TakeFile::take), fault);
   if (fault || bytes != summary->bytes) return std::nullopt;
   return *std::move(summary);
 }

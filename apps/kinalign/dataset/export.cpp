@@ -5,6 +5,7 @@
 #include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/dataset/export/release.h"
 #include "kinalign/documents/report_json.h"
 
@@ -146,10 +147,8 @@ Result<int> run_export(Export& o, Call& call) {
   call.console.print(harmless(fmt::format(
       "{}: {}, {}\n", job.target, counted(job.takes.size(), "take"), counted(made.files, "file"))));
   const auto formats = export_formats();
-  const auto format = std::find_if(formats.begin(), formats.end(),
-                                   [&](const ExportFormat& one) { return one.name == o.format; });
   // Every format loses something. The line is printed always, so that nobody has to look it up.
-  call.console.print(fmt::format("lost   {}\n", format->lost));
+  call.console.print(fmt::format("lost   {}\n", find_named(formats, o.format)->lost));
   const auto left_out = print_left_out(made, call);
   // The files exist already at this point. An error among these findings changes only the exit
   // code.

@@ -19,8 +19,8 @@ Result<Input> open_motion(const std::string& path, Call& call) {
     return open_input(files, path, StreamFlags{}, progress);
   }
   const auto source =
-      // Devices::heard also fits the devices' clocks, since the samples are read.
-      KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard, {}, progress));
+      // Devices::learned also fits the devices' clocks, since the samples are read.
+      KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::learned, {}, progress));
   Input out;
   out.manifest = KA_TRY(recorded_manifest(source->survey(), path));
   OpenedInPart opened =

@@ -5,6 +5,8 @@
 #include "apps/kinalign/dataset/own_process.h"
 #include "apps/kinalign/learn/worker.h"
 
+#include "kinalign/core/find_named.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -89,10 +91,7 @@ const std::vector<TrainedMethod>& trained_methods() {
 }
 
 const TrainedMethod* find_trained(const std::string& name) {
-  const auto& all = trained_methods();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const TrainedMethod& one) { return one.name == name; });
-  return found == all.end() ? nullptr : &*found;
+  return find_named(trained_methods(), name);
 }
 
 Field input_field(std::string& input) {

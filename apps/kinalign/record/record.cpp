@@ -113,7 +113,7 @@ Verb record_verb() {
              "Axis Neuron serving; takes/03_S1A02_01.mcap. Its skeleton: lab.toml, or align's "
              "manifest"},
             {"kinalign record -o takes --config lab.toml",
-             "the devices of a lab: docs/recording.md"},
+             "the devices of a lab: docs/formats/lab_toml.md"},
             {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait --repeat",
              "a take from each start of Vicon's to its stop, and the seconds before"},
             {"kinalign record -o takes --config lab.toml --live-port 7040",

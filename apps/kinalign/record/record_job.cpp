@@ -145,8 +145,8 @@ Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file) {
       return Failure(
           Error{"--device", 0, "devices of different names", shown(device->name) + " twice"});
     }
-    // come_from() changes the device of that name, or adds it.
-    come_from(lab, *device);
+    // set_device() changes the device of that name, or adds it.
+    set_device(lab, *device);
   }
   KA_TRY(validate(lab));
   KA_TRY(check_mark_ports(lab, job.marks_port, job.trigger_port));

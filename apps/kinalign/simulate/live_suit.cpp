@@ -59,8 +59,7 @@ std::vector<std::uint8_t> LiveSuit::datagram() {
   frame.displacement = true;
   for (const double value : row) frame.values.push_back(static_cast<float>(value));
   std::vector<std::uint8_t> bytes;
-  // This fails only for another number of joints, which check_live refuses before.
-  if (!append_noitom(frame, bytes)) bytes.clear();
+  append_noitom(frame, bytes);  // check_live has refused another number of joints
   return bytes;
 }
 

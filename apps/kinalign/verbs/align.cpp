@@ -121,7 +121,7 @@ Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
   if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
     // The recording stays open: open_files() reads its streams from it instead of opening and
     // surveying it again.
-    wanted.recording = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard,
+    wanted.recording = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::learned,
                                                     {}, call.console.progress()));
     manifest = KA_TRY(recorded_manifest(wanted.recording->survey(), path));
     manifest.align = o.options;

@@ -14,7 +14,6 @@
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
 #include "kinalign/documents/report_json.h"
-#include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"
@@ -125,7 +124,7 @@ Result<Checked> check_recording(const Check& o, const std::string& path, Call& c
   FileSystem& files = call.surroundings.files;
   // Checking reads no streams of a recording, so the clocks are not fitted.
   const auto recording = KA_TRY(RecordingSource::open(
-      files, path, RecordingSource::Devices::unheard, {}, call.console.progress()));
+      files, path, RecordingSource::Devices::surveyed, {}, call.console.progress()));
   Checked out{judge_survey(path, recording->survey())};
   append(out.findings, judge_parts(files, recording->parts(), Severity::warning));
   return out;

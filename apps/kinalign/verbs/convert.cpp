@@ -161,7 +161,7 @@ Result<Findings> convert_in_child(const Job& job) {
       KA_TRY(take_to_npz(job));
     } else {
       findings = KA_TRY(put_bvh(
-          job, [&job](const TextSink& sink) { return take_to_bvh(job.files, job.from, sink); }));
+          job, [&job](const FileSink& sink) { return take_to_bvh(job.files, job.from, sink); }));
     }
     return "{\"findings\": " + findings_json(findings) + "}";
   };
@@ -205,7 +205,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
   }
   KA_TRY(check_flags(o, nullptr, call));
   const auto source = KA_TRY(
-      RecordingSource::open(job.files, job.from, RecordingSource::Devices::heard, {}, progress));
+      RecordingSource::open(job.files, job.from, RecordingSource::Devices::learned, {}, progress));
   const Manifest manifest = KA_TRY(recorded_manifest(source->survey(), job.from));
   // One device that can't be read must not keep the others from being shown. It becomes a warning.
   const OpenedInPart opened = KA_TRY(open_what_can_be(
@@ -236,7 +236,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   call.console.detail(harmless(read_as(stream)));
   // BVH to BVH copies the text's values, so no number is rounded on its way through a clip.
   if (job.to.ends_with(".bvh")) {
-    return put_bvh(job, [&](const TextSink& sink) {
+    return put_bvh(job, [&](const FileSink& sink) {
       return copy_bvh(job.files, job.from, sink, call.console.progress());
     });
   }

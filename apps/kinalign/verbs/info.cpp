@@ -70,8 +70,8 @@ Result<Description> describe(const Info& o, Call& call) {
   switch (kind) {
     case FileKind::recording: {
       const auto source = KA_TRY(
-          // Devices::unheard skips fitting the clocks: the survey needs none of them.
-          RecordingSource::open(files, path, RecordingSource::Devices::unheard, {}, progress));
+          // Devices::surveyed skips fitting the clocks: the survey needs none of them.
+          RecordingSource::open(files, path, RecordingSource::Devices::surveyed, {}, progress));
       return describe_survey(path, source->survey(), source->parts());
     }
     case FileKind::xdf:

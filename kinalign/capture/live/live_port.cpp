@@ -2,7 +2,6 @@
 #include "kinalign/capture/live/live_port.h"
 
 #include "kinalign/capture/net/socket_address.h"
-#include "kinalign/capture/net/udp_socket.h"
 #include "kinalign/recording/format.h"
 
 #include <netinet/in.h>
@@ -16,8 +15,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr const char* own_machine = "127.0.0.1";
-
 /// Sends small messages immediately: without this option the kernel waits for more data.
 void send_at_once(int fd) {
   const int yes = 1;
@@ -28,16 +25,7 @@ void send_at_once(int fd) {
 
 Result<LivePort> LivePort::open(std::uint16_t port, const McapHeader& header,
                                 const std::vector<McapMetadata>& head) {
-  const FoundAddress found = find_address(own_machine, port, SOCK_STREAM);
-  Handle listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  const int yes = 1;
-  ::setsockopt(listener.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  if (found == nullptr || listener.fd() < 0 ||
-      ::bind(listener.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
-      ::listen(listener.fd(), static_cast<int>(most_clients)) != 0) {
-    return Failure(
-        no_port(endpoint_text(own_machine, port), "a TCP port to serve on", errno, port));
-  }
+  Handle listener = KA_TRY(listen_tcp("127.0.0.1", port, most_clients));
   const std::uint16_t bound = bound_port(listener.fd());
   LivePort out(std::move(listener), bound);
   out.head_ = mcap_magic;

@@ -2,8 +2,7 @@
 #include "kinalign/capture/net/datagram_batch.h"
 
 #include "kinalign/capture/net/kernel_stamp.h"
-
-#include <arpa/inet.h>
+#include "kinalign/capture/net/socket_address.h"
 
 #include <cerrno>
 #include <cstring>
@@ -19,19 +18,6 @@ T read_as(const cmsghdr& control) {
   return value;
 }
 
-// The system's addresses and ours have the same bytes in the same order.
-HostAddress bytes_of(const in6_addr& address) {
-  HostAddress bytes{};
-  std::memcpy(bytes.data(), &address, bytes.size());
-  return bytes;
-}
-
-HostAddress bytes_of(const in_addr& address) {
-  std::array<std::uint8_t, 4> bytes{};
-  std::memcpy(bytes.data(), &address, bytes.size());
-  return mapped_ipv4(bytes);
-}
-
 /// Reads the arrival stamp and the destination address from one control message. Other messages are
 /// ignored.
 void read_control(const cmsghdr& control, Datagram& datagram) {
@@ -39,21 +25,20 @@ void read_control(const cmsghdr& control, Datagram& datagram) {
     datagram.received = stamp;
   } else if (control.cmsg_level == IPPROTO_IP && control.cmsg_type == IP_PKTINFO) {
     const auto info = read_as<in_pktinfo>(control);
-    datagram.to = bytes_of(info.ipi_addr);
+    datagram.to = host_of(info.ipi_addr);
     // For a datagram to a broadcast address, the kernel gives the local address of the interface
     // beside it.
     datagram.unicast = info.ipi_addr.s_addr == info.ipi_spec_dst.s_addr;
   } else if (control.cmsg_level == IPPROTO_IPV6 && control.cmsg_type == IPV6_PKTINFO) {
     const auto info = read_as<in6_pktinfo>(control);
-    datagram.to = bytes_of(info.ipi6_addr);
+    datagram.to = host_of(info.ipi6_addr);
     datagram.unicast = datagram.to[0] != 0xff;
   }
 }
 
 /// Writes the control message that sends from the address `asked.to`. Returns the bytes of
 /// `control` used.
-std::size_t put_source(const Datagram& asked, std::uint32_t scope,
-                       std::span<std::uint8_t> control) {
+std::size_t put_source(const Datagram& asked, std::span<std::uint8_t> control) {
   const bool four = is_ipv4(asked.to);
   const std::size_t size = four ? sizeof(in_pktinfo) : sizeof(in6_pktinfo);
   cmsghdr head{};
@@ -69,46 +54,35 @@ std::size_t put_source(const Datagram& asked, std::uint32_t scope,
   } else {
     in6_pktinfo info{};
     std::memcpy(&info.ipi6_addr, asked.to.data(), asked.to.size());
-    info.ipi6_ifindex = scope;
+    info.ipi6_ifindex = asked.from_scope;
     std::memcpy(at, &info, sizeof info);
   }
   return CMSG_SPACE(size);
 }
 
-/// Writes the sender's address of `asked` in the system's form. Returns the length of that form.
-socklen_t put_peer(const Datagram& asked, sockaddr_in6& peer) {
-  if (!is_ipv4(asked.from)) {
-    peer.sin6_family = AF_INET6;
-    peer.sin6_port = htons(asked.from_port);
-    peer.sin6_scope_id = asked.from_scope;
-    std::memcpy(&peer.sin6_addr, asked.from.data(), asked.from.size());
-    return sizeof peer;
-  }
-  sockaddr_in four{};
-  four.sin_family = AF_INET;
-  four.sin_port = htons(asked.from_port);
-  std::memcpy(&four.sin_addr, asked.from.data() + 12, 4);
-  std::memcpy(&peer, &four, sizeof four);
-  return sizeof four;
+/// The head of a message to `peer`.
+msghdr head_to(void* peer, socklen_t size, iovec& out) {
+  msghdr head{};
+  head.msg_name = peer;
+  head.msg_namelen = size;
+  head.msg_iov = &out;
+  head.msg_iovlen = 1;
+  return head;
 }
 
 }  // namespace
 
 bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> bytes) {
   if (asked.from_port == 0) return false;
-  sockaddr_in6 peer{};
+  SystemAddress peer = system_address(asked.from, asked.from_port, asked.from_scope);
   alignas(cmsghdr) std::array<std::uint8_t, CMSG_SPACE(sizeof(in6_pktinfo))> control{};
   // iovec needs a pointer to mutable bytes, but sendmsg(2) does not write to them.
   iovec out{const_cast<std::uint8_t*>(bytes.data()), bytes.size()};
-  msghdr head{};
-  head.msg_name = &peer;
-  head.msg_namelen = put_peer(asked, peer);
-  head.msg_iov = &out;
-  head.msg_iovlen = 1;
+  msghdr head = head_to(peer.data(), peer.size, out);
   // Without a source address the system chooses one of this host's.
   if (asked.unicast) {
     head.msg_control = control.data();
-    head.msg_controllen = put_source(asked, asked.from_scope, control);
+    head.msg_controllen = put_source(asked, control);
   }
   return ::sendmsg(fd, &head, MSG_DONTWAIT) == static_cast<ssize_t>(bytes.size());
 }
@@ -120,9 +94,7 @@ DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(
     Slot& slot = slots_[i];
     slot.bytes.resize(bytes);
     slot.in = {slot.bytes.data(), slot.bytes.size()};
-    in_[i].msg_hdr.msg_iov = &slot.in;
-    in_[i].msg_hdr.msg_iovlen = 1;
-    in_[i].msg_hdr.msg_name = &slot.from;
+    in_[i].msg_hdr = head_to(&slot.from, sizeof slot.from, slot.in);
     in_[i].msg_hdr.msg_control = slot.control.data();
   }
 }
@@ -130,7 +102,7 @@ DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(
 std::size_t DatagramBatch::receive(int fd) {
   queue_length_ = 0;
   for (mmsghdr& message : in_) {  // recvmmsg(2) overwrites these lengths
-    message.msg_hdr.msg_namelen = sizeof(sockaddr_in6);
+    message.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     message.msg_hdr.msg_controllen = control_room;
   }
   const int got = ::recvmmsg(fd, in_.data(), most, MSG_DONTWAIT, nullptr);
@@ -143,14 +115,11 @@ Datagram DatagramBatch::at(std::size_t i) const {
   Datagram datagram;
   datagram.bytes = std::span(slot.bytes).first(message.msg_len);
   datagram.cut = (message.msg_hdr.msg_flags & MSG_TRUNC) != 0;
-  datagram.from_port = ntohs(slot.from.sin6_port);  // sin_port of IPv4 has the same place
-  if (slot.from.sin6_family == AF_INET6) {
-    datagram.from = bytes_of(slot.from.sin6_addr);
-    datagram.from_scope = slot.from.sin6_scope_id;
-  } else {
-    sockaddr_in four{};
-    std::memcpy(&four, &slot.from, sizeof four);
-    datagram.from = bytes_of(four.sin_addr);
+  const NodeAddress from = address_of(slot.from);
+  datagram.from = from.host;
+  datagram.from_port = from.port;
+  if (slot.from.ss_family == AF_INET6) {
+    datagram.from_scope = reinterpret_cast<const sockaddr_in6&>(slot.from).sin6_scope_id;
   }
   msghdr head = message.msg_hdr;  // CMSG_NXTHDR needs a mutable header
   for (cmsghdr* control = CMSG_FIRSTHDR(&head); control != nullptr;
@@ -163,16 +132,10 @@ Datagram DatagramBatch::at(std::size_t i) const {
 // The answer goes to the sender's address in the slot, in the form in which the system gave it.
 void DatagramBatch::queue(std::size_t i, const Datagram& asked, std::size_t size) {
   Slot& slot = slots_[i];
-  const bool six = slot.from.sin6_family == AF_INET6;
-  const std::uint32_t scope = six ? slot.from.sin6_scope_id : 0;
   slot.out = {slot.answer.data(), size};
-  msghdr head{};
-  head.msg_name = &slot.from;
-  head.msg_namelen = in_[i].msg_hdr.msg_namelen;
-  head.msg_iov = &slot.out;
-  head.msg_iovlen = 1;
+  msghdr head = head_to(&slot.from, in_[i].msg_hdr.msg_namelen, slot.out);
   head.msg_control = slot.answer_control.data();
-  head.msg_controllen = put_source(asked, scope, slot.answer_control);
+  head.msg_controllen = put_source(asked, slot.answer_control);
   queued_[queue_length_] = i;
   out_[queue_length_++].msg_hdr = head;
 }

@@ -7,7 +7,6 @@
 #include "kinalign/capture/net/host_address.h"
 #include "kinalign/wire/time.h"
 
-#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -73,7 +72,7 @@ class DatagramBatch {
   // Everything about one datagram and its answer. Messages of the system point into a slot, so
   // slots never move.
   struct Slot {
-    sockaddr_in6 from{};  // large enough for a sockaddr_in too
+    sockaddr_storage from{};
     iovec in{}, out{};
     alignas(cmsghdr) std::array<std::uint8_t, control_room> control{}, answer_control{};
     std::array<std::uint8_t, answer_room> answer{};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/net/followed_clock.h"
 
-#include "kinalign/clock/live/live_clock.h"
 #include "kinalign/recording/format.h"
 
 #include <algorithm>
@@ -16,15 +15,10 @@ SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift) {
   return clock;
 }
 
-FollowedClock::FollowedClock() : clock_(std::make_unique<LiveClock>()) {}
-FollowedClock::FollowedClock(FollowedClock&&) noexcept = default;
-FollowedClock& FollowedClock::operator=(FollowedClock&&) noexcept = default;
-FollowedClock::~FollowedClock() = default;
-
 void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
   // In a new epoch of the host's axis the same boot counts as another one, so no earlier bound is
   // used.
-  exchange.boot = life_of(exchange.boot, epoch);
+  exchange.boot = boot_in_epoch(exchange.boot, epoch);
   // Rounding may put an arrival microseconds before the previous one. The order of arrival is kept;
   // a later arrival is still a correct bound.
   newest_arrival_ = exchange.h_rx = std::max(newest_arrival_, exchange.h_rx);

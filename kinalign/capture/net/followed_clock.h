@@ -4,8 +4,7 @@
 #pragma once
 
 #include "kinalign/capture/net/sender_clock.h"
-#include "kinalign/clock/clock_stamp.h"
-#include "kinalign/clock/exchange.h"
+#include "kinalign/clock/live/live_clock.h"
 
 #include <cstdint>
 #include <memory>
@@ -13,27 +12,18 @@
 
 namespace kinalign {
 
-class LiveClock;
-
 /// Converts a clock stamp for display. `n` is the reading of the sender's clock at that stamp.
 SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift);
 
 class FollowedClock {
  public:
-  FollowedClock();
-  FollowedClock(FollowedClock&&) noexcept;
-  FollowedClock& operator=(FollowedClock&&) noexcept;
-  FollowedClock(const FollowedClock&) = delete;
-  FollowedClock& operator=(const FollowedClock&) = delete;
-  ~FollowedClock();
-
   /// Adds one exchange. `epoch` is the epoch of the host's time axis (HostAxis::epoch).
   void push(Exchange exchange, std::uint32_t epoch);
   /// The clock at the newest exchange. Absent while there are too few exchanges for an estimate.
   const std::optional<SenderClock>& now() const { return now_; }
 
  private:
-  std::unique_ptr<LiveClock> clock_;
+  std::unique_ptr<LiveClock> clock_ = std::make_unique<LiveClock>();
   HostTime newest_arrival_ = HostTime::min();
   std::optional<SenderClock> now_;
 };

@@ -50,41 +50,18 @@ Duration SystemClocks::asleep() {
   return least;
 }
 
-SystemClocks::~SystemClocks() {
-  if (timer_ && *timer_ >= 0) ::close(*timer_);
-}
-
-// If two readings contradict each other, or are imprecise, only the kernel can tell.
-bool WallWatch::must_ask(const Look& look) {
-  constexpr Duration seldom = std::chrono::milliseconds(100);
-  constexpr Duration narrow_look = Duration{500};
-  if (ran_ && look.at - ran_->at < seldom && look.most - look.least <= narrow_look) {
-    const Look both{ran_->at, std::max(ran_->least, look.least), std::min(ran_->most, look.most)};
-    if (both.least <= both.most) {
-      ran_ = both;
-      return false;
-    }
-  }
-  ran_ = look;
-  return true;
-}
-
 // The kernel cancels a timer of this kind when the clock is set: reading it then gives ECANCELED,
 // once.
 bool SystemClocks::wall_was_set() {
-  if (!timer_) {
-    timer_ = ::timerfd_create(CLOCK_REALTIME, TFD_NONBLOCK | TFD_CLOEXEC);
+  if (timer_.fd() < 0) {
+    timer_ = Handle(::timerfd_create(CLOCK_REALTIME, TFD_NONBLOCK | TFD_CLOEXEC));
     itimerspec never{};
     // if the clock reaches this time in 2038, the read below counts a tick
     never.it_value.tv_sec = std::numeric_limits<std::int32_t>::max();
-    ::timerfd_settime(*timer_, TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &never, nullptr);
+    ::timerfd_settime(timer_.fd(), TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &never, nullptr);
   }
-  const Duration before = read_clock(CLOCK_MONOTONIC);
-  const Duration wall = read_clock(CLOCK_REALTIME);
-  const Duration after = read_clock(CLOCK_MONOTONIC);
-  if (!watch_.must_ask({after, wall - after, wall - before})) return false;
   std::uint64_t ticks = 0;
-  return ::read(*timer_, &ticks, sizeof ticks) < 0 && errno == ECANCELED;
+  return ::read(timer_.fd(), &ticks, sizeof ticks) < 0 && errno == ECANCELED;
 }
 
 bool runs_on(const ClockBracket& earlier, const ClockBracket& later, double slew) {

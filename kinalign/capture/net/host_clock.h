@@ -6,6 +6,7 @@
 #pragma once
 
 #include "kinalign/capture/net/event_queue.h"
+#include "kinalign/capture/net/handle.h"
 #include "kinalign/clock/utc_anchor.h"
 
 #include <cstdint>
@@ -25,45 +26,17 @@ class ClockReader {
   virtual bool wall_was_set() = 0;
 };
 
-/// Decides from clock readings whether the kernel must be asked if the wall clock was set. The wall
-/// clock runs and is slewed with CLOCK_MONOTONIC unless it is set. A step therefore shows as a
-/// change of their difference. Comparing readings saves one system call per datagram. A step
-/// smaller than the reading time, about 0.1 us, is found by the next query to the kernel.
-class WallWatch {
- public:
-  /// One reading of both clocks.
-  struct Look {
-    Duration at{};  // CLOCK_MONOTONIC
-    // CLOCK_REALTIME - CLOCK_MONOTONIC, lower and upper bound from two readings around it
-    Duration least{}, most{};
-  };
-  /// Returns true if the wall clock may have been set, or if the last query to the kernel is 100 ms
-  /// old.
-  bool must_ask(const Look& look);
-
- private:
-  // `at`: the time of the last query; bounds: the range that all readings since allow
-  std::optional<Look> ran_;
-};
-
 class SystemClocks : public ClockReader {
  public:
-  SystemClocks() = default;
-  SystemClocks(const SystemClocks&) = delete;
-  SystemClocks& operator=(const SystemClocks&) = delete;
-  ~SystemClocks() override;
-
   HostTime raw() override;
   Time utc() override;
   Duration asleep() override;
   /// Uses a timer that the kernel cancels when the wall clock is set (timerfd_create(2)). Returns
-  /// false if the system has no such timer. Very small steps are found later, see WallWatch.
+  /// false if the system has no such timer.
   bool wall_was_set() override;
 
  private:
-  WallWatch watch_;
-  // descriptor of the timer; absent before the first call of wall_was_set
-  std::optional<int> timer_;
+  Handle timer_;  // made by the first call of wall_was_set
 };
 
 /// A wall clock reading between two readings of the host clock.

@@ -132,8 +132,7 @@ class TcpPieces {
     Handle socket;
     HostTime last_arrival{};  // last arrival, or the time when the connection was made
     bool connected = false;
-    HostAddress host{};  // address of the device
-    std::uint16_t port = 0;
+    NodeAddress address{};                   // address of the device
     std::optional<Senders::Known> sender{};  // absent before the first bytes
   };
   TcpPieces(std::string address, std::uint16_t port, Handle listener);

@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
-#include <tuple>
 
 namespace kinalign {
 
@@ -27,33 +25,6 @@ constexpr std::size_t most_links = 8;
 constexpr Duration between_tries = std::chrono::seconds(1);
 // a choice; every device sends many messages a second
 constexpr Duration idle_after = std::chrono::seconds(3);
-constexpr int type = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
-
-/// The address and port of the other end.
-std::pair<HostAddress, std::uint16_t> peer_of(int fd) {
-  sockaddr_storage peer{};
-  socklen_t size = sizeof peer;
-  if (::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &size) != 0) return {};
-  if (peer.ss_family == AF_INET) {
-    sockaddr_in four{};
-    std::memcpy(&four, &peer, sizeof four);
-    std::array<std::uint8_t, 4> bytes{};
-    std::memcpy(bytes.data(), &four.sin_addr, 4);
-    return {mapped_ipv4(bytes), ntohs(four.sin_port)};
-  }
-  sockaddr_in6 six{};
-  std::memcpy(&six, &peer, sizeof six);
-  HostAddress host{};
-  std::memcpy(host.data(), &six.sin6_addr, host.size());
-  return {host, ntohs(six.sin6_port)};
-}
-
-/// Makes the kernel stamp received data. For a listener the option applies to its connections, from
-/// their first byte.
-void ask_for_stamps(int fd) {
-  const int yes = 1;
-  ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
-}
 
 /// Detects within half a minute that a device has vanished without closing the connection.
 void keep_alive(int fd) {
@@ -93,10 +64,6 @@ ssize_t receive_stamped(int fd, std::span<char> room, std::optional<Time>& stamp
   return got;
 }
 
-Failure no_address(const std::string& address) {
-  return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
-}
-
 }  // namespace
 
 TcpPieces::TcpPieces(std::string address, std::uint16_t port, Handle listener)
@@ -106,25 +73,14 @@ TcpPieces::TcpPieces(std::string address, std::uint16_t port, Handle listener)
       buffer_(read_size) {}
 
 Result<TcpPieces> TcpPieces::connect(const std::string& address, std::uint16_t port) {
-  if (address.empty() || find_address(address, port, SOCK_STREAM) == nullptr)
-    return no_address(address);
+  if (address.empty() || find_address(address, port, SOCK_STREAM) == nullptr) {
+    return Failure(no_address(address));
+  }
   return TcpPieces(address, port, Handle());
 }
 
-// SO_REUSEADDR lets a restarted program listen at once, although old connections of the port have
-// not timed out yet.
 Result<TcpPieces> TcpPieces::listen(const std::string& address, std::uint16_t port) {
-  const std::string own = address.empty() ? "0.0.0.0" : address;
-  const FoundAddress found = find_address(own, port, SOCK_STREAM);
-  if (found == nullptr) return no_address(address);
-  Handle listener(::socket(found->ai_family, type, 0));
-  const int yes = 1;
-  ::setsockopt(listener.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  ask_for_stamps(listener.fd());
-  if (listener.fd() < 0 || ::bind(listener.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
-      ::listen(listener.fd(), static_cast<int>(most_links)) != 0) {
-    return Failure(no_port(endpoint_text(own, port), "a TCP port to serve on", errno, port));
-  }
+  Handle listener = KA_TRY(listen_tcp(address.empty() ? "0.0.0.0" : address, port, most_links));
   const std::uint16_t bound = bound_port(listener.fd());
   return TcpPieces(address, bound, std::move(listener));
 }
@@ -165,7 +121,7 @@ void TcpPieces::try_to_connect(HostTime now) {
   next_try_ = now + between_tries;
   const FoundAddress found = find_address(address_, port_, SOCK_STREAM);
   if (found == nullptr) return;
-  Handle socket(::socket(found->ai_family, type, 0));
+  Handle socket(::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.fd() < 0) return;
   keep_alive(socket.fd());
   ask_briefly(socket.fd());
@@ -207,8 +163,9 @@ bool TcpPieces::settle(Link& link) {
   socklen_t size = sizeof fault;
   ::getsockopt(link.socket.fd(), SOL_SOCKET, SO_ERROR, &fault, &size);
   if (fault != 0) return false;
-  std::tie(link.host, link.port) = peer_of(link.socket.fd());
-  link.connected = link.port != 0;
+  SystemAddress peer;
+  link.connected = ::getpeername(link.socket.fd(), peer.data(), &peer.size) == 0;
+  if (link.connected) link.address = address_of(peer.bytes);
   if (link.connected) ++counts_.links;
   return true;
 }
@@ -225,7 +182,7 @@ bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
     // Each read has its own bracket, because reading a whole turn may take long.
     axis.look();
     const HostTime arrival = link.last_arrival = axis.arrival(stamp);
-    const auto sender = senders_.number(link.sender, link.host, link.port, arrival);
+    const auto sender = senders_.number(link.sender, link.address.host, link.address.port, arrival);
     ++(sender ? counts_.pieces : counts_.refused);
     if (!sender) continue;
     const auto size = static_cast<std::size_t>(got);

@@ -7,12 +7,10 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 namespace kinalign {
 
@@ -34,31 +32,6 @@ bool set_options(int fd, int family) {
   return set(fd, IPPROTO_IPV6, IPV6_V6ONLY, 1) && set(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO, 1);
 }
 
-/// An address and port in the system's form.
-struct Socket {
-  Socket(const HostAddress& address, std::uint16_t port) {
-    if (is_ipv4(address)) {
-      sockaddr_in four{};
-      four.sin_family = AF_INET;
-      four.sin_port = htons(port);
-      std::memcpy(&four.sin_addr, address.data() + 12, 4);
-      std::memcpy(&bytes, &four, size = sizeof four);
-    } else {
-      sockaddr_in6 six{};
-      six.sin6_family = AF_INET6;
-      six.sin6_port = htons(port);
-      std::memcpy(&six.sin6_addr, address.data(), address.size());
-      std::memcpy(&bytes, &six, size = sizeof six);
-    }
-    family = bytes.ss_family;
-  }
-  const sockaddr* data() const { return reinterpret_cast<const sockaddr*>(&bytes); }
-
-  sockaddr_storage bytes{};
-  socklen_t size = 0;
-  int family = 0;
-};
-
 }  // namespace
 
 Error no_port(std::string at, std::string expected, int code, std::uint16_t port) {
@@ -76,6 +49,10 @@ Error no_port(std::string at, std::string expected, int code, std::uint16_t port
   return error;
 }
 
+Error no_address(const std::string& text) {
+  return {"", 0, "an IPv4 or IPv6 address", shown(text)};
+}
+
 std::optional<std::string> spelt_address(const std::string& text) {
   const FoundAddress found = find_address(text, 0, SOCK_DGRAM);
   if (found == nullptr) return std::nullopt;
@@ -90,32 +67,32 @@ std::string address_text(const sockaddr& address) {
   return text.data();
 }
 
+UdpSocket::UdpSocket(int family, std::string address)
+    : handle_(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
+      address_(std::move(address)) {
+  if (fd() >= 0 && !set_options(fd(), family)) handle_ = Handle();
+}
+
 Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port) {
   const FoundAddress found = find_address(address, port, SOCK_DGRAM);
-  if (found == nullptr) {
-    return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
-  }
-  const int type = SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
-  UdpSocket socket(::socket(found->ai_family, type, 0), address);
-  const bool bound = socket.fd_ >= 0 && set_options(socket.fd_, found->ai_family) &&
-                     ::bind(socket.fd_, found->ai_addr, found->ai_addrlen) == 0;
-  if (!bound) {
+  if (found == nullptr) return Failure(no_address(address));
+  UdpSocket socket(found->ai_family, address);
+  if (socket.fd() < 0 || ::bind(socket.fd(), found->ai_addr, found->ai_addrlen) != 0) {
     return Failure(no_port(endpoint_text(address, port), "a UDP port to serve on", errno, port));
   }
-  socket.port_ = bound_port(socket.fd_);
+  socket.port_ = bound_port(socket.fd());
   return socket;
 }
 
-bool UdpSocket::share_port() const { return set(fd_, SOL_SOCKET, SO_REUSEPORT, 1); }
+bool UdpSocket::share_port() const { return set(fd(), SOL_SOCKET, SO_REUSEPORT, 1); }
 
 Result<UdpSocket> UdpSocket::connected(const HostAddress& own, std::uint16_t port,
                                        const HostAddress& peer, std::uint16_t peer_port) {
-  const Socket here(own, port), there(peer, peer_port);
-  const int type = SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
-  UdpSocket socket(::socket(here.family, type, 0), to_string(own));
-  const bool joined = socket.fd_ >= 0 && set_options(socket.fd_, here.family) &&
-                      socket.share_port() && ::bind(socket.fd_, here.data(), here.size) == 0 &&
-                      ::connect(socket.fd_, there.data(), there.size) == 0;
+  SystemAddress here = system_address(own, port), there = system_address(peer, peer_port);
+  UdpSocket socket(here.bytes.ss_family, to_string(own));
+  const bool joined = socket.fd() >= 0 && socket.share_port() &&
+                      ::bind(socket.fd(), here.data(), here.size) == 0 &&
+                      ::connect(socket.fd(), there.data(), there.size) == 0;
   if (joined) {
     socket.port_ = port;
     return socket;
@@ -124,25 +101,10 @@ Result<UdpSocket> UdpSocket::connected(const HostAddress& own, std::uint16_t por
       no_port(endpoint_text(to_string(peer), peer_port), "a UDP socket of its own", errno, port));
 }
 
-UdpSocket::UdpSocket(UdpSocket&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)), port_(other.port_), address_(std::move(other.address_)) {}
-
-UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  std::swap(port_, other.port_);
-  std::swap(address_, other.address_);
-  return *this;
-}
-
-UdpSocket::~UdpSocket() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
 // Any other error, such as too many open files, says nothing about IPv6.
 bool system_knows_ipv6() {
-  const int fd = ::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd >= 0) ::close(fd);
-  return fd >= 0 || errno != EAFNOSUPPORT;
+  return Handle(::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0)).fd() >= 0 ||
+         errno != EAFNOSUPPORT;
 }
 
 Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& addresses,

@@ -3,6 +3,7 @@
 // its arrival (CLOCK_REALTIME) and its destination address.
 #pragma once
 
+#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/net/host_address.h"
 
 #include <cstdint>
@@ -18,6 +19,8 @@ namespace kinalign {
 /// The error for a port that could not be opened: a text and an ErrorKind for the cause. `at`: the
 /// address and port. `code`: errno.
 Error no_port(std::string at, std::string expected, int code, std::uint16_t port);
+/// The error for a text that is no numeric address.
+Error no_address(const std::string& text);
 
 class UdpSocket {
  public:
@@ -33,20 +36,15 @@ class UdpSocket {
   /// that this socket is refused if a server is running.
   bool share_port() const;
 
-  UdpSocket(UdpSocket&& other) noexcept;
-  UdpSocket& operator=(UdpSocket&& other) noexcept;
-  UdpSocket(const UdpSocket&) = delete;
-  UdpSocket& operator=(const UdpSocket&) = delete;
-  ~UdpSocket();
-
-  int fd() const { return fd_; }
+  int fd() const { return handle_.fd(); }
   std::uint16_t port() const { return port_; }
   const std::string& address() const { return address_; }
 
  private:
-  UdpSocket(int fd, std::string address) : fd_(fd), address_(std::move(address)) {}
+  /// A socket with the options of a server; -1 if the system refuses one of them.
+  UdpSocket(int family, std::string address);
 
-  int fd_ = -1;
+  Handle handle_;
   std::uint16_t port_ = 0;
   std::string address_;
 };

@@ -2,6 +2,7 @@
 // Queries this host's chronyd from time to time, without blocking.
 #pragma once
 
+#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/ntp/chrony_tracking.h"
 
 #include <cstdint>
@@ -14,11 +15,6 @@ class ChronyQuery {
  public:
   /// `port`: chronyd's cmdport on 127.0.0.1. Without a chronyd there is never an answer.
   explicit ChronyQuery(std::uint16_t port);
-  ChronyQuery(ChronyQuery&& other) noexcept;
-  ChronyQuery& operator=(ChronyQuery&& other) noexcept;
-  ChronyQuery(const ChronyQuery&) = delete;
-  ChronyQuery& operator=(const ChronyQuery&) = delete;
-  ~ChronyQuery();
 
   /// The last answer, if it is at most ten seconds old. Sends a new request every two seconds.
   std::optional<ChronyTracking> latest(HostTime now);
@@ -28,7 +24,7 @@ class ChronyQuery {
  private:
   void receive(HostTime now);
 
-  int fd_ = -1;
+  Handle socket_;
   std::uint32_t sequence_ = 0;
   std::optional<HostTime> asked_at_, answered_at_;
   ChronyTracking answer_;

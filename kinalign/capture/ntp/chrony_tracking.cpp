@@ -13,10 +13,6 @@ namespace {
 constexpr std::uint8_t protocol = 6, request = 1, answer = 2;
 constexpr std::uint16_t tracking_request = 33, tracking_answer = 5, status_success = 0;
 
-void skip(ByteReader& reader, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) reader.take<std::uint8_t>();
-}
-
 /// Reads chrony's floating-point format, seconds: 7 bits of exponent, 25 bits of coefficient, both
 /// signed.
 Duration take_seconds(ByteReader& reader) {
@@ -62,15 +58,15 @@ std::optional<ChronyTracking> decode_chrony_tracking(std::span<const std::uint8_
                     reader.take<std::uint16_t>() == tracking_request &&
                     reader.take<std::uint16_t>() == tracking_answer &&
                     reader.take<std::uint16_t>() == status_success;
-  skip(reader, 6);
+  reader.take_bytes(6);
   if (!ours || reader.take<std::uint32_t>() != sequence) return std::nullopt;
   constexpr std::size_t padding = 8, reference_id_and_address = 24, corrections = 24;
-  skip(reader, padding + reference_id_and_address);
+  reader.take_bytes(padding + reference_id_and_address);
   ChronyTracking tracking;
   tracking.stratum = reader.take<std::uint16_t>();
   tracking.leap = static_cast<NtpLeap>(std::min<std::uint16_t>(reader.take<std::uint16_t>(), 3));
   tracking.reference = take_time(reader);
-  skip(reader, corrections);
+  reader.take_bytes(corrections);
   tracking.root_delay = take_seconds(reader);
   tracking.root_dispersion = take_seconds(reader);
   return reader.complete() ? std::optional(tracking) : std::nullopt;

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -255,16 +254,10 @@ Result<RemovalPlan> plan_removal(FileSystem& files, const std::string& folder,
 Result<void> remove_takes(FileSystem& files, const std::string& folder, const RemovalPlan& plan) {
   const std::string root = folder + "/";
   for (const std::string& file : plan.files) {
-    const std::string path = path_in(root, file);
     // A file that is already gone is no fault: the run may continue a stopped one.
-    if (files.remove(path.c_str()) == 0 || errno == ENOENT) continue;
-    return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
+    KA_TRY(remove_file(files, path_in(root, file)));
   }
-  for (const std::string& inner : plan.folders) {
-    std::error_code ignored;  // not empty, or missing
-    const std::string path = path_in(root, inner);
-    if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
-  }
+  for (const std::string& inner : plan.folders) remove_if_empty(path_in(root, inner));
   return {};
 }
 

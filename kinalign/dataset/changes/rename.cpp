@@ -15,7 +15,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <optional>
 #include <system_error>
 
 namespace kinalign {
@@ -31,10 +30,6 @@ constexpr std::size_t longest_journal = std::size_t{64} << 20;
 constexpr std::size_t longest_catalogue = std::size_t{16} << 20;
 // The names of RenameKind in the journal, in the order of its values.
 constexpr std::array<std::string_view, 3> kind_names{"take", "subject", "action"};
-
-std::string place(const std::string& folder, const TakeName& name, TakeFile file) {
-  return folder + "/" + path_of(name, file);
-}
 
 // ---- planning
 
@@ -81,6 +76,20 @@ Result<RenamePlan> read_journal(FileSystem& files, const std::string& path) {
   } catch (const Json::exception&) {
     return broken;
   }
+}
+
+/// A subject or an action: its prefix in names, its table in dataset.toml, its place in a name.
+struct IdKind {
+  RenameKind kind;
+  const char *lead, *table;
+  std::string TakeName::*part;
+};
+constexpr IdKind subjects{RenameKind::subject, "sub-", "subject", &TakeName::subject};
+constexpr IdKind actions{RenameKind::action, "task-", "action", &TakeName::action};
+
+bool is_described(const Catalogue& catalogue, const IdKind& kind, const std::string& id) {
+  return kind.kind == RenameKind::subject ? find_subject(catalogue, id) != nullptr
+                                          : find_action(catalogue, id) != nullptr;
 }
 
 /// The id without its prefix: "sub-03" gives "03", "task-S2A03" gives "S2A03".
@@ -131,40 +140,29 @@ class RenamePlanner {
   /// Plans for a subject or an action, whichever has that id.
   Result<RenamePlan> plan_id(const std::string& from, const std::string& to) const {
     const std::string subject = without("sub-", from), action = without("task-", from);
-    const bool is_subject =
-        has(subject, &TakeName::subject) || find_subject(catalogue_, subject) != nullptr;
-    const bool is_action =
-        has(action, &TakeName::action) || find_action(catalogue_, action) != nullptr;
+    const bool is_subject = has(subjects, subject) || is_described(catalogue_, subjects, subject);
+    const bool is_action = has(actions, action) || is_described(catalogue_, actions, action);
     if (is_subject && is_action) {
       return fault(from, "sub-" + subject + " or task-" + action,
                    "an id of a subject and of an action");
     }
-    if (is_subject) return plan_subject(subject, without("sub-", to));
-    if (is_action) return plan_action(action, without("task-", to));
+    if (is_subject) return plan_ids(subjects, subject, without(subjects.lead, to));
+    if (is_action) return plan_ids(actions, action, without(actions.lead, to));
     return fault(from, "a take, a subject (sub-03) or an action of " + folder_, shown(from));
   }
 
   // An id that only takes have may become one of dataset.toml. Two ids of dataset.toml can't become
   // one.
-  Result<RenamePlan> plan_subject(const std::string& from, const std::string& to) const {
-    const bool both =
-        find_subject(catalogue_, from) != nullptr && find_subject(catalogue_, to) != nullptr;
-    KA_TRY(check_new_id("sub-" + to, to, both || has(to, &TakeName::subject)));
-    RenamePlan out{RenameKind::subject, from, to, {}, false};
+  Result<RenamePlan> plan_ids(const IdKind& kind, const std::string& from,
+                              const std::string& to) const {
+    const bool both = is_described(catalogue_, kind, from) && is_described(catalogue_, kind, to);
+    KA_TRY(check_new_id(kind.lead + to, to, both || has(kind, to)));
+    RenamePlan out{kind.kind, from, to, {}, false};
     for (const auto& [name, there] : takes_) {
-      if (name.subject == from) out.takes.emplace_back(name, TakeName{to, name.action, name.run});
-    }
-    return out;
-  }
-
-  // The same as for a subject.
-  Result<RenamePlan> plan_action(const std::string& from, const std::string& to) const {
-    const bool both =
-        find_action(catalogue_, from) != nullptr && find_action(catalogue_, to) != nullptr;
-    KA_TRY(check_new_id("task-" + to, to, both || has(to, &TakeName::action)));
-    RenamePlan out{RenameKind::action, from, to, {}, false};
-    for (const auto& [name, there] : takes_) {
-      if (name.action == from) out.takes.emplace_back(name, TakeName{name.subject, to, name.run});
+      if (name.*kind.part != from) continue;
+      TakeName renamed = name;
+      renamed.*kind.part = to;
+      out.takes.emplace_back(name, renamed);
     }
     return out;
   }
@@ -177,16 +175,16 @@ class RenamePlanner {
   }
 
   // True if a take has the id, even if dataset.toml lacks it.
-  bool has(const std::string& id, std::string TakeName::*part) const {
+  bool has(const IdKind& kind, const std::string& id) const {
     return std::any_of(takes_.begin(), takes_.end(),
-                       [&](const auto& take) { return take.first.*part == id; });
+                       [&](const auto& take) { return take.first.*kind.part == id; });
   }
 
   // The new name must be free, with its raw files. If subject or action changes, the take is made
   // again, so everything that it is made from must exist.
   Result<void> check(const TakeName& from, const TakeName& to) const {
     if (takes_.contains(to)) {
-      return fault(folder_ + "/" + path_of(to, TakeFile::take), "no take of the new name",
+      return fault(path_of(folder_, to, TakeFile::take), "no take of the new name",
                    "an existing take");
     }
     std::error_code fault_code;
@@ -198,7 +196,7 @@ class RenamePlanner {
   }
 
   Result<void> check_can_be_made(const TakeName& name) const {
-    const std::string take = folder_ + "/" + path_of(name, TakeFile::take);
+    const std::string take = path_of(folder_, name, TakeFile::take);
     const std::string why =
         " (a take's file contains subject and action, so the take has to be made again)";
     // A take that was added as a take has no manifest to make it from.
@@ -206,8 +204,7 @@ class RenamePlanner {
       return fault(take, "a take with a manifest" + why, "a take that was added as a take");
     }
     const Manifest manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
-    for (const TakeInput& input :
-         inputs_of(files_, manifest, folder_ + "/sub-" + name.subject + "/", {})) {
+    for (const TakeInput& input : inputs_of(files_, manifest, folder_of(folder_, name), {})) {
       // One missing raw file is enough: the take could not be made again.
       std::error_code missing;
       if (fs::exists(input.path, missing)) continue;
@@ -241,20 +238,20 @@ class Renamer {
     KA_TRY(make_folders(folder_ + "/sub-" + to.subject));
     const bool same_name = from.subject == to.subject && from.action == to.action;
     bool same_recipe = true;
-    if (is_there(place(folder_, from, TakeFile::manifest))) {
+    if (is_there(path_of(folder_, from, TakeFile::manifest))) {
       same_recipe = KA_TRY(write_manifest(from, to));
     }
     KA_TRY(move_raw_files(from, to));
-    const bool had_take = is_there(place(folder_, from, TakeFile::take));
+    const bool had_take = is_there(path_of(folder_, from, TakeFile::take));
     // A take whose bytes would state another name or recipe is dropped; build makes it again.
     for (const TakeFile file : {TakeFile::summary, TakeFile::take}) {
-      KA_TRY(move_or_drop(place(folder_, from, file), place(folder_, to, file),
+      KA_TRY(move_or_drop(path_of(folder_, from, file), path_of(folder_, to, file),
                           same_name && same_recipe));
     }
-    KA_TRY(remove(place(folder_, from, TakeFile::manifest)));
-    KA_TRY(remove(folder_ + "/report/" + to_string(from) + ".html"));
+    KA_TRY(remove_file(files_, path_of(folder_, from, TakeFile::manifest)));
+    KA_TRY(remove_file(files_, folder_ + "/report/" + to_string(from) + ".html"));
     if (had_take && same_name && same_recipe) ++out.moved;
-    if (!is_there(place(folder_, to, TakeFile::take))) ++out.to_build;
+    if (!is_there(path_of(folder_, to, TakeFile::take))) ++out.to_build;
     return {};
   }
 
@@ -264,28 +261,20 @@ class Renamer {
     const std::string path = folder_ + "/" + std::string(catalogue_file);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_catalogue));
     const Catalogue now = KA_TRY(read_catalogue(toml, path));
-    const bool is_subject = plan.kind == RenameKind::subject;
-    const bool has_old = is_subject ? find_subject(now, plan.from) != nullptr
-                                    : find_action(now, plan.from) != nullptr;
+    const IdKind& kind = plan.kind == RenameKind::subject ? subjects : actions;
     // The edit was done by the run that was stopped.
-    if (!has_old) return {};
-    const std::string text =
-        KA_TRY(with_id_renamed(toml, is_subject ? "subject" : "action", plan.from, plan.to, path));
+    if (!is_described(now, kind, plan.from)) return {};
+    const std::string text = KA_TRY(with_id_renamed(toml, kind.table, plan.from, plan.to, path));
     return write_whole(files_, path, text, Overwrite::yes);
-  }
-
-  Result<void> remove(const std::string& path) {
-    if (files_.remove(path.c_str()) == 0 || errno == ENOENT) return {};
-    return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
   }
 
  private:
   /// Writes the manifest under its new name. True: the take's parameters are unchanged.
   Result<bool> write_manifest(const TakeName& from, const TakeName& to) {
-    const std::string path = place(folder_, from, TakeFile::manifest);
+    const std::string path = path_of(folder_, from, TakeFile::manifest);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_manifest));
     const std::string text = KA_TRY(manifest_of_renamed(toml, from, to, path));
-    KA_TRY(write_whole(files_, place(folder_, to, TakeFile::manifest), text, Overwrite::yes));
+    KA_TRY(write_whole(files_, path_of(folder_, to, TakeFile::manifest), text, Overwrite::yes));
     // The recipes show whether the edit changed a parameter of the take.
     return recipe_of(KA_TRY(read_manifest(toml, path))) ==
            recipe_of(KA_TRY(read_manifest(text, path)));
@@ -304,7 +293,7 @@ class Renamer {
   // A file that is not there was moved or removed before.
   Result<void> move_or_drop(const std::string& from, const std::string& to, bool keeps_bytes) {
     if (!is_there(from)) return {};
-    return keeps_bytes ? move_path(from, to) : remove(from);
+    return keeps_bytes ? move_path(from, to) : remove_file(files_, from);
   }
 
   Result<void> move_path(const std::string& from, const std::string& to) {
@@ -315,17 +304,6 @@ class Renamer {
   FileSystem& files_;
   const std::string& folder_;
 };
-
-/// Removes a person's folders if they are empty.
-void remove_if_empty(const std::string& folder, const std::string& subject) {
-  for (const char* above : {"/sub-", "/sourcedata/sub-"}) {
-    // A folder that still has files stays.
-    std::error_code ignored;  // not empty, or missing
-    std::string path = folder;
-    path.append(above).append(subject);
-    if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
-  }
-}
 
 }  // namespace
 
@@ -357,9 +335,12 @@ Result<Renamed> rename_takes(FileSystem& files, const std::string& folder, const
   KA_TRY(renamer.edit_catalogue(plan));
   Renamed out;
   for (const auto& [from, to] : plan.takes) KA_TRY(renamer.move(from, to, out));
-  for (const auto& [from, to] : plan.takes) remove_if_empty(folder, from.subject);
+  for (const auto& [from, to] : plan.takes) {
+    remove_if_empty(folder + "/sub-" + from.subject);
+    remove_if_empty(folder + "/sourcedata/sub-" + from.subject);
+  }
   // The journal goes last. Until then every step can be repeated.
-  KA_TRY(renamer.remove(journal_path(folder)));
+  KA_TRY(remove_file(files, journal_path(folder)));
   return out;
 }
 

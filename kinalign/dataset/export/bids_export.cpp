@@ -4,7 +4,6 @@
 #include "kinalign/core/progress.h"
 #include "kinalign/core/text_out.h"
 #include "kinalign/formats/bids/check.h"
-#include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/bids/motion_write.h"
 #include "kinalign/formats/bids/names.h"
 #include "kinalign/formats/take/take_hdf5.h"
@@ -52,9 +51,7 @@ std::string text_of(const Described* device, const char* key) {
 /// The facts about the device in dataset.toml whose id is the stream's name.
 BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
                          const TakeGroup& group) {
-  const auto device = std::find_if(catalogue.devices.begin(), catalogue.devices.end(),
-                                   [&](const Described& one) { return one.id == group.name; });
-  const Described* known = device == catalogue.devices.end() ? nullptr : &*device;
+  const Described* known = find_id(catalogue.devices, group.name);
   const Action* action = find_action(catalogue, take.name().action);
   BidsSystemFacts facts;
   facts.task_name = take.name().action;
@@ -100,11 +97,8 @@ Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t gr
 
 /// Writes a stream as a tracking system with its sidecar files, and notes it for scans.tsv.
 Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, FilesMade& made) {
-  const BidsEntities entities{take.name().subject,
-                              "",
-                              take.name().action,
+  const BidsEntities entities{take.name().subject, take.name().action,
                               label_of(take.header().groups[group].name),
-                              "",
                               fmt::format("{}", take.name().run)};
   const std::string motion = bids_path(entities, "motion.tsv");
   const BidsSidecars sidecars = KA_TRY(write_motion(take, group, folder_ + "/" + motion));

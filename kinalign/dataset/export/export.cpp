@@ -5,6 +5,7 @@
 #include "kinalign/dataset/export/release.h"
 #include "kinalign/dataset/export/shard_export.h"
 #include "kinalign/dataset/export/take_files.h"
+#include "kinalign/dataset/scan.h"
 #include "kinalign/dataset/summarise.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/guarded.h"
@@ -73,7 +74,7 @@ Result<FilesMade> with_summary(FilesMade made, FileSystem& files, const std::str
                                const TakeName& name) {
   TakeReader reader = KA_TRY(TakeReader::open(files, made.paths.front()));
   KA_TRY(keep_summary(files, folder, name, KA_TRY(summary_of(reader))));
-  made.paths.push_back(folder + "/" + path_of(name, TakeFile::summary));
+  made.paths.push_back(path_of(folder, name, TakeFile::summary));
   return made;
 }
 
@@ -115,16 +116,14 @@ Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
   const std::string folder = folder_ + "/sub-" + of.name.subject;
   KA_TRY(make_folders(folder));
   if (job_.format == "take") {
-    const std::string to = folder_ + "/" + path_of(of.name, TakeFile::take);
+    const std::string to = path_of(folder_, of.name, TakeFile::take);
     return with_summary(
         KA_TRY(job_.release ? rewrite_take(take, files_, to) : copy_take(files_, path, to)), files_,
         folder_, of.name);
   }
-  const auto& formats = take_formats();
-  const auto format = std::find_if(formats.begin(), formats.end(),
-                                   [&](const TakeFormat& one) { return one.name == job_.format; });
   // The format's name was checked before the job began, so the row exists.
-  return format->write(take, files_, path, folder + "/" + to_string(of.name));
+  return find_take_format(job_.format)
+      ->write(take, files_, path, folder + "/" + to_string(of.name));
 }
 
 Result<void> Exporting::finish() {
@@ -152,7 +151,7 @@ Result<void> Exporting::run(const Progress& progress) {
   // Progress counts frames, since takes differ in length.
   for (const ExportTake& take : job_.takes) total += take.summary.frames;
   for (const ExportTake& of : job_.takes) {
-    const std::string path = job_.folder + "/" + path_of(of.name, TakeFile::take);
+    const std::string path = path_of(job_.folder, of.name, TakeFile::take);
     ExportedTake take =
         KA_TRY(ExportedTake::open(files_, path, of.name, of.summary.rate_hz, job_.release));
     // Results are added take by take; the first error of a take ends the export.
@@ -167,11 +166,11 @@ Result<void> Exporting::run(const Progress& progress) {
 std::string text_of(const Made& made) {
   return Json{{"files", made.files},
               {"left_out", made.left_out},
-              {"findings", Json::parse(findings_json(made.findings))}}
+              {"findings", findings_json(made.findings)}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Result<ExportMade> made_from(const std::string& text) {
+ExportMade made_from(const std::string& text) {
   const Json json = Json::parse(text);
   ExportMade made;
   made.files = json.at("files").get<std::uint64_t>();
@@ -180,65 +179,35 @@ Result<ExportMade> made_from(const std::string& text) {
     made.left_out.push_back(
         {parse_take_name(one.at(0).get<std::string>()).value_or(TakeName{}), one.at(1)});
   }
-  // Findings are parsed like those of a report.
-  const Json report{{"findings", json.at("findings")}};
-  made.findings = KA_TRY(parse_report_json(report.dump(), "")).findings;
+  made.findings = parse_findings_json(json.at("findings").get<std::string>());
   return made;
 }
 
 /// The words for the content that a format needs, for the error of an empty export.
 std::string_view needs_of(const std::string& name) {
-  const auto& formats = take_formats();
-  const auto format = std::find_if(formats.begin(), formats.end(),
-                                   [&](const TakeFormat& one) { return one.name == name; });
-  return format == formats.end() ? "a stream" : format->needs;
+  const TakeFormat* const format = find_take_format(name);
+  return format == nullptr ? "a stream" : format->needs;
 }
 
-/// A folder that is removed at the end unless it is kept. The export is written into it, and one
-/// rename at the end makes all files appear at once.
-class PartFolder {
- public:
-  static Result<PartFolder> make(const std::string& target) {
-    std::error_code failed;
-    // A link counts as existing, even if it leads nowhere.
-    if (fs::exists(fs::symlink_status(target, failed))) {
-      return Failure(Error{target, 0, "a folder that does not exist yet", "an existing one"});
-    }
-    const auto above = fs::path(target).parent_path();
-    if (!above.empty()) fs::create_directories(above, failed);
-    const std::string path = target + ".part";
-    // Another export may be writing there, so the folder is never taken over.
-    if (fs::exists(fs::symlink_status(path, failed))) {
-      return Failure(Error{path, 0, "no unfinished export (if no export is running, remove it)",
-                           "an existing folder"});
-    }
-    KA_TRY(make_new_folder(path));
-    return PartFolder(path);
+/// Makes the folder `target`.part, into which the export is written. One rename at the end makes
+/// all files appear at once.
+Result<std::string> make_part_folder(const std::string& target) {
+  std::error_code failed;
+  // A link counts as existing, even if it leads nowhere.
+  if (fs::exists(fs::symlink_status(target, failed))) {
+    return Failure(Error{target, 0, "a folder that does not exist yet", "an existing one"});
   }
-  // A moved-from object has an empty path and removes nothing.
-  PartFolder(PartFolder&& other) noexcept : path(std::exchange(other.path, {})) {}
-  PartFolder& operator=(PartFolder&&) = delete;
-  PartFolder(const PartFolder&) = delete;
-  PartFolder& operator=(const PartFolder&) = delete;
-  ~PartFolder() {
-    std::error_code ignored;
-    if (!path.empty()) fs::remove_all(path, ignored);
+  const auto above = fs::path(target).parent_path();
+  if (!above.empty()) fs::create_directories(above, failed);
+  std::string path = target + ".part";
+  // Another export may be writing there, so the folder is never taken over.
+  if (fs::exists(fs::symlink_status(path, failed))) {
+    return Failure(Error{path, 0, "no unfinished export (if no export is running, remove it)",
+                         "an existing folder"});
   }
-
-  // Gives the folder its final name. After that it belongs to the user.
-  Result<void> keep_as(const std::string& target) {
-    std::error_code failed;
-    fs::rename(path, target, failed);
-    if (failed) return Failure(Error{target, 0, "a folder that can be made", failed.message()});
-    path.clear();
-    return {};
-  }
-
-  std::string path;
-
- private:
-  explicit PartFolder(std::string made) : path(std::move(made)) {}
-};
+  KA_TRY(make_new_folder(path));
+  return path;
+}
 
 }  // namespace
 
@@ -261,7 +230,8 @@ Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, c
                                 const Progress& progress) {
   // Takes that were not built have nothing to export.
   if (job.takes.empty()) return Failure(Error{job.folder, 0, "takes that are built", "none"});
-  PartFolder part = KA_TRY(PartFolder::make(job.target));
+  const std::string path = KA_TRY(make_part_folder(job.target));
+  UnfinishedFolder part(path);
   GuardLimits limits;
   // The limits grow with the work: ten minutes of computing and an hour of waiting for each take.
   limits.cpu_seconds += 600 * job.takes.size();
@@ -271,12 +241,15 @@ Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, c
   const std::string text = KA_TRY(run_guarded(
       limits, blame, progress, [&](const Progress& child_progress) -> Result<std::string> {
         // Everything that opens a take happens in the child process.
-        Exporting exporting(files, catalogue, job, part.path);
+        Exporting exporting(files, catalogue, job, path);
         KA_TRY(exporting.run(child_progress));
         KA_TRY(exporting.made.holds_something(job, needs_of(job.format)));
         return text_of(exporting.made);
       }));
-  KA_TRY(part.keep_as(job.target));
+  std::error_code failed;
+  fs::rename(path, job.target, failed);
+  if (failed) return Failure(Error{job.target, 0, "a folder that can be made", failed.message()});
+  part.keep();
   return made_from(text);
 }
 

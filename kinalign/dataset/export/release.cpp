@@ -160,19 +160,28 @@ class HiddenNames {
     return to;
   }
 
-  // Findings quote file names in their texts.
+  // Findings quote file names in their texts. At each place the longest name wins, so that of
+  // "data/a.csv" no folder stays because of another file "a.csv".
   void put_into(std::string& text) const {
-    for (const auto& [from, to] : names_) {
-      if (from.empty()) continue;
-      for (std::size_t at = text.find(from); at != std::string::npos;
-           at = text.find(from, at + to.size())) {
-        text.replace(at, from.size(), to);
-      }
+    std::string out;
+    for (std::size_t at = 0; at < text.size();) {
+      const auto name = std::find_if(names_.begin(), names_.end(), [&](const auto& one) {
+        return !one.first.empty() && text.compare(at, one.first.size(), one.first) == 0;
+      });
+      out += name == names_.end() ? text.substr(at, 1) : name->second;
+      at += name == names_.end() ? 1 : name->first.size();
     }
+    text = std::move(out);
   }
 
  private:
-  std::map<std::string, std::string> names_;
+  struct LongerFirst {
+    bool operator()(const std::string& a, const std::string& b) const {
+      return a.size() != b.size() ? a.size() > b.size() : a < b;
+    }
+  };
+
+  std::map<std::string, std::string, LongerFirst> names_;
 };
 
 }  // namespace

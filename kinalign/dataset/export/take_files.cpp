@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/export/take_files.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/dataset/export/csv_write.h"
 #include "kinalign/formats/c3d/c3d.h"
 #include "kinalign/formats/imu/opensim_sto.h"
@@ -10,6 +11,8 @@
 #include "kinalign/formats/take/take_npz.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace kinalign {
 
@@ -53,9 +56,8 @@ Result<void> write_mot(ExportedTake& take, std::size_t group, FileSystem& files,
   const TakeHeader& header = take.header();
   TextOut out = KA_TRY(TextOut::create(files, path, Overwrite::no));
   // MOT has angles of joints; the skeleton of the group gives their names.
-  auto writer = KA_TRY(MotWriter::begin({std::get<ClipGroup>(header.groups[group].kind).skeleton,
-                                         MotColumns::joint_angles, header.frames, take.first()},
-                                        out));
+  auto writer = KA_TRY(MotWriter::begin(
+      {std::get<ClipGroup>(header.groups[group].kind).skeleton, header.frames, take.first()}, out));
   KA_TRY(take.clip_frames(group, [&](const ClipFrames& frames) { return writer.append(frames); }));
   KA_TRY(writer.finish());
   return out.commit();
@@ -118,22 +120,14 @@ Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::
 
 /// One function for each format. Their signature is that of the table, so some arguments are not
 /// used.
-Result<FilesMade> as_trc(ExportedTake& take, FileSystem& files, const std::string&,
-                         const std::string& stem) {
-  return each_stream(take, files, stem, {"trc", no_points, write_trc});
+template <const StreamFormat& format>
+Result<FilesMade> as_streams(ExportedTake& take, FileSystem& files, const std::string&,
+                             const std::string& stem) {
+  return each_stream(take, files, stem, format);
 }
-Result<FilesMade> as_c3d(ExportedTake& take, FileSystem& files, const std::string&,
-                         const std::string& stem) {
-  return each_stream(take, files, stem, {"c3d", no_points, write_c3d});
-}
-Result<FilesMade> as_mot(ExportedTake& take, FileSystem& files, const std::string&,
-                         const std::string& stem) {
-  return each_stream(take, files, stem, {"mot", no_skeleton, write_mot});
-}
-Result<FilesMade> as_sto(ExportedTake& take, FileSystem& files, const std::string&,
-                         const std::string& stem) {
-  return each_stream(take, files, stem, {"sto", no_orientation, write_sto});
-}
+
+constexpr StreamFormat trc{"trc", no_points, write_trc}, c3d{"c3d", no_points, write_c3d},
+    mot{"mot", no_skeleton, write_mot}, sto{"sto", no_orientation, write_sto};
 
 Result<FilesMade> as_csv(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
@@ -192,17 +186,22 @@ const std::vector<TakeFormat>& take_formats() {
        as_bvh},
       {"trc", "points, and joints of skeletons as points",
        "rotations and nodes; inferred against tracked; intervals; the date", "points or a skeleton",
-       as_trc},
+       as_streams<trc>},
       {"c3d", "points, and joints of skeletons as points",
        "rotations and nodes; inferred against tracked; intervals; stamps, which become an even "
        "step",
-       "points or a skeleton", as_c3d},
+       "points or a skeleton", as_streams<c3d>},
       {"sto", "OpenSim: orientations of nodes",
        "accelerations and angular velocities; intervals; the date", "nodes with orientations",
-       as_sto},
+       as_streams<sto>},
       {"mot", "OpenSim: joint angles of skeletons",
-       "points and nodes; which rows are valid; intervals; the date", "a skeleton", as_mot}};
+       "points and nodes; which rows are valid; intervals; the date", "a skeleton",
+       as_streams<mot>}};
   return all;
+}
+
+const TakeFormat* find_take_format(std::string_view name) {
+  return find_named(take_formats(), name);
 }
 
 }  // namespace kinalign

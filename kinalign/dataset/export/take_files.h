@@ -33,5 +33,7 @@ struct TakeFormat {
 };
 
 const std::vector<TakeFormat>& take_formats();
+/// nullptr if the format is none of a single take.
+const TakeFormat* find_take_format(std::string_view name);
 
 }  // namespace kinalign

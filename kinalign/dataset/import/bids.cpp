@@ -14,11 +14,7 @@ namespace kinalign {
 namespace {
 
 /// Only the names of files are needed to recognise the corpus.
-bool is_motion(const SourceFile& file) { return named_as_bids_motion(file.name); }
-
-bool looks_like_bids(FileSystem&, const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(), is_motion);
-}
+bool is_motion(FileSystem&, const SourceFile& file) { return named_as_bids_motion(file.name); }
 
 /// One recording, by the entities that the names of its tracking systems share.
 struct Recorded {
@@ -69,7 +65,7 @@ Result<Corpus> list_bids(const ImportInput& input) {
   std::map<Recorded, std::vector<System>> recorded;
   for (const SourceFile& file : input.sources) {
     const auto name = parse_bids_name(file_name(file.name));
-    if (!is_motion(file) || !name) continue;
+    if (!is_motion(input.files, file) || !name) continue;
     const auto label = [&](std::string_view key) { return std::string(name->label(key)); };
     // A system whose sidecar files can't be read is left out; others of its recording stay.
     const auto system = read_bids_system(input.files, file.path);
@@ -100,7 +96,7 @@ Result<Corpus> list_bids(const ImportInput& input) {
 
 CorpusKind bids_corpus() {
   // A BIDS data set is a corpus of its own kind and no mere folder of motion files.
-  return {"bids", "sub-*_tracksys-*_motion.tsv", false, looks_like_bids, list_bids};
+  return {"bids", "sub-*_tracksys-*_motion.tsv", false, is_motion, list_bids};
 }
 
 }  // namespace kinalign

@@ -3,20 +3,9 @@
 
 #include "kinalign/syntax/toml.h"
 
-#include <algorithm>
 #include <set>
 
 namespace kinalign {
-
-namespace {
-
-/// A class that the user has described keeps that description.
-bool has_class(const Catalogue& catalogue, const std::string& id) {
-  return std::any_of(catalogue.classes.begin(), catalogue.classes.end(),
-                     [&](const ActionClass& one) { return one.id == id; });
-}
-
-}  // namespace
 
 Result<std::string> grown_catalogue(const std::string& toml, const std::string& name,
                                     const CatalogueNeeds& needs) {
@@ -35,8 +24,8 @@ Result<std::string> grown_catalogue(const std::string& toml, const std::string& 
                "\nname = " + toml_string(action.name) + "\n";
   }
   for (const ActionClass& one : needs.classes) {
-    // Only classes that a new action needs are added.
-    if (!classes.contains(one.id) || has_class(has, one.id)) continue;
+    // A class that the user has described keeps that description.
+    if (!classes.contains(one.id) || find_id(has.classes, one.id) != nullptr) continue;
     more += toml_head("class", one.id) + "name = " + toml_string(one.name) + "\n";
   }
   more += actions;

@@ -3,12 +3,12 @@
 // daz_05.npz on one body for all. Each clip becomes a BVH.
 #include "kinalign/dataset/import/cmu_clips.h"
 #include "kinalign/dataset/import/corpora.h"
+#include "kinalign/dataset/import/file_names.h"
 #include "kinalign/dataset/import/ids.h"
 #include "kinalign/dataset/import/new_folder.h"
 #include "kinalign/formats/bvh/bvh.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
@@ -17,24 +17,17 @@ namespace kinalign {
 namespace {
 
 /// The packs are known by their names; other NPZ files are not read.
-bool is_clip_pack(const SourceFile& file) {
+bool is_clip_pack(FileSystem&, const SourceFile& file) {
   const std::string_view stem = stem_of(file.name);
   return has_ending(file.name, ".npz") && (stem.starts_with("asf_") || stem.starts_with("daz_"));
-}
-
-bool looks_like_cmu(FileSystem&, const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(), is_clip_pack);
 }
 
 /// CMU's number of the trial: 29 for "13_29"; 0 if the take has another name.
 std::uint32_t trial_of(const PackedClip& clip) {
   const std::string lead = clip.person + "_";
-  std::uint32_t number = 0;
   // Other collections have names of their own; their clips get the next free run.
   if (!clip.take.starts_with(lead)) return 0;
-  const char* const end = clip.take.data() + clip.take.size();
-  const auto [behind, fault] = std::from_chars(clip.take.data() + lead.size(), end, number);
-  return fault == std::errc{} && behind == end ? number : 0;
+  return whole_number(std::string_view(clip.take).substr(lead.size())).value_or(0);
 }
 
 /// The names of the clips' files: "13__13_29.bvh". Characters that a name can't have are replaced.
@@ -109,7 +102,7 @@ Result<Corpus> list_cmu(const ImportInput& input) {
   // The clips that another pack has as well.
   std::set<std::string> doubles;
   for (const SourceFile& file : input.sources) {
-    if (!is_clip_pack(file)) continue;
+    if (!is_clip_pack(input.files, file)) continue;
     const auto packed = KA_TRY(PackedClips::read(KA_TRY(archive_bytes(input.files, file.path))));
     const auto names = file_names_of(packed.clips());
     // The BVHs are written once; a later import finds the same folder.
@@ -133,8 +126,6 @@ Result<Corpus> list_cmu(const ImportInput& input) {
 
 }  // namespace
 
-CorpusKind cmu_corpus() {
-  return {"cmu", "asf_00.npz, daz_05.npz", false, looks_like_cmu, list_cmu};
-}
+CorpusKind cmu_corpus() { return {"cmu", "asf_00.npz, daz_05.npz", false, is_clip_pack, list_cmu}; }
 
 }  // namespace kinalign

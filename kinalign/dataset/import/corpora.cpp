@@ -3,6 +3,8 @@
 
 #include "kinalign/core/nearest_name.h"
 
+#include <algorithm>
+
 namespace kinalign {
 
 namespace {
@@ -38,7 +40,8 @@ Result<CorpusKind> find_corpus(FileSystem& files, const std::vector<SourceFile>&
   std::vector<CorpusKind> own, general;
   for (const CorpusKind& kind : corpus_kinds()) {
     if (!wanted.empty() && kind.name == wanted) return kind;
-    if (!wanted.empty() || !kind.looks(files, sources)) continue;
+    const auto is_own = [&](const SourceFile& file) { return kind.is_own(files, file); };
+    if (!wanted.empty() || std::none_of(sources.begin(), sources.end(), is_own)) continue;
     // A BVH may also belong to a corpus with more to say of it, so general kinds count last.
     (kind.general ? general : own).push_back(kind);
   }

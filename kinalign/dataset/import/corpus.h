@@ -64,7 +64,8 @@ struct CorpusKind {
   std::string_view name;      // for --from: "ui-prmd"
   std::string_view known_by;  // for messages: "m01_s01_e01_positions.txt, s01.npz"
   bool general = false;       // any folder of such files; a specific corpus has priority
-  bool (*looks)(FileSystem& files, const std::vector<SourceFile>& sources) = nullptr;
+  /// True if the file belongs to this kind. One such file is enough to recognise the corpus.
+  bool (*is_own)(FileSystem& files, const SourceFile& file) = nullptr;
   Result<Corpus> (*list)(const ImportInput& input) = nullptr;
   bool unit_is_open = false;  // unit and up axis may differ from the format's own
 };

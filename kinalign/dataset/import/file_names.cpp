@@ -12,22 +12,10 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// At most six digits: a longer number is not taken for a run.
-bool is_number(std::string_view text) {
-  return !text.empty() && text.size() <= 6 && std::all_of(text.begin(), text.end(), is_digit);
-}
-
-/// The value of a text of digits.
-std::uint32_t number_of(std::string_view text) {
-  std::uint32_t value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
 /// The name without "Char00" at its end, which Axis Neuron adds for each character of a recording.
 std::string_view without_character(std::string_view stem) {
   const auto at = stem.rfind("Char");
-  return at != stem.npos && at > 0 && is_number(stem.substr(at + 4)) ? stem.substr(0, at) : stem;
+  return at != stem.npos && at > 0 && whole_number(stem.substr(at + 4)) ? stem.substr(0, at) : stem;
 }
 
 /// A number at the end of the name is the run, the rest the action.
@@ -36,8 +24,8 @@ void read_action(std::string_view stem, FileSays& out) {
   std::size_t end = stem.size();
   while (end > 0 && is_digit(stem[end - 1])) --end;
   // The separator before the run belongs to neither part.
-  if (is_number(stem.substr(end))) {
-    out.run = number_of(stem.substr(end));
+  if (const auto run = whole_number(stem.substr(end))) {
+    out.run = *run;
     stem = stem.substr(0, end);
     while (!stem.empty() && (stem.back() == '_' || stem.back() == '-' || stem.back() == ' ')) {
       stem.remove_suffix(1);
@@ -50,10 +38,11 @@ void read_action(std::string_view stem, FileSays& out) {
 bool read_cmu(std::string_view stem, FileSays& out) {
   const auto line = stem.find('_');
   if (line == stem.npos) return false;
-  const std::string_view subject = stem.substr(0, line), trial = stem.substr(line + 1);
-  if (!is_number(subject) || !is_number(trial)) return false;
+  const std::string_view subject = stem.substr(0, line);
+  const auto trial = whole_number(stem.substr(line + 1));
+  if (!whole_number(subject) || !trial) return false;
   out.subject = subject;
-  out.run = number_of(trial);
+  out.run = *trial;
   return true;
 }
 
@@ -81,6 +70,27 @@ std::size_t shared_folders(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+// A number longer than six digits is not taken for a run.
+std::optional<std::uint32_t> whole_number(std::string_view text) {
+  if (text.empty() || text.size() > 6 || !std::all_of(text.begin(), text.end(), is_digit)) {
+    return std::nullopt;
+  }
+  std::uint32_t value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+bool take_digits(std::string_view& text, std::string_view lead, std::size_t digits,
+                 std::uint32_t& out) {
+  if (!text.starts_with(lead)) return false;
+  const std::string_view number = text.substr(lead.size(), digits);
+  const auto value = whole_number(number);
+  if (!value || number.size() != digits) return false;
+  out = *value;
+  text.remove_prefix(lead.size() + digits);
+  return true;
+}
 
 std::vector<FileSays> read_file_names(const std::vector<std::string>& names) {
   const std::size_t shared = shared_folders(names);

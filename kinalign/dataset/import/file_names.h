@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,5 +25,13 @@ struct FileSays {
 ///   anna/walk.bvh            subject anna, if all files lie in folders: the topmost folders that
 ///                            differ are the people's, or all files are in this one folder
 std::vector<FileSays> read_file_names(const std::vector<std::string>& names);
+
+/// The value of a text of one to six digits; absent for other texts.
+std::optional<std::uint32_t> whole_number(std::string_view text);
+
+/// Takes `lead` and that many digits, at most six, off the front of `text`. False if they are not
+/// there; `text` is unchanged then.
+bool take_digits(std::string_view& text, std::string_view lead, std::size_t digits,
+                 std::uint32_t& out);
 
 }  // namespace kinalign

@@ -44,13 +44,6 @@ struct Named {
   CatalogueNeeds needs;
 };
 
-/// The description of an action, if the corpus has one.
-const Action* action_of(const Corpus& corpus, const std::string& word) {
-  const auto at = std::find_if(corpus.actions.begin(), corpus.actions.end(),
-                               [&](const Action& one) { return one.id == word; });
-  return at == corpus.actions.end() ? nullptr : &*at;
-}
-
 /// Replaces the words of the takes by ids, and collects the entries that these ids need.
 Named name_takes(Corpus& corpus, const Catalogue& has) {
   // Names of people are not stored, so the same word means the same person in every import.
@@ -63,7 +56,7 @@ Named name_takes(Corpus& corpus, const Catalogue& has) {
     take.action = out.actions.of(word);
     // Each action is described once, by the first take that has it.
     if (!actions.insert(take.action).second) continue;
-    const Action* const known = action_of(corpus, word);
+    const Action* const known = find_id(corpus.actions, word);
     out.needs.actions.push_back(
         {take.action, known ? known->class_id : corpus.class_id, known ? known->name : word});
   }

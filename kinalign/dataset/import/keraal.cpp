@@ -43,12 +43,6 @@ std::optional<RecordingName> recording_of(std::string_view name) {
   return out;
 }
 
-/// One file with such a name is enough.
-bool looks_like_keraal(FileSystem&, const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(),
-                     [](const SourceFile& file) { return recording_of(file.name).has_value(); });
-}
-
 /// The manifest of a pair: the targets that correspond to joints fit the Kinect's space.
 Manifest recording_manifest(const std::string& kinect, const std::string& vicon) {
   Manifest out;
@@ -103,7 +97,8 @@ Result<Corpus> list_keraal(const ImportInput& input) {
 }  // namespace
 
 CorpusKind keraal_corpus() {
-  return {"keraal", "G3-Kinect-CTK-P1T1-Unknown-C-0.txt and G3-Vicon-...", false, looks_like_keraal,
+  return {"keraal", "G3-Kinect-CTK-P1T1-Unknown-C-0.txt and G3-Vicon-...", false,
+          [](FileSystem&, const SourceFile& file) { return recording_of(file.name).has_value(); },
           list_keraal};
 }
 

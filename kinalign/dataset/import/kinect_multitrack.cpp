@@ -25,11 +25,6 @@ bool is_log(FileSystem& files, const SourceFile& file) {
   return format && format->name == layout;
 }
 
-bool looks_like_kinect_multitrack(FileSystem& files, const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(),
-                     [&](const SourceFile& file) { return is_log(files, file); });
-}
-
 /// The digits after `lead`: "10" in "Study_10_Kinect_0_Time_..."; empty if there are none.
 std::string number_behind(std::string_view text, std::string_view lead) {
   const auto at = text.find(lead);
@@ -82,7 +77,7 @@ Result<Corpus> list_kinect_multitrack(const ImportInput& input) {
 
 CorpusKind kinect_multitrack_corpus() {
   return {"kinectmultitrack", "Study_1_Kinect_0_*.csv with Skeleton# and Tracker_Time", false,
-          looks_like_kinect_multitrack, list_kinect_multitrack};
+          is_log, list_kinect_multitrack};
 }
 
 }  // namespace kinalign

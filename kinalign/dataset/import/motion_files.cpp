@@ -16,15 +16,10 @@ constexpr std::string_view bvh = ".bvh", c3d = ".c3d", mvnx = ".mvnx", packed_mv
                            trc = ".trc";
 
 template <const std::string_view& ending>
-bool is_one(const SourceFile& file) {
+bool is_one(FileSystem&, const SourceFile& file) {
   // MVNX is often packed; it is read without unpacking it first.
   if (ending == mvnx && has_ending(file.name, packed_mvnx)) return true;
   return has_ending(file.name, ending);
-}
-
-template <const std::string_view& ending>
-bool looks_like_motion_files(FileSystem&, const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(), is_one<ending>);
 }
 
 /// The name without the ending of packing: "walk.mvnx.gz" gives "walk.mvnx".
@@ -55,7 +50,7 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
   std::vector<SourceFile> files;
   std::vector<std::string> names;
   for (const SourceFile& file : input.sources) {
-    if (!is_one<ending>(file)) continue;
+    if (!is_one<ending>(input.files, file)) continue;
     files.push_back(file);
     names.push_back(without_packing(file.name));
   }
@@ -80,8 +75,7 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
 template <const std::string_view& ending>
 CorpusKind kind(std::string_view name, std::string_view known_by) {
   // MVNX states its unit and axes, so none may be given.
-  return {name,          known_by, true, looks_like_motion_files<ending>, list_motion_files<ending>,
-          ending != mvnx};
+  return {name, known_by, true, is_one<ending>, list_motion_files<ending>, ending != mvnx};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/core/files.h"
+#include "kinalign/dataset/scan.h"
 
 #include <functional>
 #include <string>
@@ -11,23 +12,6 @@
 #include <vector>
 
 namespace kinalign {
-
-/// A new folder. Unless it is kept, it is removed at the end with all its files, and so are parent
-/// folders that did not exist before.
-class UnfinishedFolder {
- public:
-  explicit UnfinishedFolder(std::string path);
-  UnfinishedFolder(const UnfinishedFolder&) = delete;
-  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
-  ~UnfinishedFolder();
-
-  void keep() { kept_ = true; }
-
- private:
-  std::string path_;
-  std::vector<std::string> above_;  // the deepest first
-  bool kept_ = false;
-};
 
 /// Creates a file in the folder; subfolders in `name` are made.
 using PutFile = std::function<Result<OutputFile>(const std::string& name)>;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Imports NTU RGB+D: S001C002P003R001A004.skeleton is setup, camera, person, repetition and action.
 #include "kinalign/dataset/import/corpora.h"
-#include "kinalign/formats/points/ntu_bodies.h"
+#include "kinalign/dataset/import/file_names.h"
+#include "kinalign/formats/points/ntu_skeleton.h"
 
 #include <fmt/format.h>
 
@@ -27,33 +28,15 @@ struct ClipName {
   }
 };
 
-/// Takes `lead` and three digits off the front.
-bool take_three_digits(std::string_view& text, char lead, std::uint32_t& out) {
-  if (text.size() < 4 || text.front() != lead) return false;
-  out = 0;
-  for (const char c : text.substr(1, 3)) {
-    if (c < '0' || c > '9') return false;
-    out = 10 * out + static_cast<std::uint32_t>(c - '0');
-  }
-  text.remove_prefix(4);
-  return true;
-}
-
 /// The numbers of a file's name; absent for other files.
 std::optional<ClipName> clip_of(std::string_view name) {
   ClipName out;
   std::string_view rest = stem_of(name);
   const bool fits =
-      has_ending(name, ".skeleton") && take_three_digits(rest, 'S', out.setup) &&
-      take_three_digits(rest, 'C', out.camera) && take_three_digits(rest, 'P', out.person) &&
-      take_three_digits(rest, 'R', out.repetition) && take_three_digits(rest, 'A', out.action);
+      has_ending(name, ".skeleton") && take_digits(rest, "S", 3, out.setup) &&
+      take_digits(rest, "C", 3, out.camera) && take_digits(rest, "P", 3, out.person) &&
+      take_digits(rest, "R", 3, out.repetition) && take_digits(rest, "A", 3, out.action);
   return fits && rest.empty() ? std::optional(out) : std::nullopt;
-}
-
-/// One clip is enough.
-bool looks_like_ntu(FileSystem&, const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(),
-                     [](const SourceFile& file) { return clip_of(file.name).has_value(); });
 }
 
 /// The body seen longest; for actions of two people also the next one. `bodies` are sorted by this.
@@ -99,9 +82,9 @@ Result<Corpus> list_ntu(const ImportInput& input) {
     out.takes.push_back({fmt::format("{:03}", clip->person), action, clip->run(),
                          clip_manifest(file.path, bodies, clip->is_mutual()), stem});
     // The corpus numbers its actions and gives no names in the files.
-    const bool is_known = std::any_of(out.actions.begin(), out.actions.end(),
-                                      [&](const Action& one) { return one.id == action; });
-    if (!is_known) out.actions.push_back({action, std::string(clip->class_id()), ""});
+    if (find_id(out.actions, action) == nullptr) {
+      out.actions.push_back({action, std::string(clip->class_id()), ""});
+    }
   }
   return out;
 }
@@ -109,7 +92,9 @@ Result<Corpus> list_ntu(const ImportInput& input) {
 }  // namespace
 
 CorpusKind ntu_corpus() {
-  return {"ntu", "S001C001P001R001A001.skeleton", false, looks_like_ntu, list_ntu};
+  return {"ntu", "S001C001P001R001A001.skeleton", false,
+          [](FileSystem&, const SourceFile& file) { return clip_of(file.name).has_value(); },
+          list_ntu};
 }
 
 }  // namespace kinalign

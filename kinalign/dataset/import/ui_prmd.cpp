@@ -2,6 +2,7 @@
 #include "kinalign/dataset/import/ui_prmd.h"
 
 #include "kinalign/dataset/import/corpora.h"
+#include "kinalign/dataset/import/file_names.h"
 #include "kinalign/dataset/import/new_folder.h"
 #include "kinalign/dataset/import/ui_prmd_pieces.h"
 
@@ -27,23 +28,12 @@ constexpr std::array<std::string_view, 10> movements{"deep squat",
                                                      "standing shoulder internal-external rotation",
                                                      "standing shoulder scaption"};
 
-/// Takes `lead` and two digits off the front.
-bool take_two_digits(std::string_view& text, std::string_view lead, int& out) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  if (!text.starts_with(lead) || text.size() < lead.size() + 2) return false;
-  const char a = text[lead.size()], b = text[lead.size() + 1];
-  if (!is_digit(a) || !is_digit(b)) return false;
-  out = 10 * (a - '0') + (b - '0');
-  text.remove_prefix(lead.size() + 2);
-  return true;
-}
-
 /// The piece that a file's name states; absent for other files.
 std::optional<PieceName> piece_of(std::string_view name) {
   PieceName out;
   std::string_view rest = stem_of(name);
-  if (!has_ending(name, ".txt") || !take_two_digits(rest, "m", out.movement) ||
-      !take_two_digits(rest, "_s", out.subject) || !take_two_digits(rest, "_e", out.repetition)) {
+  if (!has_ending(name, ".txt") || !take_digits(rest, "m", 2, out.movement) ||
+      !take_digits(rest, "_s", 2, out.subject) || !take_digits(rest, "_e", 2, out.repetition)) {
     return std::nullopt;
   }
   out.incorrect = rest == "_positions_inc";
@@ -53,8 +43,8 @@ std::optional<PieceName> piece_of(std::string_view name) {
 /// A pack has all pieces of one person: "s01.npz".
 bool is_piece_pack(const SourceFile& file) {
   std::string_view stem = stem_of(file.name);
-  int number = 0;
-  return has_ending(file.name, ".npz") && take_two_digits(stem, "s", number) && stem.empty();
+  std::uint32_t number = 0;
+  return has_ending(file.name, ".npz") && take_digits(stem, "s", 2, number) && stem.empty();
 }
 
 /// Adds the pairs of texts. Whole movements, from which the pieces were cut, are skipped.
@@ -113,9 +103,8 @@ Result<Corpus> list_ui_prmd(const ImportInput& input) {
   PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));
   leave_out_single(pairs, out);
   for (const auto& [piece, pair] : pairs) {
-    out.takes.push_back({piece.person(), piece.action(),
-                         static_cast<std::uint32_t>(piece.repetition), pair_manifest(pair),
-                         piece.text()});
+    out.takes.push_back(
+        {piece.person(), piece.action(), piece.repetition, pair_manifest(pair), piece.text()});
   }
   return out;
 }
@@ -131,12 +120,6 @@ std::string PieceName::person() const { return fmt::format("{:02}", subject); }
 std::string PieceName::text() const {
   return fmt::format("m{:02}_s{:02}_e{:02}{}", movement, subject, repetition,
                      incorrect ? "_inc" : "");
-}
-
-bool looks_like_ui_prmd(const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(), [](const SourceFile& file) {
-    return is_piece_pack(file) || piece_of(file.name).has_value();
-  });
 }
 
 Result<PiecePairs> find_ui_prmd_pairs(const ImportInput& input) {
@@ -190,8 +173,8 @@ void leave_out_single(PiecePairs& pairs, Corpus& corpus) {
 
 CorpusKind ui_prmd_corpus() {
   return {"ui-prmd", "Kinect/Positions/m01_s01_e01_positions.txt, s01.npz", false,
-          [](FileSystem&, const std::vector<SourceFile>& sources) {
-            return looks_like_ui_prmd(sources);
+          [](FileSystem&, const SourceFile& file) {
+            return is_piece_pack(file) || piece_of(file.name).has_value();
           },
           list_ui_prmd};
 }

@@ -13,7 +13,7 @@ namespace kinalign {
 
 /// The name "m01_s02_e03_positions.txt"; "_inc" marks a repetition done wrongly on purpose.
 struct PieceName {
-  int movement = 0, subject = 0, repetition = 0;
+  std::uint32_t movement = 0, subject = 0, repetition = 0;
   bool incorrect = false;
 
   auto operator<=>(const PieceName&) const = default;
@@ -29,8 +29,6 @@ struct PiecePair {
 };
 /// Sorted by movement, person and repetition.
 using PiecePairs = std::map<PieceName, PiecePair>;
-
-bool looks_like_ui_prmd(const std::vector<SourceFile>& sources);
 
 /// The pairs of texts and of packs. Packs are unpacked below the raw folder.
 Result<PiecePairs> find_ui_prmd_pairs(const ImportInput& input);

@@ -301,8 +301,7 @@ Result<void> add_person(const ImportInput& input, const Group& group, Corpus& co
   if (taken.empty()) return {};
   const std::string folder = KA_TRY(truth_folder(input, hash.hex(), taken));
   for (const Repetition& one : taken) {
-    corpus.takes.push_back({one.name.person(), one.name.action(),
-                            static_cast<std::uint32_t>(one.name.repetition),
+    corpus.takes.push_back({one.name.person(), one.name.action(), one.name.repetition,
                             manifest_of(one, folder), one.name.text()});
   }
   return {};
@@ -313,7 +312,8 @@ Result<Corpus> list_ui_prmd_joints(const ImportInput& input) {
   PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));
   leave_out_single(pairs, out);
   // Each person is read as a whole, because all repetitions share the body's size.
-  std::map<std::pair<int, bool>, Group> people;  // wrong repetitions are a session of their own
+  std::map<std::pair<std::uint32_t, bool>, Group>
+      people;  // wrong repetitions are a session of their own
   for (auto& pair : pairs) {
     people[{pair.first.subject, pair.first.incorrect}].emplace_back(std::move(pair));
   }
@@ -329,7 +329,7 @@ Result<Corpus> list_ui_prmd_joints(const ImportInput& input) {
 
 CorpusKind ui_prmd_joints_corpus() {
   return {"ui-prmd-joints", "the files of ui-prmd, with --from", false,
-          [](FileSystem&, const std::vector<SourceFile>&) { return false; }, list_ui_prmd_joints};
+          [](FileSystem&, const SourceFile&) { return false; }, list_ui_prmd_joints};
 }
 
 }  // namespace kinalign

@@ -50,7 +50,7 @@ std::map<std::string, std::string> read_ledger(FileSystem& files, const std::str
 /// The folder from which the names in the take lead to all of its raw files.
 std::string inputs_folder(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                           const TakeName& name) {
-  const std::string base = folder + "/sub-" + name.subject + "/";
+  const std::string base = folder_of(folder, name);
   const auto manifest = take_manifest(files, folder, catalogue, name);
   // A take that was added as a take has no raw files.
   if (!manifest) return "";
@@ -102,9 +102,9 @@ std::string TakePages::page_of(const std::string& name, const std::string& sha25
 }
 
 /// The pages that are missing or old. A file that is no page of kinalign is never replaced.
-Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
+Result<std::vector<PageJob>> TakePages::plan(const Catalogue& catalogue,
+                                             const std::map<std::string, std::string>& hashes,
                                              const std::vector<std::string>& takes) const {
-  const auto hashes = hashes_of(KA_TRY(index.select("select name, sha256 from takes")));
   std::vector<PageJob> jobs;
   for (const std::string& take : takes) {
     const auto name = parse_take_name(take);
@@ -114,8 +114,8 @@ Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
     if (is_there(page) && !is_own_page(files_, page, "name=\"generator\" content=\"kinalign")) {
       return Failure(Error{page, 0, "a page that kinalign wrote, or no file", "another file"});
     }
-    jobs.push_back({*name, folder_ + "/" + path_of(*name, TakeFile::take), page,
-                    inputs_folder(files_, folder_, index.catalogue(), *name), hash->second});
+    jobs.push_back({*name, path_of(folder_, *name, TakeFile::take), page,
+                    inputs_folder(files_, folder_, catalogue, *name), hash->second});
   }
   return jobs;
 }
@@ -145,11 +145,15 @@ Result<PagesMade> TakePages::make(const DatasetIndex& index, const std::vector<s
                                   std::size_t jobs, const MakePage& make_page,
                                   const Progress& progress) {
   KA_TRY(make_folders(place_));
-  const std::vector<PageJob> to_make = KA_TRY(plan(index, takes));
+  const auto hashes = hashes_of(KA_TRY(index.select("select name, sha256 from takes")));
+  const std::vector<PageJob> to_make = KA_TRY(plan(index.catalogue(), hashes, takes));
   PagesMade out;
-  // Takes that the index lacks count as up to date: nothing can be made of them.
-  out.up_to_date = takes.size() - to_make.size();
-  out.removed = remove_old(hashes_of(KA_TRY(index.select("select name, sha256 from takes"))));
+  for (const std::string& take : takes) {
+    const auto hash = hashes.find(take);
+    out.up_to_date += hash != hashes.end() && !page_of(take, hash->second).empty() ? 1 : 0;
+  }
+  out.removed = remove_old(hashes);
+
   std::mutex mutex;
   std::uint64_t done = 0;
   bool stopped = false;

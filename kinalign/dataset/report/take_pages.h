@@ -50,7 +50,8 @@ class TakePages {
                          std::size_t jobs, const MakePage& make_page, const Progress& progress);
 
  private:
-  Result<std::vector<PageJob>> plan(const DatasetIndex& index,
+  Result<std::vector<PageJob>> plan(const Catalogue& catalogue,
+                                    const std::map<std::string, std::string>& hashes,
                                     const std::vector<std::string>& takes) const;
   std::uint64_t remove_old(const std::map<std::string, std::string>& known);
   Result<void> remember() const;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/windows/window_places.h"
 
+#include "kinalign/motion/median.h"
+#include "kinalign/motion/stamps.h"
+
 #include <algorithm>
-#include <cmath>
 
 namespace kinalign {
 
@@ -20,12 +22,10 @@ std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   for (std::size_t i = 1; i < stamps.size(); ++i) steps.push_back(stamps[i] - stamps[i - 1]);
   std::vector<Stretch> out{{0, stamps.size()}};
   if (steps.empty()) return out;
-  auto sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const Duration median = upper_median(steps);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     // Whole numbers: a step of 1.5 medians or less is no gap.
-    if (2 * steps[i] <= 3 * *middle) continue;
+    if (2 * steps[i] <= 3 * median) continue;
     out.back().end = i + 1;
     out.push_back({i + 1, stamps.size()});
   }
@@ -50,7 +50,7 @@ WindowPlace place_at(std::span<const Time> stamps, const Stretch& stretch, doubl
     return {stamps[first], first, rows, rows};
   }
   const auto stamp = [&](std::uint64_t row) {
-    return stamps[stretch.begin] + Duration(std::llround(1e9 * static_cast<double>(row) / rate_hz));
+    return grid_stamp(stamps[stretch.begin], rate_hz, row);
   };
   const Time begin = stamp(offset), end = stamp(offset + rows - 1);
   // Both ends of the window lie between these rows of the take, which are read.

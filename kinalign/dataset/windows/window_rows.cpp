@@ -2,10 +2,10 @@
 #include "kinalign/dataset/windows/window_rows.h"
 
 #include "kinalign/motion/arrays.h"
+#include "kinalign/motion/stamps.h"
 #include "kinalign/take/row_arrays.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace kinalign {
@@ -25,7 +25,7 @@ std::vector<Between> between(const std::vector<Time>& stamps, const WindowPlace&
   std::vector<Between> out;
   std::size_t row = 0;
   for (std::uint64_t i = 0; i < place.rows; ++i) {
-    const Time at = place.begin + Duration(std::llround(1e9 * static_cast<double>(i) / rate_hz));
+    const Time at = grid_stamp(place.begin, rate_hz, i);
     // Stamps and rows rise, so the search goes on from the last row.
     while (row + 1 < stamps.size() && stamps[row + 1] <= at) ++row;
     double share = 0.0;
@@ -126,8 +126,7 @@ void resample(const TakeSlab& raw, const WindowPlace& place, double rate_hz, Tak
   const std::vector<Between> rows = between(raw.stamps, place, rate_hz);
   out.stamps.clear();
   for (std::uint64_t i = 0; i < place.rows; ++i) {
-    out.stamps.push_back(place.begin +
-                         Duration(std::llround(1e9 * static_cast<double>(i) / rate_hz)));
+    out.stamps.push_back(grid_stamp(place.begin, rate_hz, i));
   }
   // The copy has the right kinds of rows; its arrays are overwritten below.
   out.rows = raw.rows;

@@ -3,6 +3,7 @@
 // sizes of its arrays at its beginning; the second pass writes them.
 #include "kinalign/dataset/windows/windows.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/dataset/windows/window_arrays.h"
 #include "kinalign/dataset/windows/window_rows.h"
 #include "kinalign/formats/take/guarded.h"
@@ -93,14 +94,15 @@ class Job {
   // Opens only the streams and arrays that windows have.
   Result<TakeReader> open(std::size_t take) const {
     return TakeReader::open(
-        files_, source_.folder + "/" + path_of(source_.takes[take].name, TakeFile::take), parts_);
+        files_, path_of(source_.folder, source_.takes[take].name, TakeFile::take), parts_);
   }
   Result<void> set_streams(const std::vector<std::string>& names);
   std::string reasons() const;
   Result<WindowedTake> windowed(std::size_t take, TakeReader& reader);
   Result<bool> is_valid(TakeReader& reader, const WindowPlace& place,
                         const std::vector<std::size_t>& groups);
-  Result<void> done_with(std::size_t take);
+  Result<bool> find_in(std::size_t take, const std::vector<std::string>& names);
+  Result<void> done_with(std::size_t take, std::uint64_t passes);
 
   FileSystem& files_;
   const WindowSource& source_;
@@ -114,8 +116,8 @@ class Job {
   std::uint64_t done_ = 0, total_ = 0;
 };
 
-Result<void> Job::done_with(std::size_t take) {
-  done_ += source_.takes[take].summary.frames;
+Result<void> Job::done_with(std::size_t take, std::uint64_t passes) {
+  done_ += passes * source_.takes[take].summary.frames;
   return go_on(progress_, "windows", done_, total_) ? Result<void>() : Failure(interruption());
 }
 
@@ -123,9 +125,7 @@ Result<void> Job::done_with(std::size_t take) {
 std::vector<TakeGroup> groups_of(const TakeHeader& header, const std::vector<std::string>& names) {
   std::vector<TakeGroup> out;
   for (const std::string& name : names) {
-    const auto found = std::find_if(header.groups.begin(), header.groups.end(),
-                                    [&](const TakeGroup& g) { return g.name == name; });
-    if (found != header.groups.end()) out.push_back(*found);
+    if (const TakeGroup* found = find_named(header.groups, name)) out.push_back(*found);
   }
   return out;
 }
@@ -198,34 +198,38 @@ Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
   return out;
 }
 
+/// Finds the windows of one take. False: the take has none and is left out.
+Result<bool> Job::find_in(std::size_t take, const std::vector<std::string>& names) {
+  const WindowTake& of = source_.takes[take];
+  const auto leave_out = [&](std::string why) {
+    made.takes_left_out.push_back({of.name, std::move(why)});
+    return false;
+  };
+  if (const std::string lacks = lacking(names, of); !lacks.empty()) {
+    return leave_out("has no stream " + lacks);
+  }
+  TakeReader reader = KA_TRY(open(take));
+  // A take with other joints or nodes than the first is left out, not an error.
+  const auto fits = streams_.find_in(reader.header());
+  if (!fits) return leave_out(fits.error().found);
+  // The arrays are complete only when all takes were seen.
+  streams_.add(reader.header(), *fits);
+  WindowedTake found = KA_TRY(windowed(take, reader));
+  made.windows[of.part] += found.places.size();
+  if (found.places.empty()) return leave_out("has no window: too short, or too few valid cells");
+  takes_.push_back(std::move(found));
+  return true;
+}
+
 /// The first pass: finds the windows, and the takes that have none.
 Result<void> Job::find(const std::vector<std::string>& names) {
   parts_ = {names, window_array_names()};
   made.windows.assign(source_.parts.size(), 0);
   KA_TRY(set_streams(names));
   for (std::size_t take = 0; take < source_.takes.size(); ++take) {
-    const WindowTake& of = source_.takes[take];
-    if (const std::string lacks = lacking(names, of); !lacks.empty()) {
-      made.takes_left_out.push_back({of.name, "has no stream " + lacks});
-      continue;
-    }
-    TakeReader reader = KA_TRY(open(take));
-    // A take with other joints or nodes than the first is left out, not an error.
-    const auto fits = streams_.find_in(reader.header());
-    if (!fits) {
-      made.takes_left_out.push_back({of.name, fits.error().found});
-      continue;
-    }
-    // The arrays are complete only when all takes were seen.
-    streams_.add(reader.header(), *fits);
-    WindowedTake found = KA_TRY(windowed(take, reader));
-    made.windows[of.part] += found.places.size();
-    if (found.places.empty()) {
-      made.takes_left_out.push_back({of.name, "has no window: too short, or too few valid cells"});
-    } else {
-      takes_.push_back(std::move(found));
-    }
-    KA_TRY(done_with(take));
+    // A take that is left out needs no second pass.
+    const bool is_kept = KA_TRY(find_in(take, names));
+    KA_TRY(done_with(take, is_kept ? 1 : 2));
   }
   // Without a window the error says why each take was left out.
   if (!takes_.empty()) return {};
@@ -244,7 +248,7 @@ Result<void> Job::write(const NewFile& target) {
       // The index is that in the file's list, which has no left-out takes.
       KA_TRY(file.append({i, source_.takes[take.index].part, place}, take.groups, window_));
     }
-    KA_TRY(done_with(take.index));
+    KA_TRY(done_with(take.index, 1));
   }
   return file.finish();
 }

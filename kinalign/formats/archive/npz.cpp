@@ -48,10 +48,11 @@ Result<Npz> Npz::read(const ArchiveBytes& bytes, const ArchiveLimits& limits) {
         }
         // A member of another kind shows that the file is no NPZ of numbers.
         if (!name.ends_with(".npy")) {
-          return Failure(Error{bytes.name, 0, "only arrays, NAME.npy", shown(name)});
+          return refuse(bytes.name, "only arrays, NAME.npy", shown(name));
         }
-        out.arrays_.emplace(name.substr(0, name.size() - 4),
-                            KA_TRY(read_npy(std::move(file), bytes.name + ": " + shown(name))));
+        Member& member = out.arrays_[name.substr(0, name.size() - 4)];
+        member.bytes = std::move(file);
+        member.array = KA_TRY(read_npy(member.bytes, bytes.name + ": " + shown(name)));
         return {};
       }));
   return out;
@@ -61,17 +62,16 @@ Result<Npz> Npz::read(const ArchiveBytes& bytes, const ArchiveLimits& limits) {
 Result<const NpyArray*> Npz::find(const std::string& name, std::string_view kinds,
                                   const Shape& shape) const {
   const auto at = arrays_.find(name);
-  if (at == arrays_.end()) return Failure(Error{name_, 0, "an array " + name, "none"});
-  const NpyHeader& header = at->second.header;
+  if (at == arrays_.end()) return refuse(name_, "an array " + name, "none");
+  const NpyHeader& header = at->second.array.header;
   if (kinds.find(header.kind) == kinds.npos) {
-    return Failure(Error{name_, 0, fmt::format("values of another type in {}", name),
-                         fmt::format("numpy's '{}'", header.kind)});
+    return refuse(name_, fmt::format("values of another type in {}", name),
+                  fmt::format("numpy's '{}'", header.kind));
   }
   if (!fits(header.shape, shape)) {
-    return Failure(
-        Error{name_, 0, fmt::format("{} of {}", name, words_of(shape)), words_of(header.shape)});
+    return refuse(name_, fmt::format("{} of {}", name, words_of(shape)), words_of(header.shape));
   }
-  return &at->second;
+  return &at->second.array;
 }
 
 Result<std::vector<std::int64_t>> Npz::integers(const std::string& name, const Shape& shape) const {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/formats/archive/archive.h"
-#include "kinalign/formats/archive/npy.h"
+#include "kinalign/numpy/npy.h"
 
 #include <map>
 #include <string>
@@ -33,7 +33,13 @@ class Npz {
                                const Shape& shape) const;
 
   std::string name_;
-  std::map<std::string, NpyArray> arrays_;
+  /// A member's bytes with the array that views them. Nodes of a map keep their place, so the view
+  /// stays valid.
+  struct Member {
+    std::string bytes;
+    NpyArray array;
+  };
+  std::map<std::string, Member> arrays_;
 };
 
 }  // namespace kinalign

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 namespace kinalign {
@@ -18,9 +20,17 @@ constexpr std::array<std::string_view, 10> bids_types{
     "ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC", "ORNT", "POS", "VEL"};
 constexpr std::array<std::string_view, 8> bids_components{"x",      "y",      "z",      "quat_x",
                                                           "quat_y", "quat_z", "quat_w", "n/a"};
-// Components in the order of our arrays: x,y,z and w,x,y,z.
-constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
-constexpr std::array<const char*, 4> quaternion_names{"quat_w", "quat_x", "quat_y", "quat_z"};
+
+// The columns of channels.tsv. The first five are required.
+constexpr std::size_t required_columns = 5;
+constexpr std::array<std::pair<const char*, std::string BidsChannel::*>, 7> channel_columns{
+    {{"name", &BidsChannel::name},
+     {"component", &BidsChannel::component},
+     {"type", &BidsChannel::type},
+     {"tracked_point", &BidsChannel::tracked_point},
+     {"units", &BidsChannel::units},
+     {"placement", &BidsChannel::placement},
+     {"reference_frame", &BidsChannel::reference_frame}}};
 
 struct Unit {
   std::string_view type, unit;
@@ -62,32 +72,28 @@ void add(const std::string& point, const std::array<const char*, n>& parts, cons
 }
 
 BidsChannel kind(const char* type, const char* unit, const char* frame) {
-  BidsChannel out;
-  out.type = type;
-  out.units = unit;
-  out.reference_frame = frame;
-  return out;
+  return {"", "", type, "", unit, "", frame};
 }
 
 void add_channels(const Skeleton& skeleton, std::vector<BidsChannel>& out) {
   for (const std::string& joint : skeleton.joint_names) {
-    add(joint, axis_names, kind("POS", "m", "global"), out);
-    add(joint, quaternion_names, kind("ORNT", "n/a", "global"), out);
+    add(joint, bids_axes, kind("POS", "m", "global"), out);
+    add(joint, bids_quaternion, kind("ORNT", "n/a", "global"), out);
   }
 }
 
 void add_channels(const PointHeader& points, std::vector<BidsChannel>& out) {
   for (const std::string& point : points.joint_names) {
-    add(point, axis_names, kind("POS", "m", "global"), out);
+    add(point, bids_axes, kind("POS", "m", "global"), out);
   }
 }
 
 void add_channels(const ImuHeader& nodes, std::vector<BidsChannel>& out) {
   for (const std::string& node : nodes.node_names) {
     // Vectors of a sensor stay in its own space: "sensor". Only orientations are global.
-    if (nodes.content.orientation) add(node, quaternion_names, kind("ORNT", "n/a", "global"), out);
-    if (nodes.content.acceleration) add(node, axis_names, kind("ACCEL", "m/s^2", "sensor"), out);
-    if (nodes.content.angular_velocity) add(node, axis_names, kind("GYRO", "rad/s", "sensor"), out);
+    if (nodes.content.orientation) add(node, bids_quaternion, kind("ORNT", "n/a", "global"), out);
+    if (nodes.content.acceleration) add(node, bids_axes, kind("ACCEL", "m/s^2", "sensor"), out);
+    if (nodes.content.angular_velocity) add(node, bids_axes, kind("GYRO", "rad/s", "sensor"), out);
   }
 }
 
@@ -121,39 +127,46 @@ std::vector<BidsChannel> bids_channels(const BidsSource& source) {
   return out;
 }
 
+std::vector<std::pair<std::string, std::size_t>> bids_counts(
+    std::span<const BidsChannel> channels) {
+  std::set<std::string_view> points;
+  std::map<std::string_view, std::size_t> of_type;
+  for (const BidsChannel& channel : channels) {
+    ++of_type[channel.type];
+    if (channel.tracked_point != "n/a") points.insert(channel.tracked_point);
+  }
+  std::vector<std::pair<std::string, std::size_t>> out{{"MotionChannelCount", channels.size()},
+                                                       {"TrackedPointsCount", points.size()}};
+  for (const char* type :
+       {"POS", "ORNT", "ACCEL", "GYRO", "MAGN", "VEL", "ANGACCEL", "JNTANG", "LATENCY"}) {
+    out.emplace_back(std::string(type) + "ChannelCount", of_type[type]);
+  }
+  return out;
+}
+
 TsvTable channels_table(std::span<const BidsChannel> channels) {
-  TsvTable out{
-      {"name", "component", "type", "tracked_point", "units", "placement", "reference_frame"}, {}};
-  for (const BidsChannel& c : channels) {
-    out.rows.push_back(
-        {c.name, c.component, c.type, c.tracked_point, c.units, c.placement, c.reference_frame});
+  TsvTable out;
+  for (const auto& [column, member] : channel_columns) out.columns.emplace_back(column);
+  for (const BidsChannel& channel : channels) {
+    auto& row = out.rows.emplace_back();
+    for (const auto& [column, member] : channel_columns) row.push_back(channel.*member);
   }
   return out;
 }
 
 // Members by name, so that the columns may stand in any order.
 Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_view file) {
-  constexpr std::array<std::pair<const char*, std::string BidsChannel::*>, 7> fields{
-      {{"name", &BidsChannel::name},
-       {"component", &BidsChannel::component},
-       {"type", &BidsChannel::type},
-       {"tracked_point", &BidsChannel::tracked_point},
-       {"units", &BidsChannel::units},
-       {"placement", &BidsChannel::placement},
-       {"reference_frame", &BidsChannel::reference_frame}}};
-  // The first five columns are required.
-  constexpr std::size_t needed = 5;
   std::vector<BidsChannel> out(table.rows.size());
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    const auto column = table.column(fields[f].first);
-    if (!column && f < needed) {
-      return Failure(
-          Error{std::string(file), 1, std::string("a column ") + fields[f].first, "none"});
+  for (std::size_t f = 0; f < channel_columns.size(); ++f) {
+    const auto& [name, member] = channel_columns[f];
+    const auto column = table.column(name);
+    if (!column && f < required_columns) {
+      return Failure(Error{std::string(file), 1, std::string("a column ") + name, "none"});
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
       // A row may be shorter than the header line.
       const bool there = column && *column < table.rows[i].size();
-      out[i].*fields[f].second = there ? table.rows[i][*column] : "n/a";
+      out[i].*member = there ? table.rows[i][*column] : "n/a";
     }
   }
   return out;

@@ -8,10 +8,12 @@
 #include "kinalign/formats/reader.h"
 #include "kinalign/motion/clip.h"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -25,11 +27,18 @@ struct BidsChannel {
 /// The header of a stream, from which its channels are made.
 using BidsSource = std::variant<Skeleton, PointHeader, ImuHeader>;
 
+// Components in the order of our arrays: x,y,z and w,x,y,z.
+inline constexpr std::array<const char*, 3> bids_axes{"x", "y", "z"};
+inline constexpr std::array<const char*, 4> bids_quaternion{"quat_w", "quat_x", "quat_y", "quat_z"};
+
 /// The channels of a stream. LATENCY comes first. Then follow POS and ORNT of a skeleton's joints,
 /// POS of points, or ORNT, ACCEL and GYRO of nodes as far as the stream has them. Positions and
 /// orientations use the reference frame "global", accelerations and angular velocities "sensor".
 /// The order is that of the columns of motion.tsv, so writer and table must use the same list.
 std::vector<BidsChannel> bids_channels(const BidsSource& source);
+
+/// The counts of channels and of tracked points that motion.json states, with their keys.
+std::vector<std::pair<std::string, std::size_t>> bids_counts(std::span<const BidsChannel> channels);
 
 TsvTable channels_table(std::span<const BidsChannel> channels);
 /// Reads the channels back. Fails if one of the first five columns is missing; `file` appears in

@@ -3,15 +3,16 @@
 // them.
 #include "kinalign/formats/bids/check.h"
 
-#include "kinalign/core/files.h"
 #include "kinalign/formats/bids/check_context.h"
 #include "kinalign/formats/bids/json_text.h"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 namespace kinalign {
 
@@ -57,33 +58,6 @@ constexpr std::array<std::string_view, 4> inherited_endings{"motion.json", "chan
 constexpr std::array<std::string_view, 8> entity_order{"sub", "ses", "task",      "tracksys",
                                                        "acq", "run", "recording", "desc"};
 
-std::vector<std::string_view> parts_of(std::string_view path) {
-  std::vector<std::string_view> out;
-  for (;;) {
-    const auto slash = path.find('/');
-    out.push_back(path.substr(0, slash));
-    if (slash == std::string_view::npos) return out;
-    path.remove_prefix(slash + 1);
-  }
-}
-
-/// True if the whole text matches the pattern. '*' stands for any characters except '/'.
-/// Recursive. The number of '*' is limited by ignore_patterns(), because each one multiplies the
-/// work.
-bool matches_wildcard(std::string_view pattern, std::string_view text) {
-  if (pattern.empty()) return text.empty();
-  if (pattern.front() != '*') {
-    return !text.empty() && pattern.front() == text.front() &&
-           matches_wildcard(pattern.substr(1), text.substr(1));
-  }
-  pattern.remove_prefix(1);
-  for (std::size_t i = 0;; ++i) {
-    // '*' takes 0, 1, 2, ... characters, until the rest fits.
-    if (matches_wildcard(pattern, text.substr(i))) return true;
-    if (i == text.size() || text[i] == '/') return false;
-  }
-}
-
 /// True if a pattern names the path. Patterns follow .gitignore: a name at any depth, a path from
 /// the top, or a folder with everything below it.
 bool is_ignored(const std::vector<std::string>& patterns, std::string_view path) {
@@ -93,10 +67,11 @@ bool is_ignored(const std::vector<std::string>& patterns, std::string_view path)
     if (pattern.ends_with('/')) pattern.remove_suffix(1);
     const bool anywhere = pattern.find('/') == std::string_view::npos;
     std::string_view before;
-    for (const std::string_view part : parts_of(path)) {
+    for (const std::string_view part : split(path, '/')) {
       // The path up to and including this part: a folder with everything below it matches, too.
       before = path.substr(0, static_cast<std::size_t>(part.data() + part.size() - path.data()));
-      if (matches_wildcard(pattern, anywhere ? part : before)) return true;
+      const std::string name(anywhere ? part : before);
+      if (::fnmatch(std::string(pattern).c_str(), name.c_str(), FNM_PATHNAME) == 0) return true;
     }
   }
   return false;
@@ -227,7 +202,7 @@ void check_subject_path(const std::string& path, std::vector<std::string_view> p
 /// Checks the path of any file: it is at the top, below a subject's folder or below another folder
 /// of BIDS.
 void check_path(const std::string& path, BidsCheck& check) {
-  const auto parts = parts_of(path);
+  const auto parts = split(path, '/');
   const std::string_view first = parts.front();
   // Hidden files, .bidsignore among them.
   if (first.starts_with('.')) return;
@@ -254,15 +229,11 @@ void check_description(BidsCheck& check) {
   if (!check.listing.has(path)) return check.error(path, "this file", "none");
   const auto json = check.json_of(path);
   if (!json) return;
-  const auto text = [&](const char* key) {
-    const auto found = json->find(key);
-    return found != json->end() && found->is_string() ? found->get<std::string>() : std::string();
-  };
   for (const char* key : {"Name", "BIDSVersion"}) {
-    if (text(key).empty()) check.error(path, std::string("a text ") + key, "none");
+    if (text_in(*json, key).empty()) check.error(path, std::string("a text ") + key, "none");
   }
   // A data set without a type is raw.
-  const std::string type = json->contains("DatasetType") ? text("DatasetType") : "raw";
+  const std::string type = json->contains("DatasetType") ? text_in(*json, "DatasetType") : "raw";
   if (type != "raw" && type != "derivative") {
     check.error(path, "DatasetType raw or derivative", shown(type));
   }
@@ -297,12 +268,8 @@ void check_participant_rows(const std::string& path, const TsvTable& table, Bids
   std::set<std::string> listed;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
-    // Line 1 has the names of the columns.
-    const auto line = static_cast<std::int64_t>(i) + 2;
-    if (row.size() != table.columns.size()) {
-      check.error(path, fmt::format("{} cells", table.columns.size()), std::to_string(row.size()),
-                  line);
-    }
+    const std::int64_t line = line_of_row(i);
+    check.is_whole_row(path, table, i);
     if (!listed.insert(row.front()).second) {
       check.error(path, "each participant once", shown(row.front()) + " again", line);
     }
@@ -349,13 +316,9 @@ void check_scans(const std::string& path, BidsCheck& check) {
   std::set<std::string> listed;
   for (std::size_t i = 0; i < table->rows.size(); ++i) {
     const auto& row = table->rows[i];
-    const auto line = static_cast<std::int64_t>(i) + 2;
+    const std::int64_t line = line_of_row(i);
     // A row of another length can't be read by column.
-    if (row.size() != table->columns.size()) {
-      check.error(path, fmt::format("{} cells", table->columns.size()), std::to_string(row.size()),
-                  line);
-      continue;
-    }
+    if (!check.is_whole_row(path, *table, i)) continue;
     if (!check.listing.has(above + row[*file]))
       check.error(path, "an existing file", shown(row[*file]), line);
     listed.insert(above + row[*file]);
@@ -396,8 +359,7 @@ void BidsCheck::error(const std::string& path, std::string expected, std::string
 
 void BidsCheck::warning(const std::string& path, std::string expected, std::string found,
                         std::int64_t line) {
-  findings.push_back({Severity::warning, Error{path, line, std::move(expected), std::move(found)},
-                      "BIDS recommends it", ""});
+  add_warning(findings, {path, line, std::move(expected), std::move(found)}, "BIDS recommends it");
 }
 
 std::optional<std::string> BidsCheck::text_of(const std::string& path) {
@@ -406,14 +368,25 @@ std::optional<std::string> BidsCheck::text_of(const std::string& path) {
     text += piece;
     // The bytes are counted while they arrive.
     if (text.size() <= largest_text) return {};
-    return Failure(Error{path, 0, "a file of at most 16 MiB", "a larger file"});
+    return refuse(path, "a file of at most 16 MiB", "a larger file");
   });
   if (read) return text;
+  unreadable(path, read.error());
+  return std::nullopt;
+}
+
+void BidsCheck::unreadable(const std::string& path, Error what) {
   // The path in the listing replaces that of the disk.
-  Error what = read.error();
   what.file = path;
   findings.push_back({Severity::error, std::move(what), "the file can't be checked", ""});
-  return std::nullopt;
+}
+
+bool BidsCheck::is_whole_row(const std::string& path, const TsvTable& table, std::size_t row) {
+  const std::size_t cells = table.rows[row].size();
+  if (cells == table.columns.size()) return true;
+  error(path, fmt::format("{} cells", table.columns.size()), std::to_string(cells),
+        line_of_row(row));
+  return false;
 }
 
 std::optional<TsvTable> BidsCheck::table_of(const std::string& path) {
@@ -454,6 +427,29 @@ std::vector<std::string> BidsCheck::inherited(const std::string& path,
     return folder(a).size() < folder(b).size();
   });
   return out;
+}
+
+Result<BidsListing> list_bids_folder(FileSystem& files, const std::string& folder) {
+  namespace fs = std::filesystem;
+  BidsListing listing;
+  std::error_code failed;
+  // Links to folders are not followed by default, so a loop of links can't occur.
+  for (fs::recursive_directory_iterator at(folder, failed), end; !failed && at != end;
+       at.increment(failed)) {
+    if (at->is_regular_file(failed)) {
+      listing.paths.insert(at->path().lexically_relative(folder).generic_string());
+    }
+  }
+  if (failed) return refuse(folder, "a folder that can be read", failed.message());
+  // `folder` is copied, because the listing lives longer than the call.
+  listing.read = [&files, folder](const std::string& path, const FileSink& use) -> Result<void> {
+    InputFile file = KA_TRY(InputFile::open(files, folder + "/" + path));
+    for (auto piece = KA_TRY(file.next()); !piece.empty(); piece = KA_TRY(file.next())) {
+      KA_TRY(use(piece));
+    }
+    return {};
+  };
+  return listing;
 }
 
 Findings check_bids(const BidsListing& listing) {

@@ -3,7 +3,7 @@
 // Rules: docs/formats/bids.md.
 #pragma once
 
-#include "kinalign/core/error.h"
+#include "kinalign/core/files.h"
 #include "kinalign/formats/file_sink.h"
 
 #include <functional>
@@ -23,6 +23,11 @@ struct BidsListing {
 
   bool has(const std::string& path) const { return paths.contains(path); }
 };
+
+/// All files below `folder`; links are not followed. `files` must outlive the result. Fails if the
+/// folder can't be read.
+/// Files are read when the checker asks for them, one at a time.
+Result<BidsListing> list_bids_folder(FileSystem& files, const std::string& folder);
 
 /// Reads every motion file, and the tables and JSON files about them. Other data types are skipped.
 /// Findings name files by their paths in the listing. Errors break the BIDS standard; warnings and

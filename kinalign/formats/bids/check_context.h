@@ -15,6 +15,9 @@
 
 namespace kinalign {
 
+/// The line of a row of a table; line 1 has the names of the columns.
+inline std::int64_t line_of_row(std::size_t row) { return static_cast<std::int64_t>(row) + 2; }
+
 /// Every function adds its faults to `findings` and goes on, so one run reports all of them.
 class BidsCheck {
  public:
@@ -28,6 +31,11 @@ class BidsCheck {
              std::int64_t line = 0);
   void warning(const std::string& path, std::string expected, std::string found,
                std::int64_t line = 0);
+
+  /// Adds the error of a file that can't be read.
+  void unreadable(const std::string& path, Error what);
+  /// Adds an error if the row does not have a cell for each column.
+  bool is_whole_row(const std::string& path, const TsvTable& table, std::size_t row);
 
   /// The content of a file of at most 16 MiB. If the file can't be read, that becomes an error and
   /// the result is empty.

@@ -182,9 +182,7 @@ BidsRowsSummary check_bids_rows(const std::string& path, const std::vector<BidsC
   if (read) read = lines.finish(use);
   // Faults that were counted before are not reported.
   if (!read) {
-    Error what = read.error();
-    what.file = path;
-    check.findings.push_back({Severity::error, std::move(what), "the file can't be checked", ""});
+    check.unreadable(path, read.error());
     return rows.summary;
   }
   rows.report(path, check);

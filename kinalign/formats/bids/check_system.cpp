@@ -4,6 +4,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/formats/bids/channels.h"
 #include "kinalign/formats/bids/check_context.h"
+#include "kinalign/formats/bids/json_text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,6 +33,12 @@ bool fits(const BidsChannel& channel) {
   if (is_one_of(channel.type, {"POS", "VEL", "ACCEL", "ANGACCEL", "GYRO", "MAGN"})) return axis;
   if (channel.type == "LATENCY") return channel.component == "n/a";
   return true;
+}
+
+/// The path of a file that belongs to the motion.tsv.
+std::string sidecar(std::string_view motion_tsv, const char* ending) {
+  motion_tsv.remove_suffix(std::string_view("motion.tsv").size());
+  return std::string(motion_tsv) + ending;
 }
 
 std::string in_capitals(std::string text) {
@@ -118,8 +125,7 @@ void check_status(const std::string& path, const TsvTable& table, BidsCheck& che
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (table.rows[i].size() <= *status) continue;
     if (is_one_of(table.rows[i][*status], {"good", "bad", "n/a"})) continue;
-    check.error(path, "status good or bad", shown(table.rows[i][*status]),
-                static_cast<std::int64_t>(i) + 2);
+    check.error(path, "status good or bad", shown(table.rows[i][*status]), line_of_row(i));
   }
 }
 
@@ -133,13 +139,9 @@ std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& chec
   if (!channels) return {};
   std::set<std::string> names;
   for (std::size_t i = 0; i < channels->size(); ++i) {
-    const auto line = static_cast<std::int64_t>(i) + 2;
+    const std::int64_t line = line_of_row(i);
     // The cells of such a row can't be told apart.
-    if (table->rows[i].size() != table->columns.size()) {
-      check.error(path, fmt::format("{} cells", table->columns.size()),
-                  std::to_string(table->rows[i].size()), line);
-      continue;
-    }
+    if (!check.is_whole_row(path, *table, i)) continue;
     check_channel(path, line, (*channels)[i], check);
     if (!names.insert((*channels)[i].name).second) {
       check.error(path, "channels with different names", shown((*channels)[i].name) + " again",
@@ -157,18 +159,11 @@ std::set<std::string> described_frames(const std::string& path, BidsCheck& check
   std::set<std::string> out;
   const auto json = check.json_of(path);
   if (!json) return out;
-  const FoundJson frame = json->value("reference_frame", FoundJson::object());
-  // Another value at this place has no levels and describes nothing.
-  const FoundJson levels = frame.is_object() ? frame.value("Levels", FoundJson::object()) : frame;
-  if (!levels.is_object()) return out;
-  for (const auto& [name, level] : levels.items()) {
+  for (const auto& [name, letters] : frames_in(*json)) {
     out.insert(name);
-    const auto letters = level.is_object() ? level.find("SpatialAxes") : level.end();
-    if (letters == level.end() || !letters->is_string()) continue;
-    const std::string text = letters->get<std::string>();
     // "n/a" is allowed: the directions are not known.
-    if (text == "n/a" || axes_of_letters(text)) continue;
-    check.warning(path, "SpatialAxes of three letters A or P, L or R, S or I", shown(text));
+    if (!letters || *letters == "n/a" || axes_of_letters(*letters)) continue;
+    check.warning(path, "SpatialAxes of three letters A or P, L or R, S or I", shown(*letters));
   }
   return out;
 }
@@ -186,12 +181,10 @@ void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>&
   // Every inherited file may describe frames.
   std::set<std::string> described;
   for (const std::string& path : paths) described.merge(described_frames(path, check));
-  // 10 is the length of "motion.tsv".
-  const std::string channels_json = motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.json";
   for (const std::string& one : frames) {
     if (described.contains(one)) continue;
-    check.warning(paths.empty() ? channels_json : paths.back(), "the reference frame " + shown(one),
-                  "none");
+    check.warning(paths.empty() ? sidecar(motion_tsv, "channels.json") : paths.back(),
+                  "the reference frame " + shown(one), "none");
   }
 }
 
@@ -201,7 +194,7 @@ void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>&
 std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& check) {
   const auto paths = check.inherited(motion_tsv, "motion.json");
   if (paths.empty()) {
-    check.error(motion_tsv.substr(0, motion_tsv.size() - 3) + "json", "this file", "none");
+    check.error(sidecar(motion_tsv, "motion.json"), "this file", "none");
     return std::nullopt;
   }
   FoundJson all = FoundJson::object();
@@ -227,10 +220,6 @@ class FactsCheck {
     check_.error(path_, std::string("a number ") + key, "another value");
     return std::nullopt;
   }
-  std::string text(const char* key) const {
-    const auto found = json_.find(key);
-    return found != json_.end() && found->is_string() ? found->get<std::string>() : "";
-  }
 
   /// A count that is absent is no fault.
   void count(const std::string& key, std::size_t is) const {
@@ -244,7 +233,7 @@ class FactsCheck {
   /// label.
   /// BIDS makes the label from the name by leaving out all other characters.
   void names(std::string_view task) const {
-    const std::string name = text("TaskName");
+    const std::string name = text_in(json_, "TaskName");
     std::string label;
     for (const char c : name) {
       if (is_bids_label(std::string_view(&c, 1))) label += c;
@@ -254,27 +243,19 @@ class FactsCheck {
     } else if (label != task) {
       check_.warning(path_, "a TaskName that gives the label " + shown(task), shown(name));
     }
-    if (text("TrackingSystemName").empty()) check_.warning(path_, "a TrackingSystemName", "none");
+    if (text_in(json_, "TrackingSystemName").empty())
+      check_.warning(path_, "a TrackingSystemName", "none");
   }
 
   /// Compares the stated counts of channels and tracked points with channels.tsv.
-  /// The table may list points in any order, so a set counts them.
   void counts(const std::vector<BidsChannel>& channels) const {
-    std::map<std::string, std::size_t> of_type;
-    std::set<std::string> points;
-    for (const BidsChannel& c : channels) {
-      ++of_type[c.type];
-      if (c.tracked_point != "n/a") points.insert(c.tracked_point);
-    }
-    count("MotionChannelCount", channels.size());
-    count("TrackedPointsCount", points.size());
-    for (const char* type :
-         {"POS", "ORNT", "ACCEL", "GYRO", "MAGN", "LATENCY", "JNTANG", "VEL", "ANGACCEL"}) {
-      count(std::string(type) + "ChannelCount", of_type[type]);
-    }
+    for (const auto& [key, is] : bids_counts(channels)) count(key, is);
+    const auto misc = static_cast<std::size_t>(
+        std::count_if(channels.begin(), channels.end(),
+                      [](const BidsChannel& channel) { return channel.type == "MISC"; }));
     // Both spellings are accepted.
-    count("MISCChannelCount", of_type["MISC"]);
-    count("MiscChannelCount", of_type["MISC"]);
+    count("MISCChannelCount", misc);
+    count("MiscChannelCount", misc);
   }
 
   /// Compares the stated rates and duration with the number of rows and the latencies.
@@ -319,7 +300,7 @@ void check_bids_system(const std::string& motion_tsv, BidsCheck& check) {
   std::vector<BidsChannel> channels;
   // Without channels.tsv the rows are still checked against each other.
   if (tables.empty()) {
-    check.error(motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.tsv", "this file", "none");
+    check.error(sidecar(motion_tsv, "channels.tsv"), "this file", "none");
   } else {
     // BIDS' nearest file wins; tables are not merged.
     channels = check_channels(tables.back(), check);

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,5 +19,12 @@ std::string bids_json_text(const nlohmann::ordered_json& json);
 
 /// Fails if the text is no JSON object.
 Result<nlohmann::ordered_json> parse_bids_json(std::string_view text, std::string_view file);
+
+/// The member's text; empty if there is none, or another value.
+std::string text_in(const nlohmann::ordered_json& object, const char* key);
+
+/// The reference frames that a channels.json describes, and their SpatialAxes; absent if none are
+/// stated.
+std::map<std::string, std::optional<std::string>> frames_in(const nlohmann::ordered_json& object);
 
 }  // namespace kinalign

@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Directions of the x, y and z axes, as seen by a person at the start: left, up, forwards.
+constexpr const char* spatial_axes = "LSA";
 constexpr int six = 6, nine = 9;  // decimals
 
 /// A joint's position, m, and rotation in the space of the skeleton's root.
@@ -44,44 +46,24 @@ std::vector<Global> global_of(const Skeleton& skeleton, const ClipFrames& frames
 
 /// Text of channels.json: the reference frames in use. `letters` are the SpatialAxes of the global
 /// one.
-std::string channels_json(const std::vector<BidsChannel>& channels, const std::string& letters) {
+std::string channels_json(const std::vector<BidsChannel>& channels) {
   // Only frames that occur are described.
   std::set<std::string> used;
   for (const BidsChannel& channel : channels) used.insert(channel.reference_frame);
   Json levels;
   if (used.contains("global")) {
     levels["global"] = {{"Description", "the room, the same for all channels of this frame"},
-                        {"SpatialAxes", letters},
+                        {"SpatialAxes", spatial_axes},
                         {"RotationRule", "right-hand"}};
   }
   if (used.contains("sensor")) {
     levels["sensor"] = {{"Description", "each sensor's own axes, which move with it"},
                         {"RotationRule", "right-hand"}};
   }
-  Json frame;
-  frame["LongName"] = "reference frame";
-  frame["Description"] = "the space in which a channel's values stand";
-  frame["Levels"] = levels;
-  Json out;
-  out["reference_frame"] = frame;
-  return bids_json_text(out);
-}
-
-/// Adds the counts of channels and tracked points that motion.json states.
-void add_counts(const std::vector<BidsChannel>& channels, Json& out) {
-  std::set<std::string> points;
-  for (const BidsChannel& channel : channels) {
-    if (channel.tracked_point != "n/a") points.insert(channel.tracked_point);
-  }
-  out["MotionChannelCount"] = channels.size();
-  out["TrackedPointsCount"] = points.size();
-  // Every count is written, also 0.
-  for (const char* type :
-       {"POS", "ORNT", "ACCEL", "GYRO", "MAGN", "VEL", "ANGACCEL", "JNTANG", "LATENCY"}) {
-    std::size_t count = 0;
-    for (const BidsChannel& channel : channels) count += channel.type == type ? 1 : 0;
-    out[std::string(type) + "ChannelCount"] = count;
-  }
+  const Json frame = {{"LongName", "reference frame"},
+                      {"Description", "the space in which a channel's values stand"},
+                      {"Levels", levels}};
+  return bids_json_text({{"reference_frame", frame}});
 }
 
 }  // namespace
@@ -164,7 +146,6 @@ BidsSidecars BidsMotionWriter::sidecars(const BidsSystemFacts& facts) const {
   motion["TrackingSystemName"] = facts.system_name;
   add("Manufacturer", facts.manufacturer);
   add("ManufacturersModelName", facts.model);
-  add("DeviceSerialNumber", facts.serial_number);
   add("SoftwareVersions", facts.software_versions);
   motion["SamplingFrequency"] = facts.rate_hz;
   const double seconds = 1e-9 * static_cast<double>((last_ - onset_).count());
@@ -175,9 +156,10 @@ BidsSidecars BidsMotionWriter::sidecars(const BidsSystemFacts& facts) const {
   // Each row lasts one step, and so does the last one.
   if (facts.rate_hz > 0.0) motion["RecordingDuration"] = seconds + 1.0 / facts.rate_hz;
   motion["MissingValues"] = "n/a";
-  add_counts(channels_, motion);
-  return {write_tsv(channels_table(channels_)), channels_json(channels_, facts.spatial_axes),
-          bids_json_text(motion), onset_};
+  // Every count is written, also 0.
+  for (const auto& [key, count] : bids_counts(channels_)) motion[key] = count;
+  return {write_tsv(channels_table(channels_)), channels_json(channels_), bids_json_text(motion),
+          onset_};
 }
 
 }  // namespace kinalign

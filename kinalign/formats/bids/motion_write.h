@@ -19,9 +19,7 @@ namespace kinalign {
 struct BidsSystemFacts {
   std::string task_name, system_name;  // "Walking and turning", "Kinect v2"
   double rate_hz = 0.0;                // nominal
-  std::string task_description, manufacturer, model, serial_number, software_versions;
-  /// Directions of the x, y and z axes, as seen by a person at the start: A or P, L or R, S or I.
-  std::string spatial_axes = "LSA";
+  std::string task_description, manufacturer, model, software_versions;
 };
 
 /// The texts of the sidecar files of a motion.tsv.

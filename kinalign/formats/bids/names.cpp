@@ -77,47 +77,16 @@ bool is_bids_label(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return is_digit(c) || is_letter(c); });
 }
 
-Result<void> check_labels(const BidsEntities& e) {
-  // An empty label is an absent entity.
-  const auto check = [](const char* what, const std::string& label, bool needed) -> Result<void> {
-    if (is_bids_label(label) || (label.empty() && !needed)) return {};
-    return Failure(Error{"", 0, fmt::format("letters and digits for BIDS' {}", what),
-                         "'" + shown(label) + "'"});
-  };
-  KA_TRY(check("sub", e.subject, true));
-  KA_TRY(check("ses", e.session, false));
-  KA_TRY(check("task", e.task, true));
-  KA_TRY(check("tracksys", e.system, true));
-  KA_TRY(check("acq", e.acquisition, false));
-  if (std::all_of(e.run.begin(), e.run.end(), is_digit)) return {};
-  return Failure(Error{"", 0, "digits for BIDS' run", "'" + shown(e.run) + "'"});
-}
-
-std::string bids_stem(const BidsEntities& e) {
-  std::string out;
-  const auto add = [&out](const char* key, const std::string& label) {
-    if (!label.empty()) out += std::string(out.empty() ? "" : "_") + key + "-" + label;
-  };
-  add("sub", e.subject);
-  add("ses", e.session);
-  add("task", e.task);
-  add("tracksys", e.system);
-  add("acq", e.acquisition);
-  add("run", e.run);
-  return out;
-}
-
-std::string bids_subject_folder(const BidsEntities& e) {
-  return "sub-" + e.subject + "/" + (e.session.empty() ? "" : "ses-" + e.session + "/");
-}
+std::string bids_subject_folder(const BidsEntities& e) { return "sub-" + e.subject + "/"; }
 
 std::string bids_path(const BidsEntities& e, std::string_view ending) {
-  return bids_subject_folder(e) + "motion/" + bids_stem(e) + "_" + std::string(ending);
+  std::string name = "sub-" + e.subject + "_task-" + e.task + "_tracksys-" + e.system;
+  if (!e.run.empty()) name += "_run-" + e.run;
+  return bids_subject_folder(e) + "motion/" + name + "_" + std::string(ending);
 }
 
 std::string bids_scans_path(const BidsEntities& e) {
-  return bids_subject_folder(e) + "sub-" + e.subject +
-         (e.session.empty() ? "" : "_ses-" + e.session) + "_scans.tsv";
+  return bids_subject_folder(e) + "sub-" + e.subject + "_scans.tsv";
 }
 
 std::string_view BidsName::label(std::string_view key) const {
@@ -147,23 +116,15 @@ std::optional<BidsName> parse_bids_name(std::string_view file_name) {
 }
 
 std::string acq_time_text(Time time) {
-  const std::int64_t ns = to_ns(time);
-  constexpr std::int64_t second = 1'000'000'000, day_seconds = 86'400;
-  std::int64_t seconds = ns / second, below = ns % second;
-  // Times before 1970: the rest of a division is negative.
-  if (below < 0) {
-    below += second;
-    --seconds;
-  }
-  std::int64_t days = seconds / day_seconds, of_day = seconds % day_seconds;
-  if (of_day < 0) {
-    of_day += day_seconds;
-    --days;
-  }
-  const std::chrono::year_month_day date{std::chrono::sys_days{std::chrono::days{days}}};
+  const std::chrono::sys_time<Duration> at{time.time_since_epoch()};
+  // floor: times before 1970 are negative.
+  const auto day = std::chrono::floor<std::chrono::days>(at);
+  const std::chrono::year_month_day date{day};
+  const std::chrono::hh_mm_ss of_day{std::chrono::floor<std::chrono::microseconds>(at - day)};
   return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", static_cast<int>(date.year()),
                      static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                     of_day / 3600, of_day / 60 % 60, of_day % 60, below / 1000);
+                     of_day.hours().count(), of_day.minutes().count(), of_day.seconds().count(),
+                     of_day.subseconds().count());
 }
 
 std::optional<Time> parse_acq_time(std::string_view text) {

@@ -3,7 +3,6 @@
 // Layout: docs/formats/bids.md.
 #pragma once
 
-#include "kinalign/core/error.h"
 #include "kinalign/wire/time.h"
 
 #include <optional>
@@ -17,25 +16,17 @@ namespace kinalign {
 /// True for one or more letters and digits.
 bool is_bids_label(std::string_view text);
 
-/// Labels in the file names of a tracking system. Session, acquisition and run may be empty.
-/// Empty labels are left out of names.
+/// Labels in the file names of a tracking system. An empty run is left out of names.
 struct BidsEntities {
-  std::string subject, session, task, system, acquisition, run;
+  std::string subject, task, system, run;
 };
 
-/// Fails if a label has other characters than letters and digits, or a run other than digits.
-/// A label with another character could leave its folder or split the name.
-Result<void> check_labels(const BidsEntities& entities);
-
-/// "sub-01_ses-a_task-walk_tracksys-kinect_run-2"
-/// Entities in the order that BIDS fixes.
-std::string bids_stem(const BidsEntities& entities);
-/// "sub-01/ses-a/"
+/// "sub-01/"
 std::string bids_subject_folder(const BidsEntities& entities);
 /// For the ending "motion.tsv":
-/// "sub-01/ses-a/motion/sub-01_ses-a_task-walk_tracksys-kinect_run-2_motion.tsv".
+/// "sub-01/motion/sub-01_task-walk_tracksys-kinect_run-2_motion.tsv".
 std::string bids_path(const BidsEntities& entities, std::string_view ending);
-/// "sub-01/ses-a/sub-01_ses-a_scans.tsv"
+/// "sub-01/sub-01_scans.tsv"
 std::string bids_scans_path(const BidsEntities& entities);
 
 /// The parts of a file name: sub-01_task-walk_motion.tsv has the entities sub and task and the

@@ -3,9 +3,8 @@
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/bids/system.h"
 #include "kinalign/formats/cells.h"
-#include "kinalign/formats/held_rows.h"
 #include "kinalign/formats/imu_converter.h"
-#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/line_reader.h"
 #include "kinalign/formats/point_rows.h"
 #include "kinalign/formats/row_stamps.h"
 
@@ -22,14 +21,8 @@ namespace kinalign {
 
 namespace {
 
-/// Larger numbers can't be meant and are refused.
-constexpr double largest_number = 1e15;
 // No offset: latencies are seconds from the onset.
 constexpr TimeScale latency_seconds{1'000'000'000, 0};
-
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
 
 /// The n columns of one quantity of a tracked point, in the order of our arrays, with their unit
 /// factors.
@@ -60,9 +53,6 @@ std::optional<Quantity<n>> find_quantity(const BidsSystem& system, std::string_v
   return out;
 }
 
-constexpr std::array<const char*, 3> xyz{"x", "y", "z"};
-constexpr std::array<const char*, 4> wxyz{"quat_w", "quat_x", "quat_y", "quat_z"};
-
 /// Names of the tracked points, in the order of their first channels.
 std::vector<std::string> tracked_points(const BidsSystem& system) {
   std::vector<std::string> out;
@@ -79,8 +69,8 @@ std::vector<std::string> tracked_points(const BidsSystem& system) {
 std::optional<Axes> axes_of_frame(const BidsSystem& system, const std::string& frame) {
   const auto letters = system.letters.find(frame);
   // A frame without letters counts as y up.
-  if (letters == system.letters.end() || letters->second == "n/a") return y_up;
-  return axes_of_letters(letters->second);
+  if (letters == system.letters.end() || letters->second.value_or("n/a") == "n/a") return y_up;
+  return axes_of_letters(*letters->second);
 }
 
 Result<Axes> space_of(const BidsSystem& system, const std::string& frame,
@@ -88,37 +78,41 @@ Result<Axes> space_of(const BidsSystem& system, const std::string& frame,
   const auto axes = axes_of_frame(system, frame);
   if (!axes && options.up.empty()) {
     return refuse("SpatialAxes of three letters, one of which is S or I; otherwise set up",
-                  shown(system.letters.at(frame)));
+                  shown(*system.letters.at(frame)));
   }
   return axes_of(axes.value_or(y_up), options);
+}
+
+/// The column of the latencies; empty if there is none.
+std::optional<std::size_t> latency_column(const BidsSystem& system) {
+  const auto latency = std::find_if(system.channels.begin(), system.channels.end(),
+                                    [](const BidsChannel& c) { return c.type == "LATENCY"; });
+  if (latency == system.channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(latency - system.channels.begin());
+}
+
+/// Without latencies the rows are counted by the rate, and the onset is the stamp of the first row.
+RowStamps stamps_of(const BidsSystem& system, const StreamOptions& options) {
+  const bool latency = latency_column(system).has_value();
+  const double rate = options.rate_hz > 0.0 ? options.rate_hz : system.rate_hz;
+  auto start = options.start_ns;
+  if (!start && !latency && system.onset) start = to_ns(*system.onset);
+  return RowStamps(latency, rate, start);
 }
 
 /// Splits the lines into numbers: for each wanted column its value, or that the value is missing.
 /// Only wanted columns are parsed; a motion.tsv may have hundreds of others.
 class BidsRows {
  public:
-  BidsRows(const BidsSystem& system, const StreamOptions& options, std::string_view file)
+  explicit BidsRows(const BidsSystem& system)
       : values(system.channels.size()),
         missing(system.channels.size()),
-        lines(file),
-        stamps(false, 1.0, {}),
-        wanted_(system.channels.size()) {
-    const auto latency = std::find_if(system.channels.begin(), system.channels.end(),
-                                      [](const BidsChannel& c) { return c.type == "LATENCY"; });
-    if (latency != system.channels.end()) {
-      latency_ = static_cast<std::size_t>(latency - system.channels.begin());
-    }
-    onset_ns_ = system.onset ? to_ns(*system.onset) : 0;
-    const double rate = options.rate_hz > 0.0 ? options.rate_hz : system.rate_hz;
-    auto start = options.start_ns;
-    // Without latencies the onset is the stamp of the first row.
-    if (!start && !latency_ && system.onset) start = onset_ns_;
-    // Without latencies the rows are counted by the rate.
-    stamps = RowStamps(latency_.has_value(), rate, start);
-  }
+        wanted_(system.channels.size()),
+        latency_(latency_column(system)),
+        onset_ns_(system.onset ? to_ns(*system.onset) : 0) {}
 
-  template <std::size_t n>
   /// Marks the columns of a quantity, so that read() parses them.
+  template <std::size_t n>
   void want(const Quantity<n>& quantity) {
     for (const std::size_t column : quantity.columns) wanted_[column] = true;
   }
@@ -139,19 +133,18 @@ class BidsRows {
                   std::to_string(c + 1));
   }
 
-  Result<Time> next_stamp() {
+  /// The stamp that the row states; 0 without latencies.
+  Result<std::int64_t> stamp_ns() const {
     std::int64_t ns = 0;
     // The sum of a file's onset and latency may overflow.
     if (latency_ && __builtin_add_overflow(onset_ns_, latency_ns_, &ns)) {
       return refuse("a stamp inside +-4e18 ns", "a stamp outside");
     }
-    return stamps.next(ns);
+    return ns;
   }
 
   std::vector<double> values;
   std::vector<std::uint8_t> missing;
-  NamedLines lines;
-  RowStamps stamps;
   std::uint64_t nan_cells = 0;
 
  private:
@@ -178,63 +171,46 @@ class BidsRows {
 
   std::vector<bool> wanted_;
   std::optional<std::size_t> latency_;
-  std::int64_t latency_ns_ = 0, onset_ns_ = 0;
+  std::int64_t latency_ns_ = 0, onset_ns_;
 };
 
-/// The part that both readers share: stamps, kept rows and findings. Base is PointReader or
-/// ImuReader.
-/// The derived class converts one row; it is called for rows in the order of the file.
+/// The part that both readers share. Base is PointReader or ImuReader. The derived class converts
+/// one row; it is called for rows in the order of the file.
 template <class Base>
-class BidsReader : public Base {
+class BidsReader : public LineReader<Base> {
  public:
-  using Frames = typename Base::Frames;
+  using typename LineReader<Base>::Frames;
 
   BidsReader(const BidsSystem& system, const StreamOptions& options, std::string_view file)
-      : rows_(system, options, file) {}
-
-  Result<void> feed(std::string_view piece, Frames& out) override {
-    return rows_.lines.feed(piece, [&](std::string_view line) { return use(line, out); });
-  }
-
-  Result<void> finish(Frames& out) override {
-    KA_TRY(
-        rows_.lines.finish([&](std::string_view line) { return use(line, out); }, this->findings));
-    rows_.stamps.settle();
-    this->counted = rows_.stamps.counted();
-    // Rows that were held for their stamps are released now.
-    held_.release(rows_.stamps, out);
-    const std::string& file = rows_.lines.file();
-    if (rows_.stamps.stuck()) this->findings.push_back(stuck_finding(file, rows_.stamps));
-    if (rows_.nan_cells > 0) {
-      this->findings.push_back(
-          {Severity::warning,
-           Error{file, 0, "n/a for what is missing",
-                 fmt::format("{} cells that are empty or nan", rows_.nan_cells)},
-           "these values are missing", "write n/a: validators of BIDS refuse other marks"});
-    }
-    report(file);
-    return {};
+      : LineReader<Base>(file, "rows of samples", stamps_of(system, options)), rows_(system) {
+    this->header_.emplace();
   }
 
  protected:
-  // Called after rows().read() has filled the row.
+  // Called after rows_.read() has filled the row.
   virtual void append_row(Frames& out) = 0;
-  virtual void report(const std::string&) {}
-  BidsRows& rows() { return rows_; }
 
- private:
-  Result<void> use(std::string_view line, Frames& out) {
-    if (!KA_TRY(rows_.read(line))) return {};
-    // The stamp comes before the values, which the derived class appends.
-    Frames& target = held_.target(rows_.stamps, out);
-    target.stamps.push_back(KA_TRY(rows_.next_stamp()));
-    append_row(target);
-    held_.release(rows_.stamps, out);
+  Result<void> report() override {
+    if (rows_.nan_cells == 0) return {};
+    add_warning(this->findings,
+                {this->lines_.file(), 0, "n/a for what is missing",
+                 fmt::format("{} cells that are empty or nan", rows_.nan_cells)},
+                "these values are missing", "write n/a: validators of BIDS refuse other marks");
     return {};
   }
 
   BidsRows rows_;
-  HeldRows<Frames> held_;
+
+ private:
+  Result<void> read(std::string_view line, Frames& out) override {
+    if (!KA_TRY(rows_.read(line))) return {};
+    // The stamp comes before the values, which the derived class appends.
+    Frames& target = this->held_.target(this->stamps_, out);
+    target.stamps.push_back(KA_TRY(this->stamps_.next(KA_TRY(rows_.stamp_ns()))));
+    append_row(target);
+    this->held_.release(this->stamps_, out);
+    return {};
+  }
 };
 
 struct TrackedPoint {
@@ -252,16 +228,14 @@ class BidsPointReader final : public BidsReader<PointReader> {
         raw_(3 * points_.size()),
         states_(points_.size()) {
     for (const TrackedPoint& point : points_) {
-      header_.joint_names.push_back(point.name);
-      rows().want(point.places);
+      header_->joint_names.push_back(point.name);
+      rows_.want(point.places);
     }
     // The user's unit replaces that of the file, so the file's factors must not apply as well.
     if (options.metres_per_unit > 0.0) {
       for (TrackedPoint& point : points_) point.places.scales = {1.0, 1.0, 1.0};
     }
   }
-
-  const PointHeader* header() const override { return &header_; }
 
  private:
   /// Appends a row of points; a point that lacks one of its coordinates is missing.
@@ -271,8 +245,8 @@ class BidsPointReader final : public BidsReader<PointReader> {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t column = points_[j].places.columns[k];
         // A point needs all of its coordinates.
-        there = there && rows().missing[column] == 0;
-        raw_[3 * j + k] = points_[j].places.scales[k] * rows().values[column];
+        there = there && rows_.missing[column] == 0;
+        raw_[3 * j + k] = points_[j].places.scales[k] * rows_.values[column];
       }
       states_[j] = there ? Tracking::tracked : Tracking::missing;
     }
@@ -283,7 +257,6 @@ class BidsPointReader final : public BidsReader<PointReader> {
   PointUnits units_;
   std::vector<double> raw_;       // [J,3] the current row, in the file's axes
   std::vector<Tracking> states_;  // [J] the current row
-  PointHeader header_;
 };
 
 struct TrackedNode {
@@ -303,20 +276,19 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
     const auto all = [this](const auto& has) {
       return std::all_of(nodes_.begin(), nodes_.end(), has);
     };
-    header_.content = {all([](const TrackedNode& n) { return n.orientation.has_value(); }),
-                       all([](const TrackedNode& n) { return n.acceleration.has_value(); }),
-                       all([](const TrackedNode& n) { return n.angular_velocity.has_value(); }),
-                       true};
+    header_->content = {all([](const TrackedNode& n) { return n.orientation.has_value(); }),
+                        all([](const TrackedNode& n) { return n.acceleration.has_value(); }),
+                        all([](const TrackedNode& n) { return n.angular_velocity.has_value(); }),
+                        true};
     for (const TrackedNode& node : nodes_) {
-      header_.node_names.push_back(node.name);
-      if (header_.content.orientation) rows().want(*node.orientation);
-      if (header_.content.acceleration) rows().want(*node.acceleration);
-      if (header_.content.angular_velocity) rows().want(*node.angular_velocity);
+      header_->node_names.push_back(node.name);
+      if (header_->content.orientation) rows_.want(*node.orientation);
+      if (header_->content.acceleration) rows_.want(*node.acceleration);
+      if (header_->content.angular_velocity) rows_.want(*node.angular_velocity);
     }
   }
 
-  const ImuHeader* header() const override { return &header_; }
-  const ImuContent& content() const { return header_.content; }
+  const ImuContent& content() const { return header_->content; }
 
  private:
   /// Appends a row of samples; a node's sample that lacks a number is invalid.
@@ -325,13 +297,13 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
       bool valid = true;
       std::array<double, 4> turn{};
       std::array<double, 3> force{}, rate{};
-      if (header_.content.orientation) take(*node.orientation, turn, valid);
-      if (header_.content.acceleration) take(*node.acceleration, force, valid);
-      if (header_.content.angular_velocity) take(*node.angular_velocity, rate, valid);
+      if (header_->content.orientation) take(*node.orientation, turn, valid);
+      if (header_->content.acceleration) take(*node.acceleration, force, valid);
+      if (header_->content.angular_velocity) take(*node.angular_velocity, rate, valid);
       // nullptr: the stream does not have this quantity.
-      samples_.append({header_.content.orientation ? turn.data() : nullptr,
-                       header_.content.acceleration ? force.data() : nullptr,
-                       header_.content.angular_velocity ? rate.data() : nullptr, valid},
+      samples_.append({header_->content.orientation ? turn.data() : nullptr,
+                       header_->content.acceleration ? force.data() : nullptr,
+                       header_->content.angular_velocity ? rate.data() : nullptr, valid},
                       out);
     }
   }
@@ -340,16 +312,19 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
   void take(const Quantity<n>& quantity, std::array<double, n>& out, bool& valid) {
     // A missing part makes the sample of this node invalid, not that of others.
     for (std::size_t k = 0; k < n; ++k) {
-      valid = valid && rows().missing[quantity.columns[k]] == 0;
-      out[k] = quantity.scales[k] * rows().values[quantity.columns[k]];
+      valid = valid && rows_.missing[quantity.columns[k]] == 0;
+      out[k] = quantity.scales[k] * rows_.values[quantity.columns[k]];
     }
   }
 
-  void report(const std::string& file) override { samples_.report(file, findings); }
+  Result<void> report() override {
+    KA_TRY(BidsReader::report());
+    samples_.report(lines_.file(), findings);
+    return {};
+  }
 
   std::vector<TrackedNode> nodes_;
   ImuConverter samples_;
-  ImuHeader header_;
 };
 
 /// Fails if a channel's unit is no unit of its type.
@@ -364,9 +339,11 @@ Result<void> check_unit(const BidsSystem& system, const Quantity<n>& quantity) {
   return {};
 }
 
-Failure in_channels(Error error, std::string_view file) {
-  if (error.file.empty()) error.file = std::string(file);
-  return Failure(std::move(error));
+/// Adds the file to the error of a reader that could not be made.
+template <class Made>
+Result<Made> placed(Result<Made> made, std::string_view file) {
+  if (!made && made.error().file.empty()) made.error().file = std::string(file);
+  return made;
 }
 
 /// Reader of all tracked points that have x, y and z; all must use one reference frame.
@@ -376,7 +353,7 @@ Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
                                                std::string_view file) {
   std::vector<TrackedPoint> points;
   for (const std::string& name : tracked_points(system)) {
-    const auto places = find_quantity(system, name, "POS", xyz);
+    const auto places = find_quantity(system, name, "POS", bids_axes);
     if (!places) continue;
     // With metres_per_unit the unit of the file does not matter.
     if (options.metres_per_unit <= 0.0) KA_TRY(check_unit(system, *places));
@@ -397,9 +374,9 @@ Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const Stre
   std::vector<TrackedNode> nodes;
   Axes axes = y_up;
   for (const std::string& name : tracked_points(system)) {
-    TrackedNode node{name, find_quantity(system, name, "ORNT", wxyz),
-                     find_quantity(system, name, "ACCEL", xyz),
-                     find_quantity(system, name, "GYRO", xyz)};
+    TrackedNode node{name, find_quantity(system, name, "ORNT", bids_quaternion),
+                     find_quantity(system, name, "ACCEL", bids_axes),
+                     find_quantity(system, name, "GYRO", bids_axes)};
     if (node.acceleration) KA_TRY(check_unit(system, *node.acceleration));
     if (node.angular_velocity) KA_TRY(check_unit(system, *node.angular_velocity));
     // The frame of the orientations is the world; vectors are in the sensor's own space.
@@ -426,17 +403,13 @@ Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const Stre
 Result<std::unique_ptr<PointReader>> make_bids_point_reader(const BidsSystem& system,
                                                             const StreamOptions& options,
                                                             std::string_view file) {
-  auto made = points_of(system, options, file);
-  if (!made) return in_channels(std::move(made).error(), file);
-  return made;
+  return placed(points_of(system, options, file), file);
 }
 
 Result<std::unique_ptr<ImuReader>> make_bids_node_reader(const BidsSystem& system,
                                                          const StreamOptions& options,
                                                          std::string_view file) {
-  auto made = nodes_of(system, options, file);
-  if (!made) return in_channels(std::move(made).error(), file);
-  return made;
+  return placed(nodes_of(system, options, file), file);
 }
 
 }  // namespace kinalign

@@ -44,34 +44,19 @@ bool is_there(FileSystem& files, const std::string& path) {
   return !path.empty() && InputFile::open(files, path, 1).has_value();
 }
 
-/// SpatialAxes of each reference frame in channels.json; empty if there is no such file.
-Result<std::map<std::string, std::string>> read_letters(FileSystem& files,
-                                                        const std::string& path) {
-  std::map<std::string, std::string> out;
-  if (!is_there(files, path)) return out;
-  const auto json = KA_TRY(parse_bids_json(KA_TRY(read_whole(files, path, largest_json)), path));
-  const auto frame = json.find("reference_frame");
-  if (frame == json.end() || !frame->is_object()) return out;
-  const auto levels = frame->find("Levels");
-  if (levels == frame->end() || !levels->is_object()) return out;
-  for (const auto& [name, level] : levels->items()) {
-    // Levels may also be texts, which have no axes.
-    if (!level.is_object()) continue;
-    const auto axes = level.find("SpatialAxes");
-    if (axes != level.end() && axes->is_string()) out[name] = axes->get<std::string>();
-  }
-  return out;
+Result<nlohmann::ordered_json> read_json(FileSystem& files, const std::string& path) {
+  return parse_bids_json(KA_TRY(read_whole(files, path, largest_json)), path);
 }
 
 Result<double> read_rate(FileSystem& files, const std::string& path) {
-  const auto json = KA_TRY(parse_bids_json(KA_TRY(read_whole(files, path, largest_json)), path));
+  const auto json = KA_TRY(read_json(files, path));
   const auto rate = json.find("SamplingFrequency");
   const bool number = rate != json.end() && rate->is_number();
   // A number written as a text is not accepted.
   const double hz = number ? rate->get<double>() : 0.0;
   if (hz >= 1e-3 && hz <= 1e6) return hz;
-  return Failure(Error{path, 0, "a SamplingFrequency of 0.001 to 1,000,000",
-                       number ? std::to_string(hz) : "none"});
+  return refuse(path, "a SamplingFrequency of 0.001 to 1,000,000",
+                number ? std::to_string(hz) : "none");
 }
 
 /// The file's start in scans.tsv; empty if there is no such file, row or valid time.
@@ -116,15 +101,16 @@ std::vector<std::string> bids_sidecar_paths(FileSystem& files, const std::string
 
 Result<BidsSystem> read_bids_system(FileSystem& files, const std::string& path) {
   if (!named_as_bids_motion(path)) {
-    return Failure(
-        Error{path, 0, "a name such as sub-01_task-walk_tracksys-suit_motion.tsv", "another name"});
+    return refuse(path, "a name such as sub-01_task-walk_tracksys-suit_motion.tsv", "another name");
   }
   const SidecarPaths paths = paths_of(path);
   BidsSystem out;
   const std::string channels = KA_TRY(read_whole(files, paths.channels_tsv, largest_table));
   out.channels = KA_TRY(channels_of(read_tsv(channels), paths.channels_tsv));
   out.rate_hz = KA_TRY(read_rate(files, paths.motion_json));
-  out.letters = KA_TRY(read_letters(files, paths.channels_json));
+  if (is_there(files, paths.channels_json)) {
+    out.letters = frames_in(KA_TRY(read_json(files, paths.channels_json)));
+  }
   // A file without an onset has stamps from 0 on.
   out.onset = KA_TRY(read_onset(files, paths.scans_tsv, path));
   return out;

@@ -19,8 +19,8 @@ namespace kinalign {
 
 /// Facts from the sidecar files that a reader of motion.tsv needs.
 struct BidsSystem {
-  std::vector<BidsChannel> channels;           // one for each column
-  std::map<std::string, std::string> letters;  // reference frame -> SpatialAxes
+  std::vector<BidsChannel> channels;                          // one for each column
+  std::map<std::string, std::optional<std::string>> letters;  // reference frame -> SpatialAxes
   double rate_hz = 0.0;
   std::optional<Time> onset;  // time zero of the latencies, from scans.tsv
 };

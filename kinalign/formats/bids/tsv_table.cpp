@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/formats/bids/tsv_table.h"
 
+#include "kinalign/core/utf8.h"
+
 #include <algorithm>
 
 namespace kinalign {
 
 namespace {
 
-// "a\t\tb" has three cells, of which one is empty.
 std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> out;
-  for (;;) {
-    const auto tab = line.find('\t');
-    out.emplace_back(line.substr(0, tab));
-    if (tab == std::string_view::npos) return out;
-    line.remove_prefix(tab + 1);
-  }
+  // Lines may end in CR LF.
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  const auto cells = split(line, '\t');
+  return {cells.begin(), cells.end()};
 }
 
 void put_row(const std::vector<std::string>& cells, std::string& out) {
@@ -31,24 +29,24 @@ std::optional<std::size_t> TsvTable::column(std::string_view name) const {
   return static_cast<std::size_t>(found - columns.begin());
 }
 
+std::vector<std::string_view> split(std::string_view text, char delimiter) {
+  std::vector<std::string_view> out;
+  for (;;) {
+    const auto end = text.find(delimiter);
+    out.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return out;
+    text.remove_prefix(end + 1);
+  }
+}
+
 TsvTable read_tsv(std::string_view text) {
   TsvTable out;
-  // A byte order mark.
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  bool first = true;
-  while (!text.empty()) {
-    const auto end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    // Lines may end in CR LF.
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (first) {
-      out.columns = cells_of(line);
-    } else {
-      out.rows.push_back(cells_of(line));
-    }
-    first = false;
-  }
+  text = without_byte_order_mark(text);
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  if (text.empty()) return out;
+  for (const std::string_view line : split(text, '\n')) out.rows.push_back(cells_of(line));
+  out.columns = std::move(out.rows.front());
+  out.rows.erase(out.rows.begin());
   return out;
 }
 

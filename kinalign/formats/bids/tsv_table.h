@@ -20,6 +20,9 @@ struct TsvTable {
   std::optional<std::size_t> column(std::string_view name) const;
 };
 
+/// The parts between the delimiters: "a//b" has three, of which one is empty.
+std::vector<std::string_view> split(std::string_view text, char delimiter);
+
 /// Rows may be longer or shorter than the header line. The last line may be empty.
 TsvTable read_tsv(std::string_view text);
 

@@ -7,8 +7,10 @@
 #include "kinalign/formats/clip_survey.h"
 #include "kinalign/formats/file_sink.h"
 #include "kinalign/formats/reader.h"
+#include "kinalign/motion/kinematics.h"
 #include "kinalign/take/manifest.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -90,7 +92,14 @@ class BvhPoser {
   std::uint64_t frames() const { return frames_; }
 
  private:
-  struct Joint;
+  struct Joint {
+    std::array<int, 3> position{-1, -1, -1};  // column of x, y, z; -1: none, the offset applies
+    // Column of the first, second and third rotation; -1: none, the angle is zero.
+    std::array<int, 3> angle{-1, -1, -1};
+    EulerOrder order;
+    Vec3 offset = Vec3::Zero();  // m, in the file's axes
+    bool root = false;
+  };
   void place(const Joint& joint, std::span<const double> values, std::span<double> positions) const;
   void turn(const Joint& joint, std::span<const double> values, std::span<double> rotations) const;
 
@@ -100,13 +109,6 @@ class BvhPoser {
   BvhOptions options_;
   double frame_ns_ = 0.0;
   std::uint64_t frames_ = 0;
-
- public:
-  ~BvhPoser();
-  BvhPoser(BvhPoser&&) noexcept;
-  BvhPoser& operator=(BvhPoser&&) noexcept;
-  BvhPoser(const BvhPoser&) = delete;
-  BvhPoser& operator=(const BvhPoser&) = delete;
 };
 
 /// A reader that takes the file in pieces (reader.h). It counts values, not lines: a wrong frame
@@ -124,12 +126,10 @@ Result<BvhFile> read_bvh(std::string_view text, std::string_view name, const Bvh
 Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
                               const Progress& progress);
 
-using TextSink = FileSink;
-
 /// Writes `values` with the file's number of decimals: read, write, read gives every channel
 /// exactly. A clip from elsewhere first gets its channels from bvh_from_clip(). For files larger
 /// than memory there are BvhWriter and copy_bvh().
-Result<void> write_bvh(const BvhFile& file, const TextSink& sink);
+Result<void> write_bvh(const BvhFile& file, const FileSink& sink);
 
 /// Makes a BVH from a clip of another source, with the channels of BvhChannels.
 BvhFile bvh_from_clip(Clip clip, double frame_seconds);
@@ -138,7 +138,7 @@ BvhFile bvh_from_clip(Clip clip, double frame_seconds);
 /// "Frames:" stands above the rows, and a stream can't be written twice.
 class BvhWriter {
  public:
-  BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int decimals, TextSink sink);
+  BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int decimals, FileSink sink);
 
   /// The next rows of channel values [n,C].
   Result<void> append(std::span<const double> values);
@@ -146,7 +146,7 @@ class BvhWriter {
   Result<void> finish();
 
  private:
-  TextSink sink_;
+  FileSink sink_;
   std::size_t row_size_;
   int decimals_;
   std::uint64_t frames_, written_ = 0;
@@ -183,7 +183,7 @@ class BvhChannels {
 /// Copies a BVH with its own channels, values and decimals; every number stays as it is. Reads the
 /// file twice in pieces, because the number of frames is known only after the first pass. Returns
 /// the findings about its rows.
-Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const TextSink& sink,
+Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const FileSink& sink,
                           const Progress& progress = {});
 
 }  // namespace kinalign

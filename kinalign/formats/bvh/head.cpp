@@ -4,13 +4,11 @@
 
 #include "kinalign/core/numbers.h"
 #include "kinalign/core/utf8.h"
+#include "kinalign/formats/distinct_names.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace kinalign {
 
@@ -84,8 +82,6 @@ class BvhWords {
 constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
                                                         "xrotation", "yrotation", "zrotation"};
 
-constexpr double largest_offset = 1e15;  // the limit of the rows' values
-
 /// Parses without recursion: open_ is the stack of joints, so a deep hierarchy can't overflow the
 /// program's stack.
 class HierarchyParser {
@@ -95,9 +91,7 @@ class HierarchyParser {
 
   /// Parses the hierarchy and the two lines below MOTION.
   Result<BvhHierarchy> parse(std::size_t& rows) {
-    std::string_view word = words_.next();
-    // A byte order mark.
-    if (word.starts_with("\xEF\xBB\xBF")) word.remove_prefix(3);
+    std::string_view word = without_byte_order_mark(words_.next());
     if (lower(word) != "hierarchy") return Failure(words_.wrong("HIERARCHY", word));
     // All roots are parsed into one hierarchy; each has the parent -1.
     while (lower(words_.peek()) == "root") KA_TRY(root());
@@ -187,7 +181,7 @@ class HierarchyParser {
     Vec3 out;
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = words_.next();
-      if (!parse_number(word, out[i]) || !(std::abs(out[i]) < largest_offset)) {
+      if (!parse_number(word, out[i]) || !(std::abs(out[i]) < largest_number)) {
         return Failure(words_.wrong("three numbers after OFFSET", word));
       }
       offset_decimals_ = std::max(offset_decimals_, decimals_of(word));
@@ -222,10 +216,8 @@ class HierarchyParser {
   Result<void> timing() {
     const std::string_view frames = KA_TRY(value_of("frames", "Frames:"));
     out_.frames_line = words_.line();
-    const auto [end, fault] =
-        std::from_chars(frames.data(), frames.data() + frames.size(), out_.frames);
     // A sign or a fraction is no number of frames.
-    if (fault != std::errc{} || end != frames.data() + frames.size()) {
+    if (!parse_integer(frames, out_.frames)) {
       return Failure(words_.wrong("the number of frames", frames));
     }
     if (lower(words_.peek()) != "frame") {
@@ -241,11 +233,10 @@ class HierarchyParser {
     }
     // Some writers put the rate there instead of the step.
     if (out_.frame_seconds >= 1.0) {
-      findings_->push_back(
-          {Severity::warning,
-           Error{std::string(name_), words_.line(), "a frame time below 1 s", out_.frame_time},
-           "the clip is read at less than one frame a second",
-           "if the number is a rate, write its inverse"});
+      add_warning(*findings_,
+                  {std::string(name_), words_.line(), "a frame time below 1 s", out_.frame_time},
+                  "the clip is read at less than one frame a second",
+                  "if the number is a rate, write its inverse");
     }
     return {};
   }
@@ -268,23 +259,6 @@ class HierarchyParser {
   std::vector<int> open_;    // joints with an open brace, innermost last
   int offset_decimals_ = 0;  // most digits behind the point in any OFFSET
 };
-
-/// The names, made unique: a repeated name gets #2, #3, ..., the first number that gives no other
-/// joint's name.
-std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
-  std::set<std::string> taken(names.begin(), names.end());
-  // All written names are taken from the start, so that a made name never equals one of them.
-  std::map<std::string_view, int> times;
-  std::vector<std::string> out;
-  for (const std::string& name : names) {
-    int& number = times[name];
-    std::string other = name;
-    while (++number > 1 && !taken.insert(other = name + "#" + std::to_string(number)).second) {
-    }
-    out.push_back(std::move(other));
-  }
-  return out;
-}
 
 /// True if `text` reaches beyond the number in the line "Frame Time: ...".
 /// The head is parsed only when it is complete, so that a fault is reported once and with its line.
@@ -337,10 +311,9 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
   for (std::size_t j = 0; j < out.joint_names.size(); ++j) {
     const std::string& written = names[j];
     if (out.joint_names[j] == written) continue;
-    findings.push_back(
-        {Severity::warning,
-         Error{std::string(name), 0, "different joint names", "'" + shown(written) + "' twice"},
-         "read as '" + shown(out.joint_names[j]) + "'", ""});
+    add_warning(findings,
+                {std::string(name), 0, "different joint names", "'" + shown(written) + "' twice"},
+                "read as '" + shown(out.joint_names[j]) + "'");
   }
   for (std::size_t j = 0; j < hierarchy.offsets.size(); ++j) {
     const Vec3 offset = hierarchy.offsets[j] * options.metres_per_unit;
@@ -365,7 +338,7 @@ Result<bool> BvhHead::add(std::string_view piece, Findings& findings) {
   }
   if (text_.size() <= longest) return false;
   KA_TRY(finish(findings));  // reports a fault in the text, if there is one besides its length
-  return Failure(Error{name_, 0, "MOTION within the first 8 MiB", "none"});
+  return refuse(name_, "MOTION within the first 8 MiB", "none");
 }
 
 Result<void> BvhHead::finish(Findings& findings) {
@@ -410,8 +383,8 @@ Result<std::string> read_bvh_head(FileSystem& files, const std::string& path) {
 }
 
 bool looks_like_bvh(std::string_view head) {
-  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
-  return lower(stripped(head.substr(0, 64))).starts_with("hierarchy");
+  head = without_byte_order_mark(head).substr(0, 64);
+  return lower(stripped(head)).starts_with("hierarchy");
 }
 
 }  // namespace kinalign

@@ -2,7 +2,6 @@
 // Reads a BVH in pieces: converts rows of channels into local positions and rotations.
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/rows.h"
-#include "kinalign/motion/kinematics.h"
 #include "kinalign/motion/stamps.h"
 
 #include <algorithm>
@@ -99,15 +98,6 @@ BvhOptions bvh_options(const StreamOptions& options) {
   return out;
 }
 
-struct BvhPoser::Joint {
-  std::array<int, 3> position{-1, -1, -1};  // column of x, y, z; -1: none, the offset applies
-  // Column of the first, second and third rotation; -1: none, the angle is zero.
-  std::array<int, 3> angle{-1, -1, -1};
-  EulerOrder order;
-  Vec3 offset = Vec3::Zero();  // m, in the file's axes
-  bool root = false;
-};
-
 BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
     : row_size_(hierarchy.row_size()), options_(options), frame_ns_(hierarchy.frame_seconds * 1e9) {
   int column = 0;
@@ -135,10 +125,6 @@ BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
     joints_.push_back(joint);
   }
 }
-
-BvhPoser::~BvhPoser() = default;
-BvhPoser::BvhPoser(BvhPoser&&) noexcept = default;
-BvhPoser& BvhPoser::operator=(BvhPoser&&) noexcept = default;
 
 /// Fills one joint's positions in all frames. Array offsets: `positions` begins at the joint's
 /// first frame.

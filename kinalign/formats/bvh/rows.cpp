@@ -14,7 +14,6 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t longest_word = 512;
-constexpr double largest = 1e15;  // the limit of tables (cells.cpp): larger numbers can't be meant
 
 }  // namespace
 
@@ -65,11 +64,10 @@ Result<void> BvhRows::finish(Findings& findings) {
   KA_TRY(feed("\n", findings));  // the blank ends the last number
   const std::size_t left = count_ % head_.row_size;
   if (left == 0) return {};
-  findings.push_back(
-      {Severity::warning,
-       Error{head_.name, head_.line - 1, fmt::format("{} values in the frame", head_.row_size),
-             std::to_string(left)},
-       "the incomplete last frame was dropped", ""});
+  add_warning(findings,
+              {head_.name, head_.line - 1, fmt::format("{} values in the frame", head_.row_size),
+               std::to_string(left)},
+              "the incomplete last frame was dropped");
   return {};
 }
 
@@ -118,7 +116,7 @@ Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings)
     if (at >= end) break;
     const char* behind = parse_number(at, end, *out);
     // The number must end at a blank: "1.2.3" is no number.
-    if (behind == nullptr || !is_blank(*behind) || !(std::abs(*out) < largest)) {
+    if (behind == nullptr || !is_blank(*behind) || !(std::abs(*out) < largest_number)) {
       count_ = count();
       return strange_word(at, end, findings);
     }
@@ -142,9 +140,8 @@ Result<void> BvhRows::strange_word(const char* at, const char* end, Findings& fi
   if (frames_read() < head_.frames || count_ % head_.row_size != 0 || head_.frames == 0) {
     return Failure(wrong_number(word));
   }
-  findings.push_back({Severity::warning,
-                      Error{head_.name, head_.line, "the end of the file", "'" + shown(word) + "'"},
-                      "all rows from this line on were left out", ""});
+  add_warning(findings, {head_.name, head_.line, "the end of the file", "'" + shown(word) + "'"},
+              "all rows from this line on were left out");
   ended_ = true;
   return {};
 }
@@ -161,11 +158,10 @@ Result<void> BvhValues::finish(Findings& findings) {
   }
   KA_TRY(rows_->finish(findings));
   if (frames_read() == head_.hierarchy.frames) return {};
-  findings.push_back(
-      {Severity::warning,
-       Error{name_, head_.hierarchy.frames_line, fmt::format("{} frames", head_.hierarchy.frames),
-             std::to_string(frames_read())},
-       "the existing frames were read", ""});
+  add_warning(findings,
+              {name_, head_.hierarchy.frames_line, fmt::format("{} frames", head_.hierarchy.frames),
+               std::to_string(frames_read())},
+              "the existing frames were read");
   return {};
 }
 

@@ -117,17 +117,17 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
   if (hip < 0.6 || hip > 1.3) {
     const Unit& unit = best_unit(hip / options.metres_per_unit);
     const bool same = unit.metres == options.metres_per_unit;
-    findings.push_back(
-        {Severity::warning,
-         Error{std::string(name), 0, "hips 0.6 to 1.3 m above the lowest joint of the rest pose",
-               fmt::format("{:.3g} m", hip)},
-         same ? "no other usual unit fits better: the person is small or large, or the rest pose "
-                "is unusual"
-              : "all lengths may be in another unit",
-         same ? "set --metres-per-unit (metres_per_unit in a manifest) if the file has another unit"
-              : fmt::format("set --metres-per-unit {0} (metres_per_unit = {0} in a manifest) if "
-                            "the file is in {1}",
-                            unit.metres, unit.name)});
+    add_warning(
+        findings,
+        {std::string(name), 0, "hips 0.6 to 1.3 m above the lowest joint of the rest pose",
+         fmt::format("{:.3g} m", hip)},
+        same ? "no other usual unit fits better: the person is small or large, or the rest pose "
+               "is unusual"
+             : "all lengths may be in another unit",
+        same ? "set --metres-per-unit (metres_per_unit in a manifest) if the file has another unit"
+             : fmt::format("set --metres-per-unit {0} (metres_per_unit = {0} in a manifest) if "
+                           "the file is in {1}",
+                           unit.metres, unit.name));
   }
   return findings;
 }

@@ -145,7 +145,7 @@ Result<ClipSurvey> read_all(FileSystem& files, const std::string& path, const Bv
                             const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   const auto reader = make_bvh_reader(options, path);
-  StampSurveyor surveyor;
+  ClipSurvey out;
   std::uint64_t bytes = 0;
   for (bool ended = false; !ended;) {
     const std::string_view piece = KA_TRY(file.next());
@@ -154,12 +154,10 @@ Result<ClipSurvey> read_all(FileSystem& files, const std::string& path, const Bv
     ClipFrames block;
     ended = piece.empty();
     KA_TRY(ended ? reader->finish(block) : reader->feed(piece, block));
-    surveyor.add(block.stamps);
+    out.survey.samples += block.size();
   }
-  ClipSurvey out;
   out.skeleton = *reader->header();
   out.findings = std::move(reader->findings);
-  out.survey = surveyor.result();
   return out;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes channel values as text, converts a clip to channel values, and copies a file.
+#include "kinalign/core/file_version.h"
 #include "kinalign/core/numbers.h"
-#include "kinalign/core/unchanged.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/rows.h"
 #include "kinalign/formats/unknown_file.h"
@@ -20,18 +20,10 @@ namespace {
 constexpr std::array<std::string_view, 6> channel_words{"Xposition", "Yposition", "Zposition",
                                                         "Xrotation", "Yrotation", "Zrotation"};
 
-/// The writer of numbers gives the shortest text if the decimals do not suffice.
-void put(std::string& text, double value, int decimals) {
-  std::array<char, number_room> room{};
-  const char* end = put_number(room.data(), value, std::min(decimals, 15));
-  text.append(room.data(), static_cast<std::size_t>(end - room.data()));
-}
-
 void put_offset(std::string& text, const std::string& indent, const Vec3& offset, int decimals) {
   text += indent + "OFFSET";
   for (int i = 0; i < 3; ++i) {
-    text += ' ';
-    put(text, offset[i], decimals);
+    text += ' ' + number_text(offset[i], std::min(decimals, 15));
   }
   text += '\n';
 }
@@ -160,21 +152,22 @@ Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
 }  // namespace
 
 BvhWriter::BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int decimals,
-                     TextSink sink)
+                     FileSink sink)
     : sink_(std::move(sink)),
       row_size_(hierarchy.row_size()),
-      decimals_(decimals),
+      decimals_(std::min(decimals, 15)),
       frames_(frames),
       text_(HierarchyText(hierarchy).text() +
             fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", frames, hierarchy.frame_time)) {}
 
 Result<void> BvhWriter::append(std::span<const double> values) {
   constexpr std::size_t piece = std::size_t{256} << 10;
+  std::array<char, number_room> room{};
   // A row is written whole. The sink gets large pieces, because each call may be a system call.
   for (std::size_t i = 0; i + row_size_ <= values.size() && row_size_ > 0; i += row_size_) {
     for (std::size_t c = 0; c < row_size_; ++c) {
       if (c > 0) text_ += ' ';
-      put(text_, values[i + c], decimals_);
+      text_.append(room.data(), put_number(room.data(), values[i + c], decimals_));
     }
     text_ += '\n';
     ++written_;
@@ -188,11 +181,10 @@ Result<void> BvhWriter::append(std::span<const double> values) {
 Result<void> BvhWriter::finish() {
   // The promised number stands in the file already, so another number would make it wrong.
   if (written_ == frames_) return sink_(text_);
-  return Failure(
-      Error{"", 0, fmt::format("{} frames to write", frames_), std::to_string(written_)});
+  return refuse(fmt::format("{} frames to write", frames_), std::to_string(written_));
 }
 
-Result<void> write_bvh(const BvhFile& file, const TextSink& sink) {
+Result<void> write_bvh(const BvhFile& file, const FileSink& sink) {
   const std::size_t row_size = file.hierarchy.row_size();
   BvhWriter writer(file.hierarchy, row_size == 0 ? 0 : file.values.size() / row_size, file.decimals,
                    sink);
@@ -234,8 +226,7 @@ BvhHierarchy BvhChannels::hierarchy(std::uint64_t frames, double frame_seconds) 
   }
   h.frames = frames;
   h.frame_seconds = frame_seconds;
-  std::array<char, number_room> room{};
-  h.frame_time.assign(room.data(), put_number(room.data(), frame_seconds, 7));
+  h.frame_time = number_text(frame_seconds, 7);
   return h;
 }
 
@@ -268,7 +259,7 @@ BvhFile bvh_from_clip(Clip clip, double frame_seconds) {
   return file;
 }
 
-Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const TextSink& sink,
+Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const FileSink& sink,
                           const Progress& progress) {
   // A file that changes between the passes would give a wrong number of frames.
   const auto version = version_of(from);

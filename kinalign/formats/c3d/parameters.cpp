@@ -161,8 +161,7 @@ double c3d_f32(C3dProcessor processor, const std::uint8_t* at) {
 Result<C3dParameters> C3dParameters::parse(std::span<const std::uint8_t> section,
                                            std::string_view file, std::uint64_t section_at) {
   const auto refuse = [&](const std::string& expected, std::size_t at) {
-    return Failure(
-        Error{std::string(file), 0, expected, fmt::format("another at byte {}", section_at + at)});
+    return kinalign::refuse(file, expected, fmt::format("another at byte {}", section_at + at));
   };
   // Byte 3 names the processor, 83 + its number.
   if (section.size() < 4 || section[3] < 84 || section[3] > 86) {

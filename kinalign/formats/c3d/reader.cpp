@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a C3D in pieces: header, parameters, then frame after frame.
+#include "kinalign/core/numbers.h"
 #include "kinalign/formats/c3d/c3d.h"
 #include "kinalign/formats/c3d/parameters.h"
+#include "kinalign/formats/distinct_names.h"
 #include "kinalign/formats/point_rows.h"
 #include "kinalign/formats/row_stamps.h"
 #include "kinalign/wire/little_endian_reader.h"
@@ -12,15 +14,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <optional>
+#include <set>
 
 namespace kinalign {
 
 namespace {
 
 constexpr std::size_t most_zeros = 4096;  // zero bytes before the header
-constexpr double largest_number = 1e15;   // the limit of tables (formats/cells.h)
 constexpr std::uint16_t saturated = 65'535;
 
 // The first block has number 1.
@@ -133,7 +134,7 @@ class C3dReader final : public PointReader {
 
  private:
   Failure refuse(std::string expected, std::string found) const {
-    return Failure(Error{file_, 0, std::move(expected), std::move(found)});
+    return kinalign::refuse(file_, std::move(expected), std::move(found));
   }
 
   /// Some programs write zero bytes before the header.
@@ -221,10 +222,10 @@ class C3dReader final : public PointReader {
     frame_bytes_ = value * (4 * points_ + read.analog_values);
     const auto data_block = parameters.number("POINT", "DATA_START");
     if (data_block && *data_block != static_cast<double>(read.data_block)) {
-      findings.push_back({Severity::warning,
-                          Error{file_, 0, fmt::format("POINT:DATA_START {}", read.data_block),
-                                fmt::format("{}", *data_block)},
-                          "the data were read from the header's block", ""});
+      add_warning(findings,
+                  {file_, 0, fmt::format("POINT:DATA_START {}", read.data_block),
+                   fmt::format("{}", *data_block)},
+                  "the data were read from the header's block");
     }
     return {};
   }
@@ -244,9 +245,8 @@ class C3dReader final : public PointReader {
     const std::string up = one("Y_SCREEN");
     const auto axes = axes_with_up(up);
     if (!axes && options_.up.empty()) {
-      findings.push_back({Severity::warning,
-                          Error{file_, 0, "POINT:Y_SCREEN +X, +Y or +Z", shown(up)},
-                          "z is used as the upward axis", "set up = \"y\" or \"z\""});
+      add_warning(findings, {file_, 0, "POINT:Y_SCREEN +X, +Y or +Z", shown(up)},
+                  "z is used as the upward axis", "set up = \"y\" or \"z\"");
     }
     // The user's `up` and metres_per_unit override both, in point_units().
     units_ = point_units({axes.value_or(z_up), metres}, options_);
@@ -262,11 +262,10 @@ class C3dReader final : public PointReader {
                     fmt::format("{}", used));
     }
     if (std::abs(rate - read.rate_hz) > 1e-3 * rate) {
-      findings.push_back(
-          {Severity::warning,
-           Error{file_, 0, fmt::format("POINT:RATE {:g} as in the header", read.rate_hz),
-                 fmt::format("{:g}", rate)},
-           "POINT:RATE is used", "find out which rate is correct"});
+      add_warning(findings,
+                  {file_, 0, fmt::format("POINT:RATE {:g} as in the header", read.rate_hz),
+                   fmt::format("{:g}", rate)},
+                  "POINT:RATE is used", "find out which rate is correct");
     }
     stamps_ = RowStamps(false, used, options_.start_ns);
     // The stamps are counted, not measured.
@@ -279,38 +278,34 @@ class C3dReader final : public PointReader {
     stated_ = stated_frames(read, parameters);
     // A full header field is no disagreement.
     if (!stated_ || *stated_ == read.frames() || read.last_frame == saturated) return;
-    findings.push_back({Severity::warning,
-                        Error{file_, 0, fmt::format("{} frames as in the header", read.frames()),
-                              fmt::format("{} in the parameters", *stated_)},
-                        "the number in the parameters is used", ""});
+    add_warning(findings,
+                {file_, 0, fmt::format("{} frames as in the header", read.frames()),
+                 fmt::format("{} in the parameters", *stated_)},
+                "the number in the parameters is used");
   }
 
   /// Takes the points' names. Absent names become numbers, repeated names get #2, #3, ...
   void take_names(const C3dParameters& parameters) {
     std::vector<std::string> names = parameters.all_texts("POINT", "LABELS");
     if (names.size() < points_) {
-      findings.push_back({Severity::warning,
-                          Error{file_, 0, fmt::format("{} names in POINT:LABELS", points_),
-                                std::to_string(names.size())},
-                          "the other points are named by their numbers", ""});
+      add_warning(findings,
+                  {file_, 0, fmt::format("{} names in POINT:LABELS", points_),
+                   std::to_string(names.size())},
+                  "the other points are named by their numbers");
     }
     names.resize(points_);
-    std::map<std::string, std::size_t> seen;
-    std::size_t repeated = 0;
     for (std::size_t j = 0; j < points_; ++j) {
       if (names[j].empty()) names[j] = "point" + std::to_string(j + 1);
-      const std::size_t times = ++seen[names[j]];
-      if (times == 1) continue;
-      ++repeated;
-      names[j] += "#" + std::to_string(times);
     }
+    header_ = PointHeader{distinct_names(names)};
+    const std::size_t repeated =
+        points_ - std::set<std::string_view>(names.begin(), names.end()).size();
     if (repeated > 0) {
-      findings.push_back(
-          {Severity::warning,
-           Error{file_, 0, "different names in POINT:LABELS", fmt::format("{} repeated", repeated)},
-           "repeated names are name#2, name#3, ...", ""});
+      add_warning(
+          findings,
+          {file_, 0, "different names in POINT:LABELS", fmt::format("{} repeated", repeated)},
+          "repeated names are name#2, name#3, ...");
     }
-    header_ = PointHeader{std::move(names)};
   }
 
   /// Adds a note that names the analog channels, which are not read.
@@ -329,10 +324,9 @@ class C3dReader final : public PointReader {
       }
       listed += (listed.empty() ? ": " : ", ") + shown(name);
     }
-    findings.push_back(
-        {Severity::note,
-         Error{file_, 0, "only points", fmt::format("{} analog channels{}", channels, listed)},
-         "the analog channels were not read", ""});
+    add_note(findings,
+             {file_, 0, "only points", fmt::format("{} analog channels{}", channels, listed)},
+             "the analog channels were not read");
   }
 
   /// Parses all complete frames of the bytes kept. Bytes after the last stated frame are only
@@ -404,24 +398,22 @@ class C3dReader final : public PointReader {
 
   void report() {
     if (stated_ && stamps_.rows() < *stated_) {
-      findings.push_back(
-          {Severity::warning,
-           Error{file_, 0, fmt::format("{} frames", *stated_), std::to_string(stamps_.rows())},
-           "the existing frames were read", ""});
+      add_warning(findings,
+                  {file_, 0, fmt::format("{} frames", *stated_), std::to_string(stamps_.rows())},
+                  "the existing frames were read");
     }
     // Less than a block is the padding of the last one.
     if (behind_ > c3d_block) {
-      findings.push_back(
-          {Severity::warning,
-           Error{file_, 0, fmt::format("the end of the file after {} frames", *stated_),
-                 fmt::format("{} more bytes", behind_)},
-           "these bytes were not read", "the file may have more frames than it states"});
+      add_warning(findings,
+                  {file_, 0, fmt::format("the end of the file after {} frames", *stated_),
+                   fmt::format("{} more bytes", behind_)},
+                  "these bytes were not read", "the file may have more frames than it states");
     }
     if (no_numbers_ > 0) {
-      findings.push_back({Severity::warning,
-                          Error{file_, 0, "coordinates below 1e15",
-                                fmt::format("{} points with other values", no_numbers_)},
-                          "these points are missing", ""});
+      add_warning(findings,
+                  {file_, 0, "coordinates below 1e15",
+                   fmt::format("{} points with other values", no_numbers_)},
+                  "these points are missing");
     }
   }
 

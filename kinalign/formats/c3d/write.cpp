@@ -175,10 +175,6 @@ void put_point(const double* ours, Tracking state, std::string& out) {
   put_float(missing ? -1.0 : 0.0, out);
 }
 
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
-
 }  // namespace
 
 C3dWriter::C3dWriter(const C3dPoints& points, FileSink sink)

@@ -12,10 +12,6 @@ namespace {
 
 constexpr int decimals = 9;
 
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
-
 }  // namespace
 
 OpensimStoWriter::OpensimStoWriter(std::size_t nodes, Time zero, TextOut& out)

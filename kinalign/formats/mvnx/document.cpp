@@ -13,7 +13,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr double largest_number = 1e15;
 constexpr std::size_t most_things = 20'000;  // segments, points, sensors and joints in one head
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -88,29 +87,27 @@ Result<void> MvnxDocument::feed(std::string_view piece) {
 Result<void> MvnxDocument::finish(Findings& findings) {
   // Counted to the end, since later subjects are found only there.
   if (subjects_ > 1) {
-    findings.push_back({Severity::warning,
-                        Error{file_, 0, "one subject", std::to_string(subjects_)},
-                        "the first one was read", "export a file for each subject"});
+    add_warning(findings, {file_, 0, "one subject", std::to_string(subjects_)},
+                "the first one was read", "export a file for each subject");
   }
   Result<void> ended = xml_.finish(*this);
   // Expat delays an incomplete token, so other faults may show only now.
   if (!ended && !xml_.ends_too_early()) return ended;
   // The XML may be complete although the archive's checksum is missing.
   if (ended && gunzip_ && !gunzip_->complete()) {
-    ended = Failure(Error{file_, 0, "a whole gzip archive", "the end of the file"});
+    ended = refuse(file_, "a whole gzip archive", "the end of the file");
   }
   if (ended) return {};
   // Without a frame nothing was read, so a cut file is an error.
   if (frames_ == 0) return ended;
-  findings.push_back({Severity::warning, std::move(ended).error(),
-                      "the file was cut: the frames before were read", ""});
+  add_warning(findings, std::move(ended).error(), "the file was cut: the frames before were read");
   return {};
 }
 
 Result<void> MvnxDocument::begin(std::string_view name, const XmlAttributes& attributes) {
   // Any other XML document begins with another element.
   if (!std::exchange(root_, true) && name != "mvnx") {
-    return Failure(Error{"", 0, "the element mvnx", shown(name)});
+    return refuse("the element mvnx", shown(name));
   }
   subjects_ += name == "subject" ? 1 : 0;
   // Only the first subject is read.
@@ -136,7 +133,7 @@ Result<void> MvnxDocument::begin_in_head(std::string_view name, const XmlAttribu
   }
   // The head is kept in memory, so the number of its elements is limited.
   if (++things_ <= most_things) return {};
-  return Failure(Error{"", 0, "at most 20,000 elements before the first frame", "more"});
+  return refuse("at most 20,000 elements before the first frame", "more");
 }
 
 void MvnxDocument::begin_frame(const XmlAttributes& attributes) {
@@ -176,7 +173,7 @@ Result<void> MvnxDocument::end_in_head(std::string_view name, std::string_view t
   if (name == "pos_b" && !head_.segments.empty() && !head_.segments.back().points.empty()) {
     const auto numbers = numbers_of(text);
     if (numbers.size() != 3) {
-      return Failure(Error{"", 0, "three numbers in pos_b", shown(trimmed(text))});
+      return refuse("three numbers in pos_b", shown(trimmed(text)));
     }
     head_.segments.back().points.back().place = Vec3(numbers[0], numbers[1], numbers[2]);
   }

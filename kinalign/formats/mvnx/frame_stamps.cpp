@@ -20,8 +20,8 @@ Result<void> MvnxStamps::begin(const MvnxHead& head, const MvnxFrame& frame) {
   // The user's rate has priority.
   rate_hz_ = options_.rate_hz > 0.0 ? options_.rate_hz : head.rate_hz;
   if (!(rate_hz_ >= 1e-3) || !(rate_hz_ <= 1e6)) {
-    return Failure(Error{"", 0, "a frameRate of 0.001 to 1,000,000 Hz, or rate_hz",
-                         head.rate_hz == 0.0 ? "none" : fmt::format("{}", head.rate_hz)});
+    return refuse("a frameRate of 0.001 to 1,000,000 Hz, or rate_hz",
+                  head.rate_hz == 0.0 ? "none" : fmt::format("{}", head.rate_hz));
   }
   // A file may begin with any index.
   first_index_ = frame.index.value_or(0.0);
@@ -38,7 +38,7 @@ Result<std::optional<Time>> MvnxStamps::next(const MvnxHead& head, const MvnxFra
   // Without an index the frames are counted.
   const double index = frame.index.value_or(last_index_ + 1.0);
   if (!is_index(index)) {
-    return Failure(Error{"", 0, "a frame's index", fmt::format("{}", index)});
+    return refuse("a frame's index", fmt::format("{}", index));
   }
   // The first frame sets rate, index and start.
   if (!first_index_) KA_TRY(begin(head, frame));
@@ -60,32 +60,30 @@ Result<std::optional<Time>> MvnxStamps::next(const MvnxHead& head, const MvnxFra
   const bool overflow = __builtin_add_overflow(
       start_ns_, stamp_at_rate(static_cast<std::uint64_t>(since), rate_hz_), &ns);
   if (overflow || ns > largest_stamp_ns || ns < -largest_stamp_ns) {
-    return Failure(Error{"", 0, "a stamp inside +-4e18 ns", fmt::format("frame {}", index)});
+    return refuse("a stamp inside +-4e18 ns", fmt::format("frame {}", index));
   }
   return std::optional(utc_time(ns));
 }
 
 void MvnxStamps::report(const std::string& file, Findings& findings) const {
   if (not_rising_ > 0) {
-    findings.push_back(
-        {Severity::warning,
-         Error{file, 0, "frames with a rising index", fmt::format("{} other frames", not_rising_)},
-         "these frames were left out", ""});
+    add_warning(
+        findings,
+        {file, 0, "frames with a rising index", fmt::format("{} other frames", not_rising_)},
+        "these frames were left out");
   }
   if (missing_ > 0) {
-    findings.push_back(
-        {Severity::note,
-         Error{file, 0, "every frame index", fmt::format("{} missing indices", missing_)},
-         "the missing frames are a gap", ""});
+    add_note(findings, {file, 0, "every frame index", fmt::format("{} missing indices", missing_)},
+             "the missing frames are a gap");
   }
   // Milliseconds are rounded, by up to half a millisecond at each end.
   // The tolerance: one millisecond for rounding, and one and a half frames.
   if (largest_off_s_ > 0.001 + 1.5 / std::max(rate_hz_, 1e-3)) {
-    findings.push_back({Severity::warning,
-                        Error{file, 0, fmt::format("times of frameRate {:g}", rate_hz_),
-                              fmt::format("times that differ by up to {:.3g} s", largest_off_s_)},
-                        "the stamps are computed from index and rate",
-                        "find out which is correct: gaps and splines depend on it"});
+    add_warning(findings,
+                {file, 0, fmt::format("times of frameRate {:g}", rate_hz_),
+                 fmt::format("times that differ by up to {:.3g} s", largest_off_s_)},
+                "the stamps are computed from index and rate",
+                "find out which is correct: gaps and splines depend on it");
   }
 }
 

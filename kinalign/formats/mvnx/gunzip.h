@@ -4,8 +4,10 @@
 
 #include "kinalign/core/error.h"
 
+#include <zlib.h>
+
+#include <array>
 #include <functional>
-#include <memory>
 #include <string_view>
 
 namespace kinalign {
@@ -26,11 +28,12 @@ class Gunzip {
                     const std::function<Result<void>(std::string_view)>& use);
 
   /// True if the last archive in the file is complete.
-  bool complete() const;
+  bool complete() const { return complete_; }
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  z_stream stream_{};
+  bool complete_ = false;
+  std::array<char, std::size_t{64} << 10> text_{};  // unpacked
 };
 
 }  // namespace kinalign

@@ -118,15 +118,14 @@ class MvnxReader final : public ClipReader {
     KA_TRY(document_.finish(findings));
     const std::string& file = document_.file();
     if (!header_) {
-      return Failure(
-          Error{file, 0, "a frame of type normal with all segments",
-                fmt::format("the end of the file after {} incomplete frames", incomplete_)});
+      return refuse(file, "a frame of type normal with all segments",
+                    fmt::format("the end of the file after {} incomplete frames", incomplete_));
     }
     if (incomplete_ > 0) {
-      findings.push_back({Severity::warning,
-                          Error{file, 0, "orientation and position of all segments in each frame",
-                                fmt::format("{} frames without them", incomplete_)},
-                          "these frames were left out", ""});
+      add_warning(findings,
+                  {file, 0, "orientation and position of all segments in each frame",
+                   fmt::format("{} frames without them", incomplete_)},
+                  "these frames were left out");
     }
     stamps_.report(file, findings);
     return {};
@@ -164,7 +163,7 @@ class MvnxReader final : public ClipReader {
 
   /// Makes the skeleton at the first normal frame.
   Result<void> begin(const MvnxHead& head, const GlobalPose& first) {
-    if (head.segments.empty()) return Failure(Error{"", 0, "segments before the frames", "none"});
+    if (head.segments.empty()) return refuse("segments before the frames", "none");
     Skeleton skeleton;
     skeleton.parents = parents_of(head);
     // Without a calibration pose the first frame must serve.

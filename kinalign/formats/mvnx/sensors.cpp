@@ -37,14 +37,13 @@ class MvnxSensorReader final : public ImuReader {
     KA_TRY(document_.finish(findings));
     const std::string& file = document_.file();
     if (!header_) {
-      return Failure(Error{file, 0, "a frame of type normal with sensors", "the end of the file"});
+      return refuse(file, "a frame of type normal with sensors", "the end of the file");
     }
     if (incomplete_ > 0) {
-      findings.push_back(
-          {Severity::warning,
-           Error{file, 0, "the same sensor values in each frame as in the first frame",
-                 fmt::format("{} frames without them", incomplete_)},
-           "their samples are invalid", ""});
+      add_warning(findings,
+                  {file, 0, "the same sensor values in each frame as in the first frame",
+                   fmt::format("{} frames without them", incomplete_)},
+                  "their samples are invalid");
     }
     samples_.report(file, findings);
     stamps_.report(file, findings);
@@ -75,8 +74,8 @@ class MvnxSensorReader final : public ImuReader {
     free_ = !force && turn && frame.sensor_free_acceleration.size() == 3 * sensors;
     const bool rate = frame.sensor_angular_velocity.size() == 3 * sensors;
     if (sensors == 0 || !(turn || force || rate)) {
-      return Failure(Error{"", 0, "sensors with orientation, acceleration or angular velocity",
-                           "no such sensors in the first frame"});
+      return refuse("sensors with orientation, acceleration or angular velocity",
+                    "no such sensors in the first frame");
     }
     // The last value: the acceleration contains gravity.
     header_ = ImuHeader{head.sensors, {turn, force || free_, rate, !free_}};

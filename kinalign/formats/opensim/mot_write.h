@@ -3,28 +3,25 @@
 #pragma once
 
 #include "kinalign/core/text_out.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/clip.h"
 
 #include <cstdint>
-#include <memory>
+#include <string>
+#include <vector>
 
 namespace kinalign {
-
-enum class MotColumns {
-  joint_angles,  // each joint: Hips_rz, Hips_rx, Hips_ry in degrees; roots also Hips_tx, ... in m
-  global_positions  // each joint: Hips_X, Hips_Y, Hips_Z in m
-};
 
 /// The number of frames stands in the head, so it must be known before the first frame.
 struct MotHead {
   Skeleton skeleton;
-  MotColumns columns = MotColumns::joint_angles;
   std::uint64_t frames = 0;
   Time zero{};  // the stamp of time 0
 };
 
 /// Writes frame after frame: y up, times to the nanosecond, metres and degrees to six decimals. The
-/// caller commits `out`, which must outlive the writer.
+/// caller commits `out`, which must outlive the writer. Columns: each joint Hips_rz, Hips_rx,
+/// Hips_ry in degrees; roots also Hips_tx, Hips_ty, Hips_tz in metres.
 /// Joint angles are the channels of a BVH of the skeleton, so both files agree.
 class MotWriter {
  public:
@@ -35,19 +32,15 @@ class MotWriter {
   /// Call before the file is committed.
   Result<void> finish() const;
 
-  ~MotWriter();
-  MotWriter(MotWriter&&) noexcept;
-  MotWriter& operator=(MotWriter&&) noexcept;
-  MotWriter(const MotWriter&) = delete;
-  MotWriter& operator=(const MotWriter&) = delete;
-
  private:
-  // Columns is hidden so that this header does not include the BVH room.
-  class Columns;
-  MotWriter(const MotHead& head, TextOut& out, std::unique_ptr<Columns> columns);
+  MotWriter(const MotHead& head, TextOut& out);
 
   TextOut* out_;
-  std::unique_ptr<Columns> columns_;
+  BvhChannels channels_;
+  // [columns] names, and factors from the values' unit to the file's.
+  std::vector<std::string> names_;
+  std::vector<double> scales_;
+  std::vector<double> values_;  // [T, columns] of a block
   std::uint64_t frames_, written_ = 0;
   Time zero_;
 };

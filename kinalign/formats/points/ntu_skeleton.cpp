@@ -3,13 +3,11 @@
 
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/cells.h"
-#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/line_reader.h"
 #include "kinalign/formats/point_rows.h"
-#include "kinalign/formats/row_stamps.h"
 #include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>
-#include <charconv>
 
 namespace kinalign {
 
@@ -30,12 +28,10 @@ std::vector<ColumnUse> joint_columns() {
 
 std::vector<std::string> joint_names() { return {kinect_joints.begin(), kinect_joints.end()}; }
 
-Result<std::uint64_t> count(std::string_view line, std::string expected, std::uint64_t most) {
-  const std::string_view text = trimmed(line);
+Result<std::uint64_t> count(std::string_view text, std::string expected, std::uint64_t most) {
   std::uint64_t value = 0;
-  const auto [behind, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (fault == std::errc{} && behind == text.data() + text.size() && value <= most) return value;
-  return Failure(Error{"", 0, std::move(expected), shown(text)});
+  if (parse_integer(text, value) && value <= most) return value;
+  return refuse(std::move(expected), shown(text));
 }
 
 std::string_view first_word(std::string_view line) {
@@ -43,14 +39,57 @@ std::string_view first_word(std::string_view line) {
   return line.substr(0, line.find_first_of(" \t"));
 }
 
-/// Reads the file line by line; next_ is the kind of the next line.
+/// A line holds the number of frames, of a frame's bodies or of a body's joints, or it holds a body
+/// or a joint. Blank lines may stand anywhere.
+enum class NtuLine { blank, frames, bodies, body, joints, joint };
+
+/// Tells what each line holds. A line has no mark of its kind: only the counts before it tell.
+class NtuLines {
+ public:
+  /// Fails if the line should be a count and is none.
+  Result<NtuLine> next(std::string_view line) {
+    line = trimmed(line);
+    if (line.empty()) return NtuLine::blank;
+    const NtuLine now = next_;
+    if (now == NtuLine::frames) {
+      frames_ = KA_TRY(count(line, "the number of frames", UINT64_MAX));
+    }
+    if (now == NtuLine::bodies) {
+      bodies_left_ = KA_TRY(count(line, "the number of bodies", most_bodies));
+    }
+    if (now == NtuLine::joints) {
+      joints_left_ = KA_TRY(count(line, "25 joints", joint_count));
+      if (joints_left_ != joint_count) {
+        return refuse("25 joints", std::to_string(joints_left_));
+      }
+      --bodies_left_;
+    }
+    if (now == NtuLine::joint) --joints_left_;
+    next_ = now == NtuLine::body ? NtuLine::joints
+            : joints_left_ > 0   ? NtuLine::joint
+            : bodies_left_ > 0   ? NtuLine::body
+                                 : NtuLine::bodies;
+    return now;
+  }
+
+  /// The number of frames that the file states.
+  std::uint64_t frames() const { return frames_; }
+  /// True if the next line belongs to a frame that has begun.
+  bool within_frame() const { return next_ != NtuLine::frames && next_ != NtuLine::bodies; }
+
+ private:
+  NtuLine next_ = NtuLine::frames;
+  std::uint64_t frames_ = 0, bodies_left_ = 0, joints_left_ = 0;
+};
+
 /// Every line is read, also those of other bodies, because the counts must be followed.
-class NtuReader final : public PointReader {
+class NtuReader final : public LineReader<PointReader> {
  public:
   NtuReader(const StreamOptions& options, std::string_view file)
-      : lines_(file),
-        // The file has no stamps. 30 Hz is the Kinect's rate.
-        stamps_(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns),
+      // The file has no stamps. 30 Hz is the Kinect's rate.
+      : LineReader(
+            file, "the number of frames",
+            RowStamps(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns)),
         units_(point_units({}, options)),
         row_(runs_of_blanks, joint_columns()),
         mirror_(joint_names()) {
@@ -60,64 +99,28 @@ class NtuReader final : public PointReader {
     asked_ = !wanted_.empty();
   }
 
-  Result<void> feed(std::string_view piece, PointFrames& out) override {
-    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
-  }
-
-  Result<void> finish(PointFrames& out) override {
-    const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
-    // Not even the first line was complete.
-    if (!header_) return Failure(lines_.error("the number of frames", "the end of the file"));
-    // The file has no time column, so its stamps are always counted.
-    counted = true;
-    report();
-    return {};
-  }
-
-  const PointHeader* header() const override { return header_ ? &*header_ : nullptr; }
-
  private:
-  enum class Next { frames, bodies, body, joints, joint };
-
-  Result<void> read(std::string_view line, PointFrames& out) {
-    // Blank lines may stand anywhere.
-    if (trimmed(line).empty()) return {};
-    switch (next_) {
-      case Next::frames:
-        declared_ = KA_TRY(count(line, "the number of frames", UINT64_MAX));
-        // The joints of a Kinect are known, so the header is complete here.
-        header_ = PointHeader{joint_names()};
-        next_ = Next::bodies;
-        return {};
-      case Next::bodies:
-        return begin_frame(KA_TRY(count(line, "the number of bodies", most_bodies)), out);
-      case Next::body:
-        return begin_body(line);
-      case Next::joints:
-        return begin_joints(KA_TRY(count(line, "25 joints", joint_count)));
-      case Next::joint:
-        return read_joint(line, out);
+  Result<void> read(std::string_view line, PointFrames& out) override {
+    const NtuLine kind = KA_TRY(kinds_.next(line));
+    // The joints of a Kinect are known, so the header is complete at the first line.
+    if (kind == NtuLine::frames) header_ = PointHeader{joint_names()};
+    if (kind == NtuLine::bodies) {
+      // Joints that the frame does not have stay missing.
+      frame_ = {};
+      seen_ = false;
     }
-    return {};
-  }
-
-  /// A frame begins: `bodies` bodies follow.
-  Result<void> begin_frame(std::uint64_t bodies, PointFrames& out) {
-    bodies_left_ = bodies;
-    // Joints that the frame does not have stay missing.
-    frame_ = {};
-    seen_ = false;
-    if (bodies == 0) return end_frame(out);
-    next_ = Next::body;
-    return {};
+    if (kind == NtuLine::body) KA_TRY(begin_body(line));
+    if (kind == NtuLine::joints) joint_ = 0;
+    if (kind == NtuLine::joint) KA_TRY(read_joint(line));
+    const bool counted_only = kind == NtuLine::blank || kind == NtuLine::frames;
+    return counted_only || kinds_.within_frame() ? Result<void>{} : end_frame(out);
   }
 
   /// Reads a body's line. The joints after it are used only if it is the wanted body.
   Result<void> begin_body(std::string_view line) {
     const std::size_t cells = split_cells(line, runs_of_blanks).size();
     if (cells != body_cells) {
-      return Failure(Error{"", 0, "10 cells of a body", std::to_string(cells)});
+      return refuse("10 cells of a body", std::to_string(cells));
     }
     const std::string_view id = first_word(line);
     if (wanted_.empty()) wanted_ = id;
@@ -125,7 +128,6 @@ class NtuReader final : public PointReader {
     taken_ = id == wanted_ && !seen_;
     seen_ = seen_ || taken_;
     if (id != wanted_) note_other(id);
-    next_ = Next::joints;
     return {};
   }
 
@@ -137,33 +139,22 @@ class NtuReader final : public PointReader {
       others_.push_back(shown(id));
   }
 
-  Result<void> begin_joints(std::uint64_t number) {
-    if (number != joint_count) return Failure(Error{"", 0, "25 joints", std::to_string(number)});
-    joint_ = 0;
-    next_ = Next::joint;
-    return {};
-  }
-
-  /// Reads a joint's line. After the last joint of the last body, the frame is complete.
-  Result<void> read_joint(std::string_view line, PointFrames& out) {
+  Result<void> read_joint(std::string_view line) {
     KA_TRY(row_.read(line));
     const double state = row_.values[3];
     if (state != 0.0 && state != 1.0 && state != 2.0) {
-      return Failure(Error{"", 0, "a tracking state 0, 1 or 2", shown(trimmed(line))});
+      return refuse("a tracking state 0, 1 or 2", shown(trimmed(line)));
     }
     // The rows of other bodies are parsed too, so a fault in them is found.
     if (taken_) {
       std::copy_n(row_.values.begin(), 3, &frame_.positions[3 * joint_]);
       frame_.states[joint_] = row_.any_missing ? Tracking::missing : static_cast<Tracking>(state);
     }
-    if (++joint_ < joint_count) return {};
-    // Another body may follow in this frame.
-    next_ = Next::body;
-    return --bodies_left_ == 0 ? end_frame(out) : Result<void>{};
+    ++joint_;
+    return {};
   }
 
   Result<void> end_frame(PointFrames& out) {
-    next_ = Next::bodies;
     const Time stamp = KA_TRY(stamps_.next(0));
     // A frame without the body is a row of missing joints.
     append_points(units_, frame_.positions.data(), frame_.states, out);
@@ -174,30 +165,30 @@ class NtuReader final : public PointReader {
   }
 
   /// The counts are complete now, so faults can be judged.
-  void report() {
+  Result<void> report() override {
     const std::string& file = lines_.file();
     // The file ended within a frame.
-    if (next_ != Next::bodies) {
-      findings.push_back({Severity::warning,
-                          Error{file, lines_.number(), "a complete frame", "the end of the file"},
-                          "the last frame was dropped", ""});
+    if (kinds_.within_frame()) {
+      add_warning(findings, {file, lines_.number(), "a complete frame", "the end of the file"},
+                  "the last frame was dropped");
     }
-    if (stamps_.rows() != declared_) {
-      findings.push_back(
-          {Severity::warning,
-           Error{file, 1, std::to_string(declared_) + " frames", std::to_string(stamps_.rows())},
-           "the existing frames were read", ""});
+    if (stamps_.rows() != kinds_.frames()) {
+      add_warning(
+          findings,
+          {file, 1, std::to_string(kinds_.frames()) + " frames", std::to_string(stamps_.rows())},
+          "the existing frames were read");
     }
     // An id that the user gave must exist.
     if (asked_ && frames_with_body_ == 0) {
-      findings.push_back({Severity::warning, Error{file, 0, "body " + shown(wanted_), others()},
-                          "all joints are missing", "select an existing body"});
+      add_warning(findings, {file, 0, "body " + shown(wanted_), others()}, "all joints are missing",
+                  "select an existing body");
     } else if (!asked_ && !others_.empty()) {
-      findings.push_back({Severity::note, Error{file, 0, "one body", "several: also " + others()},
-                          "body " + shown(wanted_) + ", the first in the file, was read",
-                          "to read another body, set body to its id"});
+      add_note(findings, {file, 0, "one body", "several: also " + others()},
+               "body " + shown(wanted_) + ", the first in the file, was read",
+               "to read another body, set body to its id");
     }
     mirror_.report(file, findings);
+    return {};
   }
 
   std::string others() const {
@@ -212,22 +203,17 @@ class NtuReader final : public PointReader {
     std::array<Tracking, joint_count> states{};
   };
 
-  NamedLines lines_;
-  RowStamps stamps_;
   PointUnits units_;
   RowParser row_;
   MirrorWatch mirror_;
   std::string wanted_;
   bool asked_ = false;
   std::vector<std::string> others_;
-
-  // next_ and the counters below it are the state of the parser.
-  Next next_ = Next::frames;
-  std::uint64_t declared_ = 0, bodies_left_ = 0, frames_with_body_ = 0;
+  NtuLines kinds_;
+  std::uint64_t frames_with_body_ = 0;
   std::size_t joint_ = 0;
   bool taken_ = false, seen_ = false;
   Frame frame_;
-  std::optional<PointHeader> header_;
 };
 
 }  // namespace
@@ -235,6 +221,38 @@ class NtuReader final : public PointReader {
 std::unique_ptr<PointReader> make_ntu_skeleton_reader(const StreamOptions& options,
                                                       std::string_view file) {
   return std::make_unique<NtuReader>(options, file);
+}
+
+Result<std::vector<NtuBody>> ntu_bodies(const TextPieces& text, const std::string& name) {
+  // The list is for a message or a menu; a file with more bodies is damaged.
+  constexpr std::size_t most_kept = 1000;
+  std::vector<NtuBody> bodies;
+  NamedLines lines(name);
+  NtuLines kinds;
+  const auto use = [&](std::string_view line) -> Result<void> {
+    if (KA_TRY(kinds.next(line)) != NtuLine::body) return {};
+    const std::string_view id = first_word(line);
+    const auto at = std::find_if(bodies.begin(), bodies.end(),
+                                 [&](const NtuBody& one) { return one.id == id; });
+    // Later bodies are not listed; those in the list are still counted.
+    if (at != bodies.end()) {
+      ++at->frames;
+    } else if (bodies.size() < most_kept) {
+      bodies.push_back({std::string(id), 1});
+    }
+    return {};
+  };
+  for (;;) {
+    const std::string_view piece = KA_TRY(text());
+    if (piece.empty()) break;
+    KA_TRY(lines.feed(piece, use));
+  }
+  Findings ignored;  // the reader reports an incomplete end
+  KA_TRY(lines.finish_head(use, ignored));
+  // Stable, so that bodies with equally many frames keep the order of the file.
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [](const NtuBody& a, const NtuBody& b) { return a.frames > b.frames; });
+  return bodies;
 }
 
 /// Checks the first four lines: frames, bodies, a body's cells, and 25 joints. The first frame may

@@ -3,8 +3,7 @@
 
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/cells.h"
-#include "kinalign/formats/held_rows.h"
-#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/line_reader.h"
 #include "kinalign/formats/point_rows.h"
 
 #include <fmt/format.h>
@@ -21,31 +20,15 @@ constexpr TimeScale trc_seconds{1'000'000'000, 0};
 
 /// Reads a TRC: five lines of head, then rows.
 /// keys_ and names_ are read from the head; header_ is set with its last line.
-class TrcReader final : public PointReader {
+class TrcReader final : public LineReader<PointReader> {
  public:
   TrcReader(const StreamOptions& options, std::string_view file)
-      : lines_(file), options_(options), stamps_(true, options.rate_hz, options.start_ns) {}
-
-  Result<void> feed(std::string_view piece, PointFrames& out) override {
-    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
-  }
-
-  Result<void> finish(PointFrames& out) override {
-    const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
-    if (!header_) return Failure(lines_.error("the head of a TRC file", "the end of the file"));
-    // Few rows may wait until it is known whether the times move.
-    stamps_.settle();
-    counted = stamps_.counted();
-    held_.release(stamps_, out);
-    report();
-    return {};
-  }
-
-  const PointHeader* header() const override { return header_ ? &*header_ : nullptr; }
+      : LineReader(file, "the head of a TRC file",
+                   RowStamps(true, options.rate_hz, options.start_ns)),
+        options_(options) {}
 
  private:
-  Result<void> read(std::string_view line, PointFrames& out) {
+  Result<void> read(std::string_view line, PointFrames& out) override {
     if (header_) return read_row(line, out);
     // The head has a fixed number of lines.
     switch (lines_.number()) {
@@ -66,7 +49,7 @@ class TrcReader final : public PointReader {
 
   static Result<void> expect(bool good, std::string expected, std::string_view found) {
     if (good) return {};
-    return Failure(Error{"", 0, std::move(expected), shown(found)});
+    return refuse(std::move(expected), shown(found));
   }
 
   /// Reads line 3, the values of the keys in line 2.
@@ -103,10 +86,10 @@ class TrcReader final : public PointReader {
     if (parse_number(markers_fact_, declared) && declared == static_cast<double>(names_.size())) {
       return {};
     }
-    findings.push_back(
-        {Severity::warning,
-         lines_.error(shown(markers_fact_) + " names of markers", std::to_string(names_.size())),
-         "the named markers were read", ""});
+    add_warning(
+        findings,
+        lines_.error(shown(markers_fact_) + " names of markers", std::to_string(names_.size())),
+        "the named markers were read");
     return {};
   }
 
@@ -156,40 +139,33 @@ class TrcReader final : public PointReader {
     return {};
   }
 
-  void report() {
+  Result<void> report() override {
     const std::string& file = lines_.file();
-    if (stamps_.stuck()) findings.push_back(stuck_finding(file, stamps_));
     // NumFrames is not trusted, only compared.
     if (static_cast<double>(stamps_.rows()) != declared_) {
-      std::string declared(number_room, ' ');
-      declared.resize(
-          static_cast<std::size_t>(put_number(declared.data(), declared_, 0) - declared.data()));
-      findings.push_back({Severity::warning,
-                          Error{file, 3, declared + " frames", std::to_string(stamps_.rows())},
-                          "the existing frames were read", "correct NumFrames"});
+      add_warning(findings,
+                  {file, 3, number_text(declared_, 0) + " frames", std::to_string(stamps_.rows())},
+                  "the existing frames were read", "correct NumFrames");
     }
     const double seconds = 1e-9 * (static_cast<double>(last_ns_) - static_cast<double>(first_ns_));
     const double rate = static_cast<double>(stamps_.rows() - 1) / seconds;
     // More than 10 % apart: one of the two is wrong.
     if (seconds > 0.0 && data_rate_ > 0.0 && std::abs(rate - data_rate_) > 0.1 * data_rate_) {
-      findings.push_back({Severity::warning,
-                          Error{file, 3, fmt::format("times of DataRate {:g}", data_rate_),
-                                fmt::format("{:.4g} frames per second", rate)},
-                          "the times are used",
-                          "find out which is correct: gaps and splines depend on it"});
+      add_warning(findings,
+                  {file, 3, fmt::format("times of DataRate {:g}", data_rate_),
+                   fmt::format("{:.4g} frames per second", rate)},
+                  "the times are used", "find out which is correct: gaps and splines depend on it");
     }
     if (behind_the_end_ > 0) {
-      findings.push_back({Severity::warning,
-                          Error{file, 0, "no rows after a blank line, which ends the data",
-                                std::to_string(behind_the_end_) + " lines"},
-                          "these rows were not read", "remove the blank line"});
+      add_warning(findings,
+                  {file, 0, "no rows after a blank line, which ends the data",
+                   std::to_string(behind_the_end_) + " lines"},
+                  "these rows were not read", "remove the blank line");
     }
+    return {};
   }
 
-  NamedLines lines_;
   StreamOptions options_;
-  RowStamps stamps_;
-  HeldRows<PointFrames> held_;
   PointUnits units_{y_up, 0.0};
   std::vector<std::string> keys_, names_;
   std::string markers_fact_;
@@ -199,7 +175,6 @@ class TrcReader final : public PointReader {
   std::vector<Tracking> states_;  // [J] of the current row
   bool ended_ = false;
   std::uint64_t behind_the_end_ = 0;
-  std::optional<PointHeader> header_;
 };
 
 }  // namespace
@@ -209,9 +184,7 @@ std::unique_ptr<PointReader> make_trc_reader(const StreamOptions& options, std::
 }
 
 bool looks_like_trc(std::string_view head) {
-  // A byte order mark.
-  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
-  return head.starts_with("PathFileType");
+  return without_byte_order_mark(head).starts_with("PathFileType");
 }
 
 }  // namespace kinalign

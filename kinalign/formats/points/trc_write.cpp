@@ -12,10 +12,6 @@ namespace {
 constexpr int decimals = 5;  // in millimetres, so values are rounded to 0.005 um
 constexpr double millimetres = 1000.0;
 
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
-
 /// Writes the six lines above the rows: three of keys and their values, names, labels, an empty
 /// line.
 Result<void> put_head(const TrcHead& head, TextOut& out) {

@@ -56,10 +56,10 @@ bool named_as_ui_prmd_angles(std::string_view path) {
 
 Result<std::string> ui_prmd_angles_of(FileSystem& files, const std::string& path) {
   if (!named_as_ui_prmd_positions(path)) {
-    return Failure(Error{
-        path, 0,
+    return refuse(
+        path,
         "UI-PRMD's file of positions, ..._positions.txt; the file of angles is found by its name",
-        named_as_ui_prmd_angles(path) ? "the file of angles" : "another name"});
+        named_as_ui_prmd_angles(path) ? "the file of angles" : "another name");
   }
   std::string usual_path = angles_path(path);
   const std::string here = std::string(folder(path)) + angles_for(file_name(path));

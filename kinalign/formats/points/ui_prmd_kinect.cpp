@@ -3,9 +3,8 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/formats/cells.h"
-#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/line_reader.h"
 #include "kinalign/formats/point_rows.h"
-#include "kinalign/formats/row_stamps.h"
 
 #include <algorithm>
 #include <cassert>
@@ -73,7 +72,7 @@ class AngleRows {
     if (trimmed(line).empty()) return {};
     KA_TRY(row_.read(line));
     // An angle can't be guessed.
-    if (row_.any_missing) return Failure(Error{"", 0, "66 angles", "an empty cell"});
+    if (row_.any_missing) return refuse("66 angles", "an empty cell");
     rows_.push_back(row_.values);
     return {};
   }
@@ -96,44 +95,34 @@ void turn_forward(std::vector<double>& places) {
 
 /// Combines row i of the offsets with row i of the angles.
 /// Both files have the same rows; if one is longer, its other rows are dropped.
-class UiPrmdReader final : public PointReader {
+class UiPrmdReader final : public LineReader<PointReader> {
  public:
   UiPrmdReader(const StreamOptions& options, std::string_view offsets_file,
                std::string_view angles_file, TextPieces angles)
-      : lines_(offsets_file),
+      // The files have no stamps. 30 Hz is the Kinect's rate.
+      : LineReader(
+            offsets_file, "rows of 66 numbers",
+            RowStamps(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns)),
         angles_file_(angles_file),
         angle_rows_(angles_file, std::move(angles)),
-        // The files have no stamps. 30 Hz is the Kinect's rate.
-        stamps_(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns),
         units_(point_units({y_up, 0.01}, options)),
-        row_(numbers_parser()),
-        header_{{names.begin(), names.end()}} {}
+        row_(numbers_parser()) {}
 
-  Result<void> feed(std::string_view piece, PointFrames& out) override {
-    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
-  }
-
-  Result<void> finish(PointFrames& out) override {
-    const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(read_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
-    if (!read_) return Failure(lines_.error("rows of 66 numbers", "the end of the file"));
-    counted = true;
+ private:
+  Result<void> report() override {
     // Rows of angles without offsets are only counted.
     auto more = KA_TRY(count_angles_left());
     append(findings, angle_rows_.findings);
-    report(without_angles_, lines_.file(), angles_file_);
-    report(more, angles_file_, lines_.file());
+    report_more(without_angles_, lines_.file(), angles_file_);
+    report_more(more, angles_file_, lines_.file());
     return {};
   }
 
-  const PointHeader* header() const override { return read_ ? &header_ : nullptr; }
-
- private:
-  Result<void> read(std::string_view line, PointFrames& out) {
+  Result<void> read(std::string_view line, PointFrames& out) override {
     if (trimmed(line).empty()) return {};
     KA_TRY(row_.read(line));
-    if (row_.any_missing) return Failure(Error{"", 0, "66 offsets", "an empty cell"});
-    read_ = true;
+    if (row_.any_missing) return refuse("66 offsets", "an empty cell");
+    if (!header_) header_ = PointHeader{{names.begin(), names.end()}};
     // The file of angles has ended.
     if (!KA_TRY(angle_rows_.next(angles_))) {
       ++without_angles_;
@@ -154,22 +143,18 @@ class UiPrmdReader final : public PointReader {
     return left;
   }
 
-  void report(std::uint64_t rows, const std::string& file, const std::string& other) {
+  void report_more(std::uint64_t rows, const std::string& file, const std::string& other) {
     if (rows == 0) return;
-    findings.push_back({Severity::warning,
-                        Error{file, 0, "as many rows as in " + std::string(file_name(other)),
-                              std::to_string(rows) + " more"},
-                        "the other rows were dropped", ""});
+    add_warning(findings,
+                {file, 0, "as many rows as in " + std::string(file_name(other)),
+                 std::to_string(rows) + " more"},
+                "the other rows were dropped");
   }
 
-  NamedLines lines_;
   std::string angles_file_;
   AngleRows angle_rows_;
-  RowStamps stamps_;
   PointUnits units_;
   RowParser row_;
-  PointHeader header_;
-  bool read_ = false;
   std::uint64_t without_angles_ = 0;
   std::vector<double> angles_;
   std::vector<double> places_ = std::vector<double>(cells);

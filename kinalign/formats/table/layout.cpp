@@ -92,7 +92,7 @@ Result<void> read_top(const Value& top, TableLayout& layout) {
   layout.columns = static_cast<std::size_t>(columns);
   // The name appears in messages about the columns.
   if (!layout.name.empty()) return {};
-  return at(top, {"", 0, "name, what the layout is called", "none"});
+  return at(top, "name, what the layout is called", "none");
 }
 
 /// Reads the table `time`; without it, rows come at rate_hz.
@@ -116,7 +116,7 @@ Result<void> read_time(const Value& top, TableLayout& layout) {
   KA_TRY(read_options(*table, {choice("unit", units, unit), choice("epoch", epochs, epoch)},
                       {{"column", read_column}}));
   if (column.name.empty() && column.number == 0) {
-    return at(*table, {"", 0, "column in [time], a name or a number from 1", "none"});
+    return at(*table, "column in [time], a name or a number from 1", "none");
   }
   // The scale joins unit and epoch: stamp = number * unit + epoch.
   layout.time = TableTime{column, {chosen(units, unit), chosen(epochs, epoch)}};
@@ -134,10 +134,9 @@ Result<void> add_field(const Value& fields, const std::string& name, const std::
     layout.fields.push_back({field, pattern});
     return {};
   }
-  return at(fields, {"", 0,
-                     points ? "fields x, y, z, state, skip"
-                            : "fields qw ... qz, ax ... az, gx ... gz, skip",
-                     shown(name)});
+  return at(fields,
+            points ? "fields x, y, z, state, skip" : "fields qw ... qz, ax ... az, gx ... gz, skip",
+            shown(name));
 }
 
 /// Reads the fields: a table of patterns, or a list in the order of the columns.
@@ -166,7 +165,7 @@ Result<void> check_fields(const Value& fields, const TableLayout& layout) {
   for (const FieldColumn& one : layout.fields) {
     const auto same = [&](const FieldColumn& each) { return each.field == one.field; };
     if (one.field != skip && std::count_if(layout.fields.begin(), layout.fields.end(), same) > 1) {
-      return at(fields, {"", 0, "each field once", "one twice"});
+      return at(fields, "each field once", "one twice");
     }
   }
   // Whole quantities; at least one is needed.
@@ -177,31 +176,31 @@ Result<void> check_fields(const Value& fields, const TableLayout& layout) {
     const auto there = std::count_if(group.begin(), group.end(),
                                      [&](TableField each) { return has_field(layout, each); });
     if (there != 0 && there != static_cast<std::ptrdiff_t>(group.size())) {
-      return at(fields, {"", 0, "all components of a quantity",
-                         std::to_string(there) + " of " + std::to_string(group.size())});
+      return at(fields, "all components of a quantity",
+                std::to_string(there) + " of " + std::to_string(group.size()));
     }
     whole += there != 0 ? 1 : 0;
   }
   if (whole > 0) return {};
-  return at(fields, {"", 0, "x, y and z, or a quantity of an IMU", "none"});
+  return at(fields, "x, y and z, or a quantity of an IMU", "none");
 }
 
 /// Reads the table of the joints or nodes.
 Result<void> read_members(const Value& top, TableLayout& layout) {
   const std::string_view key = layout.kind == TableKind::points ? "joints" : "nodes";
   const Value* table = top.find({key});
-  if (table == nullptr) return at(top, {"", 0, "a table [" + std::string(key) + "]", "none"});
+  if (table == nullptr) return at(top, "a table [" + std::string(key) + "]", "none");
   // The names are optional for nodes: a file may be one node's.
   std::int64_t first_column = 1;
   KA_TRY(read_options(*table, {{"names", "", &layout.names}, count("first_column", first_column)},
                       {{"fields", later}}));
   layout.first_column = static_cast<std::size_t>(first_column);
   if (layout.names.empty() && (key == "joints" || table->find({"names"}) != nullptr)) {
-    return at(*table, {"", 0, "names in [" + table->path + "]", "none"});
+    return at(*table, "names in [" + table->path + "]", "none");
   }
   const Value* fields = table->find({"fields"});
   // Without fields nothing is known about the columns.
-  if (fields == nullptr) return at(*table, {"", 0, "fields in [" + table->path + "]", "none"});
+  if (fields == nullptr) return at(*table, "fields in [" + table->path + "]", "none");
   KA_TRY(read_fields(*fields, layout));
   return check_fields(*fields, layout);
 }
@@ -235,21 +234,21 @@ Result<void> read_axes(const Value& top, TableLayout& layout) {
                "mirrored = true"});
   }
   if (determinant(layout.axes) == (mirrored ? -1 : 1)) return {};
-  return at(*table, {"", 0, mirrored ? "axes that mirror" : "axes that keep right-handed",
-                     determinant(layout.axes) == 0 ? "an axis that stands twice"
-                     : mirrored                    ? "axes that keep right-handed"
-                                                   : "a mirror image without mirrored = true"});
+  return at(*table, mirrored ? "axes that mirror" : "axes that keep right-handed",
+            determinant(layout.axes) == 0 ? "an axis that stands twice"
+            : mirrored                    ? "axes that keep right-handed"
+                                          : "a mirror image without mirrored = true");
 }
 
 /// Checks that columns are given in a form that the file allows, and computes the width of a row.
 Result<void> check_columns(const Value& top, TableLayout& layout) {
   // Names can only be found in a line of names.
   if (layout.by_name && !layout.header) {
-    return at(top, {"", 0, "fields in order where no line names the columns", "fields by name"});
+    return at(top, "fields in order where no line names the columns", "fields by name");
   }
   if (!layout.header && layout.time && layout.time->column.number == 0) {
-    return at(*top.find({"time"}), {"", 0, "a column's number where no line names the columns",
-                                    shown(layout.time->column.name)});
+    return at(*top.find({"time"}), "a column's number where no line names the columns",
+              shown(layout.time->column.name));
   }
   if (layout.by_name) return {};
   const std::size_t members = std::max<std::size_t>(layout.names.size(), 1);

@@ -72,13 +72,11 @@ void RowSelection::report(const std::string& file, Findings& findings) const {
   }
   // Without a selection, the rows of all bodies would be read as one.
   if (bodies_.count() > 1) {
-    findings.push_back(
-        {Severity::warning,
-         Error{file, 0, "one body in the selected rows", body_.column + " " + bodies_.list()},
-         "rows of several bodies are mixed in one stream",
-         "select one body: select = { \"" + body_.column + "\" = " + shown(bodies_.first()) +
-             " } in the manifest, --select \"" + body_.column + "=" + shown(bodies_.first()) +
-             "\""});
+    add_warning(
+        findings, {file, 0, "one body in the selected rows", body_.column + " " + bodies_.list()},
+        "rows of several bodies are mixed in one stream",
+        "select one body: select = { \"" + body_.column + "\" = " + shown(bodies_.first()) +
+            " } in the manifest, --select \"" + body_.column + "=" + shown(bodies_.first()) + "\"");
   }
 }
 

@@ -2,10 +2,10 @@
 #include "kinalign/formats/table/table_columns.h"
 
 #include "kinalign/core/nearest_name.h"
+#include "kinalign/core/numbers.h"
 #include "kinalign/core/utf8.h"
 
 #include <algorithm>
-#include <charconv>
 
 namespace kinalign {
 
@@ -65,7 +65,7 @@ class Finder {
     if (places_.contains(layout_.body)) {
       found_.body = {layout_.body, text_of(KA_TRY(column_of({layout_.body, 0}))), ""};
     }
-    if (slots_ == 0) return Failure(Error{"", 0, "columns of layout " + layout_.name, "none"});
+    if (slots_ == 0) return refuse("columns of layout " + layout_.name, "none");
     // Columns that could hold a misspelt name.
     found_.unread = static_cast<std::size_t>(
         std::count_if(found_.uses.begin(), found_.uses.end(),
@@ -92,16 +92,14 @@ class Finder {
   Failure no_column(const std::string& name) const {
     const std::string near = nearest_name(name, known());
     const std::string hint = near.empty() ? "" : " (nearest: " + shown(near) + ")";
-    return Failure(Error{"", 0, "a column " + shown(name), "no such column" + hint});
+    return refuse("a column " + shown(name), "no such column" + hint);
   }
 
   /// A column that the user selects by: its name or, if the file has no such name, its number.
   ColumnChoice choice_of(const std::string& column) const {
     // A column may be called "3". Then the name has priority.
     std::size_t number = 0;
-    const char* end = column.data() + column.size();
-    const auto [behind, fault] = std::from_chars(column.data(), end, number);
-    if (!places_.contains(column) && fault == std::errc{} && behind == end) return {"", number};
+    if (!places_.contains(column) && parse_integer(column, number)) return {"", number};
     return {column, 0};
   }
 
@@ -110,14 +108,14 @@ class Finder {
   Result<std::size_t> column_of(const ColumnChoice& choice) const {
     if (choice.number != 0) {
       if (choice.number <= found_.uses.size()) return choice.number - 1;
-      return Failure(Error{"", 0, "a column " + std::to_string(choice.number),
-                           std::to_string(found_.uses.size()) + " columns"});
+      return refuse("a column " + std::to_string(choice.number),
+                    std::to_string(found_.uses.size()) + " columns");
     }
     const auto place = places_.find(choice.name);
     if (place == places_.end()) return no_column(choice.name);
     if (place->second.times == 1) return place->second.column;
-    return Failure(Error{"", 0, "one column " + shown(choice.name),
-                         std::to_string(place->second.times) + " with this name"});
+    return refuse("one column " + shown(choice.name),
+                  std::to_string(place->second.times) + " with this name");
   }
 
   Result<std::size_t> selected(const std::string& column) const {
@@ -167,7 +165,7 @@ class Finder {
     for (const std::size_t column : columns) {
       // Two quantities can't share a column.
       if (found_.uses[column].slot >= 0) {
-        return Failure(Error{"", 0, "one use of column " + std::to_string(column + 1), "two"});
+        return refuse("one use of column " + std::to_string(column + 1), "two");
       }
       found_.uses[column].slot = slots_++;
     }

@@ -3,9 +3,8 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
-#include "kinalign/formats/held_rows.h"
 #include "kinalign/formats/imu_converter.h"
-#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/line_reader.h"
 #include "kinalign/formats/point_rows.h"
 #include "kinalign/formats/table/table_columns.h"
 
@@ -75,9 +74,7 @@ class PointBuilder {
     if (among(layout_.state.tracked)) return Tracking::tracked;
     if (among(layout_.state.inferred)) return Tracking::inferred;
     if (among(layout_.state.missing)) return Tracking::missing;
-    std::string text(number_room, ' ');
-    text.resize(static_cast<std::size_t>(put_number(text.data(), value, 0) - text.data()));
-    return Failure(Error{"", 0, "a tracking state that the layout names", text});
+    return refuse("a tracking state that the layout names", number_text(value, 0));
   }
 
   const TableLayout& layout_;
@@ -139,70 +136,54 @@ class ImuBuilder {
 /// Lines are skipped, or name the columns, or are rows. Everything before the first row is decided
 /// by the layout.
 template <class Builder>
-class TableReader final : public Builder::ReaderType {
+class TableReader final : public LineReader<typename Builder::ReaderType> {
  public:
-  using Header = typename Builder::ReaderType::Header;
-  using Frames = typename Builder::ReaderType::Frames;
+  using Base = LineReader<typename Builder::ReaderType>;
+  using typename Base::Frames;
 
   TableReader(const TableLayout& layout, const StreamOptions& options, std::string_view file,
               std::vector<std::string> members)
-      : layout_(layout),
+      : Base(file, "a table of layout " + layout.name,
+             RowStamps(layout.time.has_value(),
+                       options.rate_hz > 0.0 ? options.rate_hz : layout.rate_hz, options.start_ns)),
+        layout_(layout),
         members_(std::move(members)),
         select_(options.select),
         own_layout_(options.own_layout()),
-        lines_(file),
-        stamps_(layout.time.has_value(), options.rate_hz > 0.0 ? options.rate_hz : layout.rate_hz,
-                options.start_ns),
         builder_(layout_, options, members_) {
     // insert() keeps the user's choice where both have one.
     for (const auto& choice : layout.select) select_.insert(choice);
   }
 
-  Result<void> feed(std::string_view piece, Frames& out) override {
-    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
-  }
+ private:
+  using Base::held_, Base::header_, Base::lines_, Base::stamps_;
 
-  Result<void> finish(Frames& out) override {
-    const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, this->findings) : lines_.finish_head(use, this->findings));
-    // No header: the file ended before its first row, or before its line of names.
-    if (!header_) {
-      return Failure(lines_.error("a table of layout " + layout_.name, "the end of the file"));
-    }
-    // Rows may be held until it is known whether the stamps move.
-    stamps_.settle();
-    this->counted = stamps_.counted();
-    held_.release(stamps_, out);
-    if (stamps_.stuck()) this->findings.push_back(stuck_finding(lines_.file(), stamps_));
+  Result<void> report() override {
     report_absent();
     builder_.report(lines_.file(), this->findings);
     selection_.report(lines_.file(), this->findings);
     return {};
   }
 
-  const Header* header() const override { return header_ ? &*header_ : nullptr; }
-
- private:
   /// Reports quantities that the file lacks. A misspelt name, in a user's layout or in the file,
   /// looks the same.
   void report_absent() {
     // A layout of the program fits many files; unused columns show that one may be misspelt.
     if (!own_layout_ && columns_.unread == 0) return;
     for (const std::string& column : columns_.absent) {
-      this->findings.push_back(
-          {Severity::note,
-           Error{lines_.file(), 0,
-                 "a column " + shown(column) + ", as layout " + layout_.name + " says",
-                 "no such column"},
-           Builder::without,
-           own_layout_
-               ? "if the file has no such column, remove it from the layout"
-               : fmt::format("if it is one of the {} unread columns, use its name in the layout",
-                             columns_.unread)});
+      add_note(
+          this->findings,
+          {lines_.file(), 0, "a column " + shown(column) + ", as layout " + layout_.name + " says",
+           "no such column"},
+          Builder::without,
+          own_layout_
+              ? "if the file has no such column, remove it from the layout"
+              : fmt::format("if it is one of the {} unread columns, use its name in the layout",
+                            columns_.unread));
     }
   }
 
-  Result<void> read(std::string_view line, Frames& out) {
+  Result<void> read(std::string_view line, Frames& out) override {
     // Counted in lines of the file, comments included.
     if (static_cast<std::size_t>(lines_.number()) <= layout_.skip_lines) return {};
     if (!layout_.comment.empty() && line.starts_with(layout_.comment)) return {};
@@ -246,21 +227,17 @@ class TableReader final : public Builder::ReaderType {
     if (columns_.time_text < 0) return 0;
     const std::string_view cell = row_.texts[static_cast<std::size_t>(columns_.time_text)];
     if (const auto ns = parse_stamp(cell, layout_.time->scale)) return *ns;
-    return Failure(Error{"", 0, "a stamp inside +-4e18 ns", shown(cell)});
+    return refuse("a stamp inside +-4e18 ns", shown(cell));
   }
 
   TableLayout layout_;
   std::vector<std::string> members_;
   std::map<std::string, std::string> select_;
   bool own_layout_;
-  NamedLines lines_;
-  RowStamps stamps_;
   Builder builder_;
-  HeldRows<Frames> held_;
   TableColumns columns_;
   RowSelection selection_;
   RowParser row_;
-  std::optional<Header> header_;
 };
 
 }  // namespace

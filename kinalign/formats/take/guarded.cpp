@@ -4,6 +4,8 @@
 // `message_most`.
 #include "kinalign/formats/take/guarded.h"
 
+#include "kinalign/core/file_calls.h"
+
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -32,15 +34,10 @@ constexpr int no_memory_code = 77;
 
 // ---- the child
 
-/// A write to a pipe may take a part of the bytes only.
 bool write_all(int pipe, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t put = ::write(pipe, bytes.data(), bytes.size());
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(put));
-  }
-  return true;
+  return put_all(bytes, [pipe](std::string_view rest) {
+           return ::write(pipe, rest.data(), rest.size());
+         }) == 0;
 }
 
 /// Head and body are two writes; the reader joins whatever pieces arrive.
@@ -131,7 +128,7 @@ std::string packed(const Step& step, std::string_view what) {
   const GuardSend send_data = [pipe](std::string_view bytes) -> Result<void> {
     for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), message_most))) {
       if (!send(pipe, 'd', bytes.substr(0, message_most))) {
-        return Failure(Error{"", 0, "a process that reads the result", "no such process"});
+        return refuse("a process that reads the result", "no such process");
       }
     }
     return {};
@@ -167,11 +164,6 @@ class Child {
   int end() {
     // kill() of a child that has ended does no harm: its id is taken until waitpid() returns.
     ::kill(id_, SIGKILL);
-    return wait();
-  }
-
- private:
-  int wait() {
     int status = 0;
     while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
     }
@@ -179,6 +171,7 @@ class Child {
     return status;
   }
 
+ private:
   pid_t id_;
   int pipe_;
   bool ended_ = false;
@@ -310,7 +303,7 @@ Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work
                  const Receive& receive, const Progress& progress) {
   int ends[2] = {-1, -1};
   if (::pipe2(ends, O_CLOEXEC) != 0) {
-    return Failure(Error{"", 0, "a pipe to a child process", std::strerror(errno)});
+    return refuse("a pipe to a child process", std::strerror(errno));
   }
   const pid_t id = ::fork();
   // In the child. run_child() does not return.
@@ -323,7 +316,7 @@ Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work
   ::close(ends[1]);
   if (id < 0) {
     ::close(ends[0]);
-    return Failure(Error{"", 0, "a child process", std::strerror(code)});
+    return refuse("a child process", std::strerror(code));
   }
   Child child(id, ends[0]);
   Inbox inbox(receive, progress);

@@ -78,7 +78,7 @@ hid_t type_of(Stored stored) {
 
 Failure Checked::other(const char* name, const std::string& expected,
                        const std::string& found) const {
-  return Failure(Error{bytes_.path(), 0, std::string(name) + " as " + expected, found});
+  return refuse(bytes_.path(), std::string(name) + " as " + expected, found);
 }
 
 /// Type, size and position of a data set. Fails unless it is stored in one piece inside the file.
@@ -219,7 +219,7 @@ Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t f
   const std::size_t got = KA_TRY(bytes.input->read_at(source.at + first * row, room));
   if (got == room.size()) return {};
   // The file was long enough when it was opened.
-  return Failure(Error{bytes.path(), 0, "a file that keeps its length", "a shorter file"});
+  return refuse(bytes.path(), "a file that keeps its length", "a shorter file");
 }
 
 // A loop of its own becomes vector code.

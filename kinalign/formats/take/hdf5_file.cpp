@@ -55,18 +55,18 @@ std::optional<std::uint64_t> stated_end(std::string_view head) {
 Result<void> check_start(const std::string& path, std::string_view head, std::uint64_t size) {
   const std::string_view start = head.substr(0, signature.size());
   if (start != signature.substr(0, start.size()) || start.empty()) {
-    return Failure(Error{path, 0, "a take, which is an HDF5 file", beginning_of(head)});
+    return refuse(path, "a take, which is an HDF5 file", beginning_of(head));
   }
   const auto end = stated_end(head);
   if (end && *end <= size) return {};
   if (end) {
-    return Failure(
-        Error{path, 0, "a complete HDF5 file",
-              "a truncated file: " + std::to_string(size) + " bytes of " + std::to_string(*end)});
+    return refuse(
+        path, "a complete HDF5 file",
+        "a truncated file: " + std::to_string(size) + " bytes of " + std::to_string(*end));
   }
   if (head.size() < start_bytes) {
-    return Failure(Error{path, 0, "a complete HDF5 file",
-                         "a truncated file: " + std::to_string(size) + " bytes"});
+    return refuse(path, "a complete HDF5 file",
+                  "a truncated file: " + std::to_string(size) + " bytes");
   }
   return {};  // HDF5 itself reports any other fault
 }
@@ -211,8 +211,8 @@ Failure failure(const Bytes& bytes, std::string expected) {
   if (bytes.failure) return Failure(*bytes.failure);
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
-  return Failure(Error{bytes.path(), 0, std::move(expected),
-                       reason.empty() ? "something of another kind" : "an HDF5 error: " + reason});
+  return refuse(bytes.path(), std::move(expected),
+                reason.empty() ? "something of another kind" : "an HDF5 error: " + reason);
 }
 
 Result<Handle> create(Bytes& bytes) {

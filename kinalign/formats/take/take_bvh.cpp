@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/formats/take/take_bvh.h"
 
-#include "kinalign/core/unchanged.h"
+#include "kinalign/core/file_version.h"
 #include "kinalign/formats/take/take_hdf5.h"
 
 #include <fmt/format.h>
@@ -103,32 +103,30 @@ Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
     }
   }
   if (!out.name.empty()) return out;
-  return Failure(Error{path, 0, "a take with a skeleton", "none"});
+  return refuse(path, "a take with a skeleton", "none");
 }
 
 /// Findings about everything that the BVH does not hold.
 Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& survey) {
   Findings out;
   if (!chosen.others.empty()) {
-    out.push_back({Severity::note,
-                   Error{path, 0, "one skeleton", chosen.name + ", " + chosen.others},
-                   chosen.name + " was written", "convert to .npz to keep all of them"});
+    add_note(out, {path, 0, "one skeleton", chosen.name + ", " + chosen.others},
+             chosen.name + " was written", "convert to .npz to keep all of them");
   }
   if (survey.invalid > 0) {
-    out.push_back(
-        {Severity::warning,
-         Error{path, 0, "valid rows of " + chosen.name,
-               fmt::format("{} of {} rows that are not valid", survey.invalid, survey.rows)},
-         "these rows have the pose of the last valid row, because a BVH can't mark them", ""});
+    add_warning(out,
+                {path, 0, "valid rows of " + chosen.name,
+                 fmt::format("{} of {} rows that are not valid", survey.invalid, survey.rows)},
+                "these rows have the pose of the last valid row, because a BVH can't mark them");
   }
   const double step = survey.step_s();
   // Differences of less than 1 % are not reported.
   if (survey.rows > 2 && seconds(survey.longest - survey.shortest) > 0.01 * step) {
-    out.push_back({Severity::warning,
-                   Error{path, 0, "evenly spaced stamps",
-                         fmt::format("steps of {:.4g} to {:.4g} ms", 1e3 * seconds(survey.shortest),
-                                     1e3 * seconds(survey.longest))},
-                   fmt::format("the frame time is the mean step, {:.4g} ms", 1e3 * step), ""});
+    add_warning(out,
+                {path, 0, "evenly spaced stamps",
+                 fmt::format("steps of {:.4g} to {:.4g} ms", 1e3 * seconds(survey.shortest),
+                             1e3 * seconds(survey.longest))},
+                fmt::format("the frame time is the mean step, {:.4g} ms", 1e3 * step));
   }
   return out;
 }
@@ -147,7 +145,7 @@ Result<void> check_size(const std::string& path, const ClipRows& rows) {
   const auto small = [](double x) { return std::abs(x) < largest; };
   const auto& values = rows.local_positions;
   if (std::all_of(values.begin(), values.end(), small)) return {};
-  return Failure(Error{path, 0, "positions below 1e12 m", "larger positions"});
+  return refuse(path, "positions below 1e12 m", "larger positions");
 }
 
 /// Results of the first pass: skeleton's channels, rows that are invalid, steps.
@@ -186,12 +184,12 @@ Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
   }));
   // Without a valid row there is no pose to write.
   if (pass.survey.rows == 0 || pass.survey.invalid < pass.survey.rows) return pass;
-  return Failure(Error{path, 0, "a valid row of " + chosen.name, "none"});
+  return refuse(path, "a valid row of " + chosen.name, "none");
 }
 
 }  // namespace
 
-Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink) {
+Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const FileSink& sink) {
   // Both passes must read the same file.
   const auto version = version_of(from);
   FirstPass pass = KA_TRY(look_through(files, from));

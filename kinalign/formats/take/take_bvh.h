@@ -13,6 +13,6 @@ namespace kinalign {
 /// An invalid row therefore gets the pose of the last valid row or, before the first valid row, the
 /// pose of that one. Reads the take twice in slabs, because the channels are known only after the
 /// first pass. Returns the losses as findings. Call it only where a take may be opened (guarded.h).
-Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink);
+Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const FileSink& sink);
 
 }  // namespace kinalign

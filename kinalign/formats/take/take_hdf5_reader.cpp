@@ -28,7 +28,7 @@ struct Found {
 };
 
 Failure bad_value(const std::string& path, const std::string& expected, const std::string& where) {
-  return Failure(Error{path, 0, expected, "other content in " + where});
+  return refuse(path, expected, "other content in " + where);
 }
 
 bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
@@ -120,8 +120,8 @@ Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string
   } else if (kind == "imu") {
     out.kind = KA_TRY(read_imu(file, group));
   } else {
-    return Failure(Error{file.bytes().path(), 0, "a kind of stream: clip, points or imu",
-                         "\"" + shown(kind) + "\""});
+    return refuse(file.bytes().path(), "a kind of stream: clip, points or imu",
+                  "\"" + shown(kind) + "\"");
   }
   return out;
 }
@@ -138,6 +138,7 @@ struct TakeReader::State {
 
   InputFile input;
   Bytes bytes;
+  hdf5::Checked checked{bytes};
   Handle file;
   TakeHeader header;
   std::string software;
@@ -148,8 +149,8 @@ struct TakeReader::State {
   std::uint64_t rows = 0, slab_rows = 4096;
   Time last = Time::min();
 
-  Result<void> read_words(const hdf5::Checked& checked);
-  Result<void> check_format(const hdf5::Checked& checked) const;
+  Result<void> read_words();
+  Result<void> check_format() const;
   Result<void> read_header(const TakeParts& parts);
   Result<void> find_stream(const std::string& name, const TakeParts& parts,
                            std::uint64_t& row_bytes);
@@ -180,7 +181,7 @@ struct TakeReader::State {
 };
 
 /// Reads the root's text attributes and the parameters.
-Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
+Result<void> TakeReader::State::read_words() {
   const hid_t root = file.id();
   software = KA_TRY(checked.text_attribute(root, "software"));
   header.subject = KA_TRY(checked.text_attribute(root, "subject"));
@@ -194,25 +195,23 @@ Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
   return {};
 }
 
-Result<void> TakeReader::State::check_format(const hdf5::Checked& checked) const {
+Result<void> TakeReader::State::check_format() const {
   const auto format = checked.text_attributes(file.id(), "format");
   // The format is checked before all else, so another HDF5 file gets one clear message.
   if (!format || format->size() != 1 || !format->front().starts_with("kinalign.take/")) {
-    return Failure(Error{input.path(), 0, "a take that kinalign wrote", "HDF5 of another kind"});
+    return refuse(input.path(), "a take that kinalign wrote", "HDF5 of another kind");
   }
   if (format->front() != "kinalign.take/1") {
-    return Failure(
-        Error{input.path(), 0, "format kinalign.take/1", "\"" + shown(format->front()) + "\""});
+    return refuse(input.path(), "format kinalign.take/1", "\"" + shown(format->front()) + "\"");
   }
   return {};
 }
 
 /// Reads everything but the rows, and chooses the size of a slab.
 Result<void> TakeReader::State::read_header(const TakeParts& parts) {
-  const hdf5::Checked checked(bytes);
   const hid_t root = file.id();
-  KA_TRY(check_format(checked));
-  KA_TRY(read_words(checked));
+  KA_TRY(check_format());
+  KA_TRY(read_words());
   header.frames = KA_TRY(checked.rows(root, "time_ns"));
   time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
   // A row of time_ns has eight bytes.
@@ -231,7 +230,6 @@ Result<void> TakeReader::State::find_stream(const std::string& name, const TakeP
   // The name comes from the file; HDF5 looks it up in the file only.
   const Handle group(H5Gopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
-  const hdf5::Checked checked(bytes);
   header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
   TakeGroup& what = header.groups.back();
   KA_TRY(find_columns(group.id(), what, parts, row_bytes));
@@ -242,7 +240,6 @@ Result<void> TakeReader::State::find_stream(const std::string& name, const TakeP
 /// Finds the columns of a stream that the parts select, in the order of columns_of().
 Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
                                              const TakeParts& parts, std::uint64_t& row_bytes) {
-  const hdf5::Checked checked(bytes);
   const Precision precision = precision_of(header);
   auto& found = columns.emplace_back();
   for (const TakeColumn& column : columns_of(what, precision)) {
@@ -336,9 +333,9 @@ Result<void> TakeReader::read(std::uint64_t first, std::uint64_t count, TakeSlab
   const std::uint64_t frames = state_->header.frames;
   // Written so that the sum can't overflow.
   if (first > frames || count > frames - first) {
-    return Failure(Error{state_->input.path(), 0,
-                         "rows " + std::to_string(first) + " to " + std::to_string(first + count),
-                         std::to_string(frames) + " rows"});
+    return refuse(state_->input.path(),
+                  "rows " + std::to_string(first) + " to " + std::to_string(first + count),
+                  std::to_string(frames) + " rows");
   }
   return state_->read_slab(first, count, slab);
 }
@@ -350,7 +347,7 @@ Result<std::vector<Time>> TakeReader::stamps() {
 }
 
 Result<std::string> TakeReader::report_json() const {
-  return hdf5::Checked(state_->bytes).text(state_->file.id(), "report_json");
+  return state_->checked.text(state_->file.id(), "report_json");
 }
 
 Result<Take> read_take(FileSystem& files, const std::string& path) {

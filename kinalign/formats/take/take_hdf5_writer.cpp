@@ -83,7 +83,6 @@ class Layout {
     // The vectors are written as they lie in memory.
     static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(int) == 4);
     const std::size_t joints = skeleton.joints();
-    KA_TRY(texts(group, "joint_names", skeleton.joint_names));
     KA_TRY(whole(group, "parents", {H5T_STD_I32LE, {joints}}, skeleton.parents.data()));
     KA_TRY(whole(group, "rest_offsets", {H5T_IEEE_F64LE, {joints, 3}}, skeleton.rest_offsets.data(),
                  "m"));
@@ -170,12 +169,7 @@ struct TakeWriter::State {
       at += piece.size();
       return {};
     };
-    // Only numbers are stored in another precision than they have in memory.
-    if constexpr (std::is_same_v<Value, double>) {
-      return numbers.store(values, column.stored, put);
-    } else {
-      return put(bytes_of(values));
-    }
+    return numbers.store(values, column.stored, put);
   }
 };
 
@@ -221,17 +215,13 @@ Result<void> TakeWriter::State::lay_out(const TakeGroup& group, Precision precis
       !put_inputs(made.id(), group.files)) {
     return hdf5::failure(bytes, can_hold);
   }
-  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
-    KA_TRY(layout.skeleton(made.id(), clip->skeleton));
-  } else if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
-    KA_TRY(layout.texts(made.id(), "joint_names", points->joint_names));
-  } else {
-    const auto& imu = std::get<ImuGroup>(group.kind);
-    KA_TRY(layout.texts(made.id(), "node_names", imu.node_names));
-    if (!hdf5::put_text(made.id(), "root_node", imu.root_node) ||
-        !hdf5::put_texts(made.id(), "gravity", gravity_texts(imu))) {
-      return hdf5::failure(bytes, can_hold);
-    }
+  KA_TRY(layout.texts(made.id(), names_key(group), names_of(group)));
+  const auto* clip = std::get_if<ClipGroup>(&group.kind);
+  if (clip != nullptr) KA_TRY(layout.skeleton(made.id(), clip->skeleton));
+  const auto* imu = std::get_if<ImuGroup>(&group.kind);
+  if (imu != nullptr && (!hdf5::put_text(made.id(), "root_node", imu->root_node) ||
+                         !hdf5::put_texts(made.id(), "gravity", gravity_texts(*imu)))) {
+    return hdf5::failure(bytes, can_hold);
   }
   std::vector<Placed>& placed = groups.emplace_back();
   for (const TakeColumn& column : columns_of(group, precision)) {

@@ -75,7 +75,7 @@ std::vector<TakeColumn> imu_columns(const ImuGroup& group, Stored number) {
 }
 
 Failure bad_name(const std::string& what, const std::string& name) {
-  return Failure(Error{"", 0, what, name.empty() ? "an empty name" : "\"" + shown(name) + "\""});
+  return refuse(what, name.empty() ? "an empty name" : "\"" + shown(name) + "\"");
 }
 
 Result<void> check_names(const std::vector<std::string>& names, const std::string& what) {
@@ -204,14 +204,10 @@ Result<void> validate(const TakeHeader& header) {
   for (const TakeGroup& group : header.groups) {
     names.push_back(group.name);
     KA_TRY(check_stream_name(group.name));
-    if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
-      KA_TRY(validate(clip->skeleton));
-      KA_TRY(check_names(clip->skeleton.joint_names, "a name for each joint"));
-    } else if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
-      KA_TRY(check_names(points->joint_names, "a name for each joint"));
-    } else {
-      KA_TRY(check_names(std::get<ImuGroup>(group.kind).node_names, "a name for each node"));
-    }
+    const auto* clip = std::get_if<ClipGroup>(&group.kind);
+    if (clip != nullptr) KA_TRY(validate(clip->skeleton));
+    const bool nodes = std::holds_alternative<ImuGroup>(group.kind);
+    KA_TRY(check_names(names_of(group), nodes ? "a name for each node" : "a name for each joint"));
   }
   return check_names(names, "a name for each stream");
 }

@@ -63,8 +63,11 @@ std::vector<std::string> gravity_texts(const ImuGroup& group);  // [S] of each n
 /// The order matters: writers and readers walk through columns and arrays side by side.
 std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision);
 
-/// Names of the group's joints or nodes.
+/// Names of the group's joints or nodes, and how a file calls their list.
 const std::vector<std::string>& names_of(const TakeGroup& group);
+inline const char* names_key(const TakeGroup& group) {
+  return std::holds_alternative<ImuGroup>(group.kind) ? "node_names" : "joint_names";
+}
 /// A label for each number in a row of the column: "Hips.x"; "row" if there is one number a row.
 std::vector<std::string> labels_of(const TakeColumn& column, const TakeGroup& group);
 /// The group without its samples, as JSON: name, kind and names; for a skeleton also parents,
@@ -110,7 +113,11 @@ class NumberStore {
   NumberStore() : singles_(piece) {}
 
   /// Calls put(bytes), which returns Result<void>, until all of `values` have been passed on in the
-  /// form `stored`.
+  /// form `stored`. Only numbers are stored in another precision than they have in memory.
+  template <class Value, class Put>
+  Result<void> store(std::span<const Value> values, Stored, Put&& put) {
+    return put(bytes_of(values));
+  }
   template <class Put>
   Result<void> store(std::span<const double> values, Stored stored, Put&& put) {
     check_numbers(values);

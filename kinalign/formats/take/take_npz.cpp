@@ -138,7 +138,6 @@ struct Members {
 
 void add_skeleton(Members& members, const std::string& prefix, const Skeleton& skeleton) {
   const std::uint64_t joints = skeleton.joints();
-  members.add_texts(prefix + "joint_names", skeleton.joint_names);
   members.add_numbers(prefix + "parents", Stored::int32, {joints}, skeleton.parents);
   members.add_vectors(prefix + "rest_offsets", skeleton.rest_offsets);
   const EndSiteArrays sites = end_site_arrays(skeleton);
@@ -147,25 +146,14 @@ void add_skeleton(Members& members, const std::string& prefix, const Skeleton& s
   members.add_vectors(prefix + "end_sites_offsets", sites.offsets);
 }
 
-void add_names(Members& members, const std::string& prefix, const TakeGroup& group) {
-  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
-    add_skeleton(members, prefix, clip->skeleton);
-  } else if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
-    members.add_texts(prefix + "joint_names", points->joint_names);
-  } else {
-    members.add_texts(prefix + "node_names", std::get<ImuGroup>(group.kind).node_names);
-  }
-}
-
 /// Fails if two members have the same name. The name of a stream and of its array together may
 /// equal those of another stream.
 Result<void> check_names(const std::vector<NpzArray>& arrays, const std::string& path) {
   std::set<std::string_view> seen;
   for (const NpzArray& array : arrays) {
     if (seen.insert(array.name).second) continue;
-    return Failure(Error{path, 0,
-                         "streams whose array names differ (STREAM_ARRAY.npy): rename a stream",
-                         "'" + shown(array.name) + "' twice"});
+    return refuse(path, "streams whose array names differ (STREAM_ARRAY.npy): rename a stream",
+                  "'" + shown(array.name) + "' twice");
   }
   return {};
 }
@@ -284,7 +272,9 @@ Result<TakeNpzWriter> TakeNpzWriter::create(FileSystem& files, std::string path,
       columns.push_back({column.name, column.stored, members.arrays.size()});
       members.arrays.push_back(npz_numbers(prefix + column.name, column.stored, shape));
     }
-    add_names(members, prefix, group);
+    members.add_texts(prefix + names_key(group), names_of(group));
+    const auto* clip = std::get_if<ClipGroup>(&group.kind);
+    if (clip != nullptr) add_skeleton(members, prefix, clip->skeleton);
   }
   KA_TRY(check_names(members.arrays, path));
   TakeNpzWriter out(KA_TRY(NpzWriter::create(files, std::move(path), overwrite, members.arrays)),
@@ -305,12 +295,7 @@ Result<void> TakeNpzWriter::append(const TakeSlab& slab) {
       if (column == groups_[g].cend() || column->name != name) return {};
       const Column& to = *column++;
       const auto put = [&](std::string_view bytes) { return writer_.append(to.array, bytes); };
-      const std::span given(values);
-      if constexpr (std::is_same_v<typename decltype(given)::value_type, double>) {
-        return numbers_.store(given, to.stored, put);
-      } else {
-        return put(bytes_of(given));
-      }
+      return numbers_.store(std::span(values), to.stored, put);
     };
     KA_TRY(
         std::visit([&](const auto& rows) { return for_each_row_array(rows, use); }, slab.rows[g]));

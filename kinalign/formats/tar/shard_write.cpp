@@ -8,7 +8,7 @@ namespace kinalign {
 namespace {
 
 Failure refuse_sample(std::string expected, std::string_view found) {
-  return Failure(Error{"", 0, std::move(expected), "'" + shown(found) + "'"});
+  return refuse(std::move(expected), "'" + shown(found) + "'");
 }
 
 }  // namespace

@@ -14,10 +14,6 @@ constexpr std::size_t block = 512;
 constexpr std::size_t longest_in_header = 100, longest_name = 1000;
 constexpr std::uint64_t largest_in_header = (std::uint64_t{1} << 33) - 1;  // 11 octal digits
 
-Failure refuse(std::string expected, std::string found) {
-  return Failure(Error{"", 0, std::move(expected), std::move(found)});
-}
-
 /// Writes "0000644": digits - 1 octal digits; the zero byte after them is there already.
 void put_octal(std::string& header, std::size_t at, std::size_t digits, std::uint64_t value) {
   header.replace(at, digits - 1, fmt::format("{:0{}o}", value, digits - 1));
@@ -72,8 +68,8 @@ Result<void> TarWriter::put(std::string_view bytes) {
   return bytes.empty() ? Result<void>{} : sink_(bytes);
 }
 
-Result<void> TarWriter::begin(std::string_view name, std::uint64_t size) {
-  KA_TRY(end_member());
+Result<void> TarWriter::add(std::string_view name, std::string_view bytes) {
+  const std::uint64_t size = bytes.size();
   const bool has_zero = name.find('\0') != std::string_view::npos;
   if (name.empty() || name.size() > longest_name || has_zero || leads_out(name)) {
     return refuse("a relative name of 1 to 1000 bytes in a tar", "'" + shown(name) + "'");
@@ -88,37 +84,11 @@ Result<void> TarWriter::begin(std::string_view name, std::uint64_t size) {
   // Programs that know no pax then read an empty member instead of a wrong size.
   const bool too_large = size > largest_in_header;
   KA_TRY(put(header_of(name.substr(0, longest_in_header), too_large ? 0 : size, '0')));
-  name_ = name;
-  size_ = left_ = size;
-  return {};
+  KA_TRY(put(bytes));
+  // A member begins at a block; the last block of the one before is filled with zeros.
+  return put(padding(size));
 }
 
-Result<void> TarWriter::append(std::string_view bytes) {
-  if (bytes.size() > left_) {
-    return refuse(fmt::format("{} bytes of {}", size_, shown(name_)), "more");
-  }
-  left_ -= bytes.size();
-  return put(bytes);
-}
-
-Result<void> TarWriter::end_member() {
-  if (left_ > 0) {
-    return refuse(fmt::format("{} bytes of {}", size_, shown(name_)),
-                  std::to_string(size_ - left_));
-  }
-  KA_TRY(put(padding(size_)));
-  size_ = 0;
-  return {};
-}
-
-Result<void> TarWriter::add(std::string_view name, std::string_view bytes) {
-  KA_TRY(begin(name, bytes.size()));
-  return append(bytes);
-}
-
-Result<void> TarWriter::finish() {
-  KA_TRY(end_member());
-  return put(std::string(2 * block, '\0'));
-}
+Result<void> TarWriter::finish() { return put(std::string(2 * block, '\0')); }
 
 }  // namespace kinalign

@@ -2,6 +2,7 @@
 // Fits a robust line to each stretch between two resets of the sender's clock, as pyxdf does: Huber
 // loss above 0.1 ms. See docs/formats/xdf.md.
 #include "kinalign/formats/xdf/xdf.h"
+#include "kinalign/motion/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,13 +32,6 @@ Step step_of(Offsets offsets, std::size_t before, std::size_t k) {
   const double next = offsets[k + 1].offset;
   const bool stays = std::abs(next - now.offset) <= std::abs(next - level.offset);
   return stays ? Step::reset : Step::outlier;
-}
-
-/// The upper one of the two middle values if their number is even.
-double middle(std::vector<double> values) {
-  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), half, values.end());
-  return *half;
 }
 
 double residual(const XdfClockLine& line, const XdfClockOffset& o) {
@@ -78,7 +72,7 @@ XdfClockLine fit_line(Offsets offsets) {
   line.offsets = offsets.size();
   std::vector<double> values;
   for (const auto& o : offsets) values.push_back(o.offset);
-  line.offset = middle(values);
+  line.offset = upper_median(values);
   for (int round = 0; round < most_rounds; ++round) {
     const XdfClockLine next = next_round(line, offsets);
     // The largest movement within the stretch.

@@ -147,7 +147,7 @@ Result<void> read_elements(std::string_view xml, XdfStream& stream, Words& words
 }
 
 Failure refused(const std::string& expected, const std::string& word) {
-  return Failure(Error{"", 0, expected, word.empty() ? "none" : "'" + shown(word) + "'"});
+  return refuse(expected, word.empty() ? "none" : "'" + shown(word) + "'");
 }
 
 }  // namespace
@@ -169,10 +169,8 @@ Result<XdfStream> parse_xdf_header(std::uint32_t id, std::string_view xml,
   // A fault late in the header leaves the elements before it usable.
   if (!read) notes.push_back(read.error());
   const auto& count = words.channel_count;
-  const char* const end = count.data() + count.size();
-  const auto [behind, error] = std::from_chars(count.data(), end, stream.channel_count);
   // Without the number of channels no sample can be read.
-  if (error != std::errc{} || behind != end) return refused("a channel_count", count);
+  if (!parse_integer(count, stream.channel_count)) return refused("a channel_count", count);
   const auto format = format_of(words.format);
   if (!format) return refused("a known channel_format", words.format);
   stream.format = *format;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the chunks of an XDF file and the samples in them. Layout: docs/formats/xdf.md.
+#include "kinalign/core/numbers.h"
 #include "kinalign/formats/xdf/header.h"
 #include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/wire/little_endian.h"
@@ -22,7 +23,6 @@ constexpr std::string_view magic = "XDF:";
 constexpr std::array<std::uint8_t, 16> boundary{0x43, 0xa5, 0x46, 0xdc, 0xcb, 0xf5, 0x41, 0x0f,
                                                 0xb3, 0x0e, 0xd5, 0x46, 0x73, 0x83, 0xcb, 0xe4};
 constexpr std::size_t tag_size = 2, id_size = 4;
-constexpr double largest = 1e15;  // s; larger times can't be meant
 
 bool is_gzip(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
@@ -56,14 +56,15 @@ class Content {
   explicit Content(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   std::size_t left() const { return bytes_.size() - at_; }
-  std::size_t at() const { return at_; }
-  void go_back(std::size_t at) { at_ = at; }
 
-  template <std::unsigned_integral T>
-  std::optional<T> take() {
-    if (left() < sizeof(T)) return std::nullopt;
-    at_ += sizeof(T);
-    return little_at<T>(bytes_, at_ - sizeof(T));
+  template <class Number>
+  std::optional<Number> take() {
+    if (left() < sizeof(Number)) return std::nullopt;
+    static_assert(std::endian::native == std::endian::little);
+    Number number{};
+    std::memcpy(&number, &bytes_[at_], sizeof number);
+    at_ += sizeof number;
+    return number;
   }
 
   /// A length in 1, 4 or 8 bytes; the byte before it gives this width.
@@ -90,40 +91,12 @@ class Content {
   std::size_t at_ = 0;
 };
 
-template <std::signed_integral T>
-std::int64_t as_signed(std::uint64_t bits) {
-  return static_cast<T>(bits);
-}
-
-/// Appends an integer of the stream's format; false if its bytes are incomplete.
-bool append_whole(XdfFormat format, Content& content, std::vector<std::int64_t>& out) {
-  const auto put = [&out](auto value, auto convert) {
-    // `value` is empty if the chunk ended.
-    if (value) out.push_back(convert(*value));
-    return value.has_value();
-  };
-  switch (format) {
-    case XdfFormat::int8:
-      return put(content.take<std::uint8_t>(), as_signed<std::int8_t>);
-    case XdfFormat::int16:
-      return put(content.take<std::uint16_t>(), as_signed<std::int16_t>);
-    case XdfFormat::int32:
-      return put(content.take<std::uint32_t>(), as_signed<std::int32_t>);
-    default:
-      // uint64 bits become int64.
-      return put(content.take<std::uint64_t>(), as_signed<std::int64_t>);
-  }
-}
-
-bool append_real(XdfFormat format, Content& content, std::vector<double>& out) {
-  if (format == XdfFormat::float32) {
-    const auto bits = content.take<std::uint32_t>();
-    if (bits) out.push_back(static_cast<double>(std::bit_cast<float>(*bits)));
-    return bits.has_value();
-  }
-  const auto bits = content.take<std::uint64_t>();
-  if (bits) out.push_back(std::bit_cast<double>(*bits));
-  return bits.has_value();
+/// Appends a number that has the type Number in the file; false if its bytes are incomplete.
+template <class Number, class Value>
+bool append_number(Content& content, std::vector<Value>& out) {
+  const auto number = content.take<Number>();
+  if (number) out.push_back(static_cast<Value>(*number));
+  return number.has_value();
 }
 
 /// Appends a value of the stream's format; false if its bytes are incomplete.
@@ -135,9 +108,20 @@ bool append_value(XdfFormat format, Content& content, XdfValues& values) {
     return true;
   }
   if (auto* real = std::get_if<std::vector<double>>(&values)) {
-    return append_real(format, content, *real);
+    return format == XdfFormat::float32 ? append_number<float>(content, *real)
+                                        : append_number<double>(content, *real);
   }
-  return append_whole(format, content, std::get<std::vector<std::int64_t>>(values));
+  auto& whole = std::get<std::vector<std::int64_t>>(values);
+  switch (format) {
+    case XdfFormat::int8:
+      return append_number<std::int8_t>(content, whole);
+    case XdfFormat::int16:
+      return append_number<std::int16_t>(content, whole);
+    case XdfFormat::int32:
+      return append_number<std::int32_t>(content, whole);
+    default:
+      return append_number<std::int64_t>(content, whole);
+  }
 }
 
 /// Appends one sample; if it is incomplete, nothing is appended and the result is false.
@@ -147,9 +131,9 @@ bool append_sample(const XdfStream& stream, Content& content, double& last_stamp
   const auto width = content.take<std::uint8_t>();
   double stamp = last_stamp;
   if (width == 8) {
-    const auto bits = content.take<std::uint64_t>();
-    if (!bits) return false;
-    stamp = std::bit_cast<double>(*bits);
+    const auto stated = content.take<double>();
+    if (!stated) return false;
+    stamp = *stated;
   } else if (width == 0) {
     // The stamp was left out: one step after the previous one.
     stamp += stream.nominal_rate_hz > 0.0 ? 1.0 / stream.nominal_rate_hz : 0.0;
@@ -222,12 +206,12 @@ Result<bool> XdfReader::begun() {
   if (begun_) return true;
   // A packed file would otherwise look like a file of another kind.
   if (is_gzip(held_)) {
-    return Failure(Error{name_, 0, "an XDF file, unpacked (gzip -d)", "a file packed by gzip"});
+    return refuse(name_, "an XDF file, unpacked (gzip -d)", "a file packed by gzip");
   }
   const std::string_view head = text_of(held_).substr(0, magic.size());
   // The beginning may come in two pieces, so only the bytes that are present are compared.
   if (head != magic.substr(0, head.size())) {
-    return Failure(Error{name_, 0, "XDF: at the beginning", "'" + shown(head) + "'"});
+    return refuse(name_, "XDF: at the beginning", "'" + shown(head) + "'");
   }
   if (held_.size() < magic.size()) return false;
   begun_ = true;
@@ -237,7 +221,7 @@ Result<bool> XdfReader::begun() {
 
 Result<void> XdfReader::finish(std::vector<XdfItem>& out) {
   if (!begun_) {
-    return Failure(Error{name_, 0, "XDF: at the beginning", "the end of the file"});
+    return refuse(name_, "XDF: at the beginning", "the end of the file");
   }
   while (step(out)) {
   }
@@ -405,7 +389,7 @@ void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<
     return std::bit_cast<double>(little_at<std::uint64_t>(content, at));
   };
   const XdfClockOffset offset{little_at<std::uint32_t>(content, 0), number(4), number(12)};
-  if (!(std::abs(offset.time) < largest) || !(std::abs(offset.offset) < largest)) {
+  if (!(std::abs(offset.time) < largest_number) || !(std::abs(offset.offset) < largest_number)) {
     fault("clock offsets below 1e15", "others");
     return;
   }
@@ -430,10 +414,10 @@ Findings XdfReader::findings() const {
   Findings findings;
   for (const Fault& f : faults_) {
     const std::string times = f.times > 1 ? fmt::format(", {} times", f.times) : "";
-    findings.push_back({Severity::warning,
-                        Error{name_, 0, f.expected,
-                              fmt::format("{} at byte {}{}", f.found, f.first_offset, times)},
-                        "all readable chunks were read", ""});
+    add_warning(
+        findings,
+        {name_, 0, f.expected, fmt::format("{} at byte {}{}", f.found, f.first_offset, times)},
+        "all readable chunks were read");
   }
   return findings;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads an XDF file once and describes its streams and their faults.
+#include "kinalign/core/numbers.h"
 #include "kinalign/formats/xdf/xdf.h"
 
 #include <algorithm>
@@ -56,8 +57,7 @@ class Surveyor {
 
   /// Counts a stamp; stamps that are no numbers don't count as first or last.
   static void add_stamp(double stamp, XdfStreamSurvey& one, std::optional<double>& last) {
-    constexpr double largest_stamp = 1e15;  // s
-    if (!(std::abs(stamp) < largest_stamp)) {
+    if (!(std::abs(stamp) < largest_number)) {
       ++one.timeless;
       return;
     }

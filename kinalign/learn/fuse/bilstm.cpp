@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-// Our choice (models.md 5.2), because the paper gives none.
+// Our choice, because the paper gives none.
 constexpr std::size_t bilstm_units = 192, bilstm_width = 256;
 
 /// The layers of the network.
@@ -27,7 +27,7 @@ Architecture bilstm_architecture(const FuseLayout& layout) {
 }  // namespace
 
 // Three networks for the paper's comparison. Those of one device show what the device gives if no
-// weights are shared (models.md 5.2).
+// weights are shared.
 FuseMethod bilstm_method(Devices devices) {
   FuseMethod out{.name = "bilstm",
                  .summary = "the paper's bidirectional LSTM on a Kinect and nodes",

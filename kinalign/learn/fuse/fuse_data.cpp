@@ -2,6 +2,7 @@
 #include "kinalign/learn/fuse/fuse_data.h"
 
 #include "kinalign/models/pairs.h"
+#include "kinalign/motion/index_of.h"
 #include "kinalign/simulate/kinect/kinect_camera.h"
 #include "kinalign/simulate/random.h"
 
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <utility>
 
 namespace kinalign {
 
@@ -33,7 +33,7 @@ std::array<std::size_t, kinect_joint_count> body_joints_of_kinect(const PoseBody
     // The simulator needs all 25 joints, although fusion does not use tips and thumbs.
     std::string_view name = kinect_joints[k].ends_with("Left") ? "lfingers" : "rfingers";
     if (joint != fuse_joints.end()) name = joint->body;
-    out[k] = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    out[k] = *index_of(names, name);
   }
   return out;
 }

@@ -14,7 +14,7 @@ namespace kinalign {
 
 enum class Devices : std::uint8_t { both, kinect, nodes };
 
-/// Modality dropout (models.md 5.2): a network that has seen each device missing serves either
+/// Modality dropout: a network that has seen each device missing serves either
 /// device alone, and both. In every crop at least one device is left.
 struct FuseDraws {
   Devices devices = Devices::both;  // a device that is not listed is always missing

@@ -3,6 +3,7 @@
 // branches channel by channel, depending on both devices' data. If a joint of the Kinect is missing
 // or guessed, its part of the gate closes and the nodes decide.
 #include "kinalign/learn/fuse/fuse_methods.h"
+#include "kinalign/learn/pose/pose_methods.h"
 
 namespace kinalign {
 
@@ -10,18 +11,8 @@ namespace {
 
 constexpr std::size_t gated_width = 160;
 
-/// x + linear(dropout(gelu(conv(x)))), where conv covers five frames, `dilation` apart.
 Layer gated_block(std::size_t dilation, bool causal) {
-  return {.kind = LayerKind::sum,
-          .branches = {{},
-                       {{.kind = LayerKind::conv,
-                         .out = gated_width,
-                         .kernel = 5,
-                         .dilation = dilation,
-                         .causal = causal},
-                        {.kind = LayerKind::gelu},
-                        {.kind = LayerKind::dropout, .rate = 0.1},
-                        {.kind = LayerKind::linear, .out = gated_width}}}};
+  return residual_block(gated_width, dilation, causal, 0.1);
 }
 
 /// One device's channels from `begin` on, their convolutions, and their half of the gate.

@@ -15,7 +15,7 @@ constexpr std::size_t bra_units = 256;
 Layer bra_recurrent() { return {.kind = LayerKind::lstm, .out = bra_units, .bidirectional = true}; }
 
 /// Uses positions only; encoder and decoder are one bidirectional LSTM each.
-/// The middle layer is narrow, as in an autoencoder (models.md 2.2). Dropout acts on the input of
+/// The middle layer is narrow, as in an autoencoder. Dropout acts on the input of
 /// each LSTM, because PyTorch ignores the dropout of an LSTM of one layer.
 Architecture bra_architecture(const DenoiseLayout& layout) {
   return {layout.channels(),

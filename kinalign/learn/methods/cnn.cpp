@@ -13,7 +13,7 @@ constexpr std::size_t cnn_hidden = 256, cnn_kernel = 25;
 
 /// Input channels `seen`, the code, and the answer.
 /// Kernels of 25 frames, 256 hidden channels, pooling by 2 and dropout of 0.25 are those of the
-/// released code (models.md 2.1). Pooling keeps the greater of two frames; in training its inverse
+/// released code. Pooling keeps the greater of two frames; in training its inverse
 /// puts the value into a random one of them.
 Architecture autoencoder(const DenoiseLayout& layout, const Layer& seen) {
   return {layout.channels(),

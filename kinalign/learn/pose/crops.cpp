@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace kinalign {
 
@@ -47,7 +46,7 @@ void append_vector(std::vector<float>& out, const Eigen::Vector3f& vector) {
 Eigen::Vector3f in_mirror(const Eigen::Vector3f& v) { return {-v.x(), v.y(), v.z()}; }
 Eigen::Vector3f rate_in_mirror(const Eigen::Vector3f& v) { return {v.x(), -v.y(), -v.z()}; }
 Eigen::Quaternionf in_mirror(const Eigen::Quaternionf& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
-// R becomes S R S with S = diag(-1, 1, 1) (models.md 4.4).
+// R becomes S R S with S = diag(-1, 1, 1).
 Turn in_mirror(const Turn& turn) {
   const Eigen::Vector3f signs(-1.0F, 1.0F, 1.0F);
   return signs.asDiagonal() * turn * signs.asDiagonal();

@@ -14,7 +14,7 @@
 namespace kinalign {
 
 /// Limits of the random variation of crops.
-/// Augmentations of models.md 9.6, of input and truth alike. Speed and size are off by default
+/// Augmentations of input and truth alike. Speed and size are off by default
 /// (docs/training.md).
 struct Variety {
   double mirrored = 0.5;  // share of mirrored crops

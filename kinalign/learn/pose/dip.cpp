@@ -12,7 +12,7 @@ namespace {
 
 /// The method's layers with `units` in each direction.
 /// Our default width is 256: a window of 26 frames in the published width takes 55 ms on one core,
-/// more than a frame has (models.md 4.1).
+/// more than a frame has.
 Architecture dip_layers(const PoseLayout& layout, std::size_t units) {
   const Layer recurrent{.kind = LayerKind::lstm, .out = units, .bidirectional = true};
   return {layout.channels(),

@@ -10,18 +10,8 @@ namespace {
 
 constexpr std::size_t inertial_width = 192;
 
-/// x + linear(dropout(gelu(conv(x)))), where conv covers five frames, `dilation` apart.
 Layer inertial_block(std::size_t dilation, bool causal) {
-  return {.kind = LayerKind::sum,
-          .branches = {{},
-                       {{.kind = LayerKind::conv,
-                         .out = inertial_width,
-                         .kernel = 5,
-                         .dilation = dilation,
-                         .causal = causal},
-                        {.kind = LayerKind::gelu},
-                        {.kind = LayerKind::dropout, .rate = 0.15},
-                        {.kind = LayerKind::linear, .out = inertial_width}}}};
+  return residual_block(inertial_width, dilation, causal, 0.15);
 }
 
 /// Blocks with dilations 1, 2, 4 and 8 and five frames each: 61 frames. The causal form looks 60
@@ -45,6 +35,19 @@ Architecture inertial_online_architecture(const PoseLayout& layout) {
 }
 
 }  // namespace
+
+Layer residual_block(std::size_t width, std::size_t dilation, bool causal, double dropout) {
+  return {.kind = LayerKind::sum,
+          .branches = {{},
+                       {{.kind = LayerKind::conv,
+                         .out = width,
+                         .kernel = 5,
+                         .dilation = dilation,
+                         .causal = causal},
+                        {.kind = LayerKind::gelu},
+                        {.kind = LayerKind::dropout, .rate = dropout},
+                        {.kind = LayerKind::linear, .out = width}}}};
+}
 
 PoseMethod inertial_method() {
   return {.name = "inertial",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pose/pose_data.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/learn/pose/upright_zero.h"
 #include "kinalign/models/pose/pose_skeleton.h"
 
@@ -8,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -69,9 +69,8 @@ std::vector<int> pose_joint_parents() { return pose_body({}).skeleton.parents; }
 
 /// The joints that carry and turn a node of that name; fails for an unknown name.
 Result<NodeJoints> node_joints(const std::string& node) {
-  const auto place = std::find_if(node_places.begin(), node_places.end(),
-                                  [&](const NodePlace& one) { return one.name == node; });
-  if (place == node_places.end()) {
+  const NodePlace* const place = find_named(node_places, node);
+  if (place == nullptr) {
     std::string known;
     for (const NodePlace& one : node_places)
       known += (known.empty() ? "" : ", ") + std::string(one.name);

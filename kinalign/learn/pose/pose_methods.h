@@ -24,6 +24,10 @@ struct PoseMethod {
   void (*begin)(const PoseTask& task, std::uint64_t seed, TorchNetwork& network) = nullptr;
 };
 
+/// The block of the networks "inertial" and "gated": its input plus a convolution of five taps over
+/// it.
+Layer residual_block(std::size_t width, std::size_t dilation, bool causal, double dropout);
+
 PoseMethod inertial_method();
 PoseMethod inertial_online_method();
 PoseMethod dip_method();

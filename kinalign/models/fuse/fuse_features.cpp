@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/fuse/fuse_features.h"
 
+#include "kinalign/motion/index_of.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -11,10 +13,6 @@ namespace {
 
 constexpr float smoothing_s = 0.15F;    // time constant of the heading that the Kinect sees
 constexpr float least_width_m = 0.15F;  // mean width of hips and shoulders in the floor plane
-
-std::size_t place_of_joint(const std::vector<std::string>& joints, std::string_view name) {
-  return static_cast<std::size_t>(std::find(joints.begin(), joints.end(), name) - joints.begin());
-}
 
 Eigen::Vector3f joint_at(const JointFrames& kinect, std::size_t t, std::size_t j) {
   return Eigen::Map<const Eigen::Vector3f>(&kinect.positions[3 * (t * kinect.joints + j)]);
@@ -38,7 +36,7 @@ std::vector<std::string> fuse_joint_names() {
 Result<void> validate(const FuseLayout& layout) {
   KA_TRY(validate(layout.nodes));
   for (const char* name : {"SpineBase", "HipLeft", "HipRight", "ShoulderLeft", "ShoulderRight"}) {
-    if (place_of_joint(layout.joints, name) == layout.joints.size()) {
+    if (!index_of(layout.joints, name)) {
       return Failure(Error{"", 0, std::string("a joint ") + name, "none"});
     }
   }
@@ -51,10 +49,11 @@ Result<void> validate(const FuseLayout& layout) {
 FuseFeatureMaker::FuseFeatureMaker(const FuseLayout& layout)
     : layout_(&layout),
       nodes_(layout.nodes),
-      base_(place_of_joint(layout.joints, "SpineBase")),
-      pairs_{{{place_of_joint(layout.joints, "HipLeft"), place_of_joint(layout.joints, "HipRight")},
-              {place_of_joint(layout.joints, "ShoulderLeft"),
-               place_of_joint(layout.joints, "ShoulderRight")}}} {}
+      base_(*index_of(layout.joints, "SpineBase")),
+      pairs_{
+          {{*index_of(layout.joints, "HipLeft"), *index_of(layout.joints, "HipRight")},
+           {*index_of(layout.joints, "ShoulderLeft"), *index_of(layout.joints, "ShoulderRight")}}} {
+}
 
 /// Updates the space from frame `t`. A body seen from the side has no reliable heading, so its left
 /// direction is not updated.

@@ -3,6 +3,7 @@
 
 #include "kinalign/models/body_frame.h"
 #include "kinalign/models/pose/pose_model.h"
+#include "kinalign/motion/median.h"
 
 #include <algorithm>
 #include <array>
@@ -142,9 +143,7 @@ void Fuser::place_at_seen(const FuseInput& input, std::size_t first, FusedPose& 
     }
     if (ways[0].size() < least_tracked_joints) continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto middle = ways[k].begin() + static_cast<std::ptrdiff_t>(ways[k].size() / 2);
-      std::nth_element(ways[k].begin(), middle, ways[k].end());
-      pose.place[t][static_cast<Eigen::Index>(k)] += *middle;
+      pose.place[t][static_cast<Eigen::Index>(k)] += upper_median(std::move(ways[k]));
     }
   }
 }

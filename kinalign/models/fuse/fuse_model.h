@@ -57,7 +57,7 @@ class Fuser {
   /// first runs on the Kinect alone; that pose gives the nodes' headings (node_headings.h). Then
   /// the network runs on both devices with corrected headings. The result is turned towards the
   /// measurements of nodes and Kinect (turn_to_nodes(), turn_to_seen()), placed where the
-  /// Kinect's joints lie, and smoothed.
+  /// Kinect's joints lie, and smoothed if the model says so.
   FusedPose solve(const FuseInput& input) { return solve(input, headings(input)); }
   /// The same with known headings.
   FusedPose solve(const FuseInput& input, const std::vector<HeadingState>& headings);
@@ -67,10 +67,10 @@ class Fuser {
   FusedPose answer(const FuseInput& input);
 
   const Network& network() const { return network_; }
-  /// The pose of the rows `said.first` ... `said.end` - 1 of a network's output.
+  /// The pose of the rows `output.first` ... `output.end` - 1 of a network's output.
   FusedPose pose_of(const FuseAnswers& output) const;
-  /// The same pose, turned towards the measurements of `input` [T] and smoothed. Near both ends the
-  /// smoothing uses fewer rows.
+  /// The same pose, turned towards the measurements of `input` [T], placed at the Kinect's joints
+  /// and, if the model says so, smoothed. Near both ends the smoothing uses fewer rows.
   FusedPose measured_pose_of(const FuseAnswers& output, const FuseInput& input) const;
 
   /// The result of solve() as a clip: a skeleton with constant bones at its place in the Kinect's

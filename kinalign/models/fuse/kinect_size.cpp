@@ -2,6 +2,7 @@
 #include "kinalign/models/fuse/kinect_size.h"
 
 #include "kinalign/models/joint_names.h"
+#include "kinalign/motion/median.h"
 
 #include <algorithm>
 #include <array>
@@ -44,9 +45,7 @@ std::optional<double> median_length(const JointFrames& kinect, std::size_t from,
     lengths.push_back(std::sqrt(square));
   }
   if (lengths.size() < least_size_frames) return std::nullopt;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return upper_median(std::move(lengths));
 }
 
 }  // namespace

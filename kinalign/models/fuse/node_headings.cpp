@@ -3,6 +3,7 @@
 
 #include "kinalign/models/joint_names.h"
 #include "kinalign/motion/mahony.h"
+#include "kinalign/motion/median.h"
 
 #include <algorithm>
 #include <array>
@@ -250,9 +251,7 @@ std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& 
   }
   const double mean = std::atan2(sine, cosine);
   for (double& yaw : yaws) yaw = std::remainder(yaw - mean, 2.0 * std::numbers::pi);
-  const auto middle = yaws.begin() + static_cast<std::ptrdiff_t>(yaws.size() / 2);
-  std::nth_element(yaws.begin(), middle, yaws.end());
-  return mean + *middle;
+  return mean + upper_median(std::move(yaws));
 }
 
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/fuse/seen_bones.h"
 
+#include "kinalign/motion/index_of.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,13 +40,11 @@ constexpr float against = -0.5F;  // the cosine of 120 degrees
 /// The position of a joint at rest, with all rotations the identity, m; empty if there is no such
 /// joint.
 std::optional<Vec3> rest_place(const Skeleton& skeleton, std::string_view name) {
-  const auto at = std::find(skeleton.joint_names.begin(), skeleton.joint_names.end(), name);
-  if (at == skeleton.joint_names.end()) return std::nullopt;
+  auto at = index_of(skeleton.joint_names, name);
+  if (!at) return std::nullopt;
   Vec3 out = Vec3::Zero();
-  for (auto j = static_cast<int>(at - skeleton.joint_names.begin());
-       skeleton.parents[static_cast<std::size_t>(j)] >= 0;
-       j = skeleton.parents[static_cast<std::size_t>(j)]) {
-    out += skeleton.rest_offsets[static_cast<std::size_t>(j)];
+  for (; skeleton.parents[*at] >= 0; at = static_cast<std::size_t>(skeleton.parents[*at])) {
+    out += skeleton.rest_offsets[*at];
   }
   return out;
 }
@@ -55,10 +55,7 @@ std::optional<std::size_t> kinect_joint_at(const std::vector<std::string>& kinec
                                            std::string_view body_joint) {
   const auto joint = std::find_if(fuse_joints.begin(), fuse_joints.end(),
                                   [&](const FuseJoint& one) { return one.body == body_joint; });
-  if (joint == fuse_joints.end()) return std::nullopt;
-  const auto at = std::find(kinect.begin(), kinect.end(), joint->kinect);
-  if (at == kinect.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - kinect.begin());
+  return joint == fuse_joints.end() ? std::nullopt : index_of(kinect, joint->kinect);
 }
 
 std::optional<SeenBone> seen_bone(const PoseBody& body, const std::vector<std::string>& kinect,
@@ -68,12 +65,9 @@ std::optional<SeenBone> seen_bone(const PoseBody& body, const std::vector<std::s
   const auto rest_begin = rest_place(body.skeleton, from), rest_end = rest_place(body.skeleton, to);
   if (!begin || !end || !rest_begin || !rest_end) return std::nullopt;
   const Eigen::Vector3f way = (*rest_end - *rest_begin).cast<float>();
-  const auto turner = std::find(body.bones.begin(), body.bones.end(), bone);
-  if (way.norm() < least_length_m || (!bone.empty() && turner == body.bones.end())) {
-    return std::nullopt;
-  }
-  return SeenBone{*begin, *end, way.normalized(),
-                  static_cast<std::size_t>(turner - body.bones.begin())};
+  const auto turner = index_of(body.bones, bone);
+  if (way.norm() < least_length_m || (!bone.empty() && !turner)) return std::nullopt;
+  return SeenBone{*begin, *end, way.normalized(), turner.value_or(body.bones.size())};
 }
 
 std::vector<SeenBone> seen_bones(const PoseBody& body, const std::vector<std::string>& kinect) {
@@ -113,10 +107,9 @@ void turn_to_seen(std::span<const SeenBone> bones, const JointFrames& kinect, st
 void unexchange(const FuseLayout& layout, FuseInput& input) {
   const std::vector<std::string>& names = layout.joints;
   JointFrames& kinect = input.kinect;
-  const auto at = [&](std::string_view name) {
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  };
-  const SeenBone hips{at("HipRight"), at("HipLeft"), Eigen::Vector3f::UnitX(), 0};
+  // validate() has found both hips.
+  const SeenBone hips{*index_of(names, "HipRight"), *index_of(names, "HipLeft"),
+                      Eigen::Vector3f::UnitX(), 0};
   const auto partners = mirror_partners(names);
   for (std::size_t t = 0; t < kinect.frames(); ++t) {
     const auto across = direction_at(kinect, t, hips);

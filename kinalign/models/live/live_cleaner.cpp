@@ -3,7 +3,7 @@
 
 #include "kinalign/infer/shapes.h"
 #include "kinalign/models/bones.h"
-#include "kinalign/models/live/window_rows.h"
+#include "kinalign/motion/frame_arrays.h"
 
 #include <algorithm>
 
@@ -56,8 +56,8 @@ LiveCleaner::LiveCleaner(Denoiser& denoiser, std::size_t look_ahead)
 }
 
 std::optional<std::vector<float>> LiveCleaner::step(const JointFrames& frame) {
-  window_.positions.insert(window_.positions.end(), frame.positions.begin(), frame.positions.end());
-  window_.seen.insert(window_.seen.end(), frame.seen.begin(), frame.seen.end());
+  append_to(window_.positions, frame.positions);
+  append_to(window_.seen, frame.seen);
   if (window_.frames() - next_ <= ahead_) return std::nullopt;
   return joints_at(next_);
 }
@@ -83,7 +83,6 @@ std::vector<float> LiveCleaner::positions_of(Seen& seen, DenoiseFeatures feature
 /// The answer for `row`, post-processed as by Steadier but without constant bones.
 std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
   const DenoiseModel& model = denoiser_->model();
-  const auto width = static_cast<std::ptrdiff_t>(model.layout.answers());
   const Smoothing& smoothing = model.steadying.smoothing;
   std::size_t first = row - std::min(row, smoothing.window);
   std::size_t end = std::min(row + half(smoothing) + 1, window_.frames());
@@ -106,15 +105,14 @@ std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
             features.frames.begin() + static_cast<std::ptrdiff_t>(end)},
            positions);
   smooth(smoothing, model.layout.answers(), positions);
-  const auto at = positions.begin() + static_cast<std::ptrdiff_t>(row - first) * width;
-  return {at, at + width};
+  return row_of(positions, row - first, model.layout.answers());
 }
 
 /// Answers `row` and removes rows from the window that no later answer needs.
 std::vector<float> LiveCleaner::joints_at(std::size_t row) {
   std::vector<float> out = steadied_at(row);
   const DenoiseLayout& layout = denoiser_->model().layout;
-  answers_.insert(answers_.end(), out.begin(), out.end());
+  append_to(answers_, out);
   const std::size_t remembered = std::min(answers_.size(), remembered_lengths * out.size());
   if (denoiser_->model().steadying.bones) {
     impose_lengths(layout.parents,

@@ -2,7 +2,7 @@
 #include "kinalign/models/live/live_fuser.h"
 
 #include "kinalign/infer/shapes.h"
-#include "kinalign/models/live/window_rows.h"
+#include "kinalign/motion/frame_arrays.h"
 
 #include <algorithm>
 #include <utility>
@@ -19,46 +19,25 @@ constexpr std::size_t smoothed_places = 4;
 /// joints.
 constexpr std::size_t smoothed_rows = 9;
 
-template <class T>
-void append_to(std::vector<T>& all, const std::vector<T>& more) {
-  all.insert(all.end(), more.begin(), more.end());
-}
-
 void append_input(FuseInput& all, const FuseInput& more) {
-  all.nodes.nodes = more.nodes.nodes;
-  append_to(all.nodes.orientation, more.nodes.orientation);
-  append_to(all.nodes.acceleration, more.nodes.acceleration);
-  append_to(all.nodes.angular_velocity, more.nodes.angular_velocity);
-  append_to(all.nodes.valid, more.nodes.valid);
+  append_frames(all.nodes, more.nodes);
   all.kinect.joints = more.kinect.joints;
   append_to(all.kinect.positions, more.kinect.positions);
   append_to(all.kinect.seen, more.kinect.seen);
 }
 
-template <class T>
-std::vector<T> row_of(const std::vector<T>& all, std::size_t row, std::size_t width) {
-  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row * width);
-  return {begin, begin + static_cast<std::ptrdiff_t>(width)};
-}
-
 // Copies one frame, so that the functions for whole sequences also serve single frames.
 FuseInput frame_at(const FuseInput& all, std::size_t t) {
-  const std::size_t nodes = all.nodes.nodes, joints = all.kinect.joints;
+  const std::size_t joints = all.kinect.joints;
   return {
-      {nodes, row_of(all.nodes.orientation, t, 4 * nodes),
-       row_of(all.nodes.acceleration, t, 3 * nodes),
-       row_of(all.nodes.angular_velocity, t, 3 * nodes), row_of(all.nodes.valid, t, nodes)},
+      frame_at(all.nodes, t),
       {joints, row_of(all.kinect.positions, t, 3 * joints), row_of(all.kinect.seen, t, joints)}};
 }
 
 void forget_first(FuseInput& all) {
-  const std::size_t nodes = all.nodes.nodes, joints = all.kinect.joints;
-  erase_first(all.nodes.orientation, 4 * nodes);
-  erase_first(all.nodes.acceleration, 3 * nodes);
-  erase_first(all.nodes.angular_velocity, 3 * nodes);
-  erase_first(all.nodes.valid, nodes);
-  erase_first(all.kinect.positions, 3 * joints);
-  erase_first(all.kinect.seen, joints);
+  erase_first_frames(all.nodes, 1);
+  erase_first(all.kinect.positions, 3 * all.kinect.joints);
+  erase_first(all.kinect.seen, all.kinect.joints);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "kinalign/models/live/live_joints.h"
 
 #include "kinalign/models/joint_names.h"
+#include "kinalign/motion/frame_arrays.h"
 #include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>
@@ -54,11 +55,10 @@ JointFrames LiveJoints::frame(Time time) {
   const auto end = rows_.stamps.empty() ? rows_.stamps.end() : rows_.stamps.end() - 1;
   const auto old =
       std::lower_bound(rows_.stamps.begin(), end, time - kept_rows) - rows_.stamps.begin();
-  rows_.stamps.erase(rows_.stamps.begin(), rows_.stamps.begin() + old);
-  rows_.positions.erase(rows_.positions.begin(),
-                        rows_.positions.begin() + old * static_cast<std::ptrdiff_t>(3 * joints));
-  rows_.state.erase(rows_.state.begin(),
-                    rows_.state.begin() + old * static_cast<std::ptrdiff_t>(joints));
+  const auto count = static_cast<std::size_t>(old);
+  erase_first(rows_.stamps, count);
+  erase_first(rows_.positions, 3 * joints * count);
+  erase_first(rows_.state, joints * count);
   const std::size_t wanted = places_.size();
   if (rows_.size() < 2) {
     return {wanted, std::vector<float>(3 * wanted), std::vector<std::uint8_t>(wanted)};

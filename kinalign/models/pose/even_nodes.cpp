@@ -3,10 +3,10 @@
 
 #include "kinalign/motion/mahony.h"
 #include "kinalign/motion/rotation.h"
+#include "kinalign/motion/stamps.h"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace kinalign {
 
@@ -131,8 +131,7 @@ void put_node(const NodeTrack& track, const EvenSpan& grid, double rate_hz, std:
               WornFrames& out) {
   NodeCurve curve(track);
   for (std::size_t t = 0; t < grid.frames; ++t) {
-    const Time time = grid.start + Duration(std::llround(static_cast<double>(t) * 1e9 / rate_hz));
-    curve.put(time, t * out.nodes + node, rate_hz, out);
+    curve.put(grid_stamp(grid.start, rate_hz, t), t * out.nodes + node, rate_hz, out);
   }
 }
 

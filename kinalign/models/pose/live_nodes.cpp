@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/live_nodes.h"
 
+#include "kinalign/motion/frame_arrays.h"
+
 #include <algorithm>
 #include <array>
 
@@ -15,11 +17,6 @@ constexpr std::size_t most_kept = 4096;  // samples per node
 void insert_numbers(std::size_t at, std::span<const double> numbers, std::vector<double>& all) {
   const auto place = all.begin() + static_cast<std::ptrdiff_t>(at * numbers.size());
   all.insert(place, numbers.begin(), numbers.end());
-}
-
-void erase_front(std::size_t numbers, std::vector<double>& all) {
-  const auto count = static_cast<std::ptrdiff_t>(std::min(numbers, all.size()));
-  all.erase(all.begin(), all.begin() + count);
 }
 
 }  // namespace
@@ -100,11 +97,12 @@ void LiveNodes::forget_before(Time time, Node& node) {
   // The newest sample is kept: it shows that the node exists and what it measures.
   const auto end = track.stamps.empty() ? track.stamps.end() : track.stamps.end() - 1;
   const auto count = std::lower_bound(track.stamps.begin(), end, time) - track.stamps.begin();
-  track.stamps.erase(track.stamps.begin(), track.stamps.begin() + count);
   const auto samples = static_cast<std::size_t>(count);
-  erase_front(4 * samples, track.orientation);
-  erase_front(3 * samples, track.acceleration);
-  erase_front(3 * samples, track.angular_velocity);
+  erase_first(track.stamps, samples);
+  erase_first(track.orientation, 4 * samples);
+  erase_first(track.acceleration, 3 * samples);
+  // A node may have no angular velocities.
+  if (!track.angular_velocity.empty()) erase_first(track.angular_velocity, 3 * samples);
 }
 
 WornFrames LiveNodes::frame(Time time) {

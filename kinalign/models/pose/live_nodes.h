@@ -36,9 +36,10 @@ class LiveNodes {
 
   LiveNodes(std::size_t nodes, double rate_hz);
 
-  /// Adds a sample; samples of a node may arrive out of order. A sample is dropped and counted in
-  /// left_out() if its stamp is a duplicate, if it has no acceleration, if it has neither
-  /// orientation nor angular velocity, or if it lacks a quantity that the node's first sample had.
+  /// Adds a sample. A sample is dropped and counted in left_out() if its stamp is a duplicate, if
+  /// it has no acceleration, if it has neither orientation nor angular velocity with gravity, if it
+  /// lacks a quantity that the node's first sample had or differs in gravity, if it arrives out of
+  /// order and the node sends no orientation, or if 4096 samples of the node are kept.
   void add(std::size_t node, const NodeReadings& sample);
 
   /// The stamp of the root's first sample, at which the grid begins; absent before it.
@@ -56,7 +57,7 @@ class LiveNodes {
 
   /// Number of samples dropped by add().
   std::uint64_t left_out() const { return left_out_; }
-  /// Number of samples that arrived after a frame that needed them was made.
+  /// Number of samples that arrived after the frame at their stamp, or a later one, was made.
   std::uint64_t late() const { return late_; }
 
  private:

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/live_worn.h"
 
+#include "kinalign/motion/stamps.h"
+
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace kinalign {
 
@@ -12,42 +13,10 @@ namespace {
 // Between attempts at a calibration that needs later frames.
 constexpr double between_tries_s = 0.5;
 
-void append_frames(const WornFrames& from, WornFrames& to) {
-  to.orientation.insert(to.orientation.end(), from.orientation.begin(), from.orientation.end());
-  to.acceleration.insert(to.acceleration.end(), from.acceleration.begin(), from.acceleration.end());
-  to.angular_velocity.insert(to.angular_velocity.end(), from.angular_velocity.begin(),
-                             from.angular_velocity.end());
-  to.valid.insert(to.valid.end(), from.valid.begin(), from.valid.end());
-}
-
-template <class T>
-void erase_front_of(std::vector<T>& values, std::size_t count) {
-  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-}
-
-/// Removes the first frames.
-void forget_frames(std::size_t frames, WornFrames& all) {
-  const std::size_t samples = frames * all.nodes;
-  erase_front_of(all.orientation, 4 * samples);
-  erase_front_of(all.acceleration, 3 * samples);
-  erase_front_of(all.angular_velocity, 3 * samples);
-  erase_front_of(all.valid, samples);
-}
-
-// A copy of the later frames, because first_still() takes a whole sequence.
 WornFrames frames_from(const WornFrames& all, std::size_t first) {
   WornFrames out = all;
-  forget_frames(first, out);
+  erase_first_frames(out, first);
   return out;
-}
-
-WornFrames frame_of(const WornFrames& all, std::size_t t) {
-  const auto part = [t](const auto& values, std::size_t width) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(t * width);
-    return std::vector(begin, begin + static_cast<std::ptrdiff_t>(width));
-  };
-  return {all.nodes, part(all.orientation, 4 * all.nodes), part(all.acceleration, 3 * all.nodes),
-          part(all.angular_velocity, 3 * all.nodes), part(all.valid, all.nodes)};
 }
 
 /// The name of the first arm node whose tilt shows that the arm is not in a T-pose; null if there
@@ -75,8 +44,7 @@ LiveWorn::LiveWorn(const PoseLayout& layout, const Skeleton& body, const LiveWor
 }
 
 Time LiveWorn::time_of(std::size_t frame) const {
-  const double ns = static_cast<double>(frame) * 1e9 / layout_->rate_hz;
-  return *nodes_.begin() + Duration(std::llround(ns));
+  return grid_stamp(*nodes_.begin(), layout_->rate_hz, frame);
 }
 
 void LiveWorn::advance(Time now, const Also& also, std::vector<LiveWornFrame>& out) {
@@ -91,13 +59,13 @@ void LiveWorn::finish(std::vector<LiveWornFrame>& out) {
 
 /// Makes the next frame, looks for a T-pose, and outputs calibrated frames.
 void LiveWorn::make_frame(std::vector<LiveWornFrame>& out) {
-  append_frames(nodes_.frame(time_of(made_)), recent_);
+  append_frames(recent_, nodes_.frame(time_of(made_)));
   ++made_;
   look_for_t_pose();
   if (calibration_) hand_on(out);
   const auto most = static_cast<std::size_t>(most_waiting_s * layout_->rate_hz);
   if (recent_.frames() <= most) return;
-  forget_frames(1, recent_);
+  erase_first_frames(recent_, 1);
   ++forgotten_;
   searched_ -= std::min<std::size_t>(searched_, 1);
   handed_on_ -= std::min<std::size_t>(handed_on_, 1);
@@ -196,7 +164,7 @@ void LiveWorn::forget_t_pose(const TPose& t_pose) {
 void LiveWorn::hand_on(std::vector<LiveWornFrame>& out) {
   for (; handed_on_ < recent_.frames(); ++handed_on_) {
     out.push_back({time_of(forgotten_ + handed_on_),
-                   on_bones(calibration_->nodes, frame_of(recent_, handed_on_))});
+                   on_bones(calibration_->nodes, frame_at(recent_, handed_on_))});
   }
 }
 

@@ -14,8 +14,8 @@
 //   mounting  Each node has its own heading, as without a magnetometer, and is worn as docs/pose.md
 //             says. The direction of its axes in the T-pose gives Y. A rotation of the worn node
 //             about the vertical is mistaken for heading.
-// Drift of a heading after the T-pose is not detected. Sources: models.md 3.2 (Yi et al.,
-// «TransPose», SIGGRAPH 2021) and 3.3 (Huang et al., «Deep inertial poser», SIGGRAPH Asia 2018).
+// Drift of a heading after the T-pose is not detected. Sources: Yi et al., «TransPose»,
+// SIGGRAPH 2021; Huang et al., «Deep inertial poser», SIGGRAPH Asia 2018.
 // The method of arms that come down is our own.
 #pragma once
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/node_places.h"
 
+#include "kinalign/core/find_named.h"
+#include "kinalign/motion/index_of.h"
+
 #include <algorithm>
 #include <cctype>
 
@@ -76,11 +79,7 @@ std::vector<std::string> words_of(std::string_view name) {
 
 std::span<const WornPlace> worn_places() { return places; }
 
-const WornPlace* worn_place(std::string_view name) {
-  const auto* found = std::find_if(places.begin(), places.end(),
-                                   [&](const WornPlace& one) { return one.name == name; });
-  return found == places.end() ? nullptr : found;
-}
+const WornPlace* worn_place(std::string_view name) { return find_named(places, name); }
 
 std::string_view place_called(std::string_view name) {
   std::string side, rest;
@@ -102,11 +101,10 @@ std::string_view place_called(std::string_view name) {
 }
 
 std::optional<std::size_t> node_at(std::span<const std::string> names, std::string_view place) {
-  auto found = std::find(names.begin(), names.end(), place);
-  if (found == names.end()) {
-    found = std::find_if(names.begin(), names.end(),
-                         [&](const std::string& name) { return place_called(name) == place; });
-  }
+  if (const auto at = index_of(names, place)) return at;
+  const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return place_called(name) == place;
+  });
   if (found == names.end()) return std::nullopt;
   return static_cast<std::size_t>(found - names.begin());
 }

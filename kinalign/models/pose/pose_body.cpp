@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/pose_body.h"
 
+#include "kinalign/motion/index_of.h"
+#include "kinalign/motion/stamps.h"
+
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace kinalign {
@@ -10,18 +12,14 @@ namespace kinalign {
 namespace {
 
 int place_of(std::span<const std::string> names, std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+  const auto at = index_of(names, name);
+  return at ? static_cast<int>(*at) : -1;
 }
 
 /// The rotation of joint `j` against the root; `frame` [B].
 Turn turn_of(const PoseBody& body, std::span<const Turn> frame, std::size_t j) {
   const int bone = body.turned_by[j];
   return bone < 0 ? Turn::Identity() : frame[static_cast<std::size_t>(bone)];
-}
-
-Time stamp_of(Time start, double rate_hz, std::size_t frame) {
-  return start + Duration{std::llround(static_cast<double>(frame) * 1e9 / rate_hz)};
 }
 
 /// The height of the root above the lowest joint of a frame, m.
@@ -110,15 +108,15 @@ ClipFrames clip_frames(const PoseBody& body, std::span<const Turn> rotations,
   out.local_positions.resize(root.size() * joints * 3);
   out.local_rotations.resize(root.size() * joints * 4);
   for (std::size_t t = 0; t < root.size(); ++t) {
-    out.stamps.push_back(stamp_of(start, rate_hz, t));
+    out.stamps.push_back(grid_stamp(start, rate_hz, t));
     const std::span<const Turn> frame = rotations.subspan(t * bones, bones);
     const std::span<const float> places(&positions[t * joints * 3], joints * 3);
     const double height = depth_below_root(places, root[t].toRotationMatrix());
     vec3(out.local_positions, t * joints) = Vec3(0.0, height, 0.0);
     put_quat(out.local_rotations, t * joints, root[t].cast<double>().normalized());
     for (std::size_t j = 1; j < joints; ++j) {
-      // Networks answer with rotations against the root, so that errors do not add up along a chain
-      // (models.md 1.6). A clip stores them against the parent.
+      // Networks answer with rotations against the root, so that errors do not add up along a
+      // chain. A clip stores them against the parent.
       const Turn above = turn_of(body, frame, static_cast<std::size_t>(body.skeleton.parents[j]));
       const Turn local = above.transpose() * turn_of(body, frame, j);
       vec3(out.local_positions, t * joints + j) = body.skeleton.rest_offsets[j];

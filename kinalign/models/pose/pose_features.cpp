@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/pose_features.h"
 
+#include "kinalign/motion/frame_arrays.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -61,6 +63,28 @@ class Channels {
 };
 
 }  // namespace
+
+void append_frames(NodeFrames& all, const NodeFrames& more) {
+  all.nodes = more.nodes;
+  append_to(all.orientation, more.orientation);
+  append_to(all.acceleration, more.acceleration);
+  append_to(all.angular_velocity, more.angular_velocity);
+  append_to(all.valid, more.valid);
+}
+
+void erase_first_frames(NodeFrames& all, std::size_t count) {
+  const std::size_t samples = count * all.nodes;
+  erase_first(all.orientation, 4 * samples);
+  erase_first(all.acceleration, 3 * samples);
+  erase_first(all.angular_velocity, 3 * samples);
+  erase_first(all.valid, samples);
+}
+
+NodeFrames frame_at(const NodeFrames& all, std::size_t t) {
+  const std::size_t nodes = all.nodes;
+  return {nodes, row_of(all.orientation, t, 4 * nodes), row_of(all.acceleration, t, 3 * nodes),
+          row_of(all.angular_velocity, t, 3 * nodes), row_of(all.valid, t, nodes)};
+}
 
 std::size_t PoseLayout::channels() const {
   const std::size_t n = nodes.size();

@@ -29,6 +29,13 @@ struct NodeFrames {
   std::size_t frames() const { return nodes == 0 ? 0 : valid.size() / nodes; }
 };
 
+/// Appends frames of the same nodes.
+void append_frames(NodeFrames& all, const NodeFrames& more);
+/// Removes the first `count` frames.
+void erase_first_frames(NodeFrames& all, std::size_t count);
+/// A copy of frame `t`.
+NodeFrames frame_at(const NodeFrames& all, std::size_t t);
+
 /// The orientation of node `n` in frame `t`; empty if the sample is not valid or not finite.
 std::optional<Eigen::Quaternionf> orientation_at(const NodeFrames& nodes, std::size_t t,
                                                  std::size_t n);

@@ -55,7 +55,7 @@ double jitter_of(const std::vector<float>& positions, std::size_t joints,
                                               3.0 * static_cast<double>(positions[i - 2 * row]) -
                                               static_cast<double>(positions[i - 3 * row]);
       }
-      // The third difference times rate^3 is the jerk (models.md 8.6).
+      // The third difference times rate^3 is the jerk.
       mean.add(third.norm());
     }
   }

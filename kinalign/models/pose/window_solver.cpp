@@ -2,6 +2,7 @@
 #include "kinalign/models/pose/window_solver.h"
 
 #include "kinalign/infer/shapes.h"
+#include "kinalign/motion/frame_arrays.h"
 
 #include <algorithm>
 
@@ -65,13 +66,11 @@ std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
   }
   if (solver_->model().smoothing) smooth_turns(bones, turns);
   FramePose out;
-  const auto begin = turns.begin() + static_cast<std::ptrdiff_t>((row - first) * bones);
-  out.rotations.assign(begin, begin + static_cast<std::ptrdiff_t>(bones));
+  out.rotations = row_of(turns, row - first, bones);
   out.root = roots_[row];
   ++next_;
   while (next_ > behind_) {
-    const std::size_t channels = rows_.size() / roots_.size();
-    rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(channels));
+    erase_first(rows_, rows_.size() / roots_.size());
     roots_.pop_front();
     network_.forget(1);
     --next_;

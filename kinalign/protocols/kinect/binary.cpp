@@ -45,11 +45,6 @@ Head take_head(LittleEndianReader& reader) {
   return head;
 }
 
-template <std::size_t n>
-void take_floats(LittleEndianReader& reader, std::array<float, n>& to) {
-  for (float& number : to) number = reader.take_float();
-}
-
 // A length of one byte, then the text without an end.
 std::string take_short_text(LittleEndianReader& reader) {
   const auto bytes = reader.take_bytes(reader.take<std::uint8_t>());
@@ -75,8 +70,10 @@ KinectBody take_body(LittleEndianReader& reader, bool has_orientations) {
   body.hand_right = reader.take<std::uint8_t>();
   body.hand_confidence = reader.take<std::uint8_t>();
   for (std::uint8_t& state : body.states) state = reader.take<std::uint8_t>();
-  take_floats(reader, body.positions);
-  if (has_orientations) take_floats(reader, body.orientations);
+  body.positions = reader.take_floats<std::tuple_size_v<decltype(body.positions)>>();
+  if (has_orientations) {
+    body.orientations = reader.take_floats<std::tuple_size_v<decltype(body.orientations)>>();
+  }
   return body;
 }
 
@@ -94,8 +91,7 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
   frame.taken_ticks = reader.take<std::int64_t>();
   frame.sent_ticks = reader.take<std::int64_t>();
   const auto utc_us = reader.take<std::int64_t>();
-  std::array<float, 4> floor{};
-  take_floats(reader, floor);
+  const auto floor = reader.take_floats<4>();
   if ((head.flags & utc_flag) != 0) {
     frame.utc_us = utc_us;
   } else if (utc_us != 0) {
@@ -312,26 +308,6 @@ std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message) {
   out[7] = static_cast<std::uint8_t>(length >> 8);
   append_little(crc32(out), out);
   return out;
-}
-
-// Each part repeats the frame's own fields, so the receiver can use the parts that arrive if one is
-// lost. A frame without bodies is one part.
-std::vector<KinectFrame> kinect_parts(const KinectFrame& frame) {
-  std::size_t most = 1;  // bodies of a part
-  while (kinect_frame_size(most + 1, frame.has_orientations) <= most_kinect_datagram) ++most;
-  std::vector<KinectFrame> parts;
-  std::size_t at = 0;
-  do {
-    const std::size_t end = std::min(at + most, frame.bodies.size());
-    KinectFrame part = frame;
-    part.bodies.assign(frame.bodies.begin() + static_cast<std::ptrdiff_t>(at),
-                       frame.bodies.begin() + static_cast<std::ptrdiff_t>(end));
-    part.part = static_cast<std::uint8_t>(parts.size());
-    part.more_parts = end < frame.bodies.size();
-    parts.push_back(std::move(part));
-    at = end;
-  } while (at < frame.bodies.size());
-  return parts;
 }
 
 }  // namespace kinalign

@@ -11,8 +11,6 @@ namespace kinalign {
 // Positions and types of the fields: docs/formats/kinect_stream.md, "Binary: head and end".
 inline constexpr std::size_t kinect_head_size = 24, kinect_crc_size = 4;
 inline constexpr std::size_t most_kinect_bytes = 4498;  // 6 bodies with orientations
-/// Most bytes of a datagram that fit into an Ethernet frame, over IPv6 and IPv4.
-inline constexpr std::size_t most_kinect_datagram = 1452;
 inline constexpr std::array<std::uint8_t, 4> kinect_magic{'K', 'A', 'N', 'K'};
 
 /// The length that a message states. `head`: at least its first 8 bytes, which begin with the
@@ -36,8 +34,5 @@ constexpr std::size_t kinect_frame_size(std::size_t bodies, bool orientations) {
   return kinect_head_size + 48 + kinect_crc_size +
          bodies * (12 + std::size_t{25} * (1 + 12 + (orientations ? 16 : 0)));
 }
-
-/// Splits a frame so that no message is longer than most_kinect_datagram.
-std::vector<KinectFrame> kinect_parts(const KinectFrame& frame);
 
 }  // namespace kinalign

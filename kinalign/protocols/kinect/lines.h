@@ -15,7 +15,7 @@ inline constexpr std::size_t most_kinect_line = 65'536, least_kinect_ping_line =
 /// Decodes one line, with or without its line end. After a refusal `message` is empty.
 KinectRefusal decode_kinect_line(std::string_view line, KinectMessage& message);
 
-/// Encodes a message that `check` accepts, with its line end.
-std::string encode_kinect_line(const KinectMessage& message);
+/// Encodes a pong, with its line end. The host sends no other message.
+std::string encode_kinect_line(const KinectPong& pong);
 
 }  // namespace kinalign

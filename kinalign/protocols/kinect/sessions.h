@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows the sessions of one sensor by their frames. A sender that is started again begins a new
 // session, and the newest session is the device. Two machines whose sensors have the same id have
-// sessions that overlap. docs/formats/kinect_stream.md.
+// sessions that overlap. docs/formats/kinect_stream_receiver.md.
 #pragma once
 
 #include "kinalign/core/error.h"

@@ -34,9 +34,6 @@ const char* expected_of(ViconRefusal refusal);
 /// Decodes a broadcast. After a refusal `trigger` is empty.
 ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigger);
 
-/// Encodes a broadcast as Vicon does, but without the zero at its end.
-std::string encode_vicon_trigger(const ViconTrigger& trigger);
-
 /// The mark of a broadcast. Several network cards send the same broadcast, so its packet id, kind
 /// and name make the id by which repeats are recognised.
 Mark mark_of(const ViconTrigger& trigger);

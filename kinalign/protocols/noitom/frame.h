@@ -3,8 +3,6 @@
 // they send. Layout: docs/formats/noitom_stream.md.
 #pragma once
 
-#include "kinalign/core/error.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -40,9 +38,8 @@ struct NoitomFrame {
 /// Number of values in a frame: 180 or 354, and six more with a reference.
 std::size_t noitom_values(bool displacement, bool reference);
 
-/// Appends the frame's bytes. Fails if they would not be read back as this frame: if the values do
-/// not fit the flags, the name is longer than 32 bytes, a name in text has blanks, or the form has
-/// no field for the index.
-Result<void> append_noitom(const NoitomFrame& frame, std::vector<std::uint8_t>& out);
+/// Appends the frame's bytes with the new header, whatever its form. The values must fit the flags;
+/// a name is cut to 32 bytes.
+void append_noitom(const NoitomFrame& frame, std::vector<std::uint8_t>& out);
 
 }  // namespace kinalign

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Receives the BVH broadcast of one sender over TCP or UDP. A connection loses nothing. Datagrams
 // may be lost or arrive out of order, so a frame in several datagrams is accepted only if the next
-// header shows that no frame is missing: docs/formats/noitom_stream.md, "Frames in several
-// datagrams".
+// header shows that no frame is missing: docs/formats/noitom_datagrams.md.
 #pragma once
 
 #include "kinalign/protocols/noitom/stream.h"

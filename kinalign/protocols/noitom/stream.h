@@ -3,6 +3,7 @@
 // TCP or in datagrams. Layout and rules: docs/formats/noitom_stream.md.
 #pragma once
 
+#include "kinalign/core/error.h"
 #include "kinalign/protocols/noitom/header.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/wire/time.h"

@@ -11,181 +11,84 @@ namespace kinalign {
 
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
-
 // Head of a datagram: u32 type, u64 number, in network byte order.
 // Numbers of types and layouts of bodies: docs/formats/slimevr.md, "A datagram of a tracker".
 constexpr std::size_t head_size = 12;
 // Types of datagrams that hold several packets.
 constexpr std::uint32_t bundle = 100, compact_bundle = 101;
 
-/// A byte reader that can also skip bytes and take text.
-class Body {
- public:
-  explicit Body(Bytes bytes) : bytes_(bytes), reader_(bytes) {}
-
-  std::uint8_t byte() { return reader_.take<std::uint8_t>(); }
-  std::uint16_t word() { return reader_.take<std::uint16_t>(); }
-  std::uint32_t number() { return reader_.take<std::uint32_t>(); }
-  float real() { return reader_.take_float(); }
-  /// Takes a fixed-point number of 16 bits with a sign.
-  float fixed(float scale) { return static_cast<float>(static_cast<std::int16_t>(word())) / scale; }
-  std::array<float, 3> vector() {
-    std::array<float, 3> v{};
-    for (float& x : v) x = real();
-    return v;
-  }
-  std::array<float, 4> quaternion() {
-    std::array<float, 4> q{};
-    for (float& x : q) x = real();
-    return q;
-  }
-  /// Takes `length` bytes and returns those before the first zero.
-  std::string text(std::size_t length) {
-    const std::size_t at = bytes_.size() - left();
-    // A length beyond the end makes the body incomplete. Only bytes of the packet are taken.
-    const bool whole = length <= left();
-    for (std::size_t n = std::min(length, left()); n > 0; --n) byte();
-    if (!whole) byte();  // makes the body incomplete
-    const Bytes text = bytes_.subspan(at, whole ? length : 0);
-    return {text.begin(), std::find(text.begin(), text.end(), 0)};
-  }
-  std::size_t left() const { return reader_.left(); }
-  bool complete() const { return reader_.complete(); }
-
- private:
-  Bytes bytes_;
-  ByteReader reader_;
-};
-
 /// Reads the fields as far as the firmware sends them.
-SlimeHandshake take_handshake(Body body) {
+SlimeHandshake take_handshake(ByteReader body) {
+  // Three numbers of the hardware, and 12 bytes that the protocol leaves unused.
+  constexpr std::size_t before_protocol = 24;
   SlimeHandshake hands;
-  for (auto* field : {&hands.board, &hands.imu, &hands.mcu}) {
-    if (body.left() < 4) return hands;
-    *field = static_cast<std::int32_t>(body.number());
-  }
-  if (body.left() < 16) return hands;
-  // 12 bytes that the protocol leaves unused.
-  for (int unused = 0; unused < 3; ++unused) body.number();
-  hands.protocol = static_cast<std::int32_t>(body.number());
-  if (body.left() == 0) return hands;
-  std::string firmware = body.text(body.byte());
+  body.take_bytes(before_protocol);
+  const auto protocol = body.take<std::int32_t>();
   if (!body.complete()) return hands;
-  hands.firmware = std::move(firmware);
-  if (body.left() < 6) return hands;
+  hands.protocol = protocol;
+  body.take_bytes(body.take<std::uint8_t>());  // the firmware's name
   SlimeMac mac{};
-  for (std::size_t i = 0; i < mac.size(); ++i) mac[i] = body.byte();
-  if (mac != SlimeMac{}) hands.mac = mac;
-  if (body.left() == 0) return hands;
-  hands.tracker = body.byte();
-  while (body.left() > 0 && hands.texts.size() < 5) {
-    std::string text = body.text(body.byte());
-    if (!body.complete()) break;
-    hands.texts.push_back(std::move(text));
-  }
+  for (std::uint8_t& byte : mac) byte = body.take<std::uint8_t>();
+  if (body.complete() && mac != SlimeMac{}) hands.mac = mac;
   return hands;
 }
 
-/// Reads the fields as far as the firmware sends them.
-SlimeSensorInfo take_sensor_info(Body& body) {
-  SlimeSensorInfo info;
-  info.sensor = body.byte();
-  info.status = body.byte();
-  if (body.left() >= 1) info.imu = body.byte();
-  if (body.left() < 2) return info;
-  info.configuration = body.word();
-  if (body.left() >= 1) info.rest_calibrated = body.byte();
-  if (body.left() >= 1) info.position = body.byte();
-  if (body.left() >= 1) info.data_type = body.byte();
-  return info;
-}
-
 // The body has volts and level, or the level alone. Its length shows which.
-SlimeBattery take_battery(Body& body) {
-  SlimeBattery battery;
-  battery.level = body.real();
-  if (body.left() < 4) return battery;
-  battery.volts = battery.level;
-  battery.level = body.real();
-  return battery;
+SlimeBattery take_battery(ByteReader& body) {
+  const float first = body.take_float();
+  return body.left() < 4 ? SlimeBattery{} : SlimeBattery{first};
 }
 
 // Types 1 and 16 name their sensor by the type, not by a field.
-SlimeMotion take_old_rotation(Body& body, std::uint8_t sensor) {
+SlimeMotion take_old_rotation(ByteReader& body, std::uint8_t sensor) {
   SlimeMotion motion;
   motion.sensor = sensor;
-  motion.rotation = body.quaternion();
+  motion.rotation = body.take_floats<4>();
   return motion;
 }
 
 // Corrections (data type 2) are no samples. They are decoded, so that the caller can leave them
 // out.
-SlimeMotion take_rotation_data(Body& body) {
+SlimeMotion take_rotation_data(ByteReader& body) {
   SlimeMotion motion;
-  motion.sensor = body.byte();
-  motion.is_correction = body.byte() == 2;
-  motion.rotation = body.quaternion();
-  body.byte();  // accuracy
+  motion.sensor = body.take<std::uint8_t>();
+  motion.is_correction = body.take<std::uint8_t>() == 2;
+  motion.rotation = body.take_floats<4>();
+  body.take<std::uint8_t>();  // accuracy
   return motion;
 }
 
 // The number of the sensor may be absent; the reading is then of sensor 0.
-SlimeMotion take_acceleration(Body& body) {
+SlimeMotion take_acceleration(ByteReader& body) {
   SlimeMotion motion;
-  motion.acceleration = body.vector();
-  if (body.left() > 0) motion.sensor = body.byte();
+  motion.acceleration = body.take_floats<3>();
+  if (body.left() > 0) motion.sensor = body.take<std::uint8_t>();
   return motion;
 }
 
 // Fixed-point numbers: a component of the quaternion is the number by 32768, an acceleration in
 // m/s2 is the number by 128.
-SlimeMotion take_both(Body& body) {
+SlimeMotion take_both(ByteReader& body) {
   SlimeMotion motion;
-  motion.sensor = body.byte();
-  for (float& x : motion.rotation.emplace()) x = body.fixed(32768.0F);
-  for (float& x : motion.acceleration.emplace()) x = body.fixed(128.0F);
+  motion.sensor = body.take<std::uint8_t>();
+  for (float& x : motion.rotation.emplace()) x = body.take<std::int16_t>() / 32768.0F;
+  for (float& x : motion.acceleration.emplace()) x = body.take<std::int16_t>() / 128.0F;
   return motion;
 }
 
-/// Reads a packet that the program does not use, with the size that its type has.
-SlimeReading take_reading(Body& body, std::uint8_t type) {
-  SlimeReading reading;
-  reading.type = type;
-  if (type != 21) reading.sensor = body.byte();
-  switch (type) {
-    case 18:
-    case 20:
-    case 26:
-      reading.values[0] = body.real();
-      break;
-    case 19:
-      reading.values[0] = static_cast<std::int8_t>(body.byte());
-      break;
-    case 24:
-      reading.values[0] = body.word();
-      break;
-    case 27:
-      reading.values = body.vector();
-      break;
-    default:
-      reading.values[0] = body.byte();
-  }
-  return reading;
+SlimeSensorInfo take_sensor_info(ByteReader& body) {
+  const auto sensor = body.take<std::uint8_t>();
+  return {sensor, body.take<std::uint8_t>()};
 }
 
-SlimeFeatures take_features(Body& body) {
-  SlimeFeatures features;
-  features.flags.push_back(body.byte());
-  while (body.left() > 0) features.flags.push_back(body.byte());
-  return features;
+SlimeFeatures take_features(ByteReader& body) {
+  body.take<std::uint8_t>();  // at least one byte of flags
+  return {};
 }
 
 /// Reads a packet of this type; empty if the type is unknown.
-std::optional<SlimePacket> take_body(std::uint32_t type, Body& body) {
+std::optional<SlimePacket> take_body(std::uint32_t type, ByteReader& body) {
   switch (type) {
-    case 0:
-      return SlimeHeartbeat{};
     case 1:
     case 16:
       return take_old_rotation(body, type == 1 ? 0 : 1);
@@ -193,10 +96,6 @@ std::optional<SlimePacket> take_body(std::uint32_t type, Body& body) {
       return take_handshake(body);
     case 4:
       return take_acceleration(body);
-    case 10:
-      return SlimePing{body.number()};
-    case 11:
-      return SlimeSerial{body.text(body.number())};
     case 12:
       return take_battery(body);
     case 15:
@@ -207,6 +106,9 @@ std::optional<SlimePacket> take_body(std::uint32_t type, Body& body) {
       return take_features(body);
     case 23:
       return take_both(body);
+    case 0:
+    case 10:
+    case 11:
     case 13:
     case 14:
     case 18:
@@ -216,7 +118,7 @@ std::optional<SlimePacket> take_body(std::uint32_t type, Body& body) {
     case 24:
     case 26:
     case 27:
-      return take_reading(body, static_cast<std::uint8_t>(type));
+      return SlimeOther{};
     default:
       return std::nullopt;
   }
@@ -224,46 +126,24 @@ std::optional<SlimePacket> take_body(std::uint32_t type, Body& body) {
 
 // Readers of required fields do not check lengths: reading beyond the end makes the body
 // incomplete, which is tested once at the end.
-void take_packet(std::uint32_t type, Bytes bytes, SlimeDatagram& out) {
-  Body body(bytes);
+void take_packet(std::uint32_t type, ByteReader body, SlimeDatagram& out) {
   auto packet = take_body(type, body);
-  if (!packet) {
-    ++out.unknown_type;
-  } else if (!body.complete()) {
-    ++out.too_short;
-  } else {
-    out.packets.push_back(std::move(*packet));
-  }
+  if (packet && body.complete()) out.packets.push_back(*packet);
 }
 
-/// Reads the packets of a bundle. `width`: bytes of each length. A type is as wide in a compact
-/// bundle, and has 4 bytes in others.
-void take_bundle(Bytes bytes, std::size_t width, SlimeDatagram& out) {
-  const std::size_t type_size = width == 1 ? 1 : 4;
-  while (bytes.size() >= width) {
-    ByteReader reader(bytes);
-    std::size_t length = width == 1 ? reader.take<std::uint8_t>() : reader.take<std::uint16_t>();
-    bytes = bytes.subspan(width);
+bool is_bundle(std::uint32_t type) { return type == bundle || type == compact_bundle; }
+
+/// Reads the packets of a bundle. In a compact one, lengths and types have one byte each.
+void take_bundle(ByteReader bytes, bool compact, SlimeDatagram& out) {
+  while (bytes.left() > 0) {
+    const std::size_t length = compact ? bytes.take<std::uint8_t>() : bytes.take<std::uint16_t>();
     // A length beyond the end is cut to the end, and a length of 0 is skipped, as the SlimeVR
     // server does.
-    length = std::min(length, bytes.size());
-    if (length == 0) continue;
-    const Bytes inner = bytes.first(length);
-    bytes = bytes.subspan(length);
-    if (length < type_size) {
-      ++out.too_short;
-      continue;
-    }
-    ByteReader head(inner);
-    const std::uint32_t type = width == 1 ? head.take<std::uint8_t>() : head.take<std::uint32_t>();
+    ByteReader packet(bytes.take_bytes(std::min(length, bytes.left())));
+    const std::uint32_t type = compact ? packet.take<std::uint8_t>() : packet.take<std::uint32_t>();
     // A bundle within a bundle is refused, so decoding needs no recursion.
-    if (type == bundle || type == compact_bundle) {
-      ++out.nested;
-    } else {
-      take_packet(type, inner.subspan(type_size), out);
-    }
+    if (packet.complete() && !is_bundle(type)) take_packet(type, packet, out);
   }
-  if (!bytes.empty()) ++out.too_short;
 }
 
 void put(SlimeAnswer& answer, std::initializer_list<std::uint8_t> bytes) {
@@ -286,11 +166,10 @@ bool decode_slime(std::span<const std::uint8_t> datagram, SlimeDatagram& out) {
   out.type = reader.take<std::uint32_t>();
   out.number = reader.take<std::uint64_t>();
   if (!reader.complete()) return false;
-  const Bytes body = datagram.subspan(head_size);
-  if (out.type == bundle || out.type == compact_bundle) {
-    take_bundle(body, out.type == bundle ? 2 : 1, out);
+  if (is_bundle(out.type)) {
+    take_bundle(reader, out.type == compact_bundle, out);
   } else {
-    take_packet(out.type, body, out);
+    take_packet(out.type, reader, out);
   }
   return true;
 }

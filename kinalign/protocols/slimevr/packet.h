@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -19,18 +18,8 @@ using SlimeMac = std::array<std::uint8_t, 6>;
 
 /// A tracker's introduction. Fields that older firmware does not send are absent.
 struct SlimeHandshake {
-  std::optional<std::int32_t> board, imu, mcu, protocol;
-  std::optional<std::string> firmware;
+  std::optional<std::int32_t> protocol;
   std::optional<SlimeMac> mac;  // absent also if the tracker sends only zeros
-  std::optional<std::uint8_t> tracker;
-  std::vector<std::string> texts;  // vendor, its URL, product, update address, update name
-
-  bool operator==(const SlimeHandshake&) const = default;
-};
-
-/// Sign of life without content.
-struct SlimeHeartbeat {
-  bool operator==(const SlimeHeartbeat&) const = default;
 };
 
 /// Motion of one sensor, types 1, 16, 17, 4 and 23: rotation, acceleration, or both.
@@ -41,57 +30,32 @@ struct SlimeMotion {
   std::optional<std::array<float, 3>> acceleration;  // m/s2
 };
 
-/// The host's own ping, which the tracker returns byte for byte. Its number is the host's 0.
-struct SlimePing {
-  std::uint32_t id = 0;
-  bool operator==(const SlimePing&) const = default;
-};
-
 /// State of one sensor. The host acknowledges it with the same status.
 struct SlimeSensorInfo {
   std::uint8_t sensor = 0, status = 0;
-  std::optional<std::uint8_t> imu, rest_calibrated, position, data_type;
-  std::optional<std::uint16_t> configuration;
-
-  bool operator==(const SlimeSensorInfo&) const = default;
 };
 
-/// State of the tracker's battery. Some trackers send only the level.
+/// State of the tracker's battery. Some trackers send only its level.
 struct SlimeBattery {
   std::optional<float> volts;
-  float level = 0.0F;  // charge, 0 to 1
 };
 
-struct SlimeSerial {
-  std::string text;
-  bool operator==(const SlimeSerial&) const = default;
-};
+/// Features that the tracker's firmware has. The host answers with its own.
+struct SlimeFeatures {};
 
-/// Features that the tracker's firmware has, one bit each.
-struct SlimeFeatures {
-  std::vector<std::uint8_t> flags;
-  bool operator==(const SlimeFeatures&) const = default;
-};
+/// A heartbeat, a returned ping, or another packet that this program does not use. Its body is not
+/// read.
+struct SlimeOther {};
 
-/// Types 13, 14, 18 to 21, 24, 26 and 27, which this program does not use.
-struct SlimeReading {
-  std::uint8_t type = 0, sensor = 0;
-  std::array<float, 3> values{};  // one value; a position has three
-};
+using SlimePacket = std::variant<SlimeOther, SlimeHandshake, SlimeMotion, SlimeSensorInfo,
+                                 SlimeBattery, SlimeFeatures>;
 
-using SlimePacket =
-    std::variant<SlimeHeartbeat, SlimeHandshake, SlimeMotion, SlimePing, SlimeSensorInfo,
-                 SlimeBattery, SlimeSerial, SlimeFeatures, SlimeReading>;
-
-/// A decoded datagram. Packets that can't be read are counted; they do not invalidate the other
-/// packets of a bundle.
+/// A decoded datagram. Packets of an unknown type, and those that are too short for their type, are
+/// left out; they do not invalidate the other packets of a bundle.
 struct SlimeDatagram {
   std::uint32_t type = 0;
   std::uint64_t number = 0;
-  std::vector<SlimePacket> packets;  // one, or those of a bundle
-  std::uint32_t unknown_type = 0;    // packets of an unknown type
-  std::uint32_t too_short = 0;       // packets that end too early for their type
-  std::uint32_t nested = 0;          // bundles within a bundle
+  std::vector<SlimePacket> packets;  // at most one, or those of a bundle
 };
 
 /// Decodes a datagram. False if it is shorter than its head of 12 bytes.

@@ -16,19 +16,14 @@ constexpr std::size_t pose_item = 32, tracker_item = 44, raw_tracker_item = 68, 
 
 bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
 
-template <std::size_t n>
-void take(ByteReader& bytes, std::array<float, n>& values) {
-  for (float& value : values) value = bytes.take_float();
-}
-
 // The readers of items expect a payload whose size was checked: `items` times the size of one.
 XsensPose pose_of(ByteReader bytes, std::size_t items) {
   XsensPose pose;
   for (std::size_t k = 0; k < items; ++k) {
     XsensSegment segment;
-    segment.id = static_cast<std::int32_t>(bytes.take<std::uint32_t>());
-    take(bytes, segment.position);
-    take(bytes, segment.rotation);
+    segment.id = bytes.take<std::int32_t>();
+    segment.position = bytes.take_floats<3>();
+    segment.rotation = bytes.take_floats<4>();
     pose.segments.push_back(segment);
   }
   return pose;
@@ -39,15 +34,14 @@ XsensTrackers trackers_of(ByteReader bytes, std::size_t items, bool raw) {
   XsensTrackers all;
   for (std::size_t k = 0; k < items; ++k) {
     XsensTracker tracker;
-    tracker.id = static_cast<std::int32_t>(bytes.take<std::uint32_t>());
-    take(bytes, tracker.rotation);
-    take(bytes, tracker.free_acceleration);
+    tracker.id = bytes.take<std::int32_t>();
+    tracker.rotation = bytes.take_floats<4>();
+    tracker.free_acceleration = bytes.take_floats<3>();
     if (raw) {
-      tracker.raw.emplace();
-      take(bytes, tracker.raw->acceleration);
-      take(bytes, tracker.raw->angular_velocity);
+      const auto acceleration = bytes.take_floats<3>();
+      tracker.raw = {acceleration, bytes.take_floats<3>()};
     }
-    take(bytes, tracker.magnetic_field);
+    tracker.magnetic_field = bytes.take_floats<3>();
     all.trackers.push_back(tracker);
   }
   return all;

@@ -3,7 +3,6 @@
 // Layout: docs/formats/xsens_mvn_stream.md.
 #pragma once
 
-#include "kinalign/core/error.h"
 #include "kinalign/wire/time.h"
 
 #include <array>
@@ -76,19 +75,5 @@ struct XsensSample {
 
   bool operator==(const XsensSample&) const = default;
 };
-
-/// Options for the form of the datagrams.
-/// Programs of different age send different forms, and tests must produce them all.
-struct XsensSending {
-  std::size_t items_per_datagram = 255;
-  bool payload_size = true;     // false: send 0, as programs before 2019 do
-  bool long_time_code = false;  // true: with its length in front, as newer programs send it
-};
-
-/// The datagrams of a sample; over TCP they follow one another. Fails if the sample could not be
-/// read back: no items or more than 256, trackers with and without raw values, an invalid time of
-/// day, or raw trackers without their payload size.
-Result<std::vector<std::vector<std::uint8_t>>> xsens_datagrams(const XsensSample& sample,
-                                                               const XsensSending& sending);
 
 }  // namespace kinalign

@@ -3,6 +3,7 @@
 // and rules: docs/formats/xsens_mvn_stream.md.
 #pragma once
 
+#include "kinalign/core/error.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/protocols/xsens/layout.h"
 

@@ -41,13 +41,13 @@ std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
 AnyExchange AcceptedFrames::take_exchange(const RecordedMessage& message) {
   if (auto recorded = to_exchange(message.payload)) {
     Exchange& e = recorded->exchange;
-    e.boot = life_of(e.boot, recorded->epoch);
+    e.boot = boot_in_epoch(e.boot, recorded->epoch);
     accepted_ = {e.boot, e.n_tx, 0, false, message.arrival};
     return e;
   }
   if (auto numbered = to_clockless(message.payload)) {
     ClocklessExchange& e = numbered->exchange;
-    e.boot = life_of(e.boot, numbered->epoch);
+    e.boot = boot_in_epoch(e.boot, numbered->epoch);
     accepted_ = {e.boot, std::nullopt, number_of(e), e.t6.has_value(), message.arrival};
     return e;
   }
@@ -69,7 +69,7 @@ std::optional<AcceptedFrame> AcceptedFrames::take(const RecordedMessage& message
     ++others;
     return std::nullopt;
   }
-  frame->life = accepted->life;
+  frame->boot = accepted->boot;
   frame->number = accepted->number;
   return frame;
 }

@@ -20,7 +20,7 @@ inline std::int64_t number_of(const ClocklessExchange& e) {
 
 /// A datagram with samples that was accepted during recording.
 struct AcceptedFrame {
-  BootKey life = 0;
+  BootKey boot = 0;
   std::optional<NodeTime> n_tx;  // absent: the node has no counter, but numbers its requests
   std::int64_t number = 0;
   std::array<NodeSample, max_node_samples> samples{};
@@ -35,7 +35,7 @@ using AnyExchange = std::variant<std::monostate, Exchange, ClocklessExchange>;
 /// arrival.
 class AcceptedFrames {
  public:
-  /// Decodes an exchange. Its `boot` is the key of the clock model, see life_of().
+  /// Decodes an exchange. Its `boot` is the key of the clock model, see boot_in_epoch().
   AnyExchange take_exchange(const RecordedMessage& message);
   /// Returns the frame if the exchange before it says that it was accepted.
   std::optional<AcceptedFrame> take(const RecordedMessage& message);
@@ -47,7 +47,7 @@ class AcceptedFrames {
   /// The exchange that was read last. `confirms`: it belongs to a confirm and not to a request with
   /// a sample.
   struct Accepted {
-    BootKey life = 0;
+    BootKey boot = 0;
     std::optional<NodeTime> n_tx;
     std::int64_t number = 0;
     bool confirms = false;

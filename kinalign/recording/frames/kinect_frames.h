@@ -21,9 +21,9 @@ namespace kinalign {
 /// so each channel has a decoder that keeps the incomplete rest.
 class KinectFrames {
  public:
-  /// Appends the frames that the message completes. The single parts are appended to `heard`.
+  /// Appends the frames that the message completes. The single parts are appended to `parts`.
   void take(const RecordedMessage& message, std::vector<JoinedKinectFrame>& out,
-            std::vector<KinectFrame>* heard) {
+            std::vector<KinectFrame>* parts) {
     messages_.clear();
     KinectStreamDecoder& decoder = decoders_[message.channel_id];
     decoder.feed(octets(message.payload), messages_);
@@ -38,7 +38,7 @@ class KinectFrames {
         ++of_other_sensors;
         continue;
       }
-      if (heard != nullptr) heard->push_back(*frame);
+      if (parts != nullptr) parts->push_back(*frame);
       joiner_.take(std::move(*frame), out, message.channel->sender);
     }
   }

@@ -61,10 +61,6 @@ struct LiveStream::KinectDevice {
 LiveStream::LiveStream() = default;
 LiveStream::~LiveStream() = default;
 
-Duration LiveStream::utc_minus_host() const {
-  return facts_->anchor.utc.time_since_epoch() - facts_->anchor.raw.time_since_epoch();
-}
-
 Result<void> LiveStream::take(std::string_view bytes, LiveData& news) {
   reader_.feed(bytes);
   // Records stay valid until the next one only; their contents are copied into `news`.
@@ -105,13 +101,12 @@ Result<void> LiveStream::define(const McapChannel& channel) {
   const auto raw = to_raw(channel);
   if (!raw) return {};
   added.raw = *raw;
-  const auto protocol = find_recorded_protocol(raw->protocol);
-  const bool is_exchange = raw->protocol == exchange_encoding;
-  if (!raw->node.empty() && (is_exchange || protocol == Protocol::nodes)) {
+  const auto protocol = protocol_of(*raw);
+  if (!raw->node.empty() && protocol == Protocol::nodes) {
     auto& device = nodes_[raw->stream + "/" + raw->node];
     if (!device) device = std::make_unique<NodeDevice>(NodeDevice{*raw, {}, LiveClock()});
     added.node = device.get();
-  } else if (is_exchange || protocol == Protocol::kinect) {
+  } else if (protocol == Protocol::kinect) {
     auto& device = kinects_[raw->stream];
     if (!device) {
       device = std::make_unique<KinectDevice>();
@@ -145,7 +140,8 @@ Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news
     return {};
   }
   const RecordedMessage recorded{&channel.raw, message.channel,
-                                 arrival_of(message.log_time, utc_minus_host()), message.data};
+                                 arrival_of(message.log_time, facts_->utc_minus_host()),
+                                 message.data};
   if (channel.node != nullptr) take_node(*channel.node, recorded, news);
   if (channel.kinect != nullptr) take_kinect(*channel.kinect, recorded, news);
   return {};
@@ -165,7 +161,7 @@ void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, L
     const NodeSample& sample = frame->samples[i];
     const auto age = std::chrono::microseconds(sample.age_us);
     const auto at =
-        frame->n_tx ? device.clock.host_from_node(frame->life, *frame->n_tx - age) : std::nullopt;
+        frame->n_tx ? device.clock.host_from_node(frame->boot, *frame->n_tx - age) : std::nullopt;
     const Time stamp = at ? on_axis(at->time) : arrival - age;
     // A sample that can't be right is counted here, because no later step sees its raw values.
     const SampleFaults wrong = faults(sample);
@@ -184,7 +180,7 @@ void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& messag
       // Frames do not state the epoch of the host's axis, so that of the newest exchange is used
       // for them.
       device.epoch = recorded->epoch;
-      recorded->exchange.boot = life_of(recorded->exchange.boot, recorded->epoch);
+      recorded->exchange.boot = boot_in_epoch(recorded->exchange.boot, recorded->epoch);
       device.sender.push(recorded->exchange);
     }
     return;
@@ -198,17 +194,17 @@ void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& messag
 // sender is used.
 void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
                             const RecordedMessage& message, LiveData& news) {
-  const BootKey life = life_of(frame.origin.session, device.epoch);
+  const BootKey boot = boot_in_epoch(frame.origin.session, device.epoch);
   const auto sender_had = [&] {
-    const auto at = device.sender.host_from_node(life, kinect_sender_time(frame.taken_ticks));
+    const auto at = device.sender.host_from_node(boot, kinect_sender_time(frame.taken_ticks));
     if (at) return at->time;
     return message.arrival -
            (kinect_sender_time(frame.sent_ticks) - kinect_sender_time(frame.taken_ticks));
   }();
   device.newest = std::max(device.newest, sender_had);  // the clock needs increasing arrivals
   const NodeTime ticks = kinect_sender_time(frame.device_ticks);
-  device.sensor.push_up(life, ticks, device.newest);
-  const auto at = device.sensor.host_from_node(life, ticks);
+  device.sensor.push_up(boot, ticks, device.newest);
+  const auto at = device.sensor.host_from_node(boot, ticks);
   const Time arrival = on_axis(message.arrival);
   LiveKinectRow row{&device.raw, arrival, {}};
   // The id 0 stands for no body: without the person the row has no joints.

@@ -99,8 +99,9 @@ class LiveStream {
   void take_kinect(KinectDevice& device, const RecordedMessage& message, LiveData& news);
   void take_frame(KinectDevice& device, const KinectFrame& frame, const RecordedMessage& message,
                   LiveData& news);
-  Duration utc_minus_host() const;
-  Time on_axis(HostTime host) const { return Time{host.time_since_epoch() + utc_minus_host()}; }
+  Time on_axis(HostTime host) const {
+    return Time{host.time_since_epoch() + facts_->utc_minus_host()};
+  }
 
   McapReader reader_{most_record};
   std::optional<RecordingFacts> facts_;

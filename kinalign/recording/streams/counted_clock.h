@@ -17,12 +17,12 @@ struct CountedFrame {
   HostTime arrival{};
 };
 
-/// Learns the clock of a device that counts its frames from all of them: `heard.clock` and
-/// `heard.step_ns`, the time between two numbers. The rate in the options has precedence over
+/// Learns the clock of a device that counts its frames from all of them: `learned.clock` and
+/// `learned.step_ns`, the time between two numbers. The rate in the options has precedence over
 /// `stated_step_ns` (0: unknown). The stated rate is used while the arrivals agree with it within
 /// 1 %; otherwise there is a finding.
-void count_clock(std::vector<CountedFrame> frames, double stated_step_ns, const DeviceWish& wish,
-                 HeardDevice& heard);
+void count_clock(std::vector<CountedFrame> frames, double stated_step_ns,
+                 const DeviceRequest& request, LearnedDevice& learned);
 
 /// The device's counter at a frame: its number times the step, as the clock model expects it.
 NodeTime counter_of(const CountedFrame& frame, double step_ns);

@@ -10,7 +10,7 @@ namespace kinalign {
 namespace {
 
 /// The functions that make rows of a protocol's poses, points or inertial samples.
-DeviceProtocol maker_of(Protocol protocol) {
+DeviceProtocol functions_of(Protocol protocol) {
   switch (protocol) {
     case Protocol::nodes:
       return node_protocol();
@@ -45,15 +45,14 @@ std::pair<std::string, std::string> tracker_of(const std::string& node) {
 
 }  // namespace
 
-std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers) {
-  const auto protocol = find_recorded_protocol(recorded_name);
+std::optional<DeviceProtocol> rows_of(std::optional<Protocol> protocol, bool trackers) {
   if (!protocol) return std::nullopt;
   // Trackers are another content of the same stream; only some protocols have them.
-  if (!trackers) return maker_of(*protocol);
+  if (!trackers) return functions_of(*protocol);
   return row_of(*protocol).has_trackers ? std::optional(xsens_tracker_protocol()) : std::nullopt;
 }
 
-Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file) {
+Result<DeviceRequest> request_of(const StreamOptions& options, const StreamFile& file) {
   // An unknown key would select nothing without notice.
   for (const auto& [name, value] : options.select) {
     if (name == "stream" || name == "node" || name == "sender" || name == "body") continue;
@@ -62,20 +61,20 @@ Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file)
                          "select by stream, node, sender, body or kind (poses, trackers)",
                          shown(name) + " = " + shown(value)});
   }
-  DeviceWish wish{options, file, {}};
-  wish.trackers = selected(options, "kind", "poses") == "trackers";
-  wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
-                 selected(options, "sender", "")};
+  DeviceRequest request{options, file, {}};
+  request.trackers = selected(options, "kind", "poses") == "trackers";
+  request.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
+                    selected(options, "sender", "")};
   // A tracker is known by its address, which then selects the sender as well.
-  const auto [tracker, sensor] = tracker_of(wish.choice.node);
-  if (wish.choice.sender.empty()) wish.choice.sender = tracker;
+  const auto [tracker, sensor] = tracker_of(request.choice.node);
+  if (request.choice.sender.empty()) request.choice.sender = tracker;
   const std::string body = selected(options, "body", sensor);
-  if (body.empty()) return wish;
+  if (body.empty()) return request;
   std::uint64_t id = 0;
   const auto [behind, fault] = std::from_chars(body.data(), body.data() + body.size(), id);
   if (fault == std::errc{} && behind == body.data() + body.size()) {
-    wish.body = id;
-    return wish;
+    request.body = id;
+    return request;
   }
   return Failure(Error{file.path, 0, "select.body: a whole number", "'" + shown(body) + "'"});
 }

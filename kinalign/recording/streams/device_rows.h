@@ -35,7 +35,7 @@ struct DeviceChoice {
 };
 
 /// The rows to make: of which device, and with which options.
-struct DeviceWish {
+struct DeviceRequest {
   StreamOptions options;
   StreamFile file;
   DeviceChoice choice;
@@ -49,11 +49,11 @@ struct DeviceWish {
 /// select["node"], by default the file's node; select["sender"], select["body"], select["kind"]. A
 /// tracker's node is its address; "/1" after it selects its sensor 1. Fails if a key is unknown or
 /// a body is not a number.
-Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file);
+Result<DeviceRequest> request_of(const StreamOptions& options, const StreamFile& file);
 
 /// The result of the first pass over a device's messages. It is complete before the first row is
 /// made, and all passes over the rows share it.
-struct HeardDevice {
+struct LearnedDevice {
   RawChannel channel;
   std::string skeleton;  // header of a BVH; empty: the recording has none
   Duration utc_minus_host{};
@@ -67,9 +67,10 @@ struct HeardDevice {
 
 /// The error for a device without rows. `what`: the content that rows need. `others`: messages of
 /// the right protocol with other content.
-inline Error nothing_of(std::string_view what, const std::string& file, const HeardDevice& heard,
-                        std::uint64_t others = 0) {
-  const std::string expected = "of stream " + shown(heard.channel.stream) + " " + std::string(what);
+inline Error no_rows_error(std::string_view what, const std::string& file,
+                           const LearnedDevice& learned, std::uint64_t others = 0) {
+  const std::string expected =
+      "of stream " + shown(learned.channel.stream) + " " + std::string(what);
   if (others > 0) {
     return {file, 0, expected, std::to_string(others) + " of other types or bodies alone",
             ErrorKind::no_rows_in_recording};
@@ -82,9 +83,9 @@ inline Error nothing_of(std::string_view what, const std::string& file, const He
 }
 
 /// Marks a device whose packets have neither a time nor a number that could replace it.
-inline void stamp_by_arrival(const std::string& file, HeardDevice& heard) {
-  heard.by_arrival = true;
-  heard.findings.push_back(
+inline void stamp_by_arrival(const std::string& file, LearnedDevice& learned) {
+  learned.by_arrival = true;
+  learned.findings.push_back(
       {Severity::note, Error{file, 0, "packets that say when they were measured", "none that do"},
        "stamps are arrivals, late by unknown times", "offset_ms takes off a delay that is known"});
 }
@@ -97,33 +98,11 @@ class DeviceListener {
 
   virtual ~DeviceListener() = default;
   virtual void take(const RecordedMessage& message) = 0;
-  /// Call once, after the last message. `heard` contains channel, skeleton and utc_minus_host.
+  /// Call once, after the last message. `learned` contains channel, skeleton and utc_minus_host.
   /// Fails if no rows can be made.
-  virtual Result<void> finish(const DeviceWish& wish, HeardDevice& heard) = 0;
+  virtual Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) = 0;
   /// Call after finish(). Gives the stamp of each row that DeviceRows makes, in their order.
-  virtual void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const = 0;
-};
-
-/// The stamps of rows in the order of RowsInOrder. `Row`: the data kept of a row. A listener uses
-/// it, so that its stamps have the same order as the rows of the later passes.
-template <class Row>
-class OrderedStamps {
- public:
-  OrderedStamps(std::size_t most_overtaking, std::function<void(Time, const Row&)> take)
-      : waiting_(most_overtaking), take_(std::move(take)) {}
-  void add(Time stamp, Row row) { waiting_.add(stamp, std::move(row)); }
-  /// Call at the end of a message. Passes on the stamps that need not wait any longer.
-  void settle() {
-    while (const auto first = waiting_.take_first()) take_(first->first, first->second);
-  }
-  void finish() {
-    waiting_.finish();
-    settle();
-  }
-
- private:
-  RowsInOrder<Row> waiting_;
-  std::function<void(Time, const Row&)> take_;
+  virtual void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const = 0;
 };
 
 /// A later pass: makes rows from the same messages. It must not be used again after a failure. Rows
@@ -147,7 +126,7 @@ class DeviceRows {
  protected:
   const std::string& file() const { return file_; }
   /// Adds a note, unless the count is 0.
-  void tell(std::uint64_t count, std::string_view expected, std::string_view found,
+  void note(std::uint64_t count, std::string_view expected, std::string_view found,
             std::string_view meaning) {
     if (count == 0) return;
     findings.push_back(
@@ -157,7 +136,7 @@ class DeviceRows {
   }
   /// Adds a warning, unless no row came too late. `rows`: a word for the rows.
   template <class Row>
-  void tell_too_late(const RowsInOrder<Row>& order, std::string_view rows) {
+  void warn_too_late(const RowsInOrder<Row>& order, std::string_view rows) {
     if (order.too_late() == 0) return;
     findings.push_back({Severity::warning,
                         Error{file_, 0,
@@ -180,22 +159,20 @@ using AnyDeviceRows =
 /// The functions for a protocol of which rows can be made.
 struct DeviceProtocol {
   std::unique_ptr<DeviceListener> (*listen)(std::optional<std::uint64_t> body);
-  AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
+  AnyDeviceRows (*rows)(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned);
 };
-/// `body`: selects one of several, see DeviceWish.
+/// `body`: selects one of several, see DeviceRequest.
 template <class Listener, class Rows>
 DeviceProtocol device_protocol() {
   return {[](std::optional<std::uint64_t> body) -> std::unique_ptr<DeviceListener> {
             return std::make_unique<Listener>(body);
           },
-          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
-            return std::make_unique<Rows>(wish, std::move(heard));
-          }};
+          [](const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
+              -> AnyDeviceRows { return std::make_unique<Rows>(request, std::move(learned)); }};
 }
 
-/// Finds a protocol by its name in recordings. Absent if no rows, or no trackers, can be made of
-/// it.
-std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers);
+/// Absent if the protocol is not known, or if it has no trackers but they are wanted.
+std::optional<DeviceProtocol> rows_of(std::optional<Protocol> protocol, bool trackers);
 
 DeviceProtocol node_protocol();           // node_rows.cpp: kinalign's inertial nodes
 DeviceProtocol kinect_protocol();         // kinect_rows.cpp

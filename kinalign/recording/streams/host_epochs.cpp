@@ -26,25 +26,25 @@ void HostEpochs::add(const RecordedExchange& recorded) {
 
 // A message between two epochs could belong to either. The device's clock does not change, so the
 // epoch with the nearer clock offset is chosen.
-BootKey HostEpochs::life_at(BootKey boot, NodeTime sent, HostTime arrival) const {
+BootKey HostEpochs::boot_at(BootKey boot, NodeTime sent, HostTime arrival) const {
   // A boot without exchanges has one model, whatever the epoch.
   const auto found = boots_.find(boot);
   if (found == boots_.end()) return boot;
   const std::vector<Epoch>& epochs = found->second;
-  const auto behind = std::find_if(epochs.begin(), epochs.end(), [arrival](const Epoch& epoch) {
+  const auto next = std::find_if(epochs.begin(), epochs.end(), [arrival](const Epoch& epoch) {
     return arrival <= epoch.last.h_rx;
   });
   // After the last exchange the newest epoch goes on.
-  if (behind == epochs.end()) return life_of(boot, epochs.back().number);
-  if (behind == epochs.begin() || arrival >= behind->first.h_rx) {
-    return life_of(boot, behind->number);
+  if (next == epochs.end()) return boot_in_epoch(boot, epochs.back().number);
+  if (next == epochs.begin() || arrival >= next->first.h_rx) {
+    return boot_in_epoch(boot, next->number);
   }
-  const Epoch& before = *std::prev(behind);
+  const Epoch& before = *std::prev(next);
   const auto from = [at = offset_of(sent, arrival)](const Exchange& e) {
     return std::chrono::abs(at - offset_of(e));
   };
-  const bool is_before = from(before.last) < from(behind->first);
-  return life_of(boot, is_before ? before.number : behind->number);
+  const bool is_before = from(before.last) < from(next->first);
+  return boot_in_epoch(boot, is_before ? before.number : next->number);
 }
 
 }  // namespace kinalign

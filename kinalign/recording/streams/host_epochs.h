@@ -20,7 +20,7 @@ class HostEpochs {
   /// The key of the clock model for a message that a device sent at `sent` of its clock. Between
   /// the last exchange of an epoch and the first of the next one, the epoch with the nearer clock
   /// offset is chosen.
-  BootKey life_at(BootKey boot, NodeTime sent, HostTime arrival) const;
+  BootKey boot_at(BootKey boot, NodeTime sent, HostTime arrival) const;
 
  private:
   struct Epoch {

@@ -13,7 +13,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <functional>
+#include <variant>
 
 namespace kinalign {
 
@@ -22,18 +23,22 @@ namespace {
 /// The times of a frame: taken by the sensor (`device`), received by the sender (`sender`), sent,
 /// and arrived.
 struct Taken {
-  BootKey life = 0;  // the session, until the host's epochs are known
+  BootKey boot = 0;  // the session, until the host's epochs are known
   NodeTime device{}, sender{}, sent{};
-  HostTime arrival{};
+  HostTime arrival{};  // of the message that contained the part, or completed the frame
 };
+Taken taken_of(const KinectFrame& frame, HostTime arrival) {
+  return {frame.origin.session, kinect_sender_time(frame.device_ticks),
+          kinect_sender_time(frame.taken_ticks), kinect_sender_time(frame.sent_ticks), arrival};
+}
 
 /// The order in which exchanges reached the host. device_clock() needs it.
 bool came_before(const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; }
 
-/// The stamp of a frame. `arrival`: arrival of the message that completed the frame.
-std::optional<Time> stamp_of_frame(const HeardDevice& heard, BootKey session, NodeTime sent,
-                                   NodeTime device, HostTime arrival) {
-  return stamp_of(heard.clock, heard.epochs.life_at(session, sent, arrival), device, arrival);
+/// The stamp of a frame. Absent if its clock is not known.
+std::optional<Time> stamp_of_frame(const LearnedDevice& learned, const Taken& one) {
+  const BootKey boot = learned.epochs.boot_at(one.boot, one.sent, one.arrival);
+  return stamp_of(learned.clock, boot, one.device, one.arrival);
 }
 
 constexpr std::size_t most_overtaking_kinect_frames =
@@ -52,33 +57,30 @@ class KinectListener final : public DeviceListener {
         epochs_.add(*recorded);
         exchanges_.push_back(recorded->exchange);
         // The epoch is part of the key, since the host's axis jumps between epochs.
-        exchanges_.back().boot = life_of(recorded->exchange.boot, recorded->epoch);
+        exchanges_.back().boot = boot_in_epoch(recorded->exchange.boot, recorded->epoch);
       }
       return;
     }
     parts_.clear();
     joined_.clear();
     frames_.take(message, joined_, &parts_);
-    for (const KinectFrame& part : parts_) {
-      taken_.push_back({part.origin.session, kinect_sender_time(part.device_ticks),
-                        kinect_sender_time(part.taken_ticks), kinect_sender_time(part.sent_ticks),
-                        message.arrival});
-    }
+    for (const KinectFrame& part : parts_) taken_.push_back(taken_of(part, message.arrival));
     arrival_ = message.arrival;
     add_joined();
   }
 
   /// First fits the sender's clock to the pings and to the arrivals of frames. Then fits the
   /// sensor's clock to the times at which the sender received its frames.
-  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
-    if (taken_.empty()) return Failure(nothing_of("frames of a Kinect", wish.file.path, heard));
+  Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
+    if (taken_.empty())
+      return Failure(no_rows_error("frames of a Kinect", request.file.path, learned));
     joined_.clear();
     frames_.finish(joined_);
     add_joined();
     // Only now are all epochs known, so frames get theirs here.
     for (Taken& one : taken_) {
-      one.life = epochs_.life_at(one.life, one.sent, one.arrival);
-      exchanges_.push_back({one.life, one.sent, one.arrival, std::nullopt});
+      one.boot = epochs_.boot_at(one.boot, one.sent, one.arrival);
+      exchanges_.push_back({one.boot, one.sent, one.arrival, std::nullopt});
     }
     std::stable_sort(exchanges_.begin(), exchanges_.end(), came_before);
     // The first clock is left on the host's axis; the second one takes its times as arrivals.
@@ -86,49 +88,34 @@ class KinectListener final : public DeviceListener {
     std::vector<Exchange> from_sensor;
     from_sensor.reserve(taken_.size());
     for (const Taken& one : taken_) {
-      const auto at = host_from_node(sender.model, one.life, one.sender, one.arrival);
+      const auto at = host_from_node(sender.model, one.boot, one.sender, one.arrival);
       // A part whose session has no clock gives no time.
-      if (at) from_sensor.push_back({one.life, one.device, at->time, std::nullopt});
+      if (at) from_sensor.push_back({one.boot, one.device, at->time, std::nullopt});
     }
     std::stable_sort(from_sensor.begin(), from_sensor.end(), came_before);
-    heard.clock = device_clock(from_sensor, heard.utc_minus_host);
-    heard.epochs = std::move(epochs_);
+    learned.clock = device_clock(from_sensor, learned.utc_minus_host);
+    learned.epochs = std::move(epochs_);
     // The times of all parts take much memory and are not needed for stamps.
     taken_ = {};
     exchanges_ = {};
     return {};
   }
 
-  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    OrderedStamps<bool> stamps(most_overtaking_kinect_frames,
-                               [&take](Time stamp, bool) { take(stamp); });
-    for (const Joined& one : rows_) {
-      const auto stamp = stamp_of_frame(heard, one.session, one.sent, one.device, one.arrival);
-      // A frame without a stamp makes no row, here and in KinectRows.
-      if (stamp) stamps.add(*stamp, true);
-      if (one.ends_message) stamps.settle();
-    }
-    stamps.finish();
+  void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
+    // A frame without a stamp makes no row, here and in KinectRows.
+    RowsInOrder<std::monostate> stamps(most_overtaking_kinect_frames);
+    const auto release = [&take](Time stamp, std::monostate) { take(stamp); };
+    for (const Taken& one : rows_) stamps.add(stamp_of_frame(learned, one), {}, release);
+    stamps.finish(release);
   }
 
  private:
-  // The times of one complete frame, from which its stamp is computed when the clocks are known.
-  struct Joined {
-    BootKey session = 0;
-    NodeTime sent{}, device{};
-    HostTime arrival{};  // arrival of the message that completed the frame
-    bool ends_message = false;
-  };
   void add_joined() {
-    for (const JoinedKinectFrame& one : joined_) {
-      rows_.push_back({one.frame.origin.session, kinect_sender_time(one.frame.sent_ticks),
-                       kinect_sender_time(one.frame.device_ticks), arrival_,
-                       &one == &joined_.back()});
-    }
+    for (const JoinedKinectFrame& one : joined_) rows_.push_back(taken_of(one.frame, arrival_));
   }
 
   HostTime arrival_{};
-  std::vector<Joined> rows_;
+  std::vector<Taken> rows_;  // of complete frames; their stamps are computed when clocks are known
   KinectFrames frames_;
   std::vector<KinectFrame> parts_;
   std::vector<JoinedKinectFrame> joined_;
@@ -141,8 +128,8 @@ class KinectListener final : public DeviceListener {
 /// person. A frame without the person gives a row without joints.
 class KinectRows final : public DeviceRows<PointFrames> {
  public:
-  KinectRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows(wish.file.path), heard_(std::move(heard)), person_(wish.body) {
+  KinectRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
+      : DeviceRows(request.file.path), learned_(std::move(learned)), person_(request.body) {
     header_.joint_names.assign(kinect_joints.begin(), kinect_joints.end());
   }
 
@@ -151,8 +138,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     joined_.clear();
     frames_.take(message, joined_, nullptr);
     arrival_ = message.arrival;
-    stamp_joined();
-    append_waiting(out);
+    add_joined(out);
     return {};
   }
 
@@ -160,66 +146,55 @@ class KinectRows final : public DeviceRows<PointFrames> {
   Result<void> finish(PointFrames& out) override {
     joined_.clear();
     frames_.finish(joined_);
-    stamp_joined();
-    waiting_.finish();
-    append_waiting(out);
+    add_joined(out);
+    waiting_.finish(appending(out));
     person_.report(file(), findings);
     const KinectFrameCounts counts = frames_.counts();
-    tell(counts.frames.lost, "each frame's number", "that never came",
+    note(counts.frames.lost, "each frame's number", "that never came",
          "they were lost on their way");
-    tell_too_late(waiting_, "frames");
+    warn_too_late(waiting_, "frames");
     if (frames_.overlap()) {
       findings.push_back(overlap_finding(
           file(), *frames_.overlap(),
           fmt::format("the newest session's were read; {} frames of others were left out",
                       counts.stale)));
     } else {
-      tell(counts.stale, "frames of the sender's newest run", "of earlier ones",
+      note(counts.stale, "frames of the sender's newest run", "of earlier ones",
            "they came too late and were left out");
     }
-    tell(counts.parts_lost, "all parts of a frame", "frames without some",
+    note(counts.parts_lost, "all parts of a frame", "frames without some",
          "bodies may be missing in them");
-    tell(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");
-    tell(unknown_, "frames of a clock that is known", "others", "they were left out");
-    tell(wild_, "joints whose place is a number", "others", "they are missing");
+    note(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");
+    note(waiting_.unstamped(), "frames of a clock that is known", "others", "they were left out");
+    note(not_finite_, "joints whose place is a number", "others", "they are missing");
     return {};
   }
 
   const PointHeader* header() const override { return &header_; }
 
  private:
-  /// Stamps the joined frames. A frame without a known clock is counted and left out.
-  void stamp_joined() {
-    for (JoinedKinectFrame& joined : joined_) {
-      KinectFrame& frame = joined.frame;
-      const auto stamp =
-          stamp_of_frame(*heard_, frame.origin.session, kinect_sender_time(frame.sent_ticks),
-                         kinect_sender_time(frame.device_ticks), arrival_);
-      if (!stamp) {
-        ++unknown_;
-        continue;
-      }
-      waiting_.add(*stamp, std::move(frame));
+  void add_joined(PointFrames& out) {
+    for (JoinedKinectFrame& one : joined_) {
+      const auto stamp = stamp_of_frame(*learned_, taken_of(one.frame, arrival_));
+      waiting_.add(stamp, std::move(one.frame), appending(out));
     }
   }
-
   // Rows are made when they leave the queue, so the person is followed in the order of time.
-  void append_waiting(PointFrames& out) {
-    while (const auto first = waiting_.take_first()) {
-      const KinectFrame& frame = first->second;
-      wild_ += append_kinect_row(frame, person_(frame).value_or(0), out);
-      out.stamps.back() = first->first;
-    }
+  std::function<void(Time, const KinectFrame&)> appending(PointFrames& out) {
+    return [&](Time stamp, const KinectFrame& frame) {
+      not_finite_ += append_kinect_row(frame, person_(frame).value_or(0), out);
+      out.stamps.back() = stamp;
+    };
   }
 
-  std::shared_ptr<const HeardDevice> heard_;
+  std::shared_ptr<const LearnedDevice> learned_;
   KinectPerson person_;
   PointHeader header_;
   KinectFrames frames_;
   std::vector<JoinedKinectFrame> joined_;
   RowsInOrder<KinectFrame> waiting_{most_overtaking_kinect_frames};
   HostTime arrival_{};
-  std::uint64_t unknown_ = 0, wild_ = 0;
+  std::uint64_t not_finite_ = 0;
 };
 
 }  // namespace

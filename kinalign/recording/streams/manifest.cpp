@@ -17,8 +17,7 @@ namespace {
 /// highest rate: its stamps become the grid.
 constexpr int kinect_rank = 1;
 constexpr int last_rank = 2;
-int rank_of(std::string_view recorded_protocol) {
-  const auto protocol = find_recorded_protocol(recorded_protocol);
+int rank_of(std::optional<Protocol> protocol) {
   if (!protocol) return last_rank;
   switch (row_of(*protocol).rows) {
     case ProtocolRows::clip:
@@ -32,7 +31,7 @@ int rank_of(std::string_view recorded_protocol) {
 }
 
 bool is_named_by_address(const RawChannel& raw) {
-  const auto protocol = find_recorded_protocol(raw.protocol);
+  const auto protocol = protocol_of(raw);
   return protocol && row_of(*protocol).is_named_by_address;
 }
 
@@ -116,7 +115,7 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
                                [&](const Device& d) { return d.options.name == raw->stream; });
     if (device == devices.end()) {
       // The device is inserted at the end, in the order of channels; ranks are applied below.
-      device = devices.insert(device, {rank_of(raw->protocol), {}});
+      device = devices.insert(device, {rank_of(protocol_of(*raw)), {}});
       device->options.name = raw->stream;
       device->options.select = {{"stream", raw->stream}};
     }

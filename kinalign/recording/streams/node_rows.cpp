@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 
 #include <deque>
+#include <functional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace kinalign {
@@ -20,30 +22,31 @@ namespace {
 
 /// If requests are sent by a steady timer, their number serves as a counter. The earliest arrivals
 /// determine the clock, minus the shortest one-way delay (clock/offline/clockless.h).
-void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const DeviceWish& wish,
-                     HeardDevice& heard) {
+void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const DeviceRequest& request,
+                     LearnedDevice& learned) {
   const auto least = least_one_way_delay(exchanges);
   std::vector<CountedFrame> requests;
   for (const ClocklessExchange& e : exchanges) {
     if (e.t6) continue;
     requests.push_back({e.boot, number_of(e), e.t2 - least.value_or(Duration{0})});
   }
-  count_clock(std::move(requests), 0.0, wish, heard);
+  count_clock(std::move(requests), 0.0, request, learned);
   if (least) return;
-  heard.findings.push_back(
-      {Severity::warning, Error{wish.file.path, 0, "confirms of a node without a counter", "none"},
+  learned.findings.push_back(
+      {Severity::warning,
+       Error{request.file.path, 0, "confirms of a node without a counter", "none"},
        "its stamps are late by the way of its fastest request", ""});
 }
 
 /// The stamp of a sample. Absent if its clock is not known.
-std::optional<Time> stamp_of_sample(const HeardDevice& heard, const AcceptedFrame& frame,
+std::optional<Time> stamp_of_sample(const LearnedDevice& learned, const AcceptedFrame& frame,
                                     std::uint32_t age_us, HostTime arrival) {
   // this node has no counter, so its requests are counted
-  const bool counted = heard.step_ns > 0.0;
+  const bool counted = learned.step_ns > 0.0;
   if (counted == frame.n_tx.has_value()) return std::nullopt;
   const NodeTime sent =
-      counted ? counter_of({frame.life, frame.number, {}}, heard.step_ns) : *frame.n_tx;
-  return stamp_of(heard.clock, frame.life, sent - std::chrono::microseconds(age_us), arrival);
+      counted ? counter_of({frame.boot, frame.number, {}}, learned.step_ns) : *frame.n_tx;
+  return stamp_of(learned.clock, frame.boot, sent - std::chrono::microseconds(age_us), arrival);
 }
 
 constexpr std::size_t most_overtaking_samples =
@@ -69,8 +72,8 @@ class NodeListener final : public DeviceListener {
     const std::size_t exchanges = has_counter ? exchanges_.size() : clockless_.size();
     // The frame's exchange is the last one that was stored, since it stands directly before the
     // frame.
-    heard_.push_back({message.arrival, static_cast<std::uint32_t>(exchanges - 1),
-                      static_cast<std::uint8_t>(frame->sample_count), has_counter});
+    frames_kept_.push_back({message.arrival, static_cast<std::uint32_t>(exchanges - 1),
+                            static_cast<std::uint8_t>(frame->sample_count), has_counter});
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
       const NodeSample& sample = frame->samples[i];
       ages_us_.push_back(sample.age_us);
@@ -84,50 +87,49 @@ class NodeListener final : public DeviceListener {
   }
 
   /// Fits the clock: to the exchanges or, for a node without a counter, to the request numbers.
-  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
+  Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
     if (exchanges_.empty() && clockless_.empty()) {
-      return Failure(Error{wish.file.path, 0, "frames of node " + heard.channel.node,
+      return Failure(Error{request.file.path, 0, "frames of node " + learned.channel.node,
                            "none that was accepted"});
     }
-    heard.content = content_;
+    learned.content = content_;
     // If the node has sent counters, its requests without one have no clock and are left out
     // (stamp_of_sample).
     if (exchanges_.empty()) {
-      clockless_clock({clockless_.begin(), clockless_.end()}, wish, heard);
+      clockless_clock({clockless_.begin(), clockless_.end()}, request, learned);
     } else {
       const std::vector<Exchange> exchanges(exchanges_.begin(), exchanges_.end());
-      heard.clock = device_clock(exchanges, heard.utc_minus_host);
+      learned.clock = device_clock(exchanges, learned.utc_minus_host);
     }
     return {};
   }
 
   /// Stamps the samples in the order in which NodeRows makes its rows.
-  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    OrderedStamps<bool> stamps(most_overtaking_samples, [&take](Time stamp, bool) { take(stamp); });
+  void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
+    RowsInOrder<std::monostate> stamps(most_overtaking_samples);
+    const auto release = [&take](Time stamp, std::monostate) { take(stamp); };
     // The ages are consumed in the order in which take() stored them.
     auto age_us = ages_us_.begin();
-    for (const HeardFrame& one : heard_) {
+    for (const KeptFrame& one : frames_kept_) {
       AcceptedFrame frame;
       if (one.has_counter) {
         const Exchange& accepted = exchanges_[one.exchange];
-        frame.life = accepted.boot;
+        frame.boot = accepted.boot;
         frame.n_tx = accepted.n_tx;
       } else {
         const ClocklessExchange& accepted = clockless_[one.exchange];
-        frame.life = accepted.boot;
+        frame.boot = accepted.boot;
         frame.number = number_of(accepted);
       }
       for (std::uint32_t i = 0; i < one.samples; ++i) {
-        const auto stamp = stamp_of_sample(heard, frame, *age_us++, one.arrival);
-        if (stamp) stamps.add(*stamp, true);
+        stamps.add(stamp_of_sample(learned, frame, *age_us++, one.arrival), {}, release);
       }
-      stamps.settle();
     }
-    stamps.finish();
+    stamps.finish(release);
   }
 
  private:
-  struct HeardFrame {
+  struct KeptFrame {
     HostTime arrival{};
     std::uint32_t exchange = 0;  // index of its exchange, in exchanges_ or clockless_
     std::uint8_t samples = 0;
@@ -135,7 +137,7 @@ class NodeListener final : public DeviceListener {
   };
   // Deques, because a growing vector occupies up to twice the memory that it needs.
   AcceptedFrames frames_;
-  std::deque<HeardFrame> heard_;
+  std::deque<KeptFrame> frames_kept_;
   std::deque<std::uint32_t> ages_us_;  // of all samples, in the order of the frames
   std::deque<Exchange> exchanges_;
   std::deque<ClocklessExchange> clockless_;
@@ -145,15 +147,15 @@ class NodeListener final : public DeviceListener {
 /// Makes the rows of one node: one for each sample of an accepted frame, in the order of stamps.
 class NodeRows final : public DeviceRows<ImuSamples> {
  public:
-  NodeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows(wish.file.path),
-        heard_(std::move(heard)),
-        converter_(ImuUnits{axes_of(y_up, wish.options), 1.0, 1.0}) {
-    const RawChannel& channel = heard_->channel;
+  NodeRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
+      : DeviceRows(request.file.path),
+        learned_(std::move(learned)),
+        converter_(ImuUnits{axes_of(y_up, request.options), 1.0, 1.0}) {
+    const RawChannel& channel = learned_->channel;
     const std::string& own = channel.place.empty() ? channel.node : channel.place;
     // The manifest's name comes first, then the place of the lab, then the id.
-    header_.node_names = {wish.file.node.empty() ? own : wish.file.node};
-    header_.content = heard_->content;
+    header_.node_names = {request.file.node.empty() ? own : request.file.node};
+    header_.content = learned_->content;
   }
 
   /// Stamps the samples of an accepted frame. A sample without a known clock is counted and left
@@ -169,29 +171,23 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     if (!frame) return {};
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
       const NodeSample& sample = frame->samples[i];
-      const auto stamp = stamp_of_sample(*heard_, *frame, sample.age_us, message.arrival);
-      if (!stamp) {
-        ++unknown_;
-        continue;
-      }
-      waiting_.add(*stamp, sample);
+      waiting_.add(stamp_of_sample(*learned_, *frame, sample.age_us, message.arrival), sample,
+                   appending(out));
     }
-    append_waiting(out);
     return {};
   }
 
   /// Makes the remaining rows and reports what was left out.
   Result<void> finish(ImuSamples& out) override {
-    waiting_.finish();
-    append_waiting(out);
+    waiting_.finish(appending(out));
     converter_.report(file(), findings);
-    tell(frames_.others, "datagrams that the recorder could use",
+    note(frames_.others, "datagrams that the recorder could use",
          "of no use: damaged, too late or come twice, or of a start that was never confirmed",
          frames_.others == 1 ? "it was passed over" : "they were passed over");
-    tell_too_late(waiting_, "samples");
-    tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",
-         "they were left out");
-    tell(partial_, "samples with all that the node sends at times",
+    warn_too_late(waiting_, "samples");
+    note(waiting_.unstamped(), "samples of a life of the node whose clock is known",
+         "samples of others", "they were left out");
+    note(partial_, "samples with all that the node sends at times",
          "samples without, or with numbers that are none", "these samples are invalid");
     return {};
   }
@@ -199,11 +195,11 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   const ImuHeader* header() const override { return &header_; }
 
  private:
-  void append_waiting(ImuSamples& out) {
-    while (const auto first = waiting_.take_first()) {
-      out.stamps.push_back(first->first);
-      append(first->second, out);
-    }
+  std::function<void(Time, const NodeSample&)> appending(ImuSamples& out) {
+    return [&](Time stamp, const NodeSample& sample) {
+      out.stamps.push_back(stamp);
+      append(sample, out);
+    };
   }
 
   /// Appends one row. A sample that lacks a part of the stream's content, or has another kind of
@@ -231,12 +227,12 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     converter_.append(raw, out);
   }
 
-  std::shared_ptr<const HeardDevice> heard_;
+  std::shared_ptr<const LearnedDevice> learned_;
   ImuConverter converter_;
   ImuHeader header_;
   AcceptedFrames frames_;
   RowsInOrder<NodeSample> waiting_{most_overtaking_samples};
-  std::uint64_t unknown_ = 0, partial_ = 0;
+  std::uint64_t partial_ = 0;
 };
 
 }  // namespace

@@ -24,10 +24,10 @@ struct NoitomSource {
 using NoitomFrames = NumberedFrames<NoitomSource>;
 
 /// The hierarchy of the BVH header. Fails if neither recording nor manifest has one.
-Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& file) {
-  if (heard.skeleton.empty()) {
+Result<BvhHierarchy> hierarchy_of(const LearnedDevice& learned, const std::string& file) {
+  if (learned.skeleton.empty()) {
     return Failure(Error{file, 0,
-                         "of stream " + shown(heard.channel.stream) +
+                         "of stream " + shown(learned.channel.stream) +
                              " the skeleton, which Noitom's stream lacks: skeleton = \"a.bvh\" in "
                              "lab.toml while recording, or now in the manifest",
                          "none", ErrorKind::no_rows_in_recording});
@@ -35,7 +35,7 @@ Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& f
   // The number of rows and the findings of the header's own file do not matter here.
   std::size_t rows = 0;
   Findings odd;
-  return parse_bvh_hierarchy(heard.skeleton, heard.channel.stream + ".bvh", rows, odd);
+  return parse_bvh_hierarchy(learned.skeleton, learned.channel.stream + ".bvh", rows, odd);
 }
 
 /// The number of values in a frame; 0 if one is not a number, since NoitomPoser refuses such a
@@ -57,30 +57,31 @@ class NoitomListener final : public DeviceListener {
   }
 
   /// Counts frames at the header's frame time. If any frame has no number, all stamps are arrivals.
-  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
+  Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
     placed_.clear();
     frames_.finish(placed_);
     keys_.add(placed_, noitom_shape);
-    append(heard.findings, frames_.findings(wish.file.path));
+    append(learned.findings, frames_.findings(request.file.path));
     if (keys_.empty()) {
-      return Failure(nothing_of(NoitomSource::what, wish.file.path, heard, frames_.others()));
+      return Failure(
+          no_rows_error(NoitomSource::what, request.file.path, learned, frames_.others()));
     }
     // A recording without a header fails here, before the later passes need it.
-    const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(heard, wish.file.path));
+    const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(learned, request.file.path));
     row_size_ = hierarchy.row_size();
-    heard.step_ns = 1e9 * hierarchy.frame_seconds;
+    learned.step_ns = 1e9 * hierarchy.frame_seconds;
     if (keys_.any_unnumbered()) {
-      stamp_by_arrival(wish.file.path, heard);
+      stamp_by_arrival(request.file.path, learned);
     } else {
-      count_clock(keys_.counted(), heard.step_ns, wish, heard);
+      count_clock(keys_.counted(), learned.step_ns, request, learned);
     }
     return {};
   }
 
-  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
+  void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
     // The same test as in NoitomPoser::append, by the frame's number of values.
     keys_.stamp_rows(
-        heard, [this](std::uint32_t values) { return values == row_size_; }, take);
+        learned, [this](std::uint32_t values) { return values == row_size_; }, take);
   }
 
  private:
@@ -92,13 +93,13 @@ class NoitomListener final : public DeviceListener {
 
 class NoitomRows final : public NumberedRows<NoitomSource, ClipFrames> {
  public:
-  NoitomRows(const DeviceWish& wish, const std::shared_ptr<const HeardDevice>& heard)
-      : NumberedRows(wish, heard) {
+  NoitomRows(const DeviceRequest& request, const std::shared_ptr<const LearnedDevice>& learned)
+      : NumberedRows(request, learned) {
     // the first pass has read it without an error
-    const auto hierarchy = hierarchy_of(*heard, wish.file.path);
+    const auto hierarchy = hierarchy_of(*learned, request.file.path);
     if (!hierarchy) return;
-    const BvhOptions options = bvh_options(wish.options);
-    const std::string name = heard->channel.stream + ".bvh";
+    const BvhOptions options = bvh_options(request.options);
+    const std::string name = learned->channel.stream + ".bvh";
     skeleton_ = skeleton_of(*hierarchy, options, name, findings);
     poser_.emplace(*hierarchy, options, name);
     kinalign::append(findings, poser_->findings());

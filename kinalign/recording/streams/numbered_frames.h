@@ -125,8 +125,8 @@ class NumberedFrames {
 };
 
 /// The stamp of a numbered frame. Absent if its clock is not known.
-inline std::optional<Time> stamp_of(const HeardDevice& heard, const CountedFrame& frame) {
-  return stamp_of(heard.clock, frame.life, counter_of(frame, heard.step_ns), frame.arrival);
+inline std::optional<Time> stamp_of(const LearnedDevice& learned, const CountedFrame& frame) {
+  return stamp_of(learned.clock, frame.life, counter_of(frame, learned.step_ns), frame.arrival);
 }
 
 // no frame was seen to arrive later than that many newer ones
@@ -136,8 +136,8 @@ constexpr std::size_t most_overtaking_frames = 16;
 /// frames before it are one step apart, or less if they would reach back to the previous message.
 class ArrivalStamps {
  public:
-  explicit ArrivalStamps(const HeardDevice& heard)
-      : step_(std::llround(heard.step_ns)), utc_minus_host_(heard.utc_minus_host) {}
+  explicit ArrivalStamps(const LearnedDevice& learned)
+      : step_(std::llround(learned.step_ns)), utc_minus_host_(learned.utc_minus_host) {}
 
   /// Calls `take` once for each of the message's `frames` frames.
   template <class Take>
@@ -187,19 +187,18 @@ class FrameKeys {
   /// Passes on the stamp of each row. `fits`: decides by a frame's shape; called in the order of
   /// the rows. Frames wait and leave the queue as in NumberedRows, so the orders are equal.
   template <class Fits>
-  void stamp_rows(const HeardDevice& heard, Fits fits,
+  void stamp_rows(const LearnedDevice& learned, Fits fits,
                   const DeviceListener::TakeStamp& take) const {
     const auto put = [&](Time stamp, std::uint32_t shape) {
       if (fits(shape)) take(stamp);
     };
-    if (heard.by_arrival) return stamp_by_arrivals(heard, put);
-    OrderedStamps<std::uint32_t> stamps(most_overtaking_frames, put);
+    if (learned.by_arrival) return stamp_by_arrivals(learned, put);
+    RowsInOrder<std::uint32_t> stamps(most_overtaking_frames);
     for (const Key& key : keys_) {
-      const auto stamp = key.is_numbered ? stamp_of(heard, key.frame) : std::nullopt;
-      if (stamp) stamps.add(*stamp, key.shape);
-      if (key.ends_message) stamps.settle();
+      const auto stamp = key.is_numbered ? stamp_of(learned, key.frame) : std::nullopt;
+      stamps.add(stamp, key.shape, put);
     }
-    stamps.finish();
+    stamps.finish(put);
   }
 
  private:
@@ -210,8 +209,8 @@ class FrameKeys {
   };
   /// Stamps the frames of each message by its arrival.
   template <class Put>
-  void stamp_by_arrivals(const HeardDevice& heard, const Put& put) const {
-    ArrivalStamps stamps(heard);
+  void stamp_by_arrivals(const LearnedDevice& learned, const Put& put) const {
+    ArrivalStamps stamps(learned);
     for (auto first = keys_.begin(); first != keys_.end();) {
       const auto last =
           std::find_if(first, keys_.end(), [](const Key& key) { return key.ends_message; });
@@ -232,8 +231,10 @@ class FrameKeys {
 template <class Source, class Frames>
 class NumberedRows : public DeviceRows<Frames> {
  public:
-  NumberedRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows<Frames>(wish.file.path), heard_(std::move(heard)), frames_(wish.body) {}
+  NumberedRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
+      : DeviceRows<Frames>(request.file.path),
+        learned_(std::move(learned)),
+        frames_(request.body) {}
 
   Result<void> take(const RecordedMessage& message, Frames& out) final {
     placed_.clear();
@@ -248,8 +249,7 @@ class NumberedRows : public DeviceRows<Frames> {
     placed_.clear();
     frames_.finish(placed_);
     put_placed(out);
-    waiting_.finish();
-    put_waiting(out);
+    waiting_.finish(putting(out));
     if (appended_ == 0 && (misfit_ || this->header() == nullptr)) {
       return Failure(misfit_.value_or(Error{this->file(), 0, std::string(Source::what), "none"}));
     }
@@ -260,8 +260,9 @@ class NumberedRows : public DeviceRows<Frames> {
           {Severity::warning, *misfit_,
            std::to_string(misfits_) + " " + frames + " of that kind were left out", ""});
     }
-    this->tell_too_late(waiting_, frames);
-    this->tell(unknown_, frames + " whose clock is known", "others", "they were left out");
+    this->warn_too_late(waiting_, frames);
+    this->note(waiting_.unstamped(), frames + " whose clock is known", "others",
+               "they were left out");
     return {};
   }
 
@@ -284,31 +285,27 @@ class NumberedRows : public DeviceRows<Frames> {
   void put_placed(Frames& out) {
     if (placed_.empty()) return;
     // Arrivals rise by themselves, so rows stamped by them need no sorting.
-    if (heard_->by_arrival) {
+    if (learned_->by_arrival) {
       arrivals_.add(placed_.back().arrival, placed_.size(),
                     [&](std::size_t k, Time stamp) { put(placed_[k].frame, stamp, out); });
       return;
     }
     for (auto& one : placed_) {
-      if (const auto stamp = one.place ? stamp_of(*heard_, *one.place) : std::nullopt) {
-        waiting_.add(*stamp, std::move(one.frame));
-      } else {
-        ++unknown_;
-      }
+      const auto stamp = one.place ? stamp_of(*learned_, *one.place) : std::nullopt;
+      waiting_.add(stamp, std::move(one.frame), putting(out));
     }
-    put_waiting(out);
   }
-  void put_waiting(Frames& out) {
-    while (const auto first = waiting_.take_first()) put(first->second, first->first, out);
+  auto putting(Frames& out) {
+    return [&](Time stamp, const typename Source::Frame& frame) { put(frame, stamp, out); };
   }
 
-  std::shared_ptr<const HeardDevice> heard_;
+  std::shared_ptr<const LearnedDevice> learned_;
   NumberedFrames<Source> frames_;
   std::vector<PlacedFrame<typename Source::Frame>> placed_;
   RowsInOrder<typename Source::Frame> waiting_{most_overtaking_frames};
-  ArrivalStamps arrivals_{*heard_};  // for frames that are stamped by arrival
+  ArrivalStamps arrivals_{*learned_};  // for frames that are stamped by arrival
   std::optional<Error> misfit_;
-  std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
+  std::uint64_t appended_ = 0, misfits_ = 0;
 };
 
 }  // namespace kinalign

@@ -15,29 +15,20 @@ namespace {
 
 constexpr std::size_t most_hosts = 8;  // hosts of one stream that are listened to in the first pass
 
-/// The streams to listen to, and their variants. A stream that is wanted twice, with another body
-/// or as trackers, gets a listener for each.
-class Wanted {
- public:
-  explicit Wanted(const std::vector<StreamOptions>& streams) {
-    for (const StreamOptions& options : streams) {
-      for (const StreamFile& file : options.files) {
-        // A wrong selection is reported when its stream is opened; here it is left out.
-        const auto wish = wish_of(options, file);
-        if (wish) variants_[wish->choice.stream].insert({wish->trackers, wish->body});
-      }
+/// For each stream to listen to, the variants that are wanted. A stream that is wanted twice, with
+/// another body or as trackers, gets a listener for each.
+using Wanted = std::map<std::string, std::set<ListenVariant>>;
+Wanted wanted_of(const std::vector<StreamOptions>& streams) {
+  Wanted wanted;
+  for (const StreamOptions& options : streams) {
+    for (const StreamFile& file : options.files) {
+      // A wrong selection is reported when its stream is opened; here it is left out.
+      const auto request = request_of(options, file);
+      if (request) wanted[request->choice.stream].insert({request->trackers, request->body});
     }
   }
-  std::set<ListenVariant> variants_of(const std::string& stream) const {
-    // Without a manifest all streams are listened to, with their default options.
-    if (variants_.empty()) return {ListenVariant{}};
-    const auto found = variants_.find(stream);
-    return found == variants_.end() ? std::set<ListenVariant>{} : found->second;
-  }
-
- private:
-  std::map<std::string, std::set<ListenVariant>> variants_;
-};
+  return wanted;
+}
 
 /// The first pass: indexes the files, surveys and hashes them, and learns the devices' clocks. All
 /// of it happens in one reading, because recordings are larger than memory and disks are slow.
@@ -59,9 +50,8 @@ class Scan {
       state_.input_facts[part].bytes += piece.size();
     };
     RecordStream stream = KA_TRY(RecordStream::open(*state_.files, state_.parts, progress, hash));
-    RecordingSurveyor surveyor;
     while (const McapRecord* record = KA_TRY(stream.next())) {
-      surveyor.take(*record);
+      surveyor_.take(*record);
       take_record(*record, stream);
     }
     // The last chunk has no successor that would close it.
@@ -70,7 +60,7 @@ class Scan {
         std::make_shared<StoredChunks>(*state_.files, std::move(versions), std::move(chunks_));
     for (std::size_t k = 0; k < hashes.size(); ++k) state_.input_facts[k].sha256 = hashes[k].hex();
     for (auto& [id, channel] : state_.channels) channel.missing = stream.numbers().missing(id);
-    state_.survey = surveyor.finish(state_.path, stream);
+    state_.survey = surveyor_.finish(state_.path, stream);
     judge(stream);
     return {};
   }
@@ -78,9 +68,7 @@ class Scan {
  private:
   /// Keeps a record's data for the later passes.
   void take_record(const McapRecord& record, const RecordStream& stream) {
-    if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
-      if (!state_.facts) state_.facts = to_facts(*metadata);
-    } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
+    if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
       if (attachment->name.ends_with(".bvh"))
         state_.attachments[attachment->name] = attachment->data;
     } else if (const auto* schema = std::get_if<McapSchema>(&record)) {
@@ -122,17 +110,20 @@ class Scan {
   /// Assigns a channel to the listeners of its device, one for each variant.
   void listen_to(DeviceChannel& channel) {
     const RawChannel& raw = channel.raw;
-    // A node is one device at any address; other senders are one device per host.
-    const std::string host = raw.node.empty() ? host_of(raw.sender) : "";
-    for (const ListenVariant& variant : wanted_->variants_of(raw.stream)) {
-      const DeviceKey key{raw.stream, raw.node, host, variant};
+    // Without a manifest all streams are listened to, with their default options.
+    const std::set<ListenVariant> variants =
+        wanted_->empty() ? std::set{ListenVariant{}} : (*wanted_)[raw.stream];
+    for (const ListenVariant& variant : variants) {
+      const DeviceKey key = key_of(raw, variant);
       auto found = state_.listening.find(key);
       if (found == state_.listening.end()) {
         // Any program may send to a port. A flood of hosts must not cost a listener each.
-        if (!host.empty() && ++hosts_[raw.stream] > most_hosts) continue;
-        found = state_.listening.emplace(key, Listening(variant)).first;
+        if (raw.node.empty() && ++hosts_[raw.stream] > most_hosts) continue;
+        const auto protocol = rows_of(protocol_of(raw), variant.trackers);
+        auto listener = protocol ? protocol->listen(variant.body) : nullptr;
+        found = state_.listening.emplace(key, Listening{std::move(listener)}).first;
       }
-      found->second.define(channel.id, raw);
+      found->second.channels.push_back(channel.id);
       channel.listening.push_back(&found->second);
     }
   }
@@ -142,18 +133,18 @@ class Scan {
     const bool is_device = found != state_.channels.end();
     const bool is_json = json_channels_.contains(message.channel);
     // Without facts the file is another program's, whose times mean something else.
-    const bool counts = state_.facts && message.log_time <= latest_log_time;
+    const bool counts = surveyor_.facts() && message.log_time <= latest_log_time;
     if (!counts || !(is_device || is_json)) return;
     add_to_index(message.channel, stream);
-    if (is_device) hear(found->second, message);
+    if (is_device) pass_on(found->second, message);
   }
 
-  void hear(DeviceChannel& from, const McapMessage& message) {
-    const HostTime arrival = arrival_of(message.log_time, state_.utc_minus_host());
+  void pass_on(DeviceChannel& from, const McapMessage& message) {
+    const HostTime arrival = arrival_of(message.log_time, surveyor_.facts()->utc_minus_host());
     // Nodes are not counted as senders: their ids name them.
     if (from.sender) state_.senders[from.raw.stream].count(*from.sender, arrival);
-    for (Listening* one : from.listening) {
-      one->take({&from.raw, from.id, arrival, message.data});
+    for (const Listening* one : from.listening) {
+      if (one->listener) one->listener->take({&from.raw, from.id, arrival, message.data});
     }
   }
 
@@ -164,7 +155,7 @@ class Scan {
     if (chunk_.end == 0 || chunk_.part != stream.part() || chunk_.at != reader.at()) {
       end_chunk();
       chunk_.part = static_cast<std::uint32_t>(stream.part());
-      chunk_.is_torn = reader.in_torn_chunk();
+      chunk_.is_truncated = reader.in_truncated_chunk();
       chunk_.at = reader.at();
       chunk_.size = reader.size();
     }
@@ -217,6 +208,7 @@ class Scan {
 
   ScannedRecording& state_;
   std::optional<Wanted> wanted_;  // absent: no device is listened to
+  RecordingSurveyor surveyor_;
   std::vector<StoredChunk> chunks_;
   StoredChunk chunk_;  // the chunk of the last message
   std::map<std::uint16_t, McapSchema> schemas_;
@@ -227,12 +219,13 @@ class Scan {
 }  // namespace
 
 Result<ScannedRecording> scan_recording(FileSystem& files, const std::string& path,
-                                        const ListenTo& listen, const Progress& progress) {
+                                        const std::vector<StreamOptions>* wanted,
+                                        const Progress& progress) {
   ScannedRecording scanned;
   scanned.files = &files;
   scanned.path = path;
   scanned.parts = KA_TRY(find_parts(files, {path}));
-  Scan scan(scanned, listen.any ? std::optional(Wanted(listen.wanted)) : std::nullopt);
+  Scan scan(scanned, wanted != nullptr ? std::optional(wanted_of(*wanted)) : std::nullopt);
   KA_TRY(scan.read(progress));
   return scanned;
 }

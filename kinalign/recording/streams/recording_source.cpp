@@ -3,7 +3,6 @@
 
 #include "kinalign/formats/bvh/head.h"
 #include "kinalign/protocols/protocols.h"
-#include "kinalign/recording/streams/recording_scan.h"
 #include "kinalign/recording/streams/senders.h"
 
 #include <fmt/format.h>
@@ -19,16 +18,16 @@ namespace {
 constexpr std::size_t most_names = 32;  // streams or nodes named in one message
 
 /// The functions for the device's protocol. Fails if the protocol does not fit the selection.
-Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
-  const std::string& file = wish.file.path;
-  const auto protocol = find_recorded_protocol(channel.protocol);
+Result<DeviceProtocol> maker_of(const RawChannel& channel, const DeviceRequest& request) {
+  const std::string& file = request.file.path;
+  const auto protocol = protocol_of(channel);
   // A skeleton that no one reads would be a mistake of the manifest.
-  if (!wish.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
+  if (!request.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
     return Failure(Error{file, 0, "a skeleton of a noitom stream alone",
                          "one of " + shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
-  if (const auto known = rows_of(channel.protocol, wish.trackers)) return *known;
-  if (wish.trackers) {
+  if (const auto known = rows_of(protocol, request.trackers)) return *known;
+  if (request.trackers) {
     return Failure(Error{file, 0, "trackers of an xsens stream",
                          shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
@@ -88,8 +87,8 @@ bool is_wanted(const RawChannel& raw, Chosen& chosen) {
 }
 
 /// Fails if the recording has no such device.
-Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
-  const DeviceChoice& choice = wish.choice;
+Result<Chosen> choose(const ScannedRecording& state, const DeviceRequest& request) {
+  const DeviceChoice& choice = request.choice;
   const std::string& file = state.parts.back().path;
   Chosen chosen;
   chosen.choice = choice;
@@ -122,9 +121,9 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
   }
   // The stream exists, but not this node or sender: the error lists those that there are.
   const bool node = !chosen.nodes.empty();
-  const auto roll = state.senders.find(choice.stream);
+  const auto table = state.senders.find(choice.stream);
   const auto hosts =
-      roll == state.senders.end() ? std::vector<std::string>{} : roll->second.hosts();
+      table == state.senders.end() ? std::vector<std::string>{} : table->second.hosts();
   return Failure(Error{file, 0,
                        fmt::format("of stream {} {}", choice.stream,
                                    node ? fmt::format("node {}", fmt::join(chosen.nodes, ", "))
@@ -141,58 +140,57 @@ Result<void> report_chunk(const Progress& progress, const MessagePass& pass) {
 
 /// Reads the messages of a device again, if the first pass did not listen to all of its channels.
 Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& state,
-                                                     const Chosen& chosen, ListenVariant variant,
+                                                     const Chosen& chosen,
+                                                     std::unique_ptr<DeviceListener> listener,
                                                      const Progress& progress) {
-  Listening listening(variant);
-  for (const DeviceChannel* one : chosen.channels) listening.define(one->id, one->raw);
   MessagePass pass(state.chunks, chosen.ids());
   const auto take = [&](const ChunkMessage& message) -> Result<void> {
-    listening.take({&state.channels.at(message.channel).raw, message.channel,
-                    arrival_of(message.log_time, state.utc_minus_host()), message.data});
+    listener->take({&state.channels.at(message.channel).raw, message.channel,
+                    arrival_of(message.log_time, state.survey.facts->utc_minus_host()),
+                    message.data});
     return {};
   };
   while (KA_TRY(pass.next_chunk(take))) KA_TRY(report_chunk(progress, pass));
-  return listening.release();
+  return listener;
 }
 
 /// Returns the listener of the first pass if it has the same channels. Otherwise makes another
 /// pass.
 Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, const Chosen& chosen,
+                                                    const DeviceProtocol& protocol,
                                                     ListenVariant variant,
                                                     const Progress& progress) {
-  const RawChannel& first = *chosen.first;
-  const DeviceKey key{first.stream, first.node, first.node.empty() ? host_of(first.sender) : "",
-                      variant};
-  const auto found = state.listening.find(key);
+  const auto found = state.listening.find(key_of(*chosen.first, variant));
   // A listener is used once, since finish() takes its data.
-  const bool is_same = found != state.listening.end() && !found->second.is_released() &&
-                       found->second.channels() == chosen.ids();
-  if (is_same) return found->second.release();
-  return listen_again(state, chosen, variant, progress);
+  const bool is_same = found != state.listening.end() && found->second.listener &&
+                       found->second.channels == chosen.ids();
+  if (is_same) return std::move(found->second.listener);
+  return listen_again(state, chosen, protocol.listen(variant.body), progress);
 }
 
 /// A device whose clock was learnt, ready for its rows.
-struct Heard {
-  std::shared_ptr<const HeardDevice> device;
+struct ReadyDevice {
+  std::shared_ptr<const LearnedDevice> device;
   std::unique_ptr<DeviceListener> listener;
   DeviceProtocol protocol;
 };
 
 /// Fails if no rows can be made of the device.
-Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWish& wish,
-                   const Progress& progress) {
-  const DeviceProtocol protocol = KA_TRY(protocol_of(*chosen.first, wish));
-  HeardDevice heard;
-  heard.channel = *chosen.first;
-  const auto attached = state.attachments.find(wish.choice.stream + ".bvh");
-  if (attached != state.attachments.end()) heard.skeleton = attached->second;
+Result<ReadyDevice> learn(ScannedRecording& state, const Chosen& chosen,
+                          const DeviceRequest& request, const Progress& progress) {
+  const DeviceProtocol protocol = KA_TRY(maker_of(*chosen.first, request));
+  LearnedDevice learned;
+  learned.channel = *chosen.first;
+  const auto attached = state.attachments.find(request.choice.stream + ".bvh");
+  if (attached != state.attachments.end()) learned.skeleton = attached->second;
   // The manifest's skeleton comes before the recording's own.
-  if (!wish.skeleton.empty()) heard.skeleton = wish.skeleton;
-  heard.utc_minus_host = state.utc_minus_host();
-  auto listener = KA_TRY(listener_of(state, chosen, {wish.trackers, wish.body}, progress));
-  KA_TRY(listener->finish(wish, heard));
-  return Heard{std::make_shared<const HeardDevice>(std::move(heard)), std::move(listener),
-               protocol};
+  if (!request.skeleton.empty()) learned.skeleton = request.skeleton;
+  learned.utc_minus_host = state.survey.facts->utc_minus_host();
+  auto listener =
+      KA_TRY(listener_of(state, chosen, protocol, {request.trackers, request.body}, progress));
+  KA_TRY(listener->finish(request, learned));
+  return ReadyDevice{std::make_shared<const LearnedDevice>(std::move(learned)), std::move(listener),
+                     protocol};
 }
 
 /// Reports messages that are missing between others.
@@ -240,21 +238,21 @@ Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>
 // The stamps are computed here, so that the listener and its memory are no longer needed for the
 // rows.
 Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chosen,
-                               const DeviceWish& wish, Heard heard, const Progress& progress) {
+                               const DeviceRequest& request, ReadyDevice ready,
+                               const Progress& progress) {
   DeviceStream out;
   // The stamps are those of the rows in their order, without making a row.
   auto stamps = std::make_shared<std::vector<Time>>();
-  heard.listener->stamp_rows(*heard.device, [&](Time stamp) { stamps->push_back(stamp); });
-  heard.listener.reset();
+  ready.listener->stamp_rows(*ready.device, [&](Time stamp) { stamps->push_back(stamp); });
+  ready.listener.reset();
   StampSurveyor surveyor;
   surveyor.add(*stamps);
   out.survey = surveyor.result();
   out.stamps = stamps;
-  out.clock = heard.device->clock.time;
+  out.clock = ready.device->clock.time;
   out.findings = judge_missing(state, chosen);
-  append(out.findings, judge_order(wish.file.path, out));
-  append(out.findings, heard.device->findings);
-  out.skeleton_path = wish.skeleton.empty() ? "" : wish.options.skeleton;
+  append(out.findings, judge_order(request.file.path, out));
+  append(out.findings, ready.device->findings);
 
   // The channels are shared by all passes and outlive this function.
   std::map<std::uint16_t, RawChannel> channels;
@@ -262,13 +260,13 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
   const auto shared =
       std::make_shared<const std::map<std::uint16_t, RawChannel>>(std::move(channels));
   // This first object only tells which kind of frames the protocol makes; each pass makes its own.
-  AnyDeviceRows any = heard.protocol.rows(wish, heard.device);
+  AnyDeviceRows any = ready.protocol.rows(request, ready.device);
   KA_TRY(std::visit(
       [&]<class Frames>(std::unique_ptr<DeviceRows<Frames>>&) -> Result<void> {
         const DevicePasses<Frames> passes = [chunks = state.chunks, ids = chosen.ids(), shared,
-                                             wish, device = heard.device,
-                                             protocol = heard.protocol] {
-          auto rows = protocol.rows(wish, device);
+                                             request, device = ready.device,
+                                             protocol = ready.protocol] {
+          auto rows = protocol.rows(request, device);
           return DevicePass<Frames>(MessagePass(chunks, ids), shared, device->utc_minus_host,
                                     std::get<std::unique_ptr<DeviceRows<Frames>>>(std::move(rows)));
         };
@@ -305,52 +303,38 @@ template class DevicePass<ClipFrames>;
 template class DevicePass<PointFrames>;
 template class DevicePass<ImuSamples>;
 
-RecordingSource::RecordingSource(ScannedRecording state)
-    : state_(std::make_unique<ScannedRecording>(std::move(state))) {}
-RecordingSource::~RecordingSource() = default;
-
 Result<std::shared_ptr<RecordingSource>> RecordingSource::open(
     FileSystem& files, const std::string& path, Devices devices,
     const std::vector<StreamOptions>& wanted, const Progress& progress) {
-  const ListenTo listen{devices == Devices::heard, wanted};
+  const auto* listen_to = devices == Devices::learned ? &wanted : nullptr;
   return std::shared_ptr<RecordingSource>(
-      new RecordingSource(KA_TRY(scan_recording(files, path, listen, progress))));
-}
-
-const std::string& RecordingSource::path() const { return state_->path; }
-const RecordingParts& RecordingSource::parts() const { return state_->parts; }
-const RecordingSurvey& RecordingSource::survey() const { return state_->survey; }
-const std::vector<InputFacts>& RecordingSource::facts() const { return state_->input_facts; }
-SharedFile RecordingSource::shared() const { return state_->shared; }
-const std::vector<JsonChannel>& RecordingSource::json_channels() const { return state_->json; }
-MessagePass RecordingSource::messages_of(std::vector<std::uint16_t> channels) const {
-  return {state_->chunks, std::move(channels)};
+      new RecordingSource(KA_TRY(scan_recording(files, path, listen_to, progress))));
 }
 
 Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const StreamFile& file,
                                              const Progress& progress) {
-  DeviceWish wish = KA_TRY(wish_of(options, file));
+  DeviceRequest request = KA_TRY(request_of(options, file));
   // The file of the skeleton is read now, so that each pass has the same one.
   if (!options.skeleton.empty()) {
-    wish.skeleton = KA_TRY(read_bvh_head(*state_->files, options.skeleton));
+    request.skeleton = KA_TRY(read_bvh_head(*state_.files, options.skeleton));
   }
-  if (!state_->facts) {
-    return Failure(Error{state_->parts.back().path, 0, "a recording of kinalign's",
+  if (!state_.survey.facts) {
+    return Failure(Error{state_.parts.back().path, 0, "a recording of kinalign's",
                          "an MCAP file of another program"});
   }
-  const bool any_sender = wish.choice.sender.empty();
-  const SenderTable& senders = state_->senders[wish.choice.stream];
+  const bool any_sender = request.choice.sender.empty();
+  const SenderTable& senders = state_.senders[request.choice.stream];
   // The sender with the most messages is chosen before the channels are.
-  senders.complete(wish.choice);
-  const Chosen chosen = KA_TRY(choose(*state_, wish).map_error([&](Error error) {
-    return with_nodes(wish, survey(), std::move(error));
+  senders.complete(request.choice);
+  const Chosen chosen = KA_TRY(choose(state_, request).map_error([&](Error error) {
+    return with_nodes(request, survey(), std::move(error));
   }));
-  Heard heard = KA_TRY(hear(*state_, chosen, wish, progress).map_error([&](Error error) {
-    return with_senders(std::move(error), wish.choice.sender, senders);
+  ReadyDevice ready = KA_TRY(learn(state_, chosen, request, progress).map_error([&](Error error) {
+    return with_senders(std::move(error), request.choice.sender, senders);
   }));
-  DeviceStream out = KA_TRY(stream_of(*state_, chosen, wish, std::move(heard), progress));
+  DeviceStream out = KA_TRY(stream_of(state_, chosen, request, std::move(ready), progress));
   // The senders are judged last, when rows could be made of the chosen one.
-  append(out.findings, judge_senders(wish, any_sender, senders));
+  append(out.findings, judge_senders(request, any_sender, senders));
   return out;
 }
 

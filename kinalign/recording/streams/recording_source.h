@@ -8,6 +8,7 @@
 #include "kinalign/core/progress.h"
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/streams/device_rows.h"
+#include "kinalign/recording/streams/recording_scan.h"
 #include "kinalign/recording/streams/stored_chunks.h"
 #include "kinalign/recording/survey.h"
 #include "kinalign/take/manifest.h"
@@ -23,8 +24,6 @@
 #include <vector>
 
 namespace kinalign {
-
-struct ScannedRecording;
 
 /// The rows of one device, in blocks. Each pass has its own place and decoder; chunks are shared
 /// with other passes.
@@ -72,7 +71,6 @@ struct DeviceStream {
   std::variant<DevicePasses<ClipFrames>, DevicePasses<PointFrames>, DevicePasses<ImuSamples>>
       passes;
   std::variant<Skeleton, PointHeader, ImuHeader> header;
-  std::string skeleton_path;  // path of the BVH that the options name; empty: none
 };
 
 /// An opened recording and the answers about its devices. The first pass happens in open();
@@ -80,7 +78,7 @@ struct DeviceStream {
 class RecordingSource {
  public:
   /// Whether streams will be read. If so, the first pass learns the devices' clocks too.
-  enum class Devices { unheard, heard };
+  enum class Devices { surveyed, learned };
 
   /// Reads all parts of the recording to which the file belongs. `wanted`: streams of a manifest
   /// that may select a body or trackers. `files` must outlive the source and the objects that it
@@ -90,15 +88,14 @@ class RecordingSource {
       const std::vector<StreamOptions>& wanted = {}, const Progress& progress = {});
   RecordingSource(const RecordingSource&) = delete;
   RecordingSource& operator=(const RecordingSource&) = delete;
-  ~RecordingSource();
 
-  const std::string& path() const;
-  const RecordingParts& parts() const;
-  const RecordingSurvey& survey() const;
+  const std::string& path() const { return state_.path; }
+  const RecordingParts& parts() const { return state_.parts; }
+  const RecordingSurvey& survey() const { return state_.survey; }
   /// Hash and length of each file, under the file's own name.
-  const std::vector<InputFacts>& facts() const;
+  const std::vector<InputFacts>& facts() const { return state_.input_facts; }
   /// Findings about the files, and the marks, which do not depend on the stream.
-  SharedFile shared() const;
+  const SharedFile& shared() const { return state_.shared; }
 
   /// The stream of select["stream"], by default of the options' name. select["node"], by default
   /// the file's node, selects an inertial node. select["sender"] and select["body"] select one of
@@ -107,12 +104,14 @@ class RecordingSource {
   Result<DeviceStream> stream(const StreamOptions& options, const StreamFile& file,
                               const Progress& progress = {});
 
-  const std::vector<JsonChannel>& json_channels() const;
-  MessagePass messages_of(std::vector<std::uint16_t> channels) const;
+  const std::vector<JsonChannel>& json_channels() const { return state_.json; }
+  MessagePass messages_of(std::vector<std::uint16_t> channels) const {
+    return {state_.chunks, std::move(channels)};
+  }
 
  private:
-  explicit RecordingSource(ScannedRecording state);
-  std::unique_ptr<ScannedRecording> state_;
+  explicit RecordingSource(ScannedRecording state) : state_(std::move(state)) {}
+  ScannedRecording state_;
 };
 
 /// A manifest with all devices of a recording as streams. Mocap comes first, so that its stamps are

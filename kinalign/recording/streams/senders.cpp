@@ -97,8 +97,8 @@ Error with_senders(Error error, const std::string& chosen, const SenderTable& se
   return error;
 }
 
-Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderTable& senders) {
-  const DeviceChoice& choice = wish.choice;
+Findings judge_senders(const DeviceRequest& request, bool any_sender, const SenderTable& senders) {
+  const DeviceChoice& choice = request.choice;
   std::vector<std::string> others(choice.left_out.begin(), choice.left_out.end());
   // If the user selected a sender, other hosts are left out on purpose and not reported.
   for (const std::string& host : any_sender ? senders.hosts() : std::vector<std::string>()) {
@@ -106,22 +106,22 @@ Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderTabl
   }
   if (others.empty()) return {};
   return {{Severity::warning,
-           Error{wish.file.path, 0, "one sender of " + choice.stream, "also " + some_of(others)},
+           Error{request.file.path, 0, "one sender of " + choice.stream, "also " + some_of(others)},
            "only the busiest, " + choice.sender + ", was read",
            "sender = \"...\" in select chooses another, an address or an address with its port"}};
 }
 
 /// The lines are those that a manifest of this recording would have, so the user can copy them.
-Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error) {
-  if (!wish.choice.node.empty()) return error;
-  std::string path = wish.file.path;
-  for (const StreamFile& file : wish.options.files) {  // the path as written in the manifest
-    if (wish.file.path.ends_with(file.path)) path = file.path;
+Error with_nodes(const DeviceRequest& request, const RecordingSurvey& survey, Error error) {
+  if (!request.choice.node.empty()) return error;
+  std::string path = request.file.path;
+  for (const StreamFile& file : request.options.files) {  // the path as written in the manifest
+    if (request.file.path.ends_with(file.path)) path = file.path;
   }
   auto manifest = manifest_of(survey, path);
   if (!manifest) return error;
   for (const StreamOptions& stream : manifest->streams) {
-    if (stream.name != wish.choice.stream || stream.files.size() < 2) continue;
+    if (stream.name != request.choice.stream || stream.files.size() < 2) continue;
     error.expected = "one node of stream " + shown(stream.name) + ": " +
                      select_toml({{"node", stream.files.front().node}}) +
                      "; or all of them, in place of file: " + files_toml(stream.files);

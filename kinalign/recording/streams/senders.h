@@ -48,10 +48,10 @@ class SenderTable {
 Error with_senders(Error error, const std::string& chosen, const SenderTable& senders);
 
 /// Reports senders that are not read. `any_sender`: the user selected none.
-Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderTable& senders);
+Findings judge_senders(const DeviceRequest& request, bool any_sender, const SenderTable& senders);
 
 /// Adds help to an error if the stream has several nodes and none was selected: lines for the
 /// manifest that select one node, or all. Other errors are returned unchanged.
-Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error);
+Error with_nodes(const DeviceRequest& request, const RecordingSurvey& survey, Error error);
 
 }  // namespace kinalign

@@ -92,8 +92,8 @@ class SlimeSamples {
   std::map<std::uint16_t, Tracker> trackers_;  // by channel
 };
 
-Time stamp_at(HostTime arrival, const HeardDevice& heard) {
-  return Time{arrival.time_since_epoch() + heard.utc_minus_host};
+Time stamp_at(HostTime arrival, const LearnedDevice& learned) {
+  return Time{arrival.time_since_epoch() + learned.utc_minus_host};
 }
 
 /// Counts samples and keeps their arrivals, which are the stamps.
@@ -105,36 +105,35 @@ class SlimeListener final : public DeviceListener {
   void take(const RecordedMessage& message) override {
     taken_.clear();
     samples_.take(message, taken_);
-    rotations_ += taken_.size();
     arrivals_.insert(arrivals_.end(), taken_.size(), message.arrival);
     for (const SlimeSample& one : taken_) accelerations_ += one.acceleration ? 1U : 0U;
   }
 
-  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
-    const std::string& file = wish.file.path;
-    if (rotations_ == 0) {
+  Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
+    const std::string& file = request.file.path;
+    if (arrivals_.empty()) {
       return Failure(Error{
-          file, 0, "of stream " + shown(heard.channel.stream) + " rotations of a SlimeVR tracker",
+          file, 0, "of stream " + shown(learned.channel.stream) + " rotations of a SlimeVR tracker",
           "none", ErrorKind::no_rows_in_recording});
     }
-    stamp_by_arrival(file, heard);
+    stamp_by_arrival(file, learned);
     // A tracker may send accelerations rarely. If fewer than half of the samples have one, the
     // stream has no acceleration.
-    heard.content = {true, 2 * accelerations_ > rotations_, false, false};
+    learned.content = {true, 2 * accelerations_ > arrivals_.size(), false, false};
     if (any_sensor_ && samples_.sensors.size() > 1) {
-      heard.findings.push_back(
+      learned.findings.push_back(
           {Severity::warning,
-           Error{file, 0, "one sensor of tracker " + host_of(heard.channel.sender),
+           Error{file, 0, "one sensor of tracker " + host_of(learned.channel.sender),
                  fmt::format("{} of them", samples_.sensors.size())},
            "the first that was heard was read",
-           fmt::format("{}/{} as a node's name, say, is one", host_of(heard.channel.sender),
+           fmt::format("{}/{} as a node's name, say, is one", host_of(learned.channel.sender),
                        *samples_.sensors.rbegin())});
     }
     return {};
   }
 
-  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    for (const HostTime arrival : arrivals_) take(stamp_at(arrival, heard));
+  void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
+    for (const HostTime arrival : arrivals_) take(stamp_at(arrival, learned));
   }
 
  private:
@@ -142,20 +141,20 @@ class SlimeListener final : public DeviceListener {
   SlimeSamples samples_;
   std::vector<SlimeSample> taken_;
   std::vector<HostTime> arrivals_;  // arrivals of the samples
-  std::uint64_t rotations_ = 0, accelerations_ = 0;
+  std::uint64_t accelerations_ = 0;
 };
 
 /// Makes a row for each sample. It uses the same SlimeSamples as the listener, so both agree.
 class SlimeRows final : public DeviceRows<ImuSamples> {
  public:
-  SlimeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows(wish.file.path),
-        heard_(std::move(heard)),
-        samples_(wish.body),
+  SlimeRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
+      : DeviceRows(request.file.path),
+        learned_(std::move(learned)),
+        samples_(request.body),
         converter_(ImuUnits{}) {
-    header_.node_names = {wish.file.node.empty() ? host_of(heard_->channel.sender)
-                                                 : wish.file.node};
-    header_.content = heard_->content;
+    header_.node_names = {request.file.node.empty() ? host_of(learned_->channel.sender)
+                                                    : request.file.node};
+    header_.content = learned_->content;
   }
 
   /// Makes a row for each sample. If the stream has accelerations, a sample without one is not
@@ -171,14 +170,14 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
         raw.acceleration = one.acceleration ? one.acceleration->data() : none.data();
         raw.valid = one.acceleration.has_value();
       }
-      out.stamps.push_back(stamp_at(message.arrival, *heard_));
+      out.stamps.push_back(stamp_at(message.arrival, *learned_));
       converter_.append(raw, out);
     }
     return {};
   }
 
   Result<void> finish(ImuSamples&) override {
-    tell(samples_.overtaken, "datagrams whose numbers rise", "that came late or twice",
+    note(samples_.overtaken, "datagrams whose numbers rise", "that came late or twice",
          "they were left out: nothing says when their samples were taken");
     return {};
   }
@@ -186,7 +185,7 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
   const ImuHeader* header() const override { return &header_; }
 
  private:
-  std::shared_ptr<const HeardDevice> heard_;
+  std::shared_ptr<const LearnedDevice> learned_;
   SlimeSamples samples_;
   ImuConverter converter_;
   ImuHeader header_;

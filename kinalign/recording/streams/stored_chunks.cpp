@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/streams/stored_chunks.h"
 
-#include "kinalign/core/unchanged.h"
+#include "kinalign/core/file_version.h"
 #include "kinalign/mcap/chunk.h"
 #include "kinalign/mcap/reader.h"
 
@@ -24,7 +24,7 @@ Result<std::string> records_of(const StoredChunk& chunk, const std::string& path
   const auto view = decode_mcap_chunk(std::string_view(bytes).substr(mcap_record_head));
   if (!view) return Failure(altered(path));
   // The end of such a chunk is missing, so as much as possible is unpacked.
-  if (chunk.is_torn) return unpack_torn(*view, McapReader::most_record);
+  if (chunk.is_truncated) return unpack_truncated(*view, McapReader::most_record);
   return unpack(*view, McapReader::most_record).map_error([&](const Error&) {
     return altered(path);
   });
@@ -67,23 +67,19 @@ StoredChunks::StoredChunks(FileSystem& files, std::vector<File> parts,
   for (const StoredChunk& chunk : chunks_) bytes_ += chunk.size;
 }
 
-// The chunk used least recently is removed first.
+// The chunk opened first is removed first: passes read forward, so it is needed least.
 Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) const {
   // The lock is held while reading, so that two passes never read the same chunk twice.
   const std::lock_guard lock(mutex_);
-  if (const auto known = places_.find(k); known != places_.end()) {
-    cache_.splice(cache_.begin(), cache_, known->second);
-    return cache_.front().opened;
-  }
+  const auto known = std::find_if(cache_.rbegin(), cache_.rend(),
+                                  [k](const auto& cached) { return cached.first == k; });
+  if (known != cache_.rend()) return known->second;
   auto opened = KA_TRY(read(chunks_[k]));
-  cache_.push_front({k, opened});
-  places_[k] = cache_.begin();
+  cache_.emplace_back(k, opened);
   cached_bytes_ += opened->memory();
   // The chunk just opened is kept, even if it alone is above the limit.
-  while (cached_bytes_ > most_cached && cache_.size() > 1) {
-    cached_bytes_ -= cache_.back().opened->memory();
-    places_.erase(cache_.back().chunk);
-    cache_.pop_back();
+  for (; cached_bytes_ > most_cached && cache_.size() > 1; cache_.pop_front()) {
+    cached_bytes_ -= cache_.front().second->memory();
   }
   return opened;
 }

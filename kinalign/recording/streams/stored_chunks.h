@@ -9,14 +9,14 @@
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
+#include <deque>
 #include <functional>
-#include <list>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -24,7 +24,7 @@ namespace kinalign {
 /// The place of a chunk, or of a message outside of chunks, and its content by the first pass.
 struct StoredChunk {
   std::uint32_t part = 0;               // number of the file in the recording
-  bool is_torn = false;                 // the file ends within the chunk
+  bool is_truncated = false;            // the file ends within the chunk
   std::uint64_t at = 0, size = 0;       // position and size in the file, bytes
   std::vector<std::uint16_t> channels;  // channels with messages in the chunk, ascending
   std::uint32_t end = 0;  // one more than the index in the chunk of the last message to take
@@ -51,7 +51,7 @@ struct OpenedChunk {
 };
 
 /// Safe to use from several threads at once. One lock covers files and cache. An InputFile of each
-/// part stays open. The cache holds the chunks used most recently, at most `most_cached` bytes but
+/// part stays open. The cache holds the chunks opened last, at most `most_cached` bytes but
 /// always one chunk.
 class StoredChunks {
  public:
@@ -75,26 +75,15 @@ class StoredChunks {
  private:
   Result<std::shared_ptr<const OpenedChunk>> read(const StoredChunk& chunk) const;
 
-  struct Cached {
-    std::size_t chunk = 0;
-    std::shared_ptr<const OpenedChunk> opened;
-  };
   FileSystem* files_;
   std::vector<File> parts_;
   std::vector<StoredChunk> chunks_;
   std::uint64_t bytes_ = 0;
   mutable std::mutex mutex_;
   mutable std::vector<std::optional<InputFile>> open_files_;  // by part
-  mutable std::list<Cached> cache_;                           // the most recently used one first
-  mutable std::map<std::size_t, std::list<Cached>::iterator> places_;
+  // opened chunks by their index, in the order of opening
+  mutable std::deque<std::pair<std::size_t, std::shared_ptr<const OpenedChunk>>> cache_;
   mutable std::size_t cached_bytes_ = 0;
-};
-
-/// A JSON channel of the recorder itself: marks, counts, or the host's clocks.
-struct JsonChannel {
-  std::uint16_t id = 0;
-  std::string topic;
-  McapSchema schema;
 };
 
 /// One pass over the messages of some channels, in the order of the files. A chunk is opened when

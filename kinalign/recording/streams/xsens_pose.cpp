@@ -205,10 +205,11 @@ Result<void> XsensPoser::append(const XsensPose& pose, Time stamp, ClipFrames& o
 Result<void> XsensNodes::begin(const XsensTrackers& trackers) {
   ids_ = KA_TRY(ids_of(trackers, name_));
   for (const std::int32_t id : ids_) {
-    node_names_.emplace_back(names[static_cast<std::size_t>(id - 1)]);
+    header_.node_names.emplace_back(names[static_cast<std::size_t>(id - 1)]);
   }
   const bool raw = trackers.trackers[0].raw.has_value();
-  content_ = {.orientation = true, .acceleration = true, .angular_velocity = raw, .gravity = raw};
+  header_.content = {
+      .orientation = true, .acceleration = true, .angular_velocity = raw, .gravity = raw};
   return {};
 }
 
@@ -238,7 +239,7 @@ void put(const XsensTracker& t, std::size_t at, ImuSamples& out) {
 Result<void> XsensNodes::append(const XsensTrackers& trackers, Time stamp, ImuSamples& out) {
   if (ids_.empty()) KA_TRY(begin(trackers));
   const auto other_kind = [this](const XsensTracker& t) {
-    return t.raw.has_value() != content_.angular_velocity;
+    return t.raw.has_value() != header_.content.angular_velocity;
   };
   if (std::any_of(trackers.trackers.begin(), trackers.trackers.end(), other_kind)) {
     return Failure(Error{name_, 0, "items of one size throughout", "items of 44 and of 68 bytes"});
@@ -247,7 +248,7 @@ Result<void> XsensNodes::append(const XsensTrackers& trackers, Time stamp, ImuSa
   out.stamps.push_back(stamp);
   out.orientation.resize(4 * cells);
   out.acceleration.resize(3 * cells);
-  if (content_.angular_velocity) out.angular_velocity.resize(3 * cells);
+  if (header_.content.angular_velocity) out.angular_velocity.resize(3 * cells);
   out.valid.resize(cells);
   for (const XsensTracker& t : trackers.trackers) {
     const auto known = std::find(ids_.begin(), ids_.end(), t.id);

@@ -3,6 +3,7 @@
 // axes.
 #pragma once
 
+#include "kinalign/formats/reader.h"
 #include "kinalign/motion/clip.h"
 #include "kinalign/motion/streams.h"
 #include "kinalign/protocols/xsens/sample.h"
@@ -81,17 +82,15 @@ class XsensNodes {
   /// has an unknown segment or names one twice.
   Result<void> append(const XsensTrackers& trackers, Time stamp, ImuSamples& out);
 
-  const std::vector<std::string>& node_names() const { return node_names_; }
-  /// Known after the first sample.
-  const ImuContent& content() const { return content_; }
+  /// nullptr before the first sample.
+  const ImuHeader* header() const { return ids_.empty() ? nullptr : &header_; }
 
  private:
   Result<void> begin(const XsensTrackers& trackers);
 
   std::string name_;
   std::vector<std::int32_t> ids_;
-  std::vector<std::string> node_names_;
-  ImuContent content_;
+  ImuHeader header_;
 };
 
 }  // namespace kinalign

@@ -43,17 +43,17 @@ class XsensListener final : public DeviceListener {
     keys_.add(placed_, [](const Items& items) { return xsens_shape(items); });
   }
 
-  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
-    append(heard.findings, frames_.findings(wish.file.path));
+  Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
+    append(learned.findings, frames_.findings(request.file.path));
     if (keys_.empty()) {
-      return Failure(nothing_of(meaning<Items>, wish.file.path, heard, frames_.others()));
+      return Failure(no_rows_error(meaning<Items>, request.file.path, learned, frames_.others()));
     }
-    count_clock(keys_.counted(), 0.0, wish, heard);
+    count_clock(keys_.counted(), 0.0, request, learned);
     return {};
   }
 
-  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    keys_.stamp_rows(heard, XsensFits<Items>(), take);
+  void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
+    keys_.stamp_rows(learned, XsensFits<Items>(), take);
   }
 
  private:
@@ -65,8 +65,8 @@ class XsensListener final : public DeviceListener {
 /// Rows of poses: the poser finds skeleton and unit in the first pose.
 class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFrames> {
  public:
-  XsensPoseRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : NumberedRows(wish, std::move(heard)), poser_(wish.file.path) {}
+  XsensPoseRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
+      : NumberedRows(request, std::move(learned)), poser_(request.file.path) {}
   const Skeleton* header() const override { return poser_.skeleton(); }
 
  private:
@@ -81,19 +81,16 @@ class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFram
 /// Rows of trackers. The header is known with the first sample.
 class XsensTrackerRows final : public NumberedRows<XsensSource<XsensTrackers>, ImuSamples> {
  public:
-  XsensTrackerRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : NumberedRows(wish, std::move(heard)), nodes_(wish.file.path) {}
-  const ImuHeader* header() const override { return header_ ? &*header_ : nullptr; }
+  XsensTrackerRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
+      : NumberedRows(request, std::move(learned)), nodes_(request.file.path) {}
+  const ImuHeader* header() const override { return nodes_.header(); }
 
  private:
   Result<void> append(const XsensTrackers& trackers, Time stamp, ImuSamples& out) override {
-    KA_TRY(nodes_.append(trackers, stamp, out));
-    if (!header_) header_ = ImuHeader{nodes_.node_names(), nodes_.content()};
-    return {};
+    return nodes_.append(trackers, stamp, out);
   }
 
   XsensNodes nodes_;
-  std::optional<ImuHeader> header_;
 };
 
 }  // namespace

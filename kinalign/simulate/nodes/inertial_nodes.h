@@ -20,7 +20,7 @@
 namespace kinalign {
 
 /// The five nodes of the paper: waist, wrist_left, wrist_right, ankle_left, ankle_right (on the
-/// shanks). Their positions on the bones follow models.md 4.4, with some random centimetres. The
+/// shanks). Their positions on the bones are chosen, with some random centimetres. The
 /// rest pose must be a T-pose that faces +z, palms down. A sensor's z points away from the body and
 /// its x along the bone, apart from a random turn of up to 15 degrees. Fails if the skeleton lacks
 /// one of the joints Hips, LeftLeg, LeftFoot, LeftForeArm, LeftHand and their right counterparts;

@@ -18,11 +18,11 @@ inline constexpr double chip_rate_hz = 1000.0;
 inline constexpr double chip_step_s = 1.0 / chip_rate_hz;
 
 /// Noise density and sensitivity of the gyroscope come from the data sheet (DS-000193, first page).
-/// Zero offsets are those that such chips typically show at start (formats.md 3.2). Bandwidths and
-/// ranges are those that the firmware sets. Estimated are: the random walks, the accelerometer's
-/// sensitivity, and the misalignment of the axes (the MPU-6050's data sheet states 2 % at most).
-/// The gyroscope's walk has the size that the EuRoC data sets' calibration states for an ADIS16448;
-/// the accelerometer's is a tenth of the one stated there.
+/// Zero offsets are those that such chips typically show at start (docs/imu_noise.md). Bandwidths
+/// and ranges are those that the firmware sets. Estimated are: the random walks, the
+/// accelerometer's sensitivity, and the misalignment of the axes (the MPU-6050's data sheet states
+/// 2 % at most). The gyroscope's walk has the size that the EuRoC data sets' calibration states for
+/// an ADIS16448; the accelerometer's is a tenth of the one stated there.
 struct InertialSensorModel {
   double gyroscope_noise = 6.981e-5;         // rad/s/sqrt(Hz): 4 mdeg/s
   double gyroscope_walk = 2e-5;              // rad/s/sqrt(s)

@@ -2,13 +2,13 @@
 // Stream 114 of a seed, by the node's number: lane 0 the position along the bone, 1 to 3 the
 // displacement from it, 4 to 6 the axis and 8 the angle of the turn. Lengths are in cm for a person
 // with a shank of 41.87 cm.
+#include "kinalign/motion/index_of.h"
 #include "kinalign/motion/rotation.h"
 #include "kinalign/simulate/nodes/inertial_nodes.h"
 #include "kinalign/simulate/random.h"
 
 #include <algorithm>
 #include <numbers>
-#include <optional>
 #include <string_view>
 
 namespace kinalign {
@@ -34,16 +34,9 @@ std::array<Worn, 5> worn() {
            {"ankle_right", "RightLeg", "RightFoot", 10.0, 20.0, false, right, 5.0}}};
 }
 
-std::optional<std::size_t> find_joint(const Skeleton& skeleton, std::string_view name) {
-  const auto& names = skeleton.joint_names;
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - names.begin());
-}
-
 // The message names the joint that the skeleton lacks.
 Result<std::size_t> needed_joint(const Skeleton& skeleton, std::string_view name) {
-  if (const auto joint = find_joint(skeleton, name)) return *joint;
+  if (const auto joint = index_of(skeleton.joint_names, name)) return *joint;
   return Failure(Error{"", 0, "a skeleton with a joint " + std::string(name) + " to wear a node on",
                        "no such joint"});
 }

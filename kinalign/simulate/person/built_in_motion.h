@@ -13,6 +13,7 @@
 // memory). The 500 of a waving forearm and all others are estimates.
 #pragma once
 
+#include "kinalign/core/error.h"
 #include "kinalign/motion/pose.h"
 #include "kinalign/simulate/person/programme.h"
 

@@ -77,14 +77,6 @@ Act drawn(const RandomStream& random, std::uint64_t number, Piece piece) {
 
 }  // namespace
 
-Result<Piece> piece_named(std::string_view name) {
-  const auto found = std::find(piece_names.begin(), piece_names.end(), name);
-  if (found != piece_names.end()) return static_cast<Piece>(found - piece_names.begin());
-  std::string names;
-  for (const auto known : piece_names) names += (names.empty() ? "" : ", ") + std::string(known);
-  return Failure(Error{"", 0, "a piece of motion: " + names, "'" + shown(name) + "'"});
-}
-
 Programme default_programme(double length_s, std::uint64_t seed) {
   Programme programme;
   const RandomStream random(seed, 102);

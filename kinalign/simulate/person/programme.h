@@ -3,7 +3,6 @@
 // tempo, size and side of its repetitions.
 #pragma once
 
-#include "kinalign/core/error.h"
 #include "kinalign/simulate/person/repetitions.h"
 
 #include <array>
@@ -40,8 +39,6 @@ constexpr bool is_slow(Piece piece) { return piece >= Piece::raise_front; }
 constexpr std::string_view to_string(Piece piece) {
   return piece_names[static_cast<std::size_t>(piece)];
 }
-/// The piece of that name. The error lists all names.
-Result<Piece> piece_named(std::string_view name);
 
 struct ProgrammePiece {
   Piece piece = Piece::stand;

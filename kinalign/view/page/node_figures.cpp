@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/page/node_figures.h"
 
+#include "kinalign/motion/index_of.h"
 #include "kinalign/motion/rotation.h"
 #include "kinalign/view/page/body_figures.h"
 
@@ -237,17 +238,15 @@ std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& row
   // Values in the root's space are brought back: the other nodes' orientation is relative to the
   // root's, and their acceleration lacks the root's.
   if (group.root_node.empty() || !group.content.orientation) return out;
-  const auto root = static_cast<std::size_t>(
-      std::find(group.node_names.begin(), group.node_names.end(), group.root_node) -
-      group.node_names.begin());
-  if (root >= nodes) return out;
+  const auto root = index_of(group.node_names, group.root_node);
+  if (!root) return out;
   for (std::size_t s = 0; s < nodes; ++s) {
     NodeReading& node = out[s];
-    if (s == root || !node.valid || !out[root].valid) continue;
+    if (s == *root || !node.valid || !out[*root].valid) continue;
     const Quat to_node = node.orientation.conjugate();  // from the root's space
     node.rate = to_node * node.rate;
-    node.acceleration = to_node * (node.acceleration + out[root].acceleration);
-    node.orientation = out[root].orientation * node.orientation;
+    node.acceleration = to_node * (node.acceleration + out[*root].acceleration);
+    node.orientation = out[*root].orientation * node.orientation;
   }
   return out;
 }

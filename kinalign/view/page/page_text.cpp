@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/page/page_text.h"
 
+#include "kinalign/core/find_named.h"
 #include "kinalign/view/page/page_html.h"
 #include "kinalign/view/page/page_json.h"
 #include "kinalign/view/report_words.h"
@@ -23,12 +24,6 @@ std::string_view colour_of_stream(const TakePage& page, const std::string& strea
     if (lane.stream == stream) return to_string(lane.colour);
   }
   return to_string(PageColour::imu);
-}
-
-const PageBody* body_called(const TakePage& page, const std::string& name) {
-  const auto found = std::find_if(page.bodies.begin(), page.bodies.end(),
-                                  [&name](const PageBody& body) { return body.name == name; });
-  return found == page.bodies.end() ? nullptr : &*found;
 }
 
 /// A row of cells. Cells that begin with '=' contain words and are left-aligned.
@@ -208,7 +203,7 @@ std::string numbers_list(const TakePage& page) {
     add(fmt::format("± {:.1f} ms", 1e-6 * static_cast<double>(*widest)), "certain time, at worst");
   }
   for (const StreamReport& s : page.report.streams) {
-    const PageBody* body = body_called(page, s.stream);
+    const PageBody* body = find_named(page.bodies, s.stream);
     // Only points that are not the reference: shares of joints say how well a Kinect saw the
     // person.
     if (body == nullptr || body->kind != PageKind::points || s.stream == page.report.reference) {

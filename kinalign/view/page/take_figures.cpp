@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/page/take_figures.h"
 
+#include "kinalign/core/find_named.h"
+#include "kinalign/motion/index_of.h"
 #include "kinalign/view/page/body_figures.h"
 #include "kinalign/view/page/floor_figures.h"
 #include "kinalign/view/page/lane_figures.h"
@@ -21,10 +23,6 @@ std::uint64_t numbers_of(const TakeGroup& group) {
     return 4 * points->joint_names.size();
   }
   return 18 * std::get<ImuGroup>(group.kind).node_names.size();
-}
-
-std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 /// A bin spans at least two rows: if stamps jitter by less than half a step, no bin is empty.
@@ -122,8 +120,8 @@ void TakeFigures::State::plan_spaces() {
     const auto& ours = bodies[*from].figures.body().joint_names;
     const auto& theirs = bodies[*onto].figures.body().joint_names;
     for (const JointResidual& joint : report.joints) {
-      const std::size_t a = index_of(ours, joint.joint), b = index_of(theirs, joint.onto);
-      if (a < ours.size() && b < theirs.size()) space.pairs.emplace_back(a, b);
+      const auto a = index_of(ours, joint.joint), b = index_of(theirs, joint.onto);
+      if (a && b) space.pairs.emplace_back(*a, *b);
     }
     // The moved body is the Kinect: its place and direction are those of the transform.
     bodies[*from].floor = floor_of(report, *from);
@@ -256,14 +254,14 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
         moved == header.parameters.spaces.end() ? SpaceOptions{} : moved->second;
     const PageBody& onto = page.bodies[space->onto];
     move.space = &space->report;
-    move.root = index_of(body.joint_names, how.root);
+    move.root = index_of(body.joint_names, how.root).value_or(body.joint_names.size());
     // By the paper's method each sample is moved by the other root's path, which the page stores.
     move.onto_seconds = &page.seconds;
-    const std::size_t joints = onto.joint_names.size(),
-                      root = index_of(onto.joint_names, how.onto_root);
-    if (space->report.method == "paper" && move.root < body.joint_names.size() && root < joints) {
+    const std::size_t joints = onto.joint_names.size();
+    const auto root = index_of(onto.joint_names, how.onto_root);
+    if (space->report.method == "paper" && move.root < body.joint_names.size() && root) {
       for (std::size_t k = 0; k < page.seconds.size(); ++k) {
-        const float* p = &onto.positions[3 * (k * joints + root)];
+        const float* p = &onto.positions[3 * (k * joints + *root)];
         move.onto_root.emplace_back(Eigen::Map<const Eigen::Vector3f>(p).cast<double>());
       }
     }
@@ -281,15 +279,14 @@ void TakeFigures::State::add_raw_node_samples() {
   page.raw_nodes_begin_s = std::max(0.0, stretch.begin_s);
   page.raw_nodes_end_s = std::min(length_s, stretch.end_s);
   const std::string& stream = header.groups[node_group].name;
-  const auto how = std::find_if(header.parameters.streams.begin(), header.parameters.streams.end(),
-                                [&](const StreamOptions& one) { return one.name == stream; });
+  const StreamOptions* const how = find_named(header.parameters.streams, stream);
   for (const RawNode& raw : options.raw_nodes) {
     const auto node = std::find_if(page.nodes.begin(), page.nodes.end(),
                                    [&](const NodeFigures& n) { return n.node == raw.node; });
     if (raw.stream != stream || node == page.nodes.end()) continue;
     Quat sensor_from_bone = Quat::Identity();
     // The mounting that alignment was given; without one, values were not turned.
-    if (how != header.parameters.streams.end() && how->mounting.contains(raw.node)) {
+    if (how != nullptr && how->mounting.contains(raw.node)) {
       sensor_from_bone = quat(how->mounting.at(raw.node), 0).normalized();
     }
     add_raw(raw, sensor_from_bone, *first, stretch, *node);

@@ -3,11 +3,11 @@
 // findings about them.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
+#include "tests/protocols/kinect/kinect_messages.h"
 #include "tests/protocols/slimevr/slimevr_bytes.h"
 
 #include "kinalign/capture/recorder/recording_session.h"
 #include "kinalign/capture/recorder/stream_watch.h"
-#include "kinalign/protocols/kinect/binary.h"
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/protocols/kinect/stream.h"
 #include "kinalign/protocols/noitom/stream.h"
@@ -367,7 +367,7 @@ TEST_CASE("a suit's datagram that is cut short costs one frame") {
     frame.frame_index = k;
     frame.values.assign(noitom_values(false, false), 1.0F);
     std::vector<std::uint8_t> bytes;
-    REQUIRE(append_noitom(frame, bytes));
+    append_noitom(frame, bytes);
     if (k == 1 || k == 3) bytes.resize(bytes.size() - 3);
     suit.send("127.0.0.1", live.port(), bytes);
     live.serve_until([&] { return live.pieces() == k + 1; });
@@ -384,7 +384,7 @@ TEST_CASE("a device that sends to another device's port is reported once while r
   NoitomFrame frame;
   frame.values.assign(noitom_values(false, false), 0.0F);
   std::vector<std::uint8_t> bytes;
-  REQUIRE(append_noitom(frame, bytes));
+  append_noitom(frame, bytes);
   const Client suit;
   for (std::uint64_t k = 1; k <= 60; ++k) {
     suit.send("127.0.0.1", live.port(), bytes);
@@ -431,7 +431,7 @@ TEST_CASE("a suit's last frame counts, though over UDP no next one says that its
   for (std::uint32_t k = 0; k < 4; ++k) {
     frame.frame_index = k;
     std::vector<std::uint8_t> bytes;
-    REQUIRE(append_noitom(frame, bytes));
+    append_noitom(frame, bytes);
     const std::string sent(bytes.begin(), bytes.end());
     const HostTime at{10ms * k};
     NewestKinectFrames newest;

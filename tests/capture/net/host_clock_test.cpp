@@ -188,31 +188,6 @@ TEST_CASE("up to 64 unread events are kept, the others are counted") {
   CHECK(axis.take_events().empty());
 }
 
-TEST_CASE(
-    "the kernel is asked of a set wall clock where a look shows a step, or shows too little") {
-  std::mt19937 random(3);
-  for (int take = 0; take < 200; ++take) {
-    CAPTURE(take);
-    WallWatch watch;
-    Duration at = hours(3), wall = hours(500'000);  // the wall clock minus the monotonic one
-    const auto look = [&](Duration takes) {
-      at += Duration{200'000};
-      const Duration into{static_cast<std::int64_t>(random() % (takes.count() + 1))};
-      return WallWatch::Look{at, wall - into, wall - into + takes};
-    };
-    CHECK(watch.must_ask(look(Duration{100})));  // the first
-    int asked = 0;
-    for (int i = 0; i < 499; ++i) asked += watch.must_ask(look(Duration{100})) ? 1 : 0;
-    CHECK(asked == 0);
-    CHECK(watch.must_ask(look(Duration{100})));  // after a tenth of a second
-    const Duration step{150 + static_cast<std::int64_t>(random() % 1'000'000)};
-    wall += random() % 2 == 0 ? step : -step;
-    CHECK(watch.must_ask(look(Duration{40})));
-    CHECK(!watch.must_ask(look(Duration{40})));
-    CHECK(watch.must_ask(look(microseconds(3))));  // the reading was interrupted
-  }
-}
-
 TEST_CASE("the system's clocks run, and a pair lies between its readings") {
   SystemClocks clocks;
   HostAxis axis(clocks);

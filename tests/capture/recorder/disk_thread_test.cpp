@@ -4,6 +4,7 @@
 #include "tests/capture/recorder/failing_disks.h"
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/capture/recorder/recorder.h"
 #include "kinalign/recording/survey.h"

@@ -3,13 +3,12 @@
 // afterwards.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
+#include "tests/protocols/kinect/kinect_lines.h"
 
 #include "kinalign/capture/recorder/recording_session.h"
 #include "kinalign/protocols/kinect/binary.h"
-#include "kinalign/protocols/kinect/lines.h"
 #include "kinalign/protocols/kinect/stream.h"
 #include "kinalign/protocols/marks/mark_call.h"
-#include "kinalign/protocols/marks/vicon_trigger.h"
 
 #include <doctest/doctest.h>
 
@@ -260,10 +259,8 @@ TEST_CASE("marks from calls and broadcasts stand in the file once, and calls are
           std::string(R"({"mark":"b3f1-1","is":")") + is + "\"}");
   }
   caller.send("127.0.0.1", port_of("marks"), bytes_of("{}"));
-  ViconTrigger stop;
-  stop.name = "dance";
-  stop.packet_id = 33363;
-  const std::string broadcast = encode_vicon_trigger(stop);
+  const std::string broadcast =
+      R"(<CaptureStop><Name VALUE="dance"/><PacketID VALUE="33363"/></CaptureStop>)";
   caller.send("127.0.0.1", port_of("trigger"), bytes_of(broadcast));
   caller.send("127.0.0.1", port_of("trigger"), bytes_of(broadcast));
   const auto& ports = live.session().mark_ports();

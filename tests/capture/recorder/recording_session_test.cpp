@@ -3,6 +3,7 @@
 #include "kinalign/capture/recorder/recording_session.h"
 
 #include "tests/capture/recorder/sessions.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/protocols/marks/mark_call.h"
 #include "kinalign/recording/survey.h"

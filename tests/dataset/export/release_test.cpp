@@ -135,3 +135,15 @@ TEST_CASE("release: no stamp of a stream gives away by how much the rows were mo
   CHECK(header.parameters.streams[1].start_ns == 0);
   CHECK(header.parameters.streams[2].end_ns == 0);
 }
+
+TEST_CASE("release: of two names the longer one is hidden as a whole, with its folder") {
+  TakeHeader header;
+  header.groups = {{"kinect", PointGroup{}, true, false, {{"a.csv", "", 0}}, "take"},
+                   {"imu", ImuGroup{}, true, false, {{"data/a.csv", "", 0}}, "take"}};
+  AlignmentReport report;
+  report.findings = {
+      {Severity::note, Error{"data/a.csv", 0, "rows as in a.csv", "others"}, "", ""}};
+  hide_names(header, report);
+  CHECK(report.findings[0].what.file == "imu.csv");
+  CHECK(report.findings[0].what.expected == "rows as in kinect.csv");
+}

@@ -20,8 +20,8 @@ class PagedSet : public SummarisedSet {
   }
 
   /// Makes pages of a few bytes; making the page of the take `faulty` fails.
-  Result<PagesMade> make(const std::string& software = "kinalign 1",
-                         const std::string& faulty = "") {
+  Result<PagesMade> make(const std::string& software = "kinalign 1", const std::string& faulty = "",
+                         const std::vector<std::string>& takes = three) {
     made.clear();
     const DatasetIndex index = open();
     TakePages pages(files, folder.path(), folder / "report", software);
@@ -33,7 +33,7 @@ class PagedSet : public SummarisedSet {
                    "<meta name=\"generator\" content=\"kinalign 1\">" + job.sha256);
       return {};
     };
-    return pages.make(index, three, 2, make_page, {});
+    return pages.make(index, takes, 2, make_page, {});
   }
 
   std::mutex mutex;
@@ -62,6 +62,14 @@ TEST_CASE("only pages of takes that are new or changed are made, and those of an
   set.folder.write("report/pages.json", "{\"schema\": ");
   REQUIRE(set.make("kinalign 2"));
   CHECK(set.made.size() == 3);
+}
+
+TEST_CASE("a take that the index lacks is neither made nor up to date") {
+  PagedSet set;
+  const auto done = set.make("kinalign 1", "", {three[0], "sub-09_task-A_run-01"});
+  REQUIRE(done);
+  CHECK(done->made == 1);
+  CHECK(done->up_to_date == 0);
 }
 
 TEST_CASE("a page that fails stops no other, and is made the next time") {

@@ -253,6 +253,7 @@ TEST_CASE("what .bidsignore names is passed over") {
   CHECK(ignoring("raw/\nnotes.txt\n") == 0);
   CHECK(ignoring("*.bvh\n/notes.txt") == 0);
   CHECK(ignoring("raw/take*/a.bvh\n*.txt") == 0);
+  CHECK(ignoring("raw/take [0-9]/?.bvh\nnotes.???") == 0);
   CHECK(ignoring("raw/b/\nnote.txt") == 2);
 }
 

@@ -102,9 +102,7 @@ inline BidsStreams bids_streams(std::uint64_t seed) {
                      random)};
 }
 
-inline BidsEntities bids_system(const std::string& system) {
-  return {"03", "", "Walk", system, "", ""};
-}
+inline BidsEntities bids_system(const std::string& system) { return {"03", "Walk", system, ""}; }
 
 /// A data set without findings.
 inline DataSet bids_data_set(const BidsStreams& streams) {

@@ -193,6 +193,18 @@ TEST_CASE("a C3D that is cut, or longer than it states, gives its frames with a 
         std::vector<std::string>{"walk.c3d: expected POINT:RATE 200 as in the header, found 100"});
 }
 
+TEST_CASE("a repeated name never gets the name of another point") {
+  std::string bytes;
+  auto writer =
+      C3dWriter::begin({{"A", "A", "A#2"}, 100.0, 0}, [&](std::string_view more) -> Result<void> {
+        bytes += more;
+        return {};
+      });
+  REQUIRE(writer);
+  REQUIRE(writer->finish());
+  CHECK(read_c3d(bytes).header.joint_names == std::vector<std::string>{"A", "A#3", "A#2"});
+}
+
 TEST_CASE("missing and repeated names are reported") {
   const std::string file = small_file();
   const std::size_t at = values_of(file, "LABELS", 2);

@@ -13,17 +13,16 @@ using namespace kinalign;
 
 namespace {
 
-Result<std::string> mot_of(const Clip& clip, MotColumns columns, std::uint64_t frames,
-                           Time zero = {}) {
+Result<std::string> mot_of(const Clip& clip, std::uint64_t frames, Time zero = {}) {
   return written_text([&](TextOut& out) -> Result<void> {
-    auto writer = KA_TRY(MotWriter::begin({clip.skeleton, columns, frames, zero}, out));
+    auto writer = KA_TRY(MotWriter::begin({clip.skeleton, frames, zero}, out));
     KA_TRY(writer.append(clip.frames));
     return writer.finish();
   });
 }
 
 std::string refusal(const Clip& clip, std::uint64_t frames) {
-  const auto text = mot_of(clip, MotColumns::joint_angles, frames);
+  const auto text = mot_of(clip, frames);
   return text ? "" : to_string(text.error());
 }
 
@@ -66,21 +65,14 @@ Clip any_clip(std::size_t joints, std::size_t frames, std::mt19937_64& random) {
 }  // namespace
 
 TEST_CASE("a .mot of joint angles has the roots' positions and three angles a joint in degrees") {
-  CHECK(mot_of(bent(), MotColumns::joint_angles, 1, utc_time(7'000'000'000)).value() ==
+  CHECK(mot_of(bent(), 1, utc_time(7'000'000'000)).value() ==
         "Coordinates\nversion=1\nnRows=1\nnColumns=10\ninDegrees=yes\nendheader\n"
         "time\tHips_tx\tHips_ty\tHips_tz\tHips_rz\tHips_rx\tHips_ry\tSpine_rz\tSpine_rx\tSpine_ry\n"
         "0.5\t1.000000\t2.000000\t3.000000\t90.000000\t0.000000\t0.000000\t0.000000\t0.000000\t"
         "0.000000\n");
 }
 
-TEST_CASE("a .mot of positions has every joint's place in space") {
-  CHECK(mot_of(bent(), MotColumns::global_positions, 1).value() ==
-        "Positions\nversion=1\nnRows=1\nnColumns=7\ninDegrees=no\nendheader\n"
-        "time\tHips_X\tHips_Y\tHips_Z\tSpine_X\tSpine_Y\tSpine_Z\n"
-        "7.5\t1.000000\t2.000000\t3.000000\t0.500000\t2.000000\t3.000000\n");
-}
-
-TEST_CASE("NumPy and SciPy read from both kinds of .mot the rotations and places that were given") {
+TEST_CASE("NumPy and SciPy read from a .mot the rotations and places that were given") {
   for (const std::uint64_t seed : fresh_seeds(3)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -90,21 +82,16 @@ TEST_CASE("NumPy and SciPy read from both kinds of .mot the rotations and places
     const auto put = [&](const char* name, const std::vector<double>& values) {
       folder.write(name, {reinterpret_cast<const char*>(values.data()), 8 * values.size()});
     };
-    std::vector<double> parents, offsets, root;
-    for (std::size_t j = 0; j < joints; ++j) {
-      parents.push_back(clip.skeleton.parents[j]);
-      for (int k = 0; k < 3; ++k) offsets.push_back(clip.skeleton.rest_offsets[j][k]);
-    }
+    std::vector<double> parents, root;
+    for (const int parent : clip.skeleton.parents) parents.push_back(parent);
     for (std::size_t t = 0; t < frames; ++t) {
       for (std::size_t k = 0; k < 3; ++k)
         root.push_back(clip.frames.local_positions[3 * joints * t + k]);
     }
     put("parents.in", parents);
-    put("offsets.in", offsets);
     put("root.in", root);
     put("rotations.in", clip.frames.local_rotations);
-    folder.write("angles.mot", mot_of(clip, MotColumns::joint_angles, frames).value());
-    folder.write("positions.mot", mot_of(clip, MotColumns::global_positions, frames).value());
+    folder.write("angles.mot", mot_of(clip, frames).value());
     CHECK(run_witness("mot_read.py", folder.path()) == 0);
   }
 }

@@ -106,9 +106,8 @@ TEST_CASE("every rotation of a curve is of length 1") {
     for (const Curve curve : curves) {
       const Values found = curve(c.times, c.knots, c.at);
       for (std::size_t i = 0; i < c.at.size(); ++i) {
-        // Where a long interval follows a short one, the terms of its cubic are tens of radians
-        // long and cancel; what rounding leaves of them changes the length. The worst of two
-        // million cases was 6e-15.
+        // In a long interval after a short one, the terms of the cubic are tens of radians long
+        // and cancel; their rounding changes the length. The worst of two million cases was 6e-15.
         CHECK(std::abs(quat(found, i).norm() - 1.0) <= 2e-14);
       }
     }

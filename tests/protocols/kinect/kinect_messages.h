@@ -2,8 +2,9 @@
 // Messages of a Kinect's sender for tests.
 #pragma once
 
+#include "tests/protocols/kinect/kinect_lines.h"
+
 #include "kinalign/protocols/kinect/binary.h"
-#include "kinalign/protocols/kinect/lines.h"
 
 #include <bit>
 #include <random>
@@ -89,6 +90,30 @@ inline KinectFrame frame_of(std::uint32_t sequence, std::vector<std::uint64_t> i
     body.positions.fill(static_cast<float>(id));
   }
   return frame;
+}
+
+/// Most bytes of a datagram that fit into an Ethernet frame, over IPv6 and IPv4.
+inline constexpr std::size_t most_kinect_datagram = 1452;
+
+// Each part repeats the frame's own fields, so the receiver can use the parts that arrive if one is
+// lost. A frame without bodies is one part.
+/// Splits a frame so that no message is longer than most_kinect_datagram.
+inline std::vector<KinectFrame> kinect_parts(const KinectFrame& frame) {
+  std::size_t most = 1;  // bodies of a part
+  while (kinect_frame_size(most + 1, frame.has_orientations) <= most_kinect_datagram) ++most;
+  std::vector<KinectFrame> parts;
+  std::size_t at = 0;
+  do {
+    const std::size_t end = std::min(at + most, frame.bodies.size());
+    KinectFrame part = frame;
+    part.bodies.assign(frame.bodies.begin() + static_cast<std::ptrdiff_t>(at),
+                       frame.bodies.begin() + static_cast<std::ptrdiff_t>(end));
+    part.part = static_cast<std::uint8_t>(parts.size());
+    part.more_parts = end < frame.bodies.size();
+    parts.push_back(std::move(part));
+    at = end;
+  } while (at < frame.bodies.size());
+  return parts;
 }
 
 }  // namespace kinalign

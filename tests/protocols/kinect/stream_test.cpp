@@ -57,7 +57,7 @@ KinectFrame page_frame() {
 }
 
 std::string page_line() {
-  const std::string page = bytes_in(KINALIGN_SOURCE_DIR "/docs/formats/kinect_stream.md");
+  const std::string page = bytes_in(KINALIGN_SOURCE_DIR "/docs/formats/kinect_stream_example.md");
   const auto begin = page.find("```json\n") + 8;
   return page.substr(begin, page.find('\n', begin) + 1 - begin);
 }
@@ -110,7 +110,9 @@ Stream random_stream(std::mt19937_64& random, std::size_t messages, bool lines) 
 }  // namespace
 
 TEST_CASE("the page's messages of a Kinect are what we send") {
-  const auto page = [](const char* name) { return bytes_of_page("kinect_stream.md", name); };
+  const auto page = [](const char* name) {
+    return bytes_of_page("kinect_stream_example.md", name);
+  };
   const KinectHello hello{{2, 0x5eedf00d, 3}, "001265", "2.0.1410.0"};
   const KinectPing ping{page_origin, 123'456'789, KinectEcho{41, 0x1badcafe, 100'000'000}};
   CHECK(encode_kinect_binary(hello) == page("hello"));
@@ -123,7 +125,7 @@ TEST_CASE("the page's messages of a Kinect are what we send") {
 TEST_CASE("the page's messages of a Kinect are what we read") {
   for (const char* name : {"hello", "ping", "pong", "frame"}) {
     KinectMessage message;
-    const Bytes bytes = bytes_of_page("kinect_stream.md", name);
+    const Bytes bytes = bytes_of_page("kinect_stream_example.md", name);
     REQUIRE(decode_kinect_datagram(bytes, message) == Refusal::none);
     CHECK(encode_kinect_binary(message) == bytes);
   }

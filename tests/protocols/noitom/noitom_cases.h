@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tests/formats/joined_bytes.h"
+#include "tests/protocols/noitom/noitom_writer.h"
 
 #include "kinalign/protocols/noitom/stream.h"
 
@@ -30,8 +31,7 @@ inline NoitomFrame noitom_frame(NoitomForm form, bool displacement, bool referen
 
 inline Bytes bytes_of(const NoitomFrame& frame) {
   Bytes bytes;
-  const auto result = append_noitom(frame, bytes);
-  REQUIRE(result);
+  append_form_of_noitom(frame, bytes);
   return bytes;
 }
 

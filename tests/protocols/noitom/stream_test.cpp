@@ -428,20 +428,3 @@ TEST_CASE("noitom: a text that lost its end passes over to the next") {
   bytes += bytes_of(good);
   CHECK(read_noitom(bytes).frames == std::vector{good});
 }
-
-TEST_CASE("noitom: what could not be read again is not sent") {
-  Bytes out;
-  auto frame = noitom_frame(NoitomForm::text, false, false);
-  frame.name = "Char 01";
-  CHECK(!append_noitom(frame, out));
-  frame = noitom_frame(NoitomForm::new_header, false, false);
-  frame.values.pop_back();
-  CHECK(append_noitom(frame, out).error().expected == "180 values");
-  frame = noitom_frame(NoitomForm::old_header, false, false);
-  frame.name = std::string(33, 'x');
-  CHECK(!append_noitom(frame, out));
-  frame = noitom_frame(NoitomForm::old_header, false, false);
-  frame.frame_index = 5;
-  CHECK(!append_noitom(frame, out));
-  CHECK(out.empty());
-}

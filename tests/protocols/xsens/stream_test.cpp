@@ -233,16 +233,3 @@ TEST_CASE("xsens stream: more than 256 items are no sample") {
   }
   CHECK(decoder.counts()[XsensRefusal::too_many_items] == 9);
 }
-
-TEST_CASE("xsens stream: what could not be read again is not sent") {
-  CHECK(!xsens_datagrams(xsens_pose(0), {}));
-  CHECK(!xsens_datagrams(xsens_pose(257), {}));
-  CHECK(!xsens_datagrams(xsens_pose(200), {.items_per_datagram = 1}));
-  CHECK(!xsens_datagrams(xsens_trackers(true), {.payload_size = false}));
-  XsensSample mixed = xsens_trackers(true);
-  std::get<XsensTrackers>(mixed.body).trackers[1].raw.reset();
-  CHECK(!xsens_datagrams(mixed, {}));
-  XsensSample late = xsens_time_code();
-  late.body = XsensTimeCode{std::chrono::hours(24)};
-  CHECK(!xsens_datagrams(late, {}));
-}

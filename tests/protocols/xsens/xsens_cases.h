@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tests/formats/joined_bytes.h"
+#include "tests/protocols/xsens/xsens_datagrams.h"
 
 #include "kinalign/protocols/xsens/stream.h"
 #include "kinalign/recording/streams/xsens_pose.h"
@@ -58,9 +59,7 @@ inline XsensSample xsens_time_code(std::uint32_t counter = 1000) {
 }
 
 inline std::vector<Bytes> datagrams_of(const XsensSample& sample, const XsensSending& how = {}) {
-  const auto datagrams = xsens_datagrams(sample, how);
-  REQUIRE(datagrams);
-  return *datagrams;
+  return xsens_datagrams(sample, how);
 }
 
 inline Bytes bytes_of(const XsensSample& sample, const XsensSending& how = {}) {

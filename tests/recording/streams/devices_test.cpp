@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which device of a recording is read, and the findings about the file.
 #include "tests/recording/streams/recorded_streams.h"
+#include "tests/recording/survey_recording.h"
 
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/recording/recover.h"

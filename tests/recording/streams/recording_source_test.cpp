@@ -3,6 +3,7 @@
 
 #include "tests/counting_files.h"
 #include "tests/recording/streams/recorded_streams.h"
+#include "tests/recording/survey_recording.h"
 
 #include <doctest/doctest.h>
 
@@ -154,6 +155,11 @@ TEST_CASE("frames of a Kinect that were overtaken in the network stand where the
   CHECK(errors.samples == 1200);
   CHECK(errors.least > 29.5);
   CHECK(errors.most < 31.5);
+}
+
+TEST_CASE("a boot after 256 restarts is no boot of another epoch of the host") {
+  constexpr BootKey boot = 7, restarts = 256;
+  CHECK(boot_in_epoch(boot | restarts << 32U, 0) != boot_in_epoch(boot, 1));
 }
 
 TEST_CASE("samples whose time steps back where a clock begins anew are told and counted") {
@@ -407,7 +413,7 @@ TEST_CASE("a second pass over a recording says how far it is, and stops when it 
   lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 20.0);
   const std::string path = folder.write("take.mcap", lab.file());
   PosixFiles files;
-  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::unheard);
+  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::surveyed);
   REQUIRE(source);
   const StreamOptions kinect = stream_named("kinect", path);
   std::uint64_t calls = 0;

@@ -157,8 +157,8 @@ TEST_CASE("xsens nodes: items of 68 bytes give what the sensor measured") {
   auto trackers = trackers_of(xsens_trackers(true));
   trackers.trackers[1].rotation = left_turn;
   REQUIRE(nodes.append(trackers, utc_time(9), samples));
-  CHECK(nodes.node_names() == std::vector<std::string>{"Pelvis", "T8", "RightHand"});
-  CHECK(nodes.content() == ImuContent{true, true, true, true});
+  CHECK(nodes.header()->node_names == std::vector<std::string>{"Pelvis", "T8", "RightHand"});
+  CHECK(nodes.header()->content == ImuContent{true, true, true, true});
   CHECK(samples.stamps == std::vector{utc_time(9)});
   CHECK(vec3(samples.acceleration, 1) == Vec3(0.5, 0.0, 9.8125));
   CHECK(vec3(samples.angular_velocity, 1) == Vec3(0.25, 0.0, 0.0));
@@ -174,7 +174,7 @@ TEST_CASE("xsens nodes: items of 44 bytes give the free acceleration in the sens
   auto trackers = trackers_of(xsens_trackers(false));
   trackers.trackers[1].rotation = left_turn;
   REQUIRE(nodes.append(trackers, utc_time(0), samples));
-  CHECK(nodes.content() == ImuContent{true, true, false, false});
+  CHECK(nodes.header()->content == ImuContent{true, true, false, false});
   // The world's x is the right of a sensor turned left: its -y.
   CHECK((vec3(samples.acceleration, 1) - Vec3(0.0, -0.5, 0.0)).norm() < 1e-6);
   CHECK(samples.angular_velocity.empty());

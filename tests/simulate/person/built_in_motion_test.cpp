@@ -409,7 +409,6 @@ TEST_CASE("any height and length, at any rate") {
     const auto motion = built_in_motion({.height_m = height, .length_s = 75.5, .seed = 2});
     REQUIRE(motion);
     CHECK(motion->length_s == 75.5);
-    CHECK(sample_frames(*motion, 125.0, Time{}).size() == 9438);
     for (double t = 0.0; t < 75.5; t += 0.05) {
       const GlobalPose pose = global_at(*motion, t);
       CHECK(pose.positions[0].y() < 0.5316 * height);  // 0.9302 of 1.75

@@ -37,7 +37,7 @@ TEST_CASE("names, parents and end sites are those of an Axis Neuron file, in its
   const Skeleton skeleton = perception_neuron(1.75, 0);
   REQUIRE(validate(skeleton));
   REQUIRE(skeleton.joints() == 59);
-  // formats.md 1.3: the first column, and for the hands the names in the files.
+  // The names in Axis Neuron's BVH files.
   const std::array<std::string_view, 17> begin{
       "Hips",     "RightUpLeg",    "RightLeg", "RightFoot",    "LeftUpLeg", "LeftLeg",
       "LeftFoot", "Spine",         "Spine1",   "Spine2",       "Spine3",    "Neck",

@@ -12,20 +12,6 @@
 
 using namespace kinalign;
 
-TEST_CASE("every piece has a name that finds it, and a wrong name is refused with the right ones") {
-  for (const auto name : piece_names) {
-    const auto piece = piece_named(name);
-    REQUIRE(piece);
-    CHECK(to_string(*piece) == name);
-  }
-  const auto none = piece_named("jump");
-  REQUIRE_FALSE(none);
-  CHECK(
-      to_string(none.error()) ==
-      "expected a piece of motion: t_pose, stand, step, walk, walk_turn, wave, bend, turn, squat, "
-      "raise_front, raise_side, push, push_both, bend_side, twist, deep_squat, found 'jump'");
-}
-
 TEST_CASE("the default programme begins in T-pose, holds all but slow pieces, as long as asked") {
   for (const auto seed : fresh_seeds(50)) {
     CAPTURE(seed);

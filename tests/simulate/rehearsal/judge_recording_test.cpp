@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/simulate/rehearsal/judge_recording.h"
 
+#include "tests/take/recorded.h"
+
 #include "kinalign/motion/kinect_map.h"
 #include "kinalign/simulate/person/built_in_motion.h"
 #include "kinalign/simulate/rehearsal/rehearsal.h"

@@ -214,7 +214,7 @@ TEST_CASE("check of a torn file proposes a name for the whole one that is not it
     RecordingSurvey survey = kinect_survey(1000, 1000, 0);
     survey.messages = 1000;
     survey.truncated = {torn};
-    survey.ending = Ending::torn;
+    survey.ending = Ending::truncated;
     const Findings told = judge_survey(torn, survey);
     REQUIRE(told.size() == 1);
     CHECK(told.front().repair ==

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Headers as NumPy writes them; arrays of NumPy itself: tests/data/fuzz/npy_fuzz.
-#include "kinalign/formats/archive/npy.h"
+#include "kinalign/numpy/npy.h"
 
 #include "tests/folder.h"
 
@@ -18,30 +18,45 @@ std::string npy(const std::string& header, const std::string& values) {
 }
 
 std::string header_fault(const std::string& header) {
-  const auto read = read_npy(npy(header, ""), "a.npy");
+  const std::string bytes = npy(header, "");
+  const auto read = read_npy(bytes, "a.npy");
   return read ? "" : to_string(read.error());
 }
 
-NpyArray numpys(const std::string& name) {
-  auto read = read_npy(bytes_in(KINALIGN_SOURCE_DIR "/tests/data/fuzz/npy_fuzz/" + name), name);
-  REQUIRE_MESSAGE(read, name);
-  return *std::move(read);
-}
+/// An array of a file that numpy wrote; it views the bytes of the file.
+struct OfNumpy {
+  std::string file;
+  NpyArray array;
+
+  explicit OfNumpy(const std::string& name)
+      : file(bytes_in(KINALIGN_SOURCE_DIR "/tests/data/fuzz/npy_fuzz/" + name)) {
+    const auto read = read_npy(file, name);
+    REQUIRE_MESSAGE(read, name);
+    array = *read;
+  }
+};
 
 }  // namespace
 
 TEST_CASE("arrays that numpy wrote are read with their shape and values") {
-  const NpyArray floats = numpys("float.npy");
-  CHECK(floats.header.shape == std::vector<std::uint64_t>{2, 3});
-  CHECK(number_at(floats, 5) == 5.0);
-  const NpyArray integers = numpys("int.npy");
-  CHECK(integer_at(integers, 1) == -2);
-  CHECK(number_at(integers, 1) == -2.0);
-  const NpyArray texts = numpys("text.npy");
-  CHECK(text_at(texts, 0) == "walk");
-  CHECK(text_at(texts, 1) == "größe");
-  CHECK(numpys("scalar.npy").header.values() == 1);
-  CHECK(numpys("empty.npy").header.values() == 0);
+  const OfNumpy floats("float.npy"), integers("int.npy"), texts("text.npy");
+  CHECK(floats.array.header.shape == std::vector<std::uint64_t>{2, 3});
+  CHECK(number_at(floats.array, 5) == 5.0);
+  CHECK(integer_at(integers.array, 1) == -2);
+  CHECK(number_at(integers.array, 1) == -2.0);
+  CHECK(text_at(texts.array, 0) == "walk");
+  CHECK(text_at(texts.array, 1) == "größe");
+  CHECK(OfNumpy("scalar.npy").array.header.values() == 1);
+  CHECK(OfNumpy("empty.npy").array.header.values() == 0);
+}
+
+TEST_CASE("true and false are read as numbers") {
+  const std::string file =
+      npy("{'descr': '|b1', 'fortran_order': False, 'shape': (2,), }", std::string("\0\1", 2));
+  const auto flags = read_npy(file, "a.npy");
+  REQUIRE(flags);
+  CHECK(number_at(*flags, 0) == 0.0);
+  CHECK(number_at(*flags, 1) == 1.0);
 }
 
 TEST_CASE("an order, a kind or a header that is not ours is refused") {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/archive/npy.h"
+#include "kinalign/numpy/npy.h"
+
+#include "kinalign/core/numbers.h"
 
 #include <algorithm>
 #include <bit>
@@ -80,10 +82,7 @@ class HeaderText {
     if (!descr || descr->size() < 3) return false;
     const char order = (*descr)[0];
     std::uint64_t size = 0;
-    const char* const end = descr->data() + descr->size();
-    // The number must fill the rest of the word.
-    const auto [behind, fault] = std::from_chars(descr->data() + 2, end, size);
-    if (fault != std::errc{} || behind != end) return false;
+    if (!parse_integer(descr->substr(2), size)) return false;
     out.kind = (*descr)[1];
     // A text of n characters takes 4 n bytes: numpy stores UTF-32.
     if (out.kind == 'U') {
@@ -92,7 +91,8 @@ class HeaderText {
       return true;
     }
     const bool whole = out.kind == 'i' || out.kind == 'u';
-    const bool known = (whole && (size == 1 || size == 2 || size == 4 || size == 8)) ||
+    const bool known = (out.kind == 'b' && size == 1) ||
+                       (whole && (size == 1 || size == 2 || size == 4 || size == 8)) ||
                        (out.kind == 'f' && (size == 4 || size == 8));
     out.value_bytes = size;
     // Single bytes have no byte order, which numpy writes as '|'.
@@ -152,15 +152,12 @@ std::uint64_t NpyHeader::values() const {
 }
 
 Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name) {
-  const auto refuse = [&](std::string expected, std::string found) {
-    return Failure(Error{std::string(name), 0, std::move(expected), std::move(found)});
-  };
   if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
-    return refuse("a NumPy array (NPY)", "other bytes at the beginning");
+    return refuse(name, "a NumPy array (NPY)", "other bytes at the beginning");
   }
   const auto version = static_cast<unsigned char>(bytes[6]);
   if (version < 1 || version > 3) {
-    return refuse("an NPY of version 1 to 3", std::to_string(version));
+    return refuse(name, "an NPY of version 1 to 3", std::to_string(version));
   }
   // Version 1 has two bytes for the header's length, later versions have four.
   const std::size_t length_bytes = version == 1 ? 2 : 4, at = 8 + length_bytes;
@@ -170,12 +167,13 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
     length = length << 8 | static_cast<unsigned char>(bytes[8 + i]);
   }
   if (bytes.size() < at || length > longest_header || bytes.size() - at < length) {
-    return refuse("a complete NPY header", "a header of " + std::to_string(length) + " bytes");
+    return refuse(name, "a complete NPY header",
+                  "a header of " + std::to_string(length) + " bytes");
   }
   NpyHeader out;
   const std::string_view text = bytes.substr(at, length);
   if (!HeaderText(text).parse(out)) {
-    return refuse("an NPY of numbers or texts, little-endian, in C order", shown(text));
+    return refuse(name, "an NPY of numbers or texts, little-endian, in C order", shown(text));
   }
   out.data_at = at + length;
   std::uint64_t all = std::max<std::size_t>(out.value_bytes, 1);
@@ -183,24 +181,20 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
     // Checked before each product, so that none can overflow. A length of 0 counts as 1: the others
     // must be sane, too.
     if (one > 0 && all > most_bytes / one)
-      return refuse("an array below 2^40 bytes", "a larger array");
+      return refuse(name, "an array below 2^40 bytes", "a larger array");
     all *= std::max<std::uint64_t>(one, 1);
   }
   return out;
 }
 
-Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
+Result<NpyArray> read_npy(std::string_view file, std::string_view name) {
   NpyArray out;
   out.header = KA_TRY(parse_npy_header(file, name));
+  out.bytes = file.substr(out.header.data_at);
   const std::uint64_t wanted = out.header.values() * out.header.value_bytes;
-  if (file.size() - out.header.data_at != wanted) {
-    return Failure(Error{std::string(name), 0, std::to_string(wanted) + " bytes of values",
-                         std::to_string(file.size() - out.header.data_at)});
-  }
-  // Erased in place: a copy would double the memory.
-  file.erase(0, out.header.data_at);
-  out.bytes = std::move(file);
-  return out;
+  if (out.bytes.size() == wanted) return out;
+  return refuse(name, std::to_string(wanted) + " bytes of values",
+                std::to_string(out.bytes.size()));
 }
 
 // The kind tells signed and unsigned numbers of one width apart.
