@@ -12,17 +12,6 @@ namespace {
 constexpr std::int64_t ns_per_s = 1'000'000'000;
 constexpr std::int64_t from_1900_to_1970_s = 2'208'988'800;
 
-/// A time as whole seconds since 1970, rounded down, and the remaining nanoseconds.
-struct Seconds {
-  std::int64_t s, ns;
-};
-
-Seconds seconds_of(Time t) {
-  // The remainder of a time before 1970 is negative. One second is then borrowed.
-  const std::int64_t rest = to_ns(t) % ns_per_s;
-  return {to_ns(t) / ns_per_s - (rest < 0 ? 1 : 0), rest < 0 ? rest + ns_per_s : rest};
-}
-
 /// Returns whether `left` bytes after the extension fields can be a MAC: a key id alone (a
 /// crypto-NAK), or with a digest of 16 or 20 bytes (RFC 7822 section 7.5). Before version 4 also a
 /// digest of 8 bytes (RFC 1305), but no key id alone.
@@ -50,7 +39,10 @@ bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
 }  // namespace
 
 NtpStamp ntp_from_time(Time t) {
-  const auto [s, ns] = seconds_of(t);
+  // The remainder of a time before 1970 is negative. One second is then borrowed.
+  const std::int64_t rest = to_ns(t) % ns_per_s;
+  const std::int64_t s = to_ns(t) / ns_per_s - (rest < 0 ? 1 : 0);
+  const std::int64_t ns = rest < 0 ? rest + ns_per_s : rest;
   // The shift below drops the bits of the era.
   const auto seconds_1900 = static_cast<std::uint64_t>(s + from_1900_to_1970_s);
   // Rounded to the nearest. 999,999,999 ns stay below 2^32.

@@ -6,6 +6,7 @@
 #include "kinalign/wire/node_datagram.h"
 #include "kinalign/wire/time.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,7 +40,16 @@ struct NodeEvent {
 inline constexpr std::size_t node_event_kinds = 11;
 
 /// The same word as in --json: "newer_version".
-const char* name_of(NodeEvent::Kind kind);
-bool is_warning(NodeEvent::Kind kind);
+inline const char* name_of(NodeEvent::Kind kind) {
+  static constexpr std::array<const char*, node_event_kinds> names{
+      "joined", "started",  "restarted",     "twins",    "renamed",  "moved",
+      "left",   "returned", "newer_version", "too_many", "wrong_key"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+inline bool is_warning(NodeEvent::Kind kind) {
+  return kind == NodeEvent::Kind::restarted || kind == NodeEvent::Kind::twins ||
+         kind == NodeEvent::Kind::too_many || kind == NodeEvent::Kind::wrong_key;
+}
 
 }  // namespace kinalign

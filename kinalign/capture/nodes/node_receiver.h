@@ -60,7 +60,6 @@ class NodeReceiver {
   /// Answers that the system did not accept.
   std::uint64_t unsent() const { return unsent_; }
   std::uint32_t epoch() const { return axis_.epoch(); }
-  std::uint32_t node_id(std::size_t stream) const { return responder_->stream(stream).node_id; }
   /// Ignored datagrams. They were sent to a broadcast or multicast address, so many hosts would
   /// answer, or they came from port 0, so the answer could not be received.
   std::uint64_t not_unicast() const { return not_unicast_; }

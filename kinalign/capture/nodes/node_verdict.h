@@ -6,6 +6,7 @@
 #include "kinalign/capture/net/counts_by.h"
 #include "kinalign/wire/node_datagram.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -36,8 +37,18 @@ enum class EchoVerdict : std::uint8_t {
 inline constexpr std::size_t echo_verdicts = 6;
 
 /// The same word as in --json: "wrong_counter".
-const char* name_of(NodeVerdict verdict);
-const char* name_of(EchoVerdict verdict);
+inline const char* name_of(NodeVerdict verdict) {
+  static constexpr std::array<const char*, node_verdicts> names{
+      "accepted", "held",    "duplicate",     "replayed",       "earlier_life",
+      "limited",  "no_room", "wrong_counter", "unknown_answer", "refused"};
+  return names[static_cast<std::size_t>(verdict)];
+}
+
+inline const char* name_of(EchoVerdict verdict) {
+  static constexpr std::array<const char*, echo_verdicts> names{"none",  "taken",   "repeated",
+                                                                "stale", "unknown", "future"};
+  return names[static_cast<std::size_t>(verdict)];
+}
 
 /// Counts since the port was opened.
 struct NodeCounts {

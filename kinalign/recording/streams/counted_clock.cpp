@@ -90,31 +90,30 @@ NodeTime counter_of(const CountedFrame& frame, double step_ns) {
   return NodeTime{Duration{std::llround(step_ns * static_cast<double>(frame.number))}};
 }
 
-CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_ns,
-                           Duration utc_minus_host, const std::string& file) {
-  CountedClock out;
+void count_clock(std::vector<CountedFrame> frames, double stated_step_ns,
+                 const DeviceRequest& request, LearnedDevice& learned) {
+  if (request.options.rate_hz > 0.0) stated_step_ns = 1e9 / request.options.rate_hz;
   const double measured = measured_step_ns(frames);
   // The stated rate is preferred. Only many frames at another rate can contradict it.
-  out.step_ns = stated_step_ns > 0.0 ? stated_step_ns : measured;
+  learned.step_ns = stated_step_ns > 0.0 ? stated_step_ns : measured;
   const bool many = static_cast<std::int64_t>(frames.size()) > enough_frames;
   if (stated_step_ns > 0.0 && many && std::abs(measured / stated_step_ns - 1.0) > believed) {
-    out.step_ns = measured;
-    out.findings.push_back({Severity::warning,
-                            Error{file, 0, rate_text(stated_step_ns) + ", as stated",
-                                  "frames that arrive at " + rate_text(measured)},
-                            "stamps were counted by the rate at which they arrive",
-                            "state the true rate: rate_hz"});
+    learned.step_ns = measured;
+    learned.findings.push_back(
+        {Severity::warning,
+         Error{request.file.path, 0, rate_text(stated_step_ns) + ", as stated",
+               "frames that arrive at " + rate_text(measured)},
+         "stamps were counted by the rate at which they arrive", "state the true rate: rate_hz"});
   }
   // Each frame is an exchange without an echo: its arrival is late by an unknown delay, and the
   // clock keeps the earliest ones.
   std::vector<Exchange> exchanges;
   exchanges.reserve(frames.size());
   for (const CountedFrame& frame : frames) {
-    exchanges.push_back({frame.life, counter_of(frame, out.step_ns), frame.arrival, {}});
+    exchanges.push_back({frame.life, counter_of(frame, learned.step_ns), frame.arrival, {}});
   }
   frames = {};  // frees memory: an hour at 125 Hz is 11 MB
-  out.clock = device_clock(exchanges, utc_minus_host);
-  return out;
+  learned.clock = device_clock(exchanges, learned.utc_minus_host);
 }
 
 }  // namespace kinalign

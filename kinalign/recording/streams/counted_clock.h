@@ -3,12 +3,9 @@
 // serves as the counter, and the earliest arrivals determine the model.
 #pragma once
 
-#include "kinalign/clock/offline/device_clock.h"
-#include "kinalign/core/error.h"
+#include "kinalign/recording/streams/device_rows.h"
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace kinalign {
@@ -20,16 +17,12 @@ struct CountedFrame {
   HostTime arrival{};
 };
 
-/// The clock of a device that counts its frames, learnt from all of them.
-struct CountedClock {
-  double step_ns = 0.0;  // between two numbers
-  DeviceClock clock;     // for the counter number * step
-  Findings findings;     // one if the stated rate is wrong
-};
-
-/// `stated_step_ns`: 0 if it is unknown. It is used while the arrivals agree with it within 1 %.
-CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_ns,
-                           Duration utc_minus_host, const std::string& file);
+/// Learns the clock of a device that counts its frames from all of them: `learned.clock` and
+/// `learned.step_ns`, the time between two numbers. The rate in the options has precedence over
+/// `stated_step_ns` (0: unknown). The stated rate is used while the arrivals agree with it within
+/// 1 %; otherwise there is a finding.
+void count_clock(std::vector<CountedFrame> frames, double stated_step_ns,
+                 const DeviceRequest& request, LearnedDevice& learned);
 
 /// The device's counter at a frame: its number times the step, as the clock model expects it.
 NodeTime counter_of(const CountedFrame& frame, double step_ns);

@@ -308,15 +308,4 @@ class NumberedRows : public DeviceRows<Frames> {
   std::uint64_t appended_ = 0, misfits_ = 0;
 };
 
-/// Makes the clock of numbered frames. A rate in the options has precedence over `step_ns`.
-inline void count_clock(std::vector<CountedFrame> frames, double step_ns,
-                        const DeviceRequest& request, LearnedDevice& learned) {
-  const double rate = request.options.rate_hz;
-  CountedClock clock = counted_clock(std::move(frames), rate > 0.0 ? 1e9 / rate : step_ns,
-                                     learned.utc_minus_host, request.file.path);
-  append(learned.findings, clock.findings);
-  learned.step_ns = clock.step_ns;
-  learned.clock = std::move(clock.clock);
-}
-
 }  // namespace kinalign

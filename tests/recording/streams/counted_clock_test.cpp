@@ -11,6 +11,14 @@ using namespace std::chrono_literals;
 
 namespace {
 
+LearnedDevice counted_clock(const std::vector<CountedFrame>& frames, double stated_step_ns) {
+  DeviceRequest request;
+  request.file.path = "take.mcap";
+  LearnedDevice learned;
+  count_clock(frames, stated_step_ns, request, learned);
+  return learned;
+}
+
 /// A source of 125 frames a second, each of which takes a millisecond and more. For a while it
 /// sends and counts nothing.
 struct Source {
@@ -30,7 +38,7 @@ struct Source {
   }
 
   /// The largest error of a stamp.
-  Duration worst(const CountedClock& counted) const {
+  Duration worst(const LearnedDevice& counted) const {
     Duration worst{0};
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const NodeTime n = counter_of(frames[i], counted.step_ns);
@@ -51,7 +59,7 @@ TEST_CASE("a pause in which a source did not count bends no rate, whatever is st
     CAPTURE(pause.count());
     const Source source(pause);
     for (const double stated_ns : {0.0, 8e6}) {
-      const CountedClock counted = counted_clock(source.frames, stated_ns, {}, "take.mcap");
+      const LearnedDevice counted = counted_clock(source.frames, stated_ns);
       CHECK(counted.findings.empty());
       CHECK(counted.step_ns == doctest::Approx(8e6).epsilon(0.002));
       CHECK(source.worst(counted) < 2500us);
@@ -71,7 +79,7 @@ TEST_CASE("a source that stalls again and again keeps its rate, and its stamps r
       frames.push_back({1, k, at + Duration{random() % 400'000}});
     }
     for (const double stated_ns : {0.0, 1e7}) {
-      const CountedClock counted = counted_clock(frames, stated_ns, {}, "take.mcap");
+      const LearnedDevice counted = counted_clock(frames, stated_ns);
       CHECK(counted.findings.empty());
       CHECK(counted.step_ns == doctest::Approx(1e7).epsilon(0.01));
       std::optional<Time> last;
@@ -89,7 +97,7 @@ TEST_CASE("a source that stalls again and again keeps its rate, and its stamps r
 
 TEST_CASE("a rate that is stated wrongly is said, and not believed") {
   const Source source(0s);
-  const CountedClock counted = counted_clock(source.frames, 1e9 / 60.0, {}, "take.mcap");
+  const LearnedDevice counted = counted_clock(source.frames, 1e9 / 60.0);
   REQUIRE(counted.findings.size() == 1);
   CHECK(counted.findings[0].what.expected == "60 Hz, as stated");
   CHECK(source.worst(counted) < 2500us);
@@ -105,9 +113,8 @@ TEST_CASE("a busy radio's delays do not shake a rate that is stated rightly") {
       const Duration way = 3500us + Duration{std::llround(1e9 * more(random))};
       frames.push_back({1, k, HostTime{Duration{k * 66'666'667} + way}});
     }
-    const CountedClock counted = counted_clock(frames, 1e9 / 15.0, {}, "take.mcap");
+    const LearnedDevice counted = counted_clock(frames, 1e9 / 15.0);
     CHECK(counted.findings.empty());
-    CHECK(counted_clock(frames, 0.0, {}, "take.mcap").step_ns ==
-          doctest::Approx(1e9 / 15.0).epsilon(0.01));
+    CHECK(counted_clock(frames, 0.0).step_ns == doctest::Approx(1e9 / 15.0).epsilon(0.01));
   }
 }
