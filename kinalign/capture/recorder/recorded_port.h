@@ -61,10 +61,11 @@ class RecordedPort {
     // channel of the clock exchanges; absent before the first ping
     std::optional<std::uint16_t> exchanges{};
     std::unique_ptr<FollowedClock> clock{};  // absent before the first ping
-    SequenceCounts
-        counts_before_handshake{};  // SlimeVR: counts of this address up to its newest handshake
-    SlimeVerdicts verdicts{};       // SlimeVR: datagrams by verdict
-    std::uint64_t tracker_packets = 0;  // SlimeVR: datagrams that contain a packet of a tracker
+    // SlimeVR only: the counts of this address up to its newest handshake, datagrams by verdict,
+    // and datagrams that contain a packet of a tracker
+    SequenceCounts counts_before_handshake{};
+    SlimeVerdicts verdicts{};
+    std::uint64_t tracker_packets = 0;
     std::uint64_t pings_refused = 0;
   };
 

@@ -55,7 +55,6 @@ TEST_CASE("a message keeps its arrival in UTC, its device's time and its number"
   // The device has no clock, so the stamp is the arrival.
   CHECK(read.messages[1].message.publish_time == 1'000'002'000'000);
   CHECK(read.messages[1].message.sequence == 1);
-  CHECK(recorder.messages(channel) == 2);
 }
 
 TEST_CASE("a chunk is closed after a quarter of a second, or when it is full") {
