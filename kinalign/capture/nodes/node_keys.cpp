@@ -21,22 +21,6 @@ namespace kinalign {
 
 namespace {
 
-// Closes a file of the FileSystem, which tests replace.
-class OpenFile {
- public:
-  OpenFile(FileSystem& files, int fd) : files_(files), fd_(fd) {}
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  ~OpenFile() {
-    if (fd_ >= 0) files_.close(fd_);
-  }
-  int fd() const { return fd_; }
-
- private:
-  FileSystem& files_;
-  int fd_;
-};
-
 Failure no_key(const std::string& path, const std::string& expected, const std::string& found,
                ErrorKind kind = ErrorKind::other) {
   return Failure(Error{path, 0, expected, found, kind});

@@ -248,7 +248,7 @@ TEST_CASE(
     frame.origin = {2, session, sequence};
     return encode_kinect_binary(frame);
   };
-  const auto lost = [](const LiveSession& live) {
+  const auto lost = [](LiveSession& live) {
     std::uint64_t sum = 0;
     for (const StreamStatus& stream : live.session().streams()) sum += stream.counts.order.lost;
     return sum;
