@@ -4,6 +4,7 @@
 #include "tests/folder.h"
 #include "tests/formats/xdf/xdf_cases.h"
 #include "tests/mcap/mcap_files.h"
+#include "tests/take/recorded.h"
 
 #include "kinalign/view/show_recording.h"
 #include "kinalign/view/show_xdf.h"

@@ -178,7 +178,7 @@ Result<Findings> BidsExport::finish() {
   for (auto& [subject, scans] : scans_) {
     // Takes come in the order of the job; the file is sorted.
     std::sort(scans.begin(), scans.end());
-    KA_TRY(write(bids_scans_path({subject, "", "", "", "", ""}), scans_tsv(scans)));
+    KA_TRY(write(bids_scans_path({subject, "", "", ""}), scans_tsv(scans)));
   }
   return check_bids(KA_TRY(list_bids_folder(files_, folder_)));
 }
