@@ -26,10 +26,7 @@ RecordStatus status_at_end(const RecordingSession& session) {
   // The oldest take is the one that has ended.
   const SessionTake& take = *session.takes().front();
   RecordStatus status{take.end.value_or(LabStatus{}), take.disk.status(), {}};
-  // unseen() looks at all devices of a lab, so devices that are not required are taken out.
-  Lab required = session.lab();
-  std::erase_if(required.devices, [](const DeviceOptions& device) { return !device.required; });
-  status.missing = unseen(required, status.lab);
+  status.missing = missing(session.lab(), status.lab);
   return status;
 }
 

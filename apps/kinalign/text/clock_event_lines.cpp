@@ -56,7 +56,7 @@ std::string ClockEventLines::line(std::size_t stream, std::uint32_t node_id,
           "{}: warning: {}, so none of its stamps are certified; its steps are reported again "
           "after "
           "a minute without steps",
-          names_.name(node_id), contradiction);
+          names_.name(node_id), contradiction_text);
     }
   }
   if (event.kind == EventKind::withdrawn) {

@@ -19,7 +19,7 @@ namespace kinalign {
 
 /// The reason printed for a clock that contradicts the assumptions, after "node 7: " or "not
 /// locked: ".
-inline constexpr std::string_view contradiction =
+inline constexpr std::string_view contradiction_text =
     "its clock keeps contradicting the assumptions (drift above 100 ppm, or the node sleeps)";
 
 /// Programs get every event; people get a line only if it says something new. A clock that steps

@@ -84,7 +84,7 @@ std::string NodePrinter::summary_of(const NodeStatus& status) const {
   SystemClocks clocks;
   const ClockPair now{.raw = clocks.raw(), .utc = clocks.utc()};
   const bool bad = clock_lines_.contradicts(status.stream, status.node_id, now.raw);
-  return status_text(status, now, bad ? contradiction : "");
+  return status_text(status, now, bad ? contradiction_text : "");
 }
 
 /// Reports the last events, each node's status, and refused nodes.
