@@ -81,7 +81,7 @@ def check_same(folder, method, data, processes=2, others=0.0):
     assert numpy.allclose(*last, rtol=1e-3), last
     assert header_and_weights(one)[0]["training"] == header_and_weights(two)[0]["training"]
     rest = {path.name for path in logs[1].parent.iterdir()}
-    assert rest == {"curves.svg", "events.out.tfevents.0.kinalign", "job.json", "log.csv"}, rest
+    assert rest == {"curves.svg", "events.out.tfevents.0.kinalign", "job.json", "lock", "log.csv"}, rest
 
 
 @case
