@@ -5,6 +5,7 @@
 
 #include "tests/mcap/mcap_files.h"
 #include "tests/protocols/kinect/kinect_lines.h"
+#include "tests/protocols/noitom/noitom_writer.h"
 #include "tests/protocols/xsens/xsens_cases.h"
 
 #include "kinalign/protocols/kinect/binary.h"
@@ -198,7 +199,7 @@ class RecordedLab {
       }
       frame.values[0] = static_cast<float>(100.0 * t);
       std::vector<std::uint8_t> bytes;
-      append_noitom(frame, bytes);
+      append_form_of_noitom(frame, bytes);
       last = std::max(last, t + way() / 4.0);  // no frame overtakes another
       add(frames, last, {bytes.begin(), bytes.end()});
     }
