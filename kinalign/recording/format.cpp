@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/format.h"
 
+#include "kinalign/core/numbers.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace kinalign {
@@ -25,11 +25,8 @@ std::string text_of(const McapTexts& texts, const std::string& key) {
 
 /// The whole text must be the number: "12x" is damage.
 std::optional<std::int64_t> number_of(const McapTexts& texts, const std::string& key) {
-  const std::string text = text_of(texts, key);
   std::int64_t number = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
+  return parse_integer(text_of(texts, key), number) ? std::optional(number) : std::nullopt;
 }
 
 void append_ns(std::string& out, Duration since) {
@@ -64,8 +61,7 @@ std::set<int> parts_in(std::string_view text) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
     int number = 0;
-    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (fault == std::errc() && is_part(number)) parts.insert(number);
+    if (parse_integer(word, number) && is_part(number)) parts.insert(number);
   }
   return parts;
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/take/lab.h"
 
+#include "kinalign/core/numbers.h"
 #include "kinalign/protocols/protocols.h"
 #include "kinalign/take/manifest.h"
 
 #include <arpa/inet.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
 namespace kinalign {
@@ -24,10 +24,7 @@ bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
 /// Port 0 is allowed: the system then chooses a free one.
 Result<std::int64_t> parse_port(const std::string& text) {
   std::int64_t port = -1;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
-  if (fault == std::errc() && end == text.data() + text.size() && port >= 0 && port <= 65535) {
-    return port;
-  }
+  if (parse_integer(text, port) && port >= 0 && port <= 65535) return port;
   return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "nothing" : shown(text)});
 }
 
@@ -131,9 +128,8 @@ Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   }
   for (const auto& [id, place] : device.nodes) {
     std::uint32_t number = 0;
-    const auto [end, fault] = std::from_chars(id.data(), id.data() + id.size(), number);
     // The text must be the number's usual form: "07" and "7" would be one node under two keys.
-    if (fault != std::errc() || end != id.data() + id.size() || std::to_string(number) != id) {
+    if (!parse_integer(id, number) || std::to_string(number) != id) {
       return wrong(device, "a node's id, a whole number, as each key of nodes", shown(id));
     }
     if (place.empty()) return wrong(device, "the place of node " + id, "nothing");

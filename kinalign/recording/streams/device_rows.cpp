@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/streams/device_rows.h"
 
+#include "kinalign/core/numbers.h"
 #include "kinalign/protocols/protocols.h"
-
-#include <charconv>
 
 namespace kinalign {
 
@@ -71,8 +70,7 @@ Result<DeviceRequest> request_of(const StreamOptions& options, const StreamFile&
   const std::string body = selected(options, "body", sensor);
   if (body.empty()) return request;
   std::uint64_t id = 0;
-  const auto [behind, fault] = std::from_chars(body.data(), body.data() + body.size(), id);
-  if (fault == std::errc{} && behind == body.data() + body.size()) {
+  if (parse_integer(body, id)) {
     request.body = id;
     return request;
   }
