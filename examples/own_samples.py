@@ -12,27 +12,27 @@ import sys
 
 CUTS = ("new_boot", "step", "slip", "settled")
 MARGIN_NS = 10**9  # a line does not say when its frame arrived, but it was less than that later
-UNTOLD_NS = 130 * 10**9  # so far back may a withdrawal reach that a log which was cut short lacks
-WIDENING = 1e-4  # H2: so much each way, for each second between a sample and its line
+LATEST_WITHDRAWAL_NS = 130 * 10**9  # a truncated log may lack a withdrawal of up to this long before its end
+WIDENING = 1e-4  # H2: the interval grows by this much on each side, per second between a sample and its line
 
 
 class Run:
-    """The certified lines of a stream between two cuts: one clock told all of them."""
+    """The certified lines of a stream between two cuts, all from one clock."""
 
     def __init__(self, begin_ns):
         self.begin_ns, self.end_ns, self.lines = begin_ns, math.inf, []
 
     def nearest(self, boot_id, lives, n):
-        """The line whose counter is nearest to n; they stand in its order. None: of another life."""
+        """The line whose counter is nearest to n. Lines are sorted by counter. None if boot_id or lives differ."""
         at = bisect.bisect(self.lines, n, key=lambda line: line["counter_ns"])
-        beside = [line for line in self.lines[max(at - 1, 0) : at + 1]
-                  if (line["boot_id"], line["lives"]) == (boot_id, lives)]
-        return min(beside, key=lambda line: abs(line["counter_ns"] - n), default=None)
+        neighbours = [line for line in self.lines[max(at - 1, 0) : at + 1]
+                      if (line["boot_id"], line["lives"]) == (boot_id, lives)]
+        return min(neighbours, key=lambda line: abs(line["counter_ns"] - n), default=None)
 
 
 class Stamper:
     def __init__(self, lines):
-        """`lines`: of the log, parsed, in their order, which says between which cuts each stands."""
+        """`lines`: the parsed lines of the log in their order; the order says between which cuts each line is."""
         self.runs, self.withdrawn = {}, {}
         begun, stopped = False, False
         for line in lines:
@@ -55,11 +55,11 @@ class Stamper:
                     runs.append(Run(line["time_ns"]))
                 runs[-1].lines.append(line)
         for stream, runs in self.runs.items():
-            heard = [line["time_ns"] for run in runs for line in run.lines]
-            if heard:  # what nobody watched is not certified
-                runs[-1].end_ns = min(runs[-1].end_ns, max(heard) + MARGIN_NS)
-            if heard and not stopped:
-                self.withdrawn.setdefault(stream, []).append((max(heard) - UNTOLD_NS, math.inf))
+            times = [line["time_ns"] for run in runs for line in run.lines]
+            if times:  # times after the log's last line are not certified
+                runs[-1].end_ns = min(runs[-1].end_ns, max(times) + MARGIN_NS)
+            if times and not stopped:
+                self.withdrawn.setdefault(stream, []).append((max(times) - LATEST_WITHDRAWAL_NS, math.inf))
             for run in runs:
                 run.lines = [line for line in run.lines if not self.is_withdrawn(stream, line["time_ns"])]
 

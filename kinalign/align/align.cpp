@@ -43,7 +43,7 @@ Result<void> fit_space(const PairMoments& moments, const std::string& name, Spac
   }
   space.transform = *fitted;
   // A small distance from the line is no error here; judge_fit() makes a warning of it.
-  space.beside_line_m = spread_beside_line(moments);
+  space.off_line_m = spread_off_line(moments);
   return {};
 }
 

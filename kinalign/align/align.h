@@ -27,7 +27,7 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
                               const TakeSink& sink, const Progress& progress = {},
                               std::size_t jobs = 1);
 
-/// The same, with the take in memory.
+/// Aligns as above, but returns the whole take in memory.
 Result<Take> align(const Recording& recording, const Manifest& manifest);
 
 }  // namespace kinalign

@@ -163,7 +163,7 @@ Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
   // Chosen: the joints of a trunk are 3 to 6 cm from their line, those of a whole body 20 cm and
   // more.
   constexpr double near_m = 0.1;
-  if (plan.options.method != "fit" || plan.beside_line_m >= near_m) return {};
+  if (plan.options.method != "fit" || plan.off_line_m >= near_m) return {};
   std::string names;
   for (const JointResidual& joint : space.joints)
     names += (names.empty() ? "" : ", ") + joint.joint;
@@ -171,7 +171,7 @@ Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
            Error{"", 0,
                  fmt::format("joints that are at least 10 cm away from a line, to fit '{}'",
                              space.stream),
-                 fmt::format("{:.1f} cm: {}", 100.0 * plan.beside_line_m, names)},
+                 fmt::format("{:.1f} cm: {}", 100.0 * plan.off_line_m, names)},
            "the rotation about this line is a guess, even if the residuals are small",
            "also name joints of arms or legs: joints = { ... }"}};
 }

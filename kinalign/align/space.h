@@ -23,7 +23,7 @@ struct SpacePlan {
   std::vector<JointPair> pairs;  // named joints, for fits and residuals
   JointPair root;                // method paper only
   RigidTransform transform;      // method fit: the result; given: as given; paper: A_rot
-  double beside_line_m = 0.0;    // method fit: spread_beside_line() of the pairs
+  double off_line_m = 0.0;       // method fit: spread_beside_line() of the pairs
 };
 
 /// Plans for all streams of the manifest; `header` has the joints. If the manifest names no joints,

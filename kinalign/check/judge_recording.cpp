@@ -41,8 +41,8 @@ class RecordingJudge {
     if (survey_.end && survey_.end->dropped > 0) {
       out_.add(Severity::error, "every message that reached the recorder",
                grouped(survey_.end->dropped) + " fewer",
-               "the disk was too slow for too long, and memory full",
-               "record to a disk of the machine itself");
+               "the disk was too slow, and the memory for waiting data was full",
+               "record to a local disk");
     }
     for (const auto& [prefix, required] : survey_.expected) {
       if (required) judge_required(prefix);
@@ -61,10 +61,10 @@ class RecordingJudge {
       out_.all.push_back(
           {Severity::warning,
            {file, 0, "an index at the recording's end", "none"},
-           "it was not closed: the program or the machine stopped, or the disk did",
+           "the file was not closed: the program, the machine or the disk stopped",
            survey_.messages == 0
-               ? "nothing of it can be read"
-               : fmt::format("kinalign recover {} -o {} gives it one", file, whole)});
+               ? "no message of it can be read"
+               : fmt::format("kinalign recover {} -o {} makes a complete file", file, whole)});
     }
   }
 
@@ -75,11 +75,11 @@ class RecordingJudge {
         survey_.steps.begin(), survey_.steps.end(), [](const auto& a, const auto& b) {
           return std::chrono::abs(a.by) < std::chrono::abs(b.by);
         });
-    out_.add(Severity::warning, "a wall clock that nobody sets while it records",
-             fmt::format("set {} times, by {:+.3f} s at the most", survey_.steps.size(),
-                         seconds(worst.by)),
-             "UTC in it is the clock's of the beginning; time differences are right",
-             "let the machine's clock be set before recording: docs/time_server.md");
+    out_.add(
+        Severity::warning, "a wall clock that is not set during the recording",
+        fmt::format("set {} times, by up to {:+.3f} s", survey_.steps.size(), seconds(worst.by)),
+        "UTC times follow the clock as it was at the beginning; time differences are correct",
+        "set the machine's clock before recording: docs/time_server.md");
   }
 
   /// Errors for messages that reached the recorder and are not in the file. A gap in the recorder's
@@ -93,7 +93,7 @@ class RecordingJudge {
                "a part of the recording in another folder may have them");
     };
     for (const ChannelSurvey& channel : survey_.channels) {
-      add(channel.channel.topic + " without a number left out", channel.missing);
+      add(channel.channel.topic + " with consecutive message numbers", channel.missing);
     }
     // The counts of later parts begin with the recording, not with the file.
     if (survey_.facts->part != 1) return;
@@ -123,10 +123,11 @@ class RecordingJudge {
     const std::string unusable = unusable_at(device);
     out_.add(Severity::warning, "messages of " + sender_name(device, node, survey_),
              unusable.empty() ? "none" : "none: " + unusable,
-             "a device that the lab requires is not in it",
-             unusable.empty() ? "see that it sends to the recording machine; docs/recording.md"
-                              : "see that it sends to this port, and other devices to theirs; "
-                                "docs/recording.md");
+             "the recording has no data of a device that the lab requires",
+             unusable.empty()
+                 ? "check that it sends to the recording machine; docs/recording.md"
+                 : "check that it sends to this port, and other devices to their own ports; "
+                   "docs/recording.md");
   }
 
   /// The text about datagrams at the port of a device of which nothing was recorded. Empty if none
@@ -151,9 +152,9 @@ class RecordingJudge {
                "by the sender's own numbers; they did not reach the recorder, or were never sent");
     }
     if (order.restarts > 0) {
-      out_.add(Severity::note, "one life of " + name_of(one, survey_),
-               grouped(order.restarts + 1) + ": it was started anew",
-               "each has a clock of its own, and nothing is known of between");
+      out_.add(Severity::note, "one run of " + name_of(one, survey_),
+               grouped(order.restarts + 1) + " runs: it restarted",
+               "each run has its own clock; the time between two runs is unknown");
     }
   }
 
@@ -167,16 +168,17 @@ class RecordingJudge {
     // Any program of the network may send such datagrams without harm, but one may have been meant
     // as a mark.
     if (is_of_marks(port) && counts.refused > 0) {
-      out_.add(Severity::note, "marks alone at the port of " + port.stream,
-               grouped(counts.refused) + " datagrams that are none",
-               "record said why, and answered so", "docs/formats/marks.md says how a mark is sent");
+      out_.add(Severity::note, "only marks at the port of " + port.stream,
+               grouped(counts.refused) + " datagrams that are not marks",
+               "record reported the reason, and answered the sender with it",
+               "docs/formats/marks.md says how a mark is sent");
       counts.refused = 0;
     }
     const std::string lost = loss_of(counts, 0);
     if (lost.empty()) return;
-    out_.add(Severity::warning, "everything that came to the port of " + port.stream, lost,
-             "these reached the recording machine and are not in it",
-             "see what else it does while it records");
+    out_.add(Severity::warning, "all data that arrived at the port of " + port.stream, lost,
+             "this data reached the recording machine but is not in the recording",
+             "check what else the machine does while it records");
   }
 
   /// A filter of the kernel drops and counts datagrams that are no frames of nodes, for example of
@@ -184,19 +186,20 @@ class RecordingJudge {
   void judge_nodes_port(const CountedPort& port) {
     // For example frames of a node without the lab's key.
     if (port.counts.refused > 0) {
-      out_.add(Severity::note, "frames alone of the lab's nodes at the port of " + port.stream,
-               grouped(port.counts.refused) + " that are refused",
-               "a node that is missing may have sent them: without the lab's key, say",
-               "record said of which node, and why");
+      out_.add(Severity::note, "only frames of the lab's nodes at the port of " + port.stream,
+               grouped(port.counts.refused) + " refused datagrams",
+               "a missing node may have sent them, for example without the lab's key",
+               "record reported the node and the reason");
     }
-    const std::uint64_t foreign = strays(port.counts, frames_lost(port.stream, survey_.senders));
+    const std::uint64_t foreign =
+        foreign_datagrams(port.counts, frames_lost(port.stream, survey_.senders));
     if (foreign == 0) return;
     out_.add(are_many(foreign) ? Severity::warning : Severity::note,
-             "frames of nodes alone at the port of " + port.stream,
-             fmt::format("{}{} datagrams that are none",
-                         foreign < port.counts.dropped ? "at least " : "", grouped(foreign)),
-             "they were thrown away: nothing of them is in it",
-             "see which port and protocol each device sends to");
+             "only frames of nodes at the port of " + port.stream,
+             fmt::format("{}{} other datagrams", foreign < port.counts.dropped ? "at least " : "",
+                         grouped(foreign)),
+             "they were dropped and are not in the recording",
+             "check the port and the protocol that each device sends to");
   }
 
   /// Findings about streams that can't become rows: the messages are not of the stated protocol,
@@ -213,11 +216,10 @@ class RecordingJudge {
       const std::string& protocol = channel->channel.message_encoding;
       const SenderCounts& counts = one.counts;
       if (speaks_another_protocol(protocol, counts)) {
-        out_.add(Severity::warning,
-                 "frames of " + protocol + " in what " + name_of(one, survey_) + " sent",
-                 grouped(counts.messages) + " messages, none of them one",
-                 "nothing of it can be aligned as " + protocol,
-                 "see which port and protocol the device sends to");
+        out_.add(Severity::warning, "frames of " + protocol + " from " + name_of(one, survey_),
+                 grouped(counts.messages) + " messages without such a frame",
+                 "this data can't be aligned as " + protocol,
+                 "check the port and the protocol that the device sends to");
       }
       const auto known = find_recorded_protocol(protocol);
       // Only protocols that are decoded count frames.
@@ -228,10 +230,11 @@ class RecordingJudge {
       if (row.losses == LossNumbers::frame_heads && are_many(counts.refused) &&
           counts.refused > counts.frames) {
         out_.add(
-            Severity::warning, "frames that can be read in what " + name_of(one, survey_) + " sent",
-            fmt::format("{}; {} times none", grouped(counts.frames), grouped(counts.refused)),
-            "fewer than half of them can be aligned, though their bytes are all in the recording",
-            "prefer TCP, which loses and mixes no pieces of frames");
+            Severity::warning, "readable frames from " + name_of(one, survey_),
+            fmt::format("{} readable, {} not", grouped(counts.frames), grouped(counts.refused)),
+            "fewer than half of the frames can be aligned, although the recording has all their "
+            "bytes",
+            "use TCP, which neither loses nor mixes pieces of frames");
       }
       // The recorder attaches the BVH of a suit under the name of its device.
       const auto& names = survey_.attachments;

@@ -79,7 +79,7 @@ void OrientationSense::judge(const ImuHeader& header, FileFindings& out) const {
       const double lean_deg = lean * (180.0 / std::numbers::pi);
       if (lean_deg > most_lean_deg) {
         out.add(Severity::warning, "gravity of '" + name + "' that points up in the world",
-                fmt::format("{:.0f} degrees from it in the mean", lean_deg),
+                fmt::format("a mean of {:.0f} degrees away", lean_deg),
                 "orientations and accelerations do not belong together", advice);
       }
     }
@@ -89,8 +89,8 @@ void OrientationSense::judge(const ImuHeader& header, FileFindings& out) const {
     // The correlation of both turns: 1 for equal directions, whatever the scale.
     const double alike = node.both / std::sqrt(std::max(node.turned * node.measured, 1e-300));
     if (alike >= least_likeness) continue;
-    out.add(Severity::warning, "orientations of '" + name + "' that turn as the gyroscope says",
-            fmt::format("a likeness of {:.2f} (1: the same, 0: none)", alike),
+    out.add(Severity::warning, "orientations of '" + name + "' that turn as the gyroscope measures",
+            fmt::format("a correlation of {:.2f} (1: the same turns, 0: unrelated)", alike),
             "orientations and angular velocities do not belong together", advice);
   }
 }

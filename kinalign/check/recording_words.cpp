@@ -12,12 +12,12 @@ namespace {
 /// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
 /// The kernel's filter drops foreign datagrams at a nodes' port, and a full socket drops frames.
 /// The numbers of the lost frames tell how many are surely foreign.
-std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
+std::string dropped_text(const PortCounts& counts, std::uint64_t frames_lost) {
   if (!counts.sifted) return "dropped by the kernel";
-  const std::uint64_t least = strays(counts, frames_lost);
-  if (least == counts.dropped) return "thrown away: no frames of nodes";
-  if (least == 0) return "thrown away: no frames of nodes, or no room for them";
-  return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
+  const std::uint64_t least = foreign_datagrams(counts, frames_lost);
+  if (least == counts.dropped) return "dropped: not frames of nodes";
+  if (least == 0) return "dropped: not frames of nodes, or the buffer was full";
+  return fmt::format("dropped, at least {} of them not frames of nodes", grouped(least));
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::string name_of(const CountedSender& sender, const RecordingSurvey& survey) 
 }
 
 std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
-  return counts_in_words({{counts.dropped, thrown_away(counts, frames_lost)},
+  return counts_in_words({{counts.dropped, dropped_text(counts, frames_lost)},
                           {counts.refused, "refused, not recorded"},
                           {counts.cut, "cut"},
                           {counts.unsent, "answers not sent"}});
@@ -51,8 +51,9 @@ std::string unusable_data(const PortCounts& counts, const std::string& to) {
   const std::uint64_t came = counts.dropped + counts.refused;
   // Only a nodes' port is sifted, so only there can datagrams be foreign.
   if (!counts.sifted || came == 0) return "";
-  return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
-                     counts.refused == 0 ? "a frame of nodes" : "was let in");
+  return fmt::format(
+      "{} datagrams came {}, {}", grouped(came), to,
+      counts.refused == 0 ? "none of them a frame of nodes" : "none of them accepted");
 }
 
 }  // namespace kinalign

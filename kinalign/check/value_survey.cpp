@@ -82,8 +82,8 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
   FileFindings out{file};
   // With so few points nothing else can be judged.
   if (all_frames_ >= enough && 10 * seen_frames_ < all_frames_) {
-    out.add(Severity::warning, "frames with a point in them, one in ten at least",
-            fmt::format("{} of {}", seen_frames_, all_frames_), "in the others nothing was seen",
+    out.add(Severity::warning, "at least one frame in ten with a point",
+            fmt::format("{} of {}", seen_frames_, all_frames_), "the other frames have no points",
             "look at the cells that are empty");
     return out.all;
   }
@@ -97,9 +97,9 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
 void PointSizes::judge_seen(const PointHeader& header, FileFindings& out) const {
   if (inferred_ >= enough && tracked_ == 0) {
     out.add(Severity::warning, "points that were tracked",
-            fmt::format("none, and {} that were inferred", inferred_),
-            "a fit takes tracked ones only",
-            "where they were tracked, say under [state] of a layout which value says so");
+            fmt::format("none, but {} inferred points", inferred_),
+            "a fit uses only tracked points",
+            "if they were tracked, state the value for tracked under [state] of a layout");
   }
   std::size_t never = 0;
   std::string first;
@@ -109,9 +109,9 @@ void PointSizes::judge_seen(const PointHeader& header, FileFindings& out) const 
   }
   if (never > 0 && all_frames_ >= enough) {
     out.add(Severity::note, "points that were seen at least once",
-            fmt::format("{} of {} that never were, the first '{}'", never, joints_.size(), first),
+            fmt::format("{} of {} never seen, the first is '{}'", never, joints_.size(), first),
             "they are invalid in every row",
-            "where 0, 0, 0 is its place, as of a body seen from there: a layout without "
+            "if 0, 0, 0 is a valid position of this point, such as a root, use a layout without "
             "missing_point");
   }
 }
@@ -135,18 +135,18 @@ void PointSizes::judge_marks(const PointHeader& header, FileFindings& out) const
     at_zero += zeros;
   }
   if (at_zero > 0) {
-    out.add(Severity::warning, "points where they were seen",
+    out.add(Severity::warning, "points at measured positions",
             fmt::format("{} at exactly 0, 0, 0, the first of '{}'", at_zero, first),
             "read as places, as they stand there",
-            "missing_point = [0, 0, 0] in a layout of the file, where that means not seen");
+            "if 0, 0, 0 means not seen, set missing_point = [0, 0, 0] in a layout");
   }
   // If most frames are too wide, the unit is wrong instead, and judge_unit() says so.
   if (far_.count > 0 && far_.count <= person_.count) {
     out.add(Severity::warning, "the points of a frame within 20 m",
-            fmt::format("{} of {} frames in which they are not, {:.0f} m in the mean", far_.count,
-                        far_.count + person_.count, far_.mean()),
+            fmt::format("{} of {} frames with points farther apart, {:.0f} m on average",
+                        far_.count, far_.count + person_.count, far_.mean()),
             "read as places, as they stand there",
-            "missing_point in a layout of the file, where a number stands for not seen");
+            "if a number means not seen, set missing_point in a layout");
   }
 }
 
@@ -162,9 +162,8 @@ void PointSizes::judge_unit(FileFindings& out) const {
     const double times = std::pow(10.0, std::round(std::log10(size / 1.7)));
     meaning = times > 1.0 ? fmt::format("lengths are about {:g} times too large", times)
                           : fmt::format("lengths are about {:g} times too small", 1.0 / times);
-    repair = fmt::format(
-        "metres_per_unit of this stream, in a manifest or layout, {:g} times that now taken",
-        1.0 / times);
+    repair = fmt::format("multiply metres_per_unit of this stream by {:g}, in a manifest or layout",
+                         1.0 / times);
   }
   out.add(Severity::warning, "the points of a frame 0.2 to 20 m apart",
           size < 1000.0 ? fmt::format("{:.3g} m", size) : fmt::format("{:.0f} m", size), meaning,
@@ -192,12 +191,12 @@ Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const
   FileFindings out{file};
   // All findings of units have the same effect: values are used as they are in the file.
   const auto find = [&out](const char* expected, const std::string& found, const char* repair) {
-    out.add(Severity::warning, expected, found, "read as they stand there", repair);
+    out.add(Severity::warning, expected, found, "the values are used unchanged", repair);
   };
   if (samples_ >= enough && 10 * valid_ < samples_) {
-    out.add(Severity::warning, "nodes whose samples are valid, one in ten at least",
+    out.add(Severity::warning, "at least one valid sample in ten",
             fmt::format("{} of {}", valid_, samples_),
-            "the others are invalid: a quantity is missing in them",
+            "the other samples are invalid, because a quantity is missing",
             "look at the cells that are empty");
   }
   if (acceleration_.count >= enough) {
@@ -207,19 +206,18 @@ Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const
     // about 9.8 and steady.
     const bool steady = mean > 8.5 && mean < 12.0 && acceleration_.deviation() < 0.5 * mean;
     if (mean > most_acceleration || (gravity && mean < least_with_gravity)) {
-      find(gravity ? "accelerations with gravity of 6 to 40 m/s2 in the mean"
-                   : "accelerations of at most 40 m/s2 in the mean",
-           found,
-           "acceleration_unit = \"g\" (or \"m/s2\"), or gravity = false, in a layout of the file");
+      find(gravity ? "accelerations with gravity of 6 to 40 m/s2 on average"
+                   : "accelerations of at most 40 m/s2 on average",
+           found, "set acceleration_unit = \"g\" (or \"m/s2\"), or gravity = false, in a layout");
     } else if (!gravity && steady) {
-      find("accelerations without gravity", found + " in the mean",
-           "gravity = true in a layout of the file, where it stands in them");
+      find("accelerations without gravity", found + " on average",
+           "if the values contain gravity, set gravity = true in a layout");
     }
   }
   if (angular_velocity_.count >= enough && angular_velocity_.mean() > most_angular_velocity) {
-    find("turns of at most 12 rad/s in the mean",
+    find("angular velocities of at most 12 rad/s on average",
          fmt::format("{:.3g} rad/s", angular_velocity_.mean()),
-         "angular_velocity_unit = \"deg/s\" in a layout of the file");
+         "set angular_velocity_unit = \"deg/s\" in a layout");
   }
   orientation_.judge(header, out);
   return out.all;

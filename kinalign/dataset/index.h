@@ -18,8 +18,8 @@ namespace kinalign {
 /// Reads the dataset.toml of a folder. Fails if the folder is no data set.
 Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder);
 
-/// The takes of a data set as tables that SQL can ask. Everything in it can be made again from the
-/// files, so no error of the index loses data. Takes without a summary are not in it.
+/// The takes of a data set as tables that can be queried in SQL. Everything in it can be made again
+/// from the files, so no error of the index loses data. Takes without a summary are not in it.
 class DatasetIndex {
  public:
   /// Opens and updates the index. Unchanged folders are not read. `folder` does not end with '/'.

@@ -131,7 +131,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
                  std::to_string(head.uncompressed_size >> 20) + " MiB");
   }
   if (!head.compression.empty() && head.compression != "zstd") {
-    return unfit("a chunk that is not compressed or by zstd", shown(head.compression));
+    return unfit("a chunk that is uncompressed or compressed by zstd", shown(head.compression));
   }
   if (head.compression.empty() && chunk.stored_size != head.uncompressed_size) {
     return misfit(head, chunk.stored_size);  // checked before the records are copied
@@ -140,7 +140,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   // A zstd stream may end early or hold more than the head states.
   if (records.size() != head.uncompressed_size) return misfit(head, records.size());
   if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc_of(records)) {
-    return unfit("a chunk whose checksum fits", "another one");
+    return unfit("a chunk with a correct checksum", "another one");
   }
   return records;
 }

@@ -74,8 +74,8 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
     const bool fits = whole && take(head->op, bytes.substr(mcap_record_head, head->length), record);
     const bool ends = !whole || head->op == McapOp{};  // a power failure may leave zeros
     if (!fits) {
-      report(Severity::error, "records in the chunk", "something else",
-             ends ? "the chunk's rest is left out" : "it is left out");
+      report(Severity::error, "valid records in the chunk", "a damaged record",
+             ends ? "the rest of the chunk is skipped" : "the record is skipped");
     }
     if (!fits && ends) break;
     chunk_taken_ += mcap_record_head + head->length;
@@ -178,7 +178,7 @@ std::optional<McapRecord> McapReader::read_record() {
   std::optional<McapRecord> record;
   const bool is_chunk = head.op == McapOp::chunk;
   if (!(is_chunk ? open_chunk(content) : take(head.op, content, record))) {
-    report_damage("a record whose fields and checksum fit", "another one");
+    report_damage("a record with valid fields and checksum", "a damaged record");
     return std::nullopt;
   }
   // A record outside of chunks is covered by the section's checksum only.
@@ -217,8 +217,8 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
     is_summary_damaged_ = stated != 0 && stated != covered;
   }
   if (stated != 0 && stated != covered) {
-    report(Severity::error, "a checksum that fits what stands before it", "another one",
-           "something there was altered");
+    report(Severity::error, "the checksum of the data before it", "another checksum",
+           "some of this data is damaged");
   }
 }
 
@@ -258,7 +258,7 @@ void McapReader::end_in_record() {
   offset_ = offset;
   skipped_ = skipped_before;
   if (damaged) {
-    report(Severity::error, "a record", "one that is longer than the file",
+    report(Severity::error, "a record", "a record longer than the file",
            "what stands there is left out, up to the next whole chunk");
     crc_counts_ = false;
     skip(skipped);
@@ -269,8 +269,9 @@ void McapReader::end_in_record() {
   const auto chunk = decode_mcap_head(bytes) && decode_mcap_head(bytes)->op == McapOp::chunk
                          ? decode_mcap_chunk(bytes.substr(mcap_record_head))
                          : std::nullopt;
-  report(Severity::warning, "a whole record", "the file's end in the midst of one",
-         chunk ? "messages of the chunk are read as far as they go, unchecked" : "it is left out");
+  report(Severity::warning, "a complete record", "the end of the file within a record",
+         chunk ? "the chunk's messages before the end are read without a checksum"
+               : "the record is skipped");
   record_at_ = offset_;
   record_size_ = bytes.size();
   in_truncated_chunk_ = true;
@@ -319,8 +320,8 @@ void McapReader::find_magic() {
   // Exactly the magic must follow. One more byte shows whether something follows it.
   if (bytes.size() <= mcap_magic.size() && !ended_) return;
   if (bytes != mcap_magic) {
-    report(Severity::error, "the file's last eight bytes behind its footer", "others",
-           "they are left out");
+    report(Severity::error, "the MCAP magic after the footer", "other bytes",
+           "these bytes are ignored");
   }
   state_ = bytes == mcap_magic ? State::closed : State::bad_end;
   consume(bytes.size());

@@ -38,7 +38,7 @@ Result<void> McapWriter::begin(const McapHeader& header) {
 }
 
 Result<void> McapWriter::write(const McapStoredChunk& chunk) {
-  // Positions become those in the file.
+  // The index has positions within the chunk; the chunk's position in the file is added.
   McapChunkIndex index = chunk.index;
   index.chunk_offset += size_;
   for (auto& [channel, offset] : index.message_index_offsets) offset += size_;

@@ -52,7 +52,7 @@ Result<RigidTransform> fit_rigid(const PairMoments& m) {
   return transform;
 }
 
-double spread_beside_line(const PairMoments& m) {
+double spread_off_line(const PairMoments& m) {
   if (m.count == 0) return 0.0;
   return std::sqrt(Eigen::JacobiSVD<Eigen::Matrix3d>(covariance(m)).singularValues()[1]);
 }

@@ -35,6 +35,6 @@ Result<RigidTransform> fit_rigid(const PairMoments& moments);
 
 /// The spread of the points perpendicular to the line that fits them best, m rms. The larger it is,
 /// the better the rotation about that line is determined.
-double spread_beside_line(const PairMoments& moments);
+double spread_off_line(const PairMoments& moments);
 
 }  // namespace kinalign

@@ -154,7 +154,7 @@ PortCounts since(const PortCounts& before, const PortCounts& now) {
   return out;
 }
 
-std::uint64_t strays(const PortCounts& counts, std::uint64_t lost) {
+std::uint64_t foreign_datagrams(const PortCounts& counts, std::uint64_t lost) {
   // Lost frames may have been dropped at the same buffer, so only the excess is surely foreign.
   return counts.sifted && counts.dropped > lost ? counts.dropped - lost : 0;
 }

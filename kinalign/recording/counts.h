@@ -61,7 +61,7 @@ McapSchema port_counts_schema();
 PortCounts since(const PortCounts& before, const PortCounts& now);
 /// The least number of foreign datagrams among the dropped ones of a sifted port. The others may be
 /// the `lost` frames of its nodes, dropped because the buffer was full.
-std::uint64_t strays(const PortCounts& counts, std::uint64_t lost);
+std::uint64_t foreign_datagrams(const PortCounts& counts, std::uint64_t lost);
 /// One message of /counts/ports: a device's port, or a port of marks, and its counts.
 struct CountedPort {
   std::string stream;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view format = "1";
 
-/// Empty if the key is missing.
+/// Returns the value of a key, or an empty text if it is missing.
 std::string text_of(const McapTexts& texts, const std::string& key) {
   const auto found = texts.find(key);
   return found == texts.end() ? std::string() : found->second;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contents of a recording's MCAP file besides raw payloads. docs/formats/recording.md is the
-// specification.
+// The contents of a recording's MCAP file besides raw payloads. The specification is
+// docs/formats/recording.md and docs/formats/recording_channels.md.
 #pragma once
 
 #include "kinalign/clock/exchange.h"
@@ -86,8 +86,8 @@ struct RawChannel {
 };
 McapChannel to_channel(std::string topic, const RawChannel& raw);
 std::optional<RawChannel> to_raw(const McapChannel& channel);
-/// The protocol of the channel's device. Absent if it is not known. Exchanges of a channel with a
-/// node belong to that node, and others to a Kinect.
+/// The protocol of the channel's device. Absent if it is not known. An exchange belongs to
+/// an inertial node if its channel names a node, otherwise to a Kinect.
 std::optional<Protocol> protocol_of(const RawChannel& raw);
 
 /// The channel of the host's two clocks, one pair per second.

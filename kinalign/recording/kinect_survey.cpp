@@ -33,7 +33,7 @@ Findings KinectSurvey::findings(const std::string& path) const {
   for (const auto& [sensor, sessions] : sensors_) {
     if (!sessions.overlap()) continue;
     findings.push_back(overlap_finding(path, *sessions.overlap(),
-                                       "alignment takes one of them for " + shown(sensor.first)));
+                                       "align reads one of them for " + shown(sensor.first)));
   }
   return findings;
 }

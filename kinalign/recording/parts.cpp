@@ -179,7 +179,7 @@ Findings judge_siblings(FileSystem& files, const RecordingPart& part) {
                : is_recording
                    ? "a part of another recording, or one of the two has a damaged beginning"
                    : "a file that does not say of which recording it is"},
-         "it has the name of a part, and was left out",
+         "the file has the name of a part, but was left out",
          "give it another name if it belongs to another recording"});
   }
   return findings;
@@ -209,7 +209,7 @@ Findings judge_parts(FileSystem& files, const RecordingParts& parts, Severity se
     findings.push_back({several,
                         Error{front.path, 0, "a recording in one file",
                               fmt::format("{}", fmt::join(others, ", "))},
-                        "the recording went on there when the disk failed; all parts were read",
+                        "the recording continued there when the disk failed; all parts were read",
                         several == Severity::note ? "" : join});
   }
   append(findings, judge_siblings(files, front));

@@ -205,16 +205,17 @@ Findings RecordStream::findings() const {
       findings.push_back(std::move(finding));
     }
     if (part.impossible == 0) continue;
-    findings.push_back({Severity::error,
-                        Error{path, 0, "messages with possible numbers in the truncated chunk",
-                              std::to_string(part.impossible) + " with others"},
-                        "no checksum covers them, and they are damaged: they are left out", ""});
+    findings.push_back(
+        {Severity::error,
+         Error{path, 0, "plausible message numbers in the truncated chunk",
+               std::to_string(part.impossible) + " messages with impossible numbers"},
+         "these messages have no checksum and are damaged, so they are left out", ""});
   }
   if (in_order_) return findings;
   findings.push_back(
       {Severity::warning,
        Error{parts_.front().file.path(), 0, "each channel's messages in order",
-             "some after later ones"},
+             "some messages after later ones"},
        "all of them are read, but align may leave some out",
        "recover the recording's original files together, without a file that recover made"});
   return findings;

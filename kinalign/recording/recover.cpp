@@ -64,7 +64,7 @@ class Copier {
   std::uint64_t size() const { return writer_.size(); }
   const Contents& contents() const { return contents_; }
   std::size_t channels() const { return copied_.size(); }
-  std::uint64_t nameless() const { return nameless_; }
+  std::uint64_t nameless() const { return undefined_; }
   /// Returns whether the files contain nothing but a header and definitions.
   bool is_empty() const { return contents_.messages == 0 && is_empty_; }
 
@@ -98,7 +98,7 @@ class Copier {
     // A message whose channel has no definition can't be read by anybody, so it is only counted.
     const auto channel = channels_.find(message.channel);
     if (channel == channels_.end()) {
-      ++nameless_;
+      ++undefined_;
       return {};
     }
     if (!chunk_.messages().contains(message.channel)) {
@@ -144,7 +144,7 @@ class Copier {
   std::set<std::uint16_t> copied_;  // channels with messages
   McapChunkContent chunk_;
   Contents contents_;
-  std::uint64_t nameless_ = 0;
+  std::uint64_t undefined_ = 0;
   bool is_empty_ = true;
 };
 
@@ -188,7 +188,7 @@ Result<void> prove(const OutputFile& file, const Copier& copier, const Progress&
   if (reader.closed() && reader.findings().empty() && read == copier.contents()) return {};
   return Failure(Error{file.path(), 0,
                        fmt::format("{} messages, read again", copier.contents().messages),
-                       fmt::format("{}, not all as they were written", read.messages)});
+                       fmt::format("{} messages, some of them changed", read.messages)});
 }
 
 }  // namespace
@@ -207,7 +207,7 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   const std::string& first = parts.front().path;
   // A new file of nothing would look like a recovery.
   if (copier.is_empty()) {
-    return Failure(Error{first, 0, "a recording of which anything can be read", "nothing"});
+    return Failure(Error{first, 0, "a recording with at least one readable message", "none"});
   }
   KA_TRY(copier.finish(stream.ending()));
   // Until commit() the new file has a temporary name, so a failure here leaves nothing behind.

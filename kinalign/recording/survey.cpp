@@ -144,9 +144,11 @@ void RecordingSurveyor::add_mark(const McapMessage& message) {
 
 Findings judge_end(const std::string& path, bool is_ours, Ending ending) {
   if (!is_ours || ending != Ending::none) return {};
-  return {{Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
-           "the disk took no more: what came later is in another file, if it took one",
-           "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"}};
+  return {{Severity::warning,
+           Error{path, 0, "a recording's last file", "a file without the end of the recording"},
+           "the disk accepted no more data; later data is in another file, if one could be written",
+           "look for the next part (such as take.part2.mcap) where it was recorded; kinalign "
+           "recover joins all parts"}};
 }
 
 Result<bool> is_recording(FileSystem& files, const std::string& path) {

@@ -224,8 +224,8 @@ Fields describe(DeviceOptions& o) {
        &o.skeleton},
       {"rate_hz", "nominal rate; 0: the usual rate of the protocol", &o.rate_hz, 0.0, 10'000.0},
       {"required", "whether a take needs it: red while it is missing", &o.required},
-      {"lab_key", "of nodes: the file of the lab's key", &o.lab_key},
-      {"nodes", "of nodes: the place of each node by its id", &o.nodes},
+      {"lab_key", "protocol nodes: the file of the lab's key", &o.lab_key},
+      {"nodes", "protocol nodes: the place of each node by its id", &o.nodes},
   };
 }
 

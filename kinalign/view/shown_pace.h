@@ -11,8 +11,8 @@
 
 namespace kinalign {
 
-/// At most 30 frames a second in the long run, and 31 within any one second.
-/// `due_` moves on by whole steps and not by the frames' own distances, so jitter does not add up.
+/// Selects at most 30 frames a second in the long run, and 31 within any one second. `due_`
+/// advances by whole steps, not by the intervals between frames, so jitter does not accumulate.
 class ShownPace {
  public:
   /// True if the frame at that time is shown. Call it for the frames in their order.

@@ -19,16 +19,16 @@ NodeRefusal take_request(const NodeHead& head, ByteReader& reader, ClocklessRequ
   request.has_sample = head.byte21 != 0;
   // Version 1 keeps these bytes at 0, so a later version can give them a meaning.
   for (std::size_t i = 0; i < times_size; ++i) {
-    if (reader.take<std::uint8_t>() != 0) return NodeRefusal::stray_bits;
+    if (reader.take<std::uint8_t>() != 0) return NodeRefusal::reserved_bits;
   }
-  if (request.has_sample && !take_sample(reader, request.sample)) return NodeRefusal::stray_bits;
+  if (request.has_sample && !take_sample(reader, request.sample)) return NodeRefusal::reserved_bits;
   return NodeRefusal::none;
 }
 
 /// Answer and confirm differ only in the type.
 template <class Stamped>
 NodeRefusal take_times(const NodeHead& head, ByteReader& reader, Stamped& stamped) {
-  if (head.byte21 != 0) return NodeRefusal::stray_bits;
+  if (head.byte21 != 0) return NodeRefusal::reserved_bits;
   stamped.origin = head.origin;
   stamped.times = {reader.take<std::uint32_t>(), reader.take<std::uint64_t>(),
                    reader.take<std::uint64_t>()};

@@ -124,9 +124,9 @@ NodeRefusal unseal(const Envelope& envelope, DatagramType type, const MacKey* ke
   ByteReader reader(envelope.datagram.subspan(20));
   head = {type, envelope.origin, reader.take<std::uint8_t>(), reader.take<std::uint8_t>(),
           reader.take<std::uint16_t>()};
-  if ((head.flags & ~known_flags(type)) != 0) return NodeRefusal::stray_bits;
+  if ((head.flags & ~known_flags(type)) != 0) return NodeRefusal::reserved_bits;
   // A value without its flag is a fault of the sender.
-  if ((head.flags & battery_flag) == 0 && head.battery_mv != 0) return NodeRefusal::stray_bits;
+  if ((head.flags & battery_flag) == 0 && head.battery_mv != 0) return NodeRefusal::reserved_bits;
   fields = envelope.datagram.subspan(
       node_head_size, envelope.datagram.size() - node_datagram_size(0, envelope.has_mac));
   return NodeRefusal::none;

@@ -46,7 +46,7 @@ enum class [[nodiscard]] NodeRefusal : std::uint8_t{
     no_key,     // it has a MAC, but there is no key to check it
     no_mac,     // the node has a key, but the datagram has no MAC
     wrong_mac,  // a receiver first tries the node's old key while that is valid
-    stray_bits,
+    reserved_bits,
     too_many_samples,
     wrong_fields,  // the fields are shorter or longer than the datagram
 };

@@ -15,7 +15,7 @@ static_assert(node_datagram_size(clock_size + max_node_samples * max_sample_size
 
 NodeRefusal take_samples(ByteReader& reader, NodeFrame& frame) {
   for (std::size_t i = 0; i < frame.sample_count; ++i) {
-    if (!take_sample(reader, frame.samples[i])) return NodeRefusal::stray_bits;
+    if (!take_sample(reader, frame.samples[i])) return NodeRefusal::reserved_bits;
   }
   return NodeRefusal::none;
 }
@@ -32,7 +32,7 @@ NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& fram
   frame.echo = {reader.take<std::uint32_t>(), reader.take<std::uint32_t>(),
                 reader.take<std::uint64_t>()};
   // A sender that forgets the flag must not lose its echo without notice.
-  if (!frame.has_echo && frame.echo != ReplyEcho{}) return NodeRefusal::stray_bits;
+  if (!frame.has_echo && frame.echo != ReplyEcho{}) return NodeRefusal::reserved_bits;
   return take_samples(reader, frame);
 }
 

@@ -12,7 +12,7 @@ constexpr std::size_t fields_size = 4 + 4 + 8;
 constexpr std::uint8_t locked_state = 1;
 
 NodeRefusal take_reply(const NodeHead& head, ByteReader& reader, NodeReply& reply) {
-  if ((head.byte21 & ~locked_state) != 0) return NodeRefusal::stray_bits;
+  if ((head.byte21 & ~locked_state) != 0) return NodeRefusal::reserved_bits;
   reply.origin = head.origin;
   reply.locked = head.byte21 != 0;
   reply.reply_sequence = reader.take<std::uint32_t>();

@@ -66,7 +66,7 @@ TEST_CASE("joints more than 30 cm rms from their counterparts are a warning with
 TEST_CASE("a fit by joints near one line is a warning with their names") {
   SpacePlan plan;
   plan.options.method = "fit";
-  plan.beside_line_m = 0.043;
+  plan.off_line_m = 0.043;
   SpaceReport space;
   space.stream = "kinect";
   space.joints = {{"SpineBase", "Hips", 9, 0.1, 0.0}, {"Head", "Head", 9, 0.1, 0.0}};
@@ -76,12 +76,12 @@ TEST_CASE("a fit by joints near one line is a warning with their names") {
         "warning: expected joints that are at least 10 cm away from a line, to fit 'kinect', "
         "found 4.3 cm: SpineBase, Head; the rotation about this line is a guess, even if the "
         "residuals are small; also name joints of arms or legs: joints = { ... }");
-  plan.beside_line_m = 0.099;
+  plan.off_line_m = 0.099;
   CHECK(judge_fit(plan, space).size() == 1);
-  plan.beside_line_m = 0.1;
+  plan.off_line_m = 0.1;
   CHECK(judge_fit(plan, space).empty());
   plan.options.method = "given";
-  plan.beside_line_m = 0.0;
+  plan.off_line_m = 0.0;
   CHECK(judge_fit(plan, space).empty());
 }
 

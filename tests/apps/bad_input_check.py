@@ -168,7 +168,7 @@ def a_recording_of_which_no_message_can_be_read_becomes_nothing(folder):
     path.parent.mkdir()
     path.write_bytes(b"\x89MCAP0\r\n\x01\x15\0\0\0\0\0\0\0" + b"\x08\0\0\0kinalign")
     refused("recover", path, "-o", folder / "o.mcap",
-            naming=f"{path}: expected a recording of which anything can be read, found nothing")
+            naming=f"{path}: expected a recording with at least one readable message, found nothing")
     for words in (("align", path, "-o", folder / "o.h5"), ("convert", path, folder / "o.mcap")):
         refused(*words, naming=f"{path}: expected a recording in which a message can be read, found none")
     assert list(folder.iterdir()) == [path.parent]

@@ -251,7 +251,7 @@ def takes_by_marks_end_with_the_one_that_something_is_amiss_with(folder):
     recording.until("waiting")
     code, _, err = recording.end()
     assert code == 1, err
-    said = f"kinalign record: 2 takes; exit code 1 for what was told above before the end of {folder}/take_01.mcap\n"
+    said = f"kinalign record: 2 takes; exit code 1 because of the messages above about {folder}/take_01.mcap\n"
     assert err.endswith(said), err
 
 

@@ -45,7 +45,7 @@ def a_file_of_settings_that_cannot_be_read_is_no_wrong_use(folder):
 @case
 def a_file_is_no_folder(folder):
     wrong("record", "-o", folder / "take.mcap", "--device", "m=noitom:0",
-          says=f"--out: expected a folder for the files, whose names --subject and --action say, found {folder}/take.mcap")
+          says=f"--out: expected a folder for the files; --subject and --action make their names, found {folder}/take.mcap")
     (folder / "here").write_text("no folder")
     _, err = done_with(3, "record", "-o", folder / "here" / "takes", "--device", "m=nodes:0")
     assert f"{folder}/here/takes: expected a folder that can be made, found Not a directory" in err, err

@@ -95,7 +95,7 @@ def what_align_warns_of_check_tells_of_the_manifest_as_well(folder):
         said = json.loads(done_with(1, *words, "--json")[0])
         told.append([f["expected"] + " " + f["meaning"] for f in (said.get("report") or said)["findings"]])
         for what in ("this stream is the reference, so they keep", "a first sample that was stamped when it was measured", "gravity of 'wrist_left'",
-                     "orientations of 'wrist_left' that turn as the gyroscope says"):
+                     "orientations of 'wrist_left' that turn as the gyroscope measures"):
             assert any(what in line for line in told[-1]), (words, what, told[-1])
     assert sorted(told[0]) == sorted(told[1]), told
 

@@ -27,9 +27,9 @@ TEST_CASE("what the recorder counted and the file lacks is found, at its ends to
   CHECK(judged(kinect_survey(1000, 993, 0)) ==
         "the 1,000 messages on /kinect/raw that were counted: 7 missing\n");
   CHECK(judged(kinect_survey(1000, 993, 7)) ==
-        "/kinect/raw without a number left out: 7 missing\n");
+        "/kinect/raw with consecutive message numbers: 7 missing\n");
   CHECK(judged(kinect_survey(1000, 990, 7)) ==
-        "/kinect/raw without a number left out: 7 missing\n"
+        "/kinect/raw with consecutive message numbers: 7 missing\n"
         "the 1,000 messages on /kinect/raw that were counted: 3 missing\n");
 }
 
@@ -63,11 +63,11 @@ TEST_CASE("what is no mark blames no machine, and a refused node is no silence")
                   port("imu", 118, 9)};
   survey.ports.back().counts.sifted = true;
   CHECK(judged(survey) ==
-        "marks alone at the port of marks: 2 datagrams that are none\n"
-        "everything that came to the port of trigger: 3 dropped by the kernel\n"
-        "everything that came to the port of kinect: 4 refused, not recorded\n"
-        "frames alone of the lab's nodes at the port of imu: 118 that are refused\n"
-        "frames of nodes alone at the port of imu: 9 datagrams that are none\n");
+        "only marks at the port of marks: 2 other datagrams\n"
+        "all data that arrived at the port of trigger: 3 dropped by the kernel\n"
+        "all data that arrived at the port of kinect: 4 refused, not recorded\n"
+        "only frames of the lab's nodes at the port of imu: 118 that are refused\n"
+        "only frames of nodes at the port of imu: 9 other datagrams\n");
   for (const Finding& finding : judge_survey("a.mcap", survey)) {
     const bool harmless = finding.what.expected.find(" alone ") != std::string::npos;
     CHECK(finding.severity == (harmless ? Severity::note : Severity::warning));
@@ -86,12 +86,12 @@ TEST_CASE("many foreign datagrams at the nodes' port are a warning, a few are a 
   counts.dropped = 419;
   CHECK(judged(survey) ==
         "messages of imu 7: none: 419 datagrams came to its port, none a frame of nodes\n"
-        "frames of nodes alone at the port of imu: 419 datagrams that are none\n");
+        "only frames of nodes at the port of imu: 419 other datagrams\n");
   CHECK(judge_survey("a.mcap", survey).back().severity == Severity::warning);
   // The datagrams that were thrown away may be among its 400 lost frames.
   survey.senders[0].stream = "imu";
   survey.senders[0].counts.order.lost = 400;
-  CHECK(judge_survey("a.mcap", survey).back().what.found == "at least 19 datagrams that are none");
+  CHECK(judge_survey("a.mcap", survey).back().what.found == "at least 19 other datagrams");
   survey.senders[0].counts.order.lost = 419;
   CHECK(judge_survey("a.mcap", survey).back().what.expected.find("alone") == std::string::npos);
 }

@@ -70,7 +70,8 @@ TEST_CASE("a node whose orientations, accelerations and turns are one is left al
 TEST_CASE("parts in another order, the inverse and another axis up show in gravity and in turns") {
   const std::string shifted = judged_node(swinging(parts_shifted), with_gravity);
   CHECK(has(shifted, "w.csv: expected gravity of 'wrist' that points up in the world, found"));
-  CHECK(has(shifted, "w.csv: expected orientations of 'wrist' that turn as the gyroscope says"));
+  CHECK(
+      has(shifted, "w.csv: expected orientations of 'wrist' that turn as the gyroscope measures"));
   CHECK(has(judged_node(swinging(other_way), with_gravity), "as the gyroscope says"));
   CHECK(judged_node(swinging(z_up), with_gravity) ==
         "w.csv: expected gravity of 'wrist' that points up in the world, found 90 degrees from it "

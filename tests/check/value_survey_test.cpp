@@ -97,7 +97,7 @@ std::string judged_hand(Hand hand, const Vec3& hip = {0.0, 0.9, 2.0}, double hip
 }
 
 std::string zeros_of_hand(const std::string& count) {
-  return "k.csv: expected points where they were seen, found " + count +
+  return "k.csv: expected points at measured positions, found " + count +
          " at exactly 0, 0, 0, the first of 'Hand'; missing_point = [0, 0, 0] in a layout of the "
          "file, where that means not seen\n";
 }
@@ -121,8 +121,8 @@ TEST_CASE("one point that stays at zero or moves away and comes back is the file
   const auto never = [](auto) { return zero; };
   CHECK(judged_hand(never) == "");
   CHECK(judged_hand(never, zero) ==
-        "k.csv: expected points where they were seen, found 80 at exactly 0, 0, 0, the first of "
-        "'Hip'; missing_point = [0, 0, 0] in a layout of the file, where that means not seen\n");
+        "k.csv: expected points at measured positions, found 80 at exactly 0, 0, 0, the first of "
+        "'Hip'; if 0, 0, 0 means not seen, set missing_point = [0, 0, 0] in a layout\n");
 }
 
 TEST_CASE("points of which none was tracked are a warning, one that was never seen is a note") {
@@ -139,7 +139,7 @@ TEST_CASE("points of which none was tracked are a warning, one that was never se
   REQUIRE(found.size() == 2);
   CHECK(found[0].severity == Severity::warning);
   CHECK(to_string(found[0].what) ==
-        "k.csv: expected points that were tracked, found none, and 80 that were inferred");
+        "k.csv: expected points that were tracked, found none, but 80 inferred points");
   CHECK(found[1].severity == Severity::note);
   CHECK(to_string(found[1].what) ==
         "k.csv: expected points that were seen at least once, found 1 of 3 that never were, the "
@@ -157,12 +157,10 @@ TEST_CASE("points far from all others mark what was not seen") {
 TEST_CASE("accelerations in g, or with gravity where none should be, are distinguished from m/s2") {
   CHECK(judged_node(9.81, 1.0, true).empty());
   CHECK(judged_node(20.0, 5.0, true).empty());  // a shank that runs
-  CHECK(
-      judged_node(1.0, 1.0, true) ==
-      "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 1.01 m/s2\n");
-  CHECK(
-      judged_node(96.0, 1.0, true) ==
-      "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 96.8 m/s2\n");
+  CHECK(judged_node(1.0, 1.0, true) ==
+        "w.csv: expected accelerations with gravity of 6 to 40 m/s2 on average, found 1.01 m/s2\n");
+  CHECK(judged_node(96.0, 1.0, true) ==
+        "w.csv: expected accelerations with gravity of 6 to 40 m/s2 on average, found 96.8 m/s2\n");
   CHECK(judged_node(2.0, 1.0, false).empty());
   CHECK(judged_node(9.81, 1.0, false) ==
         "w.csv: expected accelerations without gravity, found 9.89 m/s2 in the mean\n");
@@ -171,7 +169,7 @@ TEST_CASE("accelerations in g, or with gravity where none should be, are disting
 
 TEST_CASE("turns in degrees per second are distinguished from radians") {
   CHECK(judged_node(9.81, 57.3, true) ==
-        "w.csv: expected turns of at most 12 rad/s in the mean, found 57.3 rad/s\n");
+        "w.csv: expected angular velocities of at most 12 rad/s on average, found 57.3 rad/s\n");
 }
 
 TEST_CASE(
@@ -185,7 +183,7 @@ TEST_CASE(
   const Findings unseen = points.judge({}, "k.csv");
   REQUIRE(unseen.size() == 1);
   CHECK(to_string(unseen[0].what) ==
-        "k.csv: expected frames with a point in them, one in ten at least, found 0 of " +
+        "k.csv: expected at least one frame in ten with a point, found 0 of " +
             std::to_string(rows));
   ImuSamples lost;
   lost.stamps.assign(rows, Time{});
@@ -197,8 +195,7 @@ TEST_CASE(
   const Findings nothing = nodes.judge(header, "w.csv");
   REQUIRE(nothing.size() == 1);
   CHECK(to_string(nothing[0].what) ==
-        "w.csv: expected nodes whose samples are valid, one in ten at least, found 0 of " +
-            std::to_string(rows));
+        "w.csv: expected at least one valid sample in ten, found 0 of " + std::to_string(rows));
   lost.acceleration.assign(9 * 3, 0.0);
   lost.valid.assign(9, 0);  // too few to tell
   ImuSizes few;

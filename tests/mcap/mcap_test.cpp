@@ -155,7 +155,7 @@ TEST_CASE("of an uncompressed chunk at which the file breaks off messages are re
   REQUIRE(read.findings.size() == 1);
   CHECK(to_string(read.findings[0].what)
             .starts_with(
-                "expected a whole record, found the file's end in the midst of one at byte"));
+                "expected a whole record, found the end of the file within a record at byte"));
 }
 
 TEST_CASE("a message outside of chunks is unchecked but by the checksum of all data") {
@@ -268,7 +268,7 @@ TEST_CASE("a file made to be searched for ever is searched in a moment") {
     CHECK(processor_seconds() - begin < 5.0);  // without limits it takes up to a minute
     CHECK(read.messages.empty());
     REQUIRE(read.findings.size() == 1);
-    CHECK(read.findings[0].what.found.starts_with("the file's end in the midst of one"));
+    CHECK(read.findings[0].what.found.starts_with("the end of the file within a record"));
   }
 }
 

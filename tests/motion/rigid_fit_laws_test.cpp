@@ -160,7 +160,7 @@ TEST_CASE("points on one line have no fit, wherever it lies and on whichever sid
     CHECK(is_refused(line, wide));
     CHECK(is_refused(wide, line));
     CHECK(is_refused(line, Points(20, begin)));
-    CHECK(spread_beside_line(moments_of(line, line)) <= 1e-7);
+    CHECK(spread_off_line(moments_of(line, line)) <= 1e-7);
   }
 }
 
@@ -173,6 +173,6 @@ TEST_CASE("the spread beside a line is that of the points, wherever they are mov
     Points from{{1, 0, 0}, {-1, 0, 0}, {0, width, 0}, {0, -width, 0}, {0, 0, 1e-3}, {0, 0, -1e-3}};
     from = moved_by(any_transform(20.0, random), from);
     const PairMoments moments = moments_of(from, moved_by(any_transform(20.0, random), from));
-    CHECK(spread_beside_line(moments) == doctest::Approx(width / std::sqrt(3.0)).epsilon(1e-9));
+    CHECK(spread_off_line(moments) == doctest::Approx(width / std::sqrt(3.0)).epsilon(1e-9));
   }
 }

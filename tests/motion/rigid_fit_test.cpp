@@ -115,6 +115,6 @@ TEST_CASE("points beside a line tell how sure the turn about it is") {
   for (const double y : {-1.0, 1.0}) {
     for (const double x : {-0.05, 0.05}) moments.add({x, y, 3.0}, {x, y, 0.0});
   }
-  CHECK(spread_beside_line(moments) == doctest::Approx(0.05).epsilon(1e-12));
-  CHECK(spread_beside_line({}) == 0.0);
+  CHECK(spread_off_line(moments) == doctest::Approx(0.05).epsilon(1e-12));
+  CHECK(spread_off_line({}) == 0.0);
 }

@@ -105,7 +105,7 @@ TEST_CASE("who reads a recording whose later file is not there is told that it e
     options.files = {{file, "12"}};
     return told(open_streams(files, {options})->shared_files.front().findings);
   };
-  CHECK(said(path) == "a recording up to its end, one that ends before\n");
+  CHECK(said(path) == "a recording's last file, one that ends before\n");
   CHECK(said(lab.whole()).empty());
   lab.second();
   lab.third();

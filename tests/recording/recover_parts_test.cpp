@@ -85,7 +85,7 @@ TEST_CASE(
   REQUIRE(recovered);
   REQUIRE(recovered->findings.size() == 1);
   CHECK(to_string(recovered->findings.front().what) ==
-        a + ": expected a recording up to its end, found one that ends before");
+        a + ": expected a recording's last file, found one that ends before");
   for (const char* name : {"a.mcap", "b.mcap"}) {
     const auto survey = survey_recording(files, folder / name);
     CHECK(ends_before(*survey));

@@ -132,7 +132,7 @@ TEST_CASE("a frame refused for its second sample leaves nothing") {
   NodeFrame arrived = frame_of(3);
   const auto change = [](Bytes& bytes) { bytes[52 + 29] = 255; };  // the flags of the second sample
   CHECK(received(altered(frame_of(2), nullptr, change), nullptr, arrived) ==
-        NodeRefusal::stray_bits);
+        NodeRefusal::reserved_bits);
   CHECK(arrived == NodeFrame{});
 }
 

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The plan of a twin, below its folder.
+/// The path of the plan, relative to the twin's folder.
 /// The plan's text is the identity of a twin: a folder is continued only if its plan is the same,
 /// byte for byte.
 constexpr const char* plan_file = "truth/twin.json";

@@ -54,7 +54,8 @@ Json json_of(const std::array<std::optional<double>, shared_joint_count>& joints
   for (const auto& one : joints) out.push_back(json_of(one));
   return out;
 }
-/// The whole histogram is kept: the single radius over all stretches can't be computed from means.
+/// The whole histogram is stored, because one_radius_m() over several stretches can't be computed
+/// from their means.
 Json json_of(const RadiusMarks& radii) {
   return {radii.cells, radii.within, radii.sum_m, radii.errors};
 }

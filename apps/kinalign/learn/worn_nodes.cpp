@@ -110,7 +110,7 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
   // If nodes are not worn as described, their tilt is found by calibration and says nothing about a
   // mistake.
   const bool is_checked =
-      posed.calibration.worn_as_told || posed.calibration.headings == Headings::mounting;
+      posed.calibration.worn_as_described || posed.calibration.headings == Headings::mounting;
   if (!is_checked || worn->tilt_deg <= most_tilt_deg) return "";
   if (worn_place(name)->on_arm) {
     return fmt::format(
@@ -218,7 +218,7 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
                   " deg away from the orientation in docs/pose.md, the others are as described "
                   "there: were these nodes swapped?");
   }
-  if (headings == "shared" && calibration.worn_as_told &&
+  if (headings == "shared" && calibration.worn_as_described &&
       calibration.spread_deg > most_shared_deg) {
     out.push_back(
         fmt::format("--heading shared was given, but the headings by mounting differ by {:.0f} deg "

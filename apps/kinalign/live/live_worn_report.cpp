@@ -49,7 +49,7 @@ Json calibration_json(const UsedTPose& t_pose, const NodeCalibration& found) {
           {"headings", found.headings == Headings::shared ? "shared" : "mounting"},
           {"facing", found.facing == Facing::arms ? "arms" : "mounting"},
           {"spread_deg", found.spread_deg},
-          {"worn_as_told", found.worn_as_told}};
+          {"worn_as_told", found.worn_as_described}};
 }
 
 void warn_of_turn(double fastest_deg_s, Json& warnings) {

@@ -23,7 +23,7 @@ struct UsedTPose {
   bool found = false;  // true: found by the program, not stated by the user
   double fastest_deg_s = 0.0;
 };
-/// The members t_pose, headings, facing, spread_deg and worn_as_told.
+/// The members t_pose, headings, facing, spread_deg and worn_as_described.
 nlohmann::ordered_json calibration_json(const UsedTPose& t_pose, const NodeCalibration& found);
 /// Appends a warning if a node turned in the T-pose, which makes the calibration of all nodes
 /// wrong.

@@ -26,8 +26,8 @@ enum Column : std::size_t {
   rate,
   lost,
   late,
-  twice,
-  heard,
+  duplicates,
+  last,
   offset,
   drift,
   battery,
@@ -47,8 +47,8 @@ struct Row {
 };
 
 Row head() {
-  return {{"device", "rate/s", "lost", "late", "twice", "heard", "clock", "ppm", "battery",
-           "recorded", "link"}};
+  return {{"device", "rate/s", "lost", "late", "dup", "last", "clock", "ppm", "battery", "recorded",
+           "link"}};
 }
 
 /// The clock offset (host minus device) and half the certified interval: "-1000.0031 s ± 1.04 ms".
@@ -66,7 +66,7 @@ std::string rate_cell(const StreamStatus& stream, double nominal_hz) {
 }
 
 /// "0.1 s", "silent 12 s": readable without colours, too.
-std::string heard_cell(const StreamStatus& stream, HostTime now) {
+std::string last_cell(const StreamStatus& stream, HostTime now) {
   const double ago = seconds(now - stream.last_arrival);
   return is_silent(stream, now) ? fmt::format("silent {:.0f} s", ago)
                                 : fmt::format("{:.1f} s", ago);
@@ -91,7 +91,7 @@ Cells cells_of(const StreamStatus& stream, const DeviceOptions& options, const L
           grouped(order.lost),
           grouped(order.late),
           grouped(order.duplicates),
-          heard_cell(stream, status.now),
+          last_cell(stream, status.now),
           offset_cell(clock),
           clock ? fmt::format("{:+.1f}", 1e6 * clock->drift) : "",
           stream.battery_volts ? fmt::format("{:.2f} V", *stream.battery_volts) : "",

@@ -26,13 +26,13 @@ Usage describe_record(RecordJob& o) {
   usage.flags = {
       {"device", "NAME=PROTOCOL[:TRANSPORT[:ADDRESS]]:PORT, as in imu=nodes:5005; may be repeated",
        &o.devices},
-      {"subject", "who moves: part of the file's name", &o.subject},
-      {"action", "what they do: part of the file's name", &o.action},
-      {"seconds", "end by itself after so long", &o.seconds, 0.0, 1e6},
-      {"wait", "wait for a mark that starts the take; one that stops ends it", &o.wait},
+      {"subject", "id of the person; part of the file's name", &o.subject},
+      {"action", "id of the action; part of the file's name", &o.action},
+      {"seconds", "end the recording after this time, s", &o.seconds, 0.0, 1e6},
+      {"wait", "wait for a start mark before the take; a stop mark ends it", &o.wait},
       {"repeat", "with --wait: then wait for the next take, until Ctrl-C", &o.repeat}};
   usage.settings = {
-      {"lab_key", "file of the key that the nodes' keys come from", &o.lab_key},
+      {"lab_key", "file with the lab's key, from which the nodes' keys are derived", &o.lab_key},
       {"marks_port", "UDP port for marks of other programs; 0: any free one", &o.marks_port, 0.0,
        65535.0},
       {"trigger_port", "UDP port for Vicon's start and stop, usually 30", &o.trigger_port, 0.0,
@@ -45,7 +45,7 @@ Usage describe_record(RecordJob& o) {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
     if (common.out.ends_with(".mcap")) {
       return Failure(Error{"--out", 0,
-                           "a folder for the files, whose names --subject and --action say",
+                           "a folder for the files; --subject and --action make their names",
                            common.out});
     }
     if (o.marks_port && o.marks_port == o.trigger_port && o.marks_port != 0) {
@@ -53,7 +53,8 @@ Usage describe_record(RecordJob& o) {
                            std::to_string(*o.trigger_port)});
     }
     if (o.repeat && !o.wait) {
-      return Failure(Error{"--repeat", 0, "--wait beside it: takes need a start", "none"});
+      return Failure(
+          Error{"--repeat", 0, "--wait as well, because a start mark begins each take", "none"});
     }
     RecordJob flags = o;  // ports of marks are checked later, together with the devices of the file
     flags.marks_port.reset();
@@ -117,27 +118,29 @@ Result<int> run(RecordJob& o, Call& call) {
 Verb record_verb() {
   return make_verb<RecordJob>(
       {.name = "record",
-       .summary = "devices into a recording, nothing lost",
+       .summary = "record what devices send",
        .text =
-           "Receives, stamps and stores until Ctrl-C what devices send. The file (MCAP) is "
-           "whole up to the last second at any time, whatever becomes of the program, on a disk "
-           "that keeps up; no file is ever overwritten. Protocols: nodes, noitom, xsens, kinect, "
+           "Receives, stamps and stores what devices send, until Ctrl-C. If the program or the "
+           "machine stops, at most the last second is lost, if the disk is fast enough. No file is "
+           "ever overwritten. The format is MCAP. Protocols: nodes, noitom, xsens, kinect, "
            "slimevr; transports: udp, tcp (to the device's address), tcp-listen. On a terminal "
            "keys make marks: s start, e stop, t T-pose, Enter begins and ends a text. Exit code "
-           "1 where the disk failed and the recording went on in another file, or was nearly "
-           "full and ended it, where a required device sent nothing, where something was sent that "
-           "nobody can use, or with --wait no start came.",
+           "1 if the disk failed and the recording continued in another file; if the disk was "
+           "nearly "
+           "full, which ended the take; if a required device sent nothing; if a device sent data "
+           "that can't be used; or if no start mark came with --wait.",
        .examples =
            {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=xsens:udp:9763",
              "inertial nodes, and Xsens MVN sending to this machine"},
             {"kinalign record -o takes --subject 03 --action S1A02 --device "
              "mocap=noitom:tcp:192.168.7.5:7001",
-             "Axis Neuron serving; takes/03_S1A02_01.mcap. Its skeleton: lab.toml, or align's "
+             "Axis Neuron; writes takes/03_S1A02_01.mcap. State the skeleton in lab.toml or in "
+             "align's "
              "manifest"},
             {"kinalign record -o takes --config lab.toml",
              "the devices of a lab: docs/formats/lab_toml.md"},
             {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait --repeat",
-             "a take from each start of Vicon's to its stop, and the seconds before"},
+             "a take from each start of Vicon to its stop, with the seconds before the start"},
             {"kinalign record -o takes --config lab.toml --live-port 7040",
              "and pose --live 7040 in another terminal"}},
        .common = {"out", "json"},

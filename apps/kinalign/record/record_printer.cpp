@@ -153,7 +153,7 @@ void RecordPrinter::print_dropped(std::uint64_t dropped) {
   // Doubling keeps a long fault from printing thousands of lines.
   if (dropped == 0 || dropped < 2 * dropped_) return;
   dropped_ = dropped;
-  complain(fmt::format("{} messages lost: memory is full, and the disk does not take them",
+  complain(fmt::format("{} messages lost: memory is full, and the disk does not accept data",
                        grouped(dropped)),
            Json{{"event", "dropped"}, {"dropped", dropped}});
   console_.ring();
@@ -176,7 +176,7 @@ void RecordPrinter::look_at_disk(const RecordStatus& status) {
   forecast_.look(status.lab.now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
   // exchange() makes it a single message: the disk stays full until the take has ended.
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
-    complain(fmt::format("the disk has {} MiB left; the take ends here, in order",
+    complain(fmt::format("the disk has {} MiB left; the take ends now and is complete",
                          *forecast_.free() >> 20U),
              Json{{"event", "disk_full"}, {"free_bytes", *forecast_.free()}});
   } else if (forecast_.take_warning()) {
@@ -233,24 +233,26 @@ void RecordPrinter::print(const PartFailure& failure) {
   complain(
       // Without a next file the part is kept in memory.
       why + ": " +
-          (failure.next.empty() ? "kept in memory and tried again" : "goes on in " + failure.next),
+          (failure.next.empty() ? "kept in memory and tried again"
+                                : "continues in " + failure.next),
       Json{{"event", "disk_failed"}, {"what", why}, {"goes_on_in", failure.next}});
 }
 
 void RecordPrinter::print_slow_begin() {
-  complain("the disk has not begun the take's file yet; what comes waits in memory",
-           Json{{"event", "begin_waits"}});
+  complain(
+      "the take's file does not exist yet, because the disk does not respond; data waits in memory",
+      Json{{"event", "begin_waits"}});
 }
 
 void RecordPrinter::print_refused_end(const Error& why, bool ends) {
   complain(fmt::format("{}: the end of the take is kept in memory and tried again for 30 s: make "
-                       "room, or give it up with {}",
+                       "room, or discard it with {}",
                        to_string(why), to_give_up(ends)),
            Json{{"event", "end_refused"}, {"what", to_string(why)}});
 }
 
 void RecordPrinter::print_slow_end(std::uint64_t waiting_bytes, bool ends) {
-  complain(fmt::format("{:.1f} MB wait for the disk; {} loses what it has not taken",
+  complain(fmt::format("{:.1f} MB wait for the disk; {} discards what the disk has not accepted",
                        megabytes(waiting_bytes), to_give_up(ends)),
            Json{{"event", "end_waits"}, {"waiting_bytes", waiting_bytes}});
 }
@@ -271,10 +273,10 @@ std::string RecordPrinter::disk_line() const {
   const DiskStatus oldest = session_.takes().front()->disk.status();
   if (session_.takes().front()->end && !oldest.finished && !oldest.paths.empty()) {
     // The end of the last take may be written while the next one is recorded.
-    return "disk  writes the end of " + oldest.paths.back();
+    return "disk  writing the end of " + oldest.paths.back();
   }
   const DiskStatus disk = session_.takes().back()->disk.status();
-  if (disk.paths.empty()) return "disk  begins the take's file";
+  if (disk.paths.empty()) return "disk  creating the take's file";
   return disk_text(forecast_, disk.bytes, disk.paths.back());
 }
 
@@ -305,8 +307,9 @@ RecordStatus RecordPrinter::print_end() {
   const DiskStatus& disk = *status.disk;
   if (disk.paths.empty()) {
     if (disk.dropped > 0) {
-      console_.complain(fmt::format("kinalign record: {} messages lost: the take never had a file",
-                                    grouped(disk.dropped)));
+      console_.complain(
+          fmt::format("kinalign record: {} messages lost: the take's file could not be created",
+                      grouped(disk.dropped)));
     }
     console_.print_json(json_text(Json{{"event", "never_begun"}, {"dropped", disk.dropped}}));
     return status;

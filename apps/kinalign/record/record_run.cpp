@@ -51,7 +51,7 @@ int RecordRun::operator()() {
     // Without --repeat there is one take, whose code is that of the verb.
     if (!job_.repeat) return worst;
     const auto paths = take->disk.status().paths;
-    if (code != 0) faulty.push_back(paths.empty() ? "one that never had a file" : paths.front());
+    if (code != 0) faulty.push_back(paths.empty() ? "a take without a file" : paths.front());
   }
   if (takes > 0) {
     print_takes(takes, std::move(faulty), worst);
@@ -166,10 +166,9 @@ void RecordRun::leave() {
     const DiskStatus disk = take->disk.status();
     if (disk.finished && !disk.refused) continue;  // the whole take is on the disk
     const bool begun = !disk.paths.empty();
-    call_.console.report(Error{
-        begun ? disk.paths.front() : call_.common.out, 0,
-        begun ? "a disk that takes the end of the take" : "a disk that begins the take's file",
-        "one that stands still"});
+    call_.console.report(Error{begun ? disk.paths.front() : call_.common.out, 0,
+                               begun ? "the end of the take on the disk" : "a file for the take",
+                               "a disk that does not respond"});
   }
   (void)call_.console.finish();
   keyboard_.leave();
@@ -199,7 +198,7 @@ void RecordRun::print_takes(std::size_t takes, std::vector<std::string> faulty, 
     faulty.push_back(fmt::format("{} more", more));
   }
   if (!faulty.empty()) {
-    text += fmt::format("; exit code {} for what was told above before the end of {}", worst,
+    text += fmt::format("; exit code {} because of the messages above about {}", worst,
                         fmt::join(faulty, ", "));
   }
   call_.console.note(harmless(text));

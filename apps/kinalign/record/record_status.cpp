@@ -61,7 +61,7 @@ std::string end_text(const RecordStatus& status, const RecordingSession& session
   std::string lines;
   for (const std::string& path : status.disk->paths) lines.append(path).append("\n");
   if (const std::uint64_t dropped = status.disk->dropped) {
-    lines += fmt::format("  {} messages lost: the disk did not take them\n", grouped(dropped));
+    lines += fmt::format("  {} messages lost: the disk did not accept them\n", grouped(dropped));
   }
   for (const StreamStatus& stream : status.lab.streams) lines += end_line(stream);
   for (const std::string& line : unseen_lines(session.lab(), status.lab))

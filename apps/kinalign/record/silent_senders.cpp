@@ -10,7 +10,7 @@ namespace kinalign {
 namespace {
 
 /// True for a sender of few messages if another sender of the same stream has more.
-bool may_be_stranger(const StreamStatus& stream, const std::vector<StreamStatus>& all) {
+bool may_be_unknown(const StreamStatus& stream, const std::vector<StreamStatus>& all) {
   if (stream.counts.messages >= Senders::little) return false;
   return std::any_of(all.begin(), all.end(), [&](const StreamStatus& other) {
     return name_of(other) == name_of(stream) && other.counts.messages > stream.counts.messages;
@@ -27,7 +27,7 @@ std::vector<SilentSenders::Change> SilentSenders::changes(const LabStatus& statu
     // The name alone is not enough: two senders of one device are told apart by their addresses.
     const std::string key = name_of(stream) + " from " + stream.sender;
     const bool silent = is_silent(stream, status.now);
-    if (silent == silent_.contains(key) || (silent && may_be_stranger(stream, newest))) continue;
+    if (silent == silent_.contains(key) || (silent && may_be_unknown(stream, newest))) continue;
     if (silent) {
       silent_.insert(key);
     } else {

@@ -56,7 +56,7 @@ std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, s
   }
   // The device connects to this program: it may not have been started.
   if (transport == Transport::tcp_listen && !linked) {
-    return fmt::format("nobody has connected to port {} yet", port);
+    return fmt::format("no device has connected to port {} yet", port);
   }
   return fmt::format("nothing has come to port {} yet", port);
 }
@@ -158,10 +158,10 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
 std::string counts_text(const SenderCounts& counts) {
   std::string losses = counts_in_words({{counts.order.lost, "lost"},
                                         {counts.order.late, "late"},
-                                        {counts.order.duplicates, "twice"},
+                                        {counts.order.duplicates, "duplicate"},
                                         {counts.refused, "refused"}});
   if (const std::uint64_t restarts = counts.order.restarts) {
-    losses += losses.empty() ? "started anew " : ", started anew ";
+    losses += losses.empty() ? "restarted " : ", restarted ";
     losses += restarts == 1 ? "once" : grouped(restarts) + " times";
   }
   return fmt::format("{} messages, {:.1f} MB{}{}", grouped(counts.messages),

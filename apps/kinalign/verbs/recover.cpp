@@ -45,15 +45,14 @@ Usage describe_recover(Recover& o) {
 std::string head_line(const std::string& out, const Recovered& done) {
   const std::string of =
       done.missing > 0 ? " of at least " + grouped(done.messages + done.missing) : "";
-  std::string text = fmt::format("{}: {}{} messages in {} channels, read again and whole\n", out,
+  std::string text = fmt::format("{}: {}{} messages in {} channels, read back and verified\n", out,
                                  grouped(done.messages), of, done.channels);
   if (done.missing > 0) {
-    text += fmt::format("  {} are lost, as the recording's own numbers and counts say\n",
+    text += fmt::format("  {} are lost, by the recording's own numbers and counts\n",
                         grouped(done.missing));
   }
   if (done.skipped > 0) {
-    text += fmt::format("  damage: {} bytes of what was there could not be read\n",
-                        grouped(done.skipped));
+    text += fmt::format("  damage: {} bytes could not be read\n", grouped(done.skipped));
   }
   return text;
 }
@@ -61,7 +60,7 @@ std::string head_line(const std::string& out, const Recovered& done) {
 /// Recovers a recording and prints the counts. The exit code is 1 if anything is missing or
 /// damaged.
 Result<int> run(Recover& o, Call& call) {
-  call.console.advise("nothing was written; the old files are as they were");
+  call.console.advise("nothing was written; the old files are unchanged");
   const std::string& out = call.common.out;
   // recover_recording() refuses the named files and their siblings too. This check gives the same
   // message as other verbs.
@@ -78,7 +77,7 @@ Result<int> run(Recover& o, Call& call) {
                     grouped(done.unchecked));
   }
   if (done.twice > 0)
-    text += fmt::format("  {} were in several files, and were taken once\n", grouped(done.twice));
+    text += fmt::format("  {} were in several files and were copied once\n", grouped(done.twice));
   if (done.nameless > 0) {
     text += fmt::format("  {} left out: the definition of their channel is lost\n",
                         grouped(done.nameless));
@@ -103,15 +102,16 @@ Result<int> run(Recover& o, Call& call) {
 Verb recover_verb() {
   return make_verb<Recover>(
       {.name = "recover",
-       .summary = "a truncated recording, or several parts of one, into a whole file",
-       .text = "Copies every message that can be read, once, gives the new file its index, and "
-               "reads it again before it gets its name: what stands there must be what was copied. "
-               "The old files stay as they are. Exit code "
-               "1 where something was damaged, could not be read or is not there; a file that only "
-               "lacks its index and end is made whole with 0.",
+       .summary = "make a complete file from a truncated recording or its parts",
+       .text =
+           "Copies each readable message once and writes the index. The new file is read back and "
+           "compared with what was copied before it gets its name. "
+           "The old files are not changed. Exit code "
+           "1 if data was damaged, unreadable or missing; 0 if only the index and the end of a "
+           "file were missing.",
        .examples = {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
                     {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
-                     "after a disk failed: a message in both files is taken once"}},
+                     "after a disk failed: a message in both files is copied once"}},
        .common = {"out", "force", "json"}},
       describe_recover, run);
 }

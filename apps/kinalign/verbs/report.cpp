@@ -133,8 +133,8 @@ struct Outline {
   std::vector<std::string> points, nodes;  // names of streams
 };
 
-/// Empty if the inputs were not found or the take has no points and no nodes. The page then omits
-/// these figures.
+/// The raw samples for figures 4, 11 and 12. Empty if the inputs were not found or the take has no
+/// points and no nodes; the page then omits these samples.
 struct RawSamples {
   std::vector<RawPoints> points;
   std::vector<RawNode> nodes;

@@ -39,7 +39,7 @@ struct NodeAddress {
 
 /// The part of an address by which an unknown sender is rate-limited. For IPv4 it is the whole
 /// address. For IPv6 it is the 64-bit network, because one customer usually has a whole /64.
-constexpr std::span<const std::uint8_t, 8> stranger(const HostAddress& address) {
+constexpr std::span<const std::uint8_t, 8> address_prefix(const HostAddress& address) {
   const std::span<const std::uint8_t, 16> bytes(address);
   return is_ipv4(address) ? bytes.last<8>() : bytes.first<8>();
 }

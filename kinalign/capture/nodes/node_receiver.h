@@ -57,7 +57,7 @@ class NodeReceiver {
   const NodeCounts& counts() const { return responder_->counts(); }
   const RefusedNodes& refused_nodes() const { return responder_->refused_nodes(); }
   std::uint64_t dropped() const { return lines_.dropped(); }  // datagrams dropped by the kernel
-  /// Answers that the system did not accept.
+  /// The number of answers that the system did not accept.
   std::uint64_t unsent() const { return unsent_; }
   std::uint32_t epoch() const { return axis_.epoch(); }
   /// Ignored datagrams. They were sent to a broadcast or multicast address, so many hosts would

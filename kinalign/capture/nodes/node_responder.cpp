@@ -24,7 +24,7 @@ NodeSign sign_of(const NodeArrival& arrival, const DatagramOrigin& origin) {
 // were delayed, needs an answer that it can echo.
 bool is_answered(NodeVerdict verdict) {
   return verdict == NodeVerdict::accepted || verdict == NodeVerdict::held ||
-         verdict == NodeVerdict::replayed || verdict == NodeVerdict::earlier_life;
+         verdict == NodeVerdict::replayed || verdict == NodeVerdict::earlier_session;
 }
 
 }  // namespace
@@ -189,8 +189,9 @@ NodeVerdict NodeResponder::find_session(const NodeSign& sign, NodeSession*& sess
   if (session != nullptr) return NodeVerdict::accepted;
   // A known address may begin new sessions freely; the limit is for strangers.
   if (!table_.knows_address(sign.from.host, sign.at)) {
-    const std::uint64_t hash = siphash_2_4(secret_, stranger(sign.from.host));
-    if (strangers_.ask(hash, sign.at) != RateLimit::Verdict::answer) return NodeVerdict::limited;
+    const std::uint64_t hash = siphash_2_4(secret_, address_prefix(sign.from.host));
+    if (unknown_senders_.ask(hash, sign.at) != RateLimit::Verdict::answer)
+      return NodeVerdict::limited;
   }
   session = table_.hold(sign);
   return session != nullptr ? NodeVerdict::accepted : NodeVerdict::no_room;
@@ -223,7 +224,7 @@ NodeVerdict NodeResponder::take_session(NodeSession& session, const NodeSign& si
   if (session.state == State::earlier) {
     // The datagram was sent before its node started again, or another node has the same id. Only
     // another node can have received an answer that was sent after the restart.
-    if (!echoed || *echoed <= session.replaced) return NodeVerdict::earlier_life;
+    if (!echoed || *echoed <= session.replaced) return NodeVerdict::earlier_session;
     return table_.part(session, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
   }
   // Without a key and with new ids there is nothing to prove, so the first datagram admits the

@@ -110,7 +110,7 @@ class NodeResponder {
   SipHashKey secret_;
   KeyRing keys_;
   NodeTable table_;
-  RateLimit strangers_;
+  RateLimit unknown_senders_;
   NodeCounts counts_;
   std::uint64_t nonces_ = 0;
   RefusedNodes refused_nodes_;

@@ -14,15 +14,15 @@ namespace kinalign {
 
 enum class NodeVerdict : std::uint8_t {
   accepted,
-  held,            // its session has not proved yet that it is not a recording played back
-  duplicate,       // its sequence number was received before
-  replayed,        // its sequence number or its counter lies too far back
-  earlier_life,    // sent before its node started again
-  limited,         // an unknown address that sends too often
-  no_room,         // the table of nodes or of sessions is full
-  wrong_counter,   // the counter is higher than a counter can be
-  unknown_answer,  // a confirm of an answer that was not sent, or was already confirmed
-  refused          // refused by wire; NodeRefusal gives the cause
+  held,             // its session has not proved yet that it is not a recording played back
+  duplicate,        // its sequence number was received before
+  replayed,         // its sequence number or its counter lies too far back
+  earlier_session,  // sent before its node started again
+  limited,          // an unknown address that sends too often
+  no_room,          // the table of nodes or of sessions is full
+  wrong_counter,    // the counter is higher than a counter can be
+  unknown_answer,   // a confirm of an answer that was not sent, or was already confirmed
+  refused           // refused by wire; NodeRefusal gives the cause
 };
 inline constexpr std::size_t node_verdicts = 10;
 

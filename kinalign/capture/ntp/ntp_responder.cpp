@@ -54,7 +54,8 @@ RateLimit::Verdict NtpResponder::limit(const HostAddress& from, HostTime now) {
   const bool exempt =
       std::any_of(exempt_.begin(), exempt_.end(),
                   [&from](const AddressBlock& network) { return network.has(from); });
-  return exempt ? RateLimit::Verdict::answer : limit_.ask(siphash_2_4(key_, stranger(from)), now);
+  return exempt ? RateLimit::Verdict::answer
+                : limit_.ask(siphash_2_4(key_, address_prefix(from)), now);
 }
 
 // The cheap checks come first; the rate limit counts only valid requests.

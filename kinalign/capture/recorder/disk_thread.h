@@ -26,8 +26,8 @@ struct DiskStatus {
   std::optional<std::uint64_t> free_bytes;  // free space of the disk; absent: unknown
   std::uint64_t dropped = 0;     // messages lost because memory was full or because of give_up()
   std::optional<Error> refused;  // the present error of the disk; the write is tried again
-  // no more is written; if `refused` is set, not everything could be written, and without a path
-  // nothing
+  // True if no more is written. If `refused` is set, some data could not be written; if `paths` is
+  // also empty, none was.
   bool finished = false;
 };
 

@@ -10,7 +10,8 @@ namespace kinalign {
 
 namespace {
 
-// A full table gives the place of a session that was silent this long.
+// If the table is full, a new session replaces the one that was silent longest, if it was silent
+// for more than this.
 constexpr Duration replaced_after = std::chrono::minutes(1);
 
 }  // namespace
@@ -35,7 +36,7 @@ KinectResponder::Session* KinectResponder::session_of(const KinectPing& ping,
     return one.sensor == ping.origin.sensor && one.session == ping.origin.session;
   });
   if (place == sessions_.end()) {
-    const std::uint64_t hash = siphash_2_4(secret_, stranger(from));
+    const std::uint64_t hash = siphash_2_4(secret_, address_prefix(from));
     if (unknown_senders_.ask(hash, now) != RateLimit::Verdict::answer) return nullptr;
     if (sessions_.size() < most_sessions) {
       place = sessions_.emplace(sessions_.end());

@@ -62,8 +62,8 @@ void MarkPort::refuse(const Piece& piece, Severity severity, const std::string& 
                 {severity,
                  {"port of " + name(), 0, expected,
                   shown(piece.bytes) + " from " + sender_of(piece) + ": " + cause},
-                 "it is no mark: nothing begins, ends or is written down with it",
-                 "docs/formats/marks.md shows what this port understands"});
+                 "the datagram is not a mark: it has no effect and is not recorded",
+                 "docs/formats/marks.md shows the datagrams that this port accepts"});
 }
 
 /// Decodes one mark. A refused call is answered with the cause, if an answer is allowed.

@@ -110,7 +110,7 @@ void RecordedNodes::judge(Node& node, const NodeMessage& message) {
       ++counts.order.duplicates;
       return;
     case NodeVerdict::replayed:
-    case NodeVerdict::earlier_life:
+    case NodeVerdict::earlier_session:
       ++counts.order.late;
       return;
     default:
@@ -140,14 +140,14 @@ void RecordedNodes::find_foreign() {
   counts.dropped = std::exchange(dropped_, counts.dropped);
   std::uint64_t lost = 0;
   for (const auto& [id, node] : nodes_) lost += node.raw.status.counts.order.lost;
-  const std::uint64_t came = strays(counts, lost);
+  const std::uint64_t came = foreign_datagrams(counts, lost);
   if (!are_many(came)) return;
   findings_.add("",
                 {Severity::warning,
-                 Error{device_.name, 0, "frames of nodes alone at port " + std::to_string(port()),
-                       std::to_string(came) + " datagrams that are none"},
-                 "they are thrown away: nothing of them is recorded",
-                 "see which port and protocol each device sends to"});
+                 Error{device_.name, 0, "only frames of nodes at port " + std::to_string(port()),
+                       std::to_string(came) + " other datagrams"},
+                 "they are dropped and not recorded",
+                 "check the port and the protocol that each device sends to"});
 }
 
 // A node may have several streams of the receiver. Losses of earlier sessions are kept in

@@ -209,8 +209,8 @@ void RecordedPort::look_at(Source& source) const {
   if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
 }
 
-/// Looks for faults of a sender, for example Axis Studio's compressed port. The user must learn of
-/// them during the take. A host that reconnects is not reported again.
+/// Looks for faults of a sender, for example that Axis Studio sends its compressed stream. The user
+/// must learn of them during the take. A host that reconnects is not reported again.
 void RecordedPort::find_faults(const Source& source) {
   const SenderCounts& counts = source.recorded.status.counts;
   // A sender that sends only pings speaks the right protocol.
@@ -223,9 +223,9 @@ void RecordedPort::find_faults(const Source& source) {
   if (none) {
     findings.push_back({Severity::warning,
                         Error{name, 0, "frames of " + device_.protocol,
-                              std::to_string(counts.messages) + " messages, none of them one"},
-                        "all is recorded, but nothing of it can be aligned as " + device_.protocol,
-                        "see which port and protocol the device sends to"});
+                              std::to_string(counts.messages) + " messages without such a frame"},
+                        "all data is recorded, but it can't be aligned as " + device_.protocol,
+                        "check the port and the protocol that the device sends to"});
   }
   for (Finding& finding : findings) findings_.add(host, std::move(finding));
 }

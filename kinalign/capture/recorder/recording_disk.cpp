@@ -128,7 +128,8 @@ void RecordingDisk::give_up_part() {
   repeated_ = std::move(one);
 }
 
-/// Continues in a new file. The failure is reported once, and again when a new file accepts data.
+/// Continues in a new file. If none can be written, the failure is reported once without a name;
+/// when a file accepts data, it is reported with the file's name.
 Result<void> RecordingDisk::next_part(const Error& why) {
   const bool reported = std::exchange(given_up_, given_up_.value_or(why)).has_value();
   give_up_part();

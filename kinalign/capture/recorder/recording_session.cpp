@@ -184,9 +184,9 @@ void RecordingSession::rest(Duration patience) {
   const std::uint64_t all = received();
   const std::uint64_t came = all - std::exchange(received_before_, all);
   const HostTime now = axis_.now();
-  if (came > few) awake_until_ = now + std::chrono::seconds(1);
+  if (came > few) busy_until_ = now + std::chrono::seconds(1);
   const bool hurries = live_ && live_->has_clients();
-  if (came > 0 && now >= awake_until_ && patience >= short_rest && !hurries) {
+  if (came > 0 && now >= busy_until_ && patience >= short_rest && !hurries) {
     std::this_thread::sleep_for(short_rest);
   }
 }
@@ -265,9 +265,10 @@ void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
     if (std::exchange(stop_is_due_, false)) {
       findings_.push_back(
           {Severity::warning,
-           Error{"marks", 0, "a start after the take before is on the disk", "one before that"},
-           "it begins no take: the data goes on into the same file, with all marks",
-           "see what delays the disk, or who sends so many marks"});
+           Error{"marks", 0, "a start mark after the previous take is on the disk",
+                 "a start mark before that"},
+           "the mark begins no take: the data continues in the same file, with all marks",
+           "check what delays the disk, or which program sends so many marks"});
     }
   }
   recorder_->record(mark_channel_, at, to_json(mark));

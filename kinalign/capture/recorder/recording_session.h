@@ -175,7 +175,7 @@ class RecordingSession {
   Counts before_;                      // counts before the take
   std::uint64_t received_before_ = 0;  // received() at the last turn
   // No rest before this time, because of a flood.
-  HostTime awake_until_ = HostTime::min();
+  HostTime busy_until_ = HostTime::min();
   std::optional<ByMarks> by_marks_;
   /// At most two: the take in progress, or the last one, and the one before it.
   std::deque<std::shared_ptr<SessionTake>> takes_;

@@ -30,19 +30,21 @@ std::uint64_t refused(const SlimeVerdicts& verdicts) {
 /// address.
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name) {
   constexpr std::uint64_t too_often = 3;  // a tracker that moves causes fewer
-  constexpr const char* unanswered = "it is not answered, so it sends nothing of use";
+  constexpr const char* unanswered =
+      "record does not answer this tracker, so the tracker sends no rotations";
   Findings findings;
   if (verdicts[SlimeVerdict::no_room] > 0) {
     findings.push_back(
         {Severity::warning,
          Error{name, 0, "at most " + std::to_string(SlimeResponder::most_devices) + " trackers",
-               "one more"},
-         unanswered, "switch others off: a minute later it has their place"});
+               "another tracker"},
+         unanswered, "switch another tracker off; its place is free after a minute"});
   }
   if (verdicts[SlimeVerdict::duplicate_mac] >= too_often) {
-    findings.push_back({Severity::warning,
-                        Error{name, 0, "a tracker of its own", "the MAC of another one at work"},
-                        unanswered, "see which two trackers have one MAC"});
+    findings.push_back(
+        {Severity::warning,
+         Error{name, 0, "a MAC address of its own", "the MAC address of another active tracker"},
+         unanswered, "find the two trackers with this MAC address"});
   }
   return findings;
 }
@@ -80,7 +82,7 @@ SlimeVerdict SlimeResponder::take_handshake(const SlimeHandshake& handshake,
   const bool moves = known && device->address != arrival.from;
   if (moves && arrival.h_rx - device->last_arrival < left_after) return SlimeVerdict::duplicate_mac;
   if (!known || moves) {
-    const std::uint64_t hash = siphash_2_4(secret_, stranger(arrival.from.host));
+    const std::uint64_t hash = siphash_2_4(secret_, address_prefix(arrival.from.host));
     if (unknown_senders_.ask(hash, arrival.h_rx) != RateLimit::Verdict::answer) {
       return SlimeVerdict::limited;
     }

@@ -188,7 +188,7 @@ Findings StreamWatch::findings(const std::string& name) const {
   if (const auto* kinect = std::get_if<Kinect>(&decoder_)) {
     for (const KinectOverlap& overlap : kinect->overlaps) {
       findings.push_back(
-          overlap_finding(name, overlap, "all is recorded; alignment takes one of them"));
+          overlap_finding(name, overlap, "both are recorded; align reads one of them"));
     }
   }
   return findings;

@@ -185,8 +185,8 @@ std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n,
   const auto& pieces = clock.model.pieces;
   std::optional<std::size_t> found;
   for (const std::size_t p : of_boot->second) {
-    // A late frame belongs to the last piece of its boot, and an early one, delayed at the start,
-    // to the first.
+    // A frame that arrives before the first piece of its boot uses the first piece. One that
+    // arrives between two pieces or after the last uses the piece before it.
     if (found && h_rx < pieces[p].first) continue;
     found = p;
     if (h_rx <= pieces[p].last) break;

@@ -16,7 +16,7 @@ bool begins_piece(ClockEvent::Kind kind) {
 }
 
 /// The host's clock went back at exchange i. Arrivals that its clock shows twice are in doubt.
-void doubt_what_was_twice(OfflineWalk& walk, std::size_t i, const ClockEvent& event) {
+void doubt_repeated_times(OfflineWalk& walk, std::size_t i, const ClockEvent& event) {
   HostTime newest = event.begin;
   for (std::size_t k = i; k < walk.exchanges.size() && newest < event.end; ++k) {
     if (walk.exchanges[k].h_rx < newest) break;  // the host's clock went back again
@@ -38,7 +38,7 @@ void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
     return;
   }
   walk.events.push_back(event);
-  if (event.kind == ClockEvent::Kind::host_backwards) doubt_what_was_twice(walk, i, event);
+  if (event.kind == ClockEvent::Kind::host_backwards) doubt_repeated_times(walk, i, event);
   if (event.kind == ClockEvent::Kind::violator)
     (of == Side::below ? walk.echo_left_out : walk.up_left_out)[i] = true;
   if (!begins_piece(event.kind)) return;

@@ -337,7 +337,7 @@ void check_scans(const std::string& path, BidsCheck& check) {
 
 /// Checks that a sidecar file has its motion.tsv. A sidecar without one means that the data was
 /// lost or misnamed.
-void check_orphans(const std::string& path, BidsCheck& check) {
+void check_unpaired(const std::string& path, BidsCheck& check) {
   // The name of the data follows from that of its sidecar.
   for (const std::string_view ending : {"motion.json", "channels.tsv"}) {
     if (path.find("/motion/") == std::string::npos || !path.ends_with("_" + std::string(ending)))
@@ -465,7 +465,7 @@ Findings check_bids(const BidsListing& listing) {
     check_path(path, check);
     // Only subjects have data and sidecars.
     if (!path.starts_with("sub-")) continue;
-    check_orphans(path, check);
+    check_unpaired(path, check);
     if (path.ends_with("_scans.tsv")) check_scans(path, check);
     if (path.ends_with("_motion.tsv") && path.find("/motion/") != std::string::npos) {
       check_bids_system(path, check);

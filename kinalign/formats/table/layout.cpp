@@ -230,13 +230,13 @@ Result<void> read_axes(const Value& top, TableLayout& layout) {
   layout.axes = {chosen(signed_axes, x), chosen(signed_axes, y), chosen(signed_axes, z)};
   if (mirrored && layout.kind == TableKind::imu) {
     return at(*table->find({"mirrored"}),
-              {"", 0, "axes of nodes that keep right-handed: an orientation has no mirror image",
+              {"", 0, "right-handed axes for nodes, because an orientation has no mirror image",
                "mirrored = true"});
   }
   if (determinant(layout.axes) == (mirrored ? -1 : 1)) return {};
-  return at(*table, mirrored ? "axes that mirror" : "axes that keep right-handed",
-            determinant(layout.axes) == 0 ? "an axis that stands twice"
-            : mirrored                    ? "axes that keep right-handed"
+  return at(*table, mirrored ? "axes that mirror" : "right-handed axes",
+            determinant(layout.axes) == 0 ? "one axis twice"
+            : mirrored                    ? "right-handed axes"
                                           : "a mirror image without mirrored = true");
 }
 
@@ -244,10 +244,10 @@ Result<void> read_axes(const Value& top, TableLayout& layout) {
 Result<void> check_columns(const Value& top, TableLayout& layout) {
   // Names can only be found in a line of names.
   if (layout.by_name && !layout.header) {
-    return at(top, "fields in order where no line names the columns", "fields by name");
+    return at(top, "a list of fields, because no line names the columns", "fields by name");
   }
   if (!layout.header && layout.time && layout.time->column.number == 0) {
-    return at(*top.find({"time"}), "a column's number where no line names the columns",
+    return at(*top.find({"time"}), "a column's number, because no line names the columns",
               shown(layout.time->column.name));
   }
   if (layout.by_name) return {};

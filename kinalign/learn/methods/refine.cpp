@@ -64,7 +64,8 @@ DenoiseMethod refine_method() {
 DenoiseMethod refine_linear_method() {
   DenoiseMethod out = refine_method();
   out.name = "refine-linear";
-  out.summary = "the same beside a linear answer, for people and rooms like those of the training";
+  out.summary =
+      "the same, added to a linear answer, for people and rooms like those of the training";
   out.architecture = refine_linear_architecture;
   out.begins = Begins::linear;
   return out;

@@ -22,7 +22,8 @@ WornFrames frames_from(const WornFrames& all, std::size_t first) {
 /// The name of the first arm node whose tilt shows that the arm is not in a T-pose; null if there
 /// is none.
 const std::string* hanging_arm(const PoseLayout& layout, const NodeCalibration& calibration) {
-  const bool is_checked = calibration.worn_as_told || calibration.headings == Headings::mounting;
+  const bool is_checked =
+      calibration.worn_as_described || calibration.headings == Headings::mounting;
   for (std::size_t n = 0; n < layout.nodes.size() && is_checked; ++n) {
     const WornPlace* place = worn_place(layout.nodes[n]);
     const auto& node = calibration.nodes[n];

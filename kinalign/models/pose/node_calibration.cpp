@@ -153,7 +153,7 @@ std::vector<double> credible_headings(const Rest& rest) {
   return out;
 }
 
-bool are_worn_as_told(const PoseLayout& layout, const Rest& rest) {
+bool are_worn_as_described(const PoseLayout& layout, const Rest& rest) {
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     if (!rest.nodes[n] || worn_place(layout.nodes[n])->on_arm) continue;
     if (rest.tilt_deg[n] > most_tilt_deg) return false;
@@ -213,15 +213,15 @@ Result<NodeCalibration> calibrate(const PoseLayout& layout, const Skeleton& body
         Error{"", 0, "samples of the node " + layout.nodes.back() + " in the T-pose", "none"});
   }
   NodeCalibration out;
-  out.worn_as_told = are_worn_as_told(layout, rest);
+  out.worn_as_described = are_worn_as_described(layout, rest);
   const MeanAngle by_mounting = mean_angle(credible_headings(rest));
   out.spread_deg = in_degrees(by_mounting.worst);
   // The rule of `--heading auto` in docs/pose.md. If the user chose `shared` although the headings
   // lie far apart, the root's node alone gives the heading: their mean would be meaningless.
-  const bool own = out.worn_as_told && out.spread_deg > most_shared_deg;
+  const bool own = out.worn_as_described && out.spread_deg > most_shared_deg;
   out.headings = options.headings.value_or(own ? Headings::mounting : Headings::shared);
   double shared = own ? rest.heading.back() : by_mounting.angle;
-  if (out.headings == Headings::shared && !out.worn_as_told) {
+  if (out.headings == Headings::shared && !out.worn_as_described) {
     out.facing = Facing::arms;
     shared = KA_TRY(heading_by_arms(layout, worn, rest));
   }

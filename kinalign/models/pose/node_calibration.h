@@ -68,7 +68,7 @@ struct NodeCalibration {
   /// Spread of the headings from the mountings; large if the nodes do not share a heading.
   double spread_deg = 0.0;
   /// True for all nodes except those on arms, as far as their tilt shows it.
-  bool worn_as_told = false;
+  bool worn_as_described = false;
 };
 
 /// deg. With a larger tilt a node is not worn as docs/pose.md says, or its limb is not in a T-pose.

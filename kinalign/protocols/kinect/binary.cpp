@@ -54,7 +54,7 @@ std::string take_short_text(LittleEndianReader& reader) {
 /// The take_ functions decode the fields of one type of message. They refuse flags and fields that
 /// the type does not use.
 Refusal take_hello(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
-  if (head.flags != 0 || head.bodies != 0 || head.part != 0) return Refusal::stray_bits;
+  if (head.flags != 0 || head.bodies != 0 || head.part != 0) return Refusal::reserved_bits;
   KinectHello hello{head.origin, {}, {}};
   hello.serial = take_short_text(reader);
   hello.sdk = take_short_text(reader);
@@ -79,7 +79,7 @@ KinectBody take_body(LittleEndianReader& reader, bool has_orientations) {
 
 /// Decodes a frame. Fields that the flags declare absent must be zero.
 Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
-  if (head.flags > 31) return Refusal::stray_bits;
+  if (head.flags > 31) return Refusal::reserved_bits;
   if (head.bodies > most_kinect_bodies) return Refusal::wrong_fields;
   KinectFrame frame;
   frame.origin = head.origin;
@@ -95,13 +95,13 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
   if ((head.flags & utc_flag) != 0) {
     frame.utc_us = utc_us;
   } else if (utc_us != 0) {
-    return Refusal::stray_bits;
+    return Refusal::reserved_bits;
   }
   if ((head.flags & floor_flag) != 0) {
     frame.floor = floor;
   } else if (std::any_of(floor.begin(), floor.end(),
                          [](float x) { return std::bit_cast<std::uint32_t>(x) != 0; })) {
-    return Refusal::stray_bits;
+    return Refusal::reserved_bits;
   }
   // The loop ends early if the message is shorter than its bodies; the caller then refuses it by
   // its length.
@@ -115,7 +115,7 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
 /// Decodes a ping. Without the echo flag the echo's fields must be zero.
 Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags > echo_flag || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
-    return Refusal::stray_bits;
+    return Refusal::reserved_bits;
   }
   KinectPing ping{head.origin, reader.take<std::int64_t>(), std::nullopt};
   KinectEcho echo;
@@ -125,7 +125,7 @@ Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& m
   if (head.flags == echo_flag) {
     ping.echo = echo;
   } else if (!(echo == KinectEcho{})) {
-    return Refusal::stray_bits;
+    return Refusal::reserved_bits;
   }
   message = ping;
   return Refusal::none;
@@ -134,7 +134,7 @@ Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& m
 // The host only sends pongs. They are decoded for tests and for the sender of the rehearsal.
 Refusal take_pong(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags != 0 || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
-    return Refusal::stray_bits;
+    return Refusal::reserved_bits;
   }
   KinectPong pong{head.origin, reader.take<std::uint32_t>(), 0};
   pong.nonce = reader.take<std::uint32_t>();

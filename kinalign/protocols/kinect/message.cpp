@@ -24,11 +24,11 @@ Refusal check_body(const KinectFrame& frame, const KinectBody& body) {
   const bool no_hands = body.hand_left == 0 && body.hand_right == 0 && body.hand_confidence == 0;
   if (body.clipped_edges > 15 || body.hand_left > 4 || body.hand_right > 4 ||
       body.hand_confidence > 3 || (!frame.has_hands && !no_hands)) {
-    return Refusal::stray_bits;
+    return Refusal::reserved_bits;
   }
   const bool known = std::all_of(body.states.begin(), body.states.end(),
                                  [](std::uint8_t state) { return state <= 2; });
-  return known ? Refusal::none : Refusal::stray_bits;
+  return known ? Refusal::none : Refusal::reserved_bits;
 }
 
 /// Checks the fields of each type.
@@ -47,7 +47,7 @@ struct Check {
       return Refusal::wrong_fields;
     }
     if (frame.bodies.empty() && (frame.has_hands || frame.has_orientations)) {
-      return Refusal::stray_bits;
+      return Refusal::reserved_bits;
     }
     for (const KinectBody& body : frame.bodies) {
       if (const auto refusal = check_body(frame, body); refusal != Refusal::none) return refusal;

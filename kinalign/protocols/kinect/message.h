@@ -87,8 +87,8 @@ using KinectMessage = std::variant<KinectHello, KinectFrame, KinectPing, KinectP
 
 /// Reasons to refuse a message; each is counted under its name.
 enum class [[nodiscard]] KinectRefusal : std::uint8_t{
-    none,    too_short,    no_message,        too_long,   unknown_version, wrong_length,
-    bad_crc, unknown_type, unknown_joint_set, stray_bits, bad_json,        wrong_fields};
+    none,    too_short,    no_message,        too_long,      unknown_version, wrong_length,
+    bad_crc, unknown_type, unknown_joint_set, reserved_bits, bad_json,        wrong_fields};
 inline constexpr std::size_t kinect_refusals = 12;
 
 /// The refusal's name in --json: "bad_crc".

@@ -61,8 +61,8 @@ struct SlimeDatagram {
 /// Decodes a datagram. False if it is shorter than its head of 12 bytes.
 [[nodiscard]] bool decode_slime(std::span<const std::uint8_t> datagram, SlimeDatagram& out);
 
-/// Unit rotation w,x,y,z from sensor space to a world with y up. Absent if `rotation` is no
-/// rotation.
+/// Unit rotation w,x,y,z from sensor space to a world with y up. Absent if `rotation`
+/// is not finite or nearly 0.
 std::optional<std::array<double, 4>> slime_orientation(const std::array<float, 4>& rotation);
 
 /// Acceleration, m/s2, in sensor space, without gravity. `protocol`: that of the handshake; 0 if it

@@ -46,7 +46,7 @@ constexpr std::array<std::string_view, 6> meanings{
     "datagrams of an unknown layout were dropped",
     "datagrams that lacked a piece were dropped",
     "samples that lacked a datagram were dropped",
-    "datagrams that came twice were dropped",
+    "duplicate datagrams were dropped",
     "samples with more items than a body has were dropped",
     "samples of further characters were dropped"};
 
@@ -217,7 +217,7 @@ Findings XsensDecoder::findings(const std::string& name) const {
     findings.push_back({Severity::note,
                         Error{name, 0, "datagrams of types 02, 23 and 25",
                               fmt::format("{} of type {:02}", counts_.other_types[type], type)},
-                        "they were passed over", ""});
+                        "these datagrams were skipped", ""});
   }
   return findings;
 }

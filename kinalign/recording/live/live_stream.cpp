@@ -120,9 +120,9 @@ Result<void> LiveStream::define(const McapChannel& channel) {
 // The checks refuse a stream that is not kinalign's before its times are used.
 Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news) {
   // Without the anchor no log time can be converted.
-  if (!facts_) return no_stream("messages before what record says of itself");
+  if (!facts_) return no_stream("messages before the recording's metadata");
   if (message.log_time > static_cast<std::uint64_t>(latest_log_time))
-    return no_stream("a year behind 2096");
+    return no_stream("a time after 2096");
   const Time arrival = utc_time(static_cast<std::int64_t>(message.log_time));
   if (now_ && arrival > *now_ + longest_silence) return no_stream("a minute without any message");
   // Channels are merged by the recorder, so an arrival may be a little earlier than the newest.

@@ -103,7 +103,7 @@ void count_clock(std::vector<CountedFrame> frames, double stated_step_ns,
         {Severity::warning,
          Error{request.file.path, 0, rate_text(stated_step_ns) + ", as stated",
                "frames that arrive at " + rate_text(measured)},
-         "stamps were counted by the rate at which they arrive", "state the true rate: rate_hz"});
+         "stamps were counted by the rate at which they arrive", "set rate_hz to the true rate"});
   }
   // Each frame is an exchange without an echo: its arrival is late by an unknown delay, and the
   // clock keeps the earliest ones.

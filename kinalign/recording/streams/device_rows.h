@@ -69,15 +69,14 @@ struct LearnedDevice {
 /// the right protocol with other content.
 inline Error no_rows_error(std::string_view what, const std::string& file,
                            const LearnedDevice& learned, std::uint64_t others = 0) {
-  const std::string expected =
-      "of stream " + shown(learned.channel.stream) + " " + std::string(what);
+  const std::string expected = std::string(what) + " in stream " + shown(learned.channel.stream);
   if (others > 0) {
-    return {file, 0, expected, std::to_string(others) + " of other types or bodies alone",
+    return {file, 0, expected, std::to_string(others) + " messages, all of other types or bodies",
             ErrorKind::no_rows_in_recording};
   }
   return {file, 0,
           expected +
-              " (nothing in it is of that protocol: see which port and protocol the device "
+              " (no message is of this protocol: check the port and the protocol that the device "
               "sends to)",
           "none", ErrorKind::no_rows_in_recording};
 }
@@ -86,8 +85,9 @@ inline Error no_rows_error(std::string_view what, const std::string& file,
 inline void stamp_by_arrival(const std::string& file, LearnedDevice& learned) {
   learned.by_arrival = true;
   learned.findings.push_back(
-      {Severity::note, Error{file, 0, "packets that say when they were measured", "none that do"},
-       "stamps are arrivals, late by unknown times", "offset_ms takes off a delay that is known"});
+      {Severity::note, Error{file, 0, "a time or a number in each packet", "neither"},
+       "samples are stamped by their arrival, so the stamps are late by an unknown delay",
+       "if the delay is known, set a negative offset_ms"});
 }
 
 /// The first pass: learns from a device's messages how to stamp its rows. It keeps only what the
@@ -140,11 +140,11 @@ class DeviceRows {
     if (order.too_late() == 0) return;
     findings.push_back({Severity::warning,
                         Error{file_, 0,
-                              std::string(rows) + " that at most " +
-                                  std::to_string(order.most_overtaking()) + " others overtake",
-                              std::to_string(order.too_late()) + " that came later still"},
+                              std::string(rows) + " that arrive after at most " +
+                                  std::to_string(order.most_reordered()) + " newer ones",
+                              std::to_string(order.too_late()) + " that arrived later"},
                         "they were left out",
-                        "look at the network that they come by, and whether the clock of their "
+                        "check the network, and whether the clock of the device's "
                         "stamps stepped back"});
   }
 

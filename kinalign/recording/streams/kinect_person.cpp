@@ -98,28 +98,30 @@ void KinectPerson::follow(const KinectFrame& frame, const KinectBody& body) {
 /// Reports a missing id, changes of the id, other bodies, and frames without the person.
 void KinectPerson::report(const std::string& file, Findings& findings) const {
   if (wanted_ && ids_.count(*wanted_) == 0) {
-    findings.push_back({Severity::warning,
-                        Error{file, 0, fmt::format("body {}", *wanted_),
-                              fmt::format("others: {} of them", ids_.size())},
-                        "no row has a joint", "select.body names one"});
+    findings.push_back(
+        {Severity::warning,
+         Error{file, 0, fmt::format("body {}", *wanted_), fmt::format("{} other ids", ids_.size())},
+         "all joints are missing in all rows", "set select.body to an existing id"});
   }
   if (followed_ > 1) {
-    findings.push_back({Severity::note,
-                        Error{file, 0, "one body", fmt::format("{} ids in turn", followed_)},
-                        "the person was lost and found again near by, and is followed",
-                        "select.body takes a single id"});
+    findings.push_back(
+        {Severity::note,
+         Error{file, 0, "one body", fmt::format("{} ids, one after the other", followed_)},
+         "the sensor lost the person and found a body with a new id nearby, which is followed",
+         "select.body takes a single id"});
   }
   if (several_ > 0 && !wanted_) {
-    findings.push_back({Severity::warning,
-                        Error{file, 0, "one body", fmt::format("several in {} frames", several_)},
-                        "the one that was nearest to the sensor at first was followed",
-                        "select.body names another"});
+    findings.push_back(
+        {Severity::warning,
+         Error{file, 0, "one body", fmt::format("several bodies in {} frames", several_)},
+         "the body that was nearest to the sensor at the beginning is followed",
+         "set select.body to follow another body"});
   }
   if (without_ > 0) {
     findings.push_back({Severity::note,
                         Error{file, 0, "the followed person",
-                              fmt::format("{} frames with others alone", without_)},
-                        "all joints are missing there", "select.body takes a single id"});
+                              fmt::format("{} frames with only other bodies", without_)},
+                        "all joints are missing in these frames", "select.body takes a single id"});
   }
 }
 

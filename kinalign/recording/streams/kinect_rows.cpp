@@ -150,23 +150,27 @@ class KinectRows final : public DeviceRows<PointFrames> {
     waiting_.finish(appending(out));
     person_.report(file(), findings);
     const KinectFrameCounts counts = frames_.counts();
-    note(counts.frames.lost, "each frame's number", "that never came",
-         "they were lost on their way");
+    note(counts.frames.lost, "frame numbers without a gap", "frames missing",
+         "these frames were lost on the network");
     warn_too_late(waiting_, "frames");
     if (frames_.overlap()) {
       findings.push_back(overlap_finding(
           file(), *frames_.overlap(),
-          fmt::format("the newest session's were read; {} frames of others were left out",
-                      counts.stale)));
+          fmt::format(
+              "frames of the newest session were read; {} frames of other sessions were left out",
+              counts.stale)));
     } else {
-      note(counts.stale, "frames of the sender's newest run", "of earlier ones",
-           "they came too late and were left out");
+      note(counts.stale, "frames of the sender's newest session", "frames of earlier sessions",
+           "these late frames were left out");
     }
-    note(counts.parts_lost, "all parts of a frame", "frames without some",
-         "bodies may be missing in them");
-    note(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");
-    note(waiting_.unstamped(), "frames of a clock that is known", "others", "they were left out");
-    note(not_finite_, "joints whose place is a number", "others", "they are missing");
+    note(counts.parts_lost, "all parts of each frame", "frames with missing parts",
+         "these frames may lack bodies");
+    note(frames_.of_other_sensors, "frames of one sensor", "frames of other sensors",
+         "these frames were left out");
+    note(waiting_.unstamped(), "frames whose clock is known", "frames without a known clock",
+         "these frames were left out");
+    note(not_finite_, "joints with finite positions", "joints with other values",
+         "these joints are missing");
     return {};
   }
 

@@ -96,7 +96,7 @@ void add_nodes(const std::string& path, const std::vector<std::string>& names,
 
 Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& path) {
   if (!survey.facts)
-    return Failure(Error{path, 0, "a recording of kinalign's", "another MCAP file"});
+    return Failure(Error{path, 0, "a recording by kinalign record", "another MCAP file"});
   struct Device {
     int rank = 0;
     StreamOptions options;
@@ -122,8 +122,8 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
     add_nodes(path, node_names(*raw, nodes), device->options.files);
   }
   if (devices.empty()) {
-    return Failure(Error{path, 0, "a recording of devices", "one in which none was heard",
-                         ErrorKind::no_rows_in_recording});
+    return Failure(
+        Error{path, 0, "data of at least one device", "none", ErrorKind::no_rows_in_recording});
   }
   std::stable_sort(devices.begin(), devices.end(),
                    [](const Device& a, const Device& b) { return a.rank < b.rank; });

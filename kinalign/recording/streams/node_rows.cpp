@@ -34,8 +34,8 @@ void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const Devi
   if (least) return;
   learned.findings.push_back(
       {Severity::warning,
-       Error{request.file.path, 0, "confirms of a node without a counter", "none"},
-       "its stamps are late by the way of its fastest request", ""});
+       Error{request.file.path, 0, "confirmations from this node, which has no counter", "none"},
+       "its stamps are late by the delay of its fastest request", ""});
 }
 
 /// The stamp of a sample. Absent if its clock is not known.
@@ -90,7 +90,7 @@ class NodeListener final : public DeviceListener {
   Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
     if (exchanges_.empty() && clockless_.empty()) {
       return Failure(Error{request.file.path, 0, "frames of node " + learned.channel.node,
-                           "none that was accepted"});
+                           "none that the recorder accepted"});
     }
     learned.content = content_;
     // If the node has sent counters, its requests without one have no clock and are left out
@@ -182,13 +182,14 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     waiting_.finish(appending(out));
     converter_.report(file(), findings);
     note(frames_.others, "datagrams that the recorder could use",
-         "of no use: damaged, too late or come twice, or of a start that was never confirmed",
-         frames_.others == 1 ? "it was passed over" : "they were passed over");
+         "datagrams that were damaged, late or duplicate, or of a session that was never confirmed",
+         frames_.others == 1 ? "it was skipped" : "they were skipped");
     warn_too_late(waiting_, "samples");
-    note(waiting_.unstamped(), "samples of a life of the node whose clock is known",
-         "samples of others", "they were left out");
-    note(partial_, "samples with all that the node sends at times",
-         "samples without, or with numbers that are none", "these samples are invalid");
+    note(waiting_.unstamped(), "samples of sessions whose clock is known",
+         "samples of other sessions", "these samples were left out");
+    note(partial_, "samples with every quantity that the node sends",
+         "samples that lack a quantity or have values that are not finite",
+         "these samples are invalid");
     return {};
   }
 

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t noitom_joints = 59, telling_joint = 10;
+constexpr std::size_t noitom_joints = 59, hierarchy_joint = 10;
 // as in formats/bvh/rows.cpp; a greater value is not a coordinate or an angle
 constexpr double largest = 1e15;
 constexpr std::string_view both =
@@ -33,9 +33,9 @@ bool has_sound_values(std::span<const float> row) {
 
 NoitomHierarchy noitom_hierarchy(const BvhHierarchy& hierarchy) {
   if (hierarchy.names.size() != noitom_joints) return NoitomHierarchy::other;
-  if (hierarchy.names[telling_joint] == "Spine3") return NoitomHierarchy::legacy;
-  return hierarchy.names[telling_joint] == "Neck" ? NoitomHierarchy::studio
-                                                  : NoitomHierarchy::other;
+  if (hierarchy.names[hierarchy_joint] == "Spine3") return NoitomHierarchy::legacy;
+  return hierarchy.names[hierarchy_joint] == "Neck" ? NoitomHierarchy::studio
+                                                    : NoitomHierarchy::other;
 }
 
 NoitomPoser::NoitomPoser(BvhHierarchy hierarchy, const BvhOptions& options, std::string name)
@@ -68,7 +68,7 @@ Findings NoitomPoser::findings() const {
   return {{Severity::warning,
            Error{name_, 0, "the header of Axis Neuron or Axis Studio",
                  fmt::format("{} joints in another order", hierarchy_.names.size())},
-           fmt::format("values may go to the wrong joints: {}", both),
+           fmt::format("values may be assigned to the wrong joints: {}", both),
            "give a BVH that the same program has exported of the same person"}};
 }
 

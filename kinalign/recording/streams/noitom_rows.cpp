@@ -26,11 +26,12 @@ using NoitomFrames = NumberedFrames<NoitomSource>;
 /// The hierarchy of the BVH header. Fails if neither recording nor manifest has one.
 Result<BvhHierarchy> hierarchy_of(const LearnedDevice& learned, const std::string& file) {
   if (learned.skeleton.empty()) {
-    return Failure(Error{file, 0,
-                         "of stream " + shown(learned.channel.stream) +
-                             " the skeleton, which Noitom's stream lacks: skeleton = \"a.bvh\" in "
-                             "lab.toml while recording, or now in the manifest",
-                         "none", ErrorKind::no_rows_in_recording});
+    return Failure(
+        Error{file, 0,
+              "a skeleton for stream " + shown(learned.channel.stream) +
+                  ", because Noitom's stream contains none: set skeleton = \"a.bvh\" in the "
+                  "manifest now, or in lab.toml before recording",
+              "none", ErrorKind::no_rows_in_recording});
   }
   // The number of rows and the findings of the header's own file do not matter here.
   std::size_t rows = 0;

@@ -130,7 +130,7 @@ inline std::optional<Time> stamp_of(const LearnedDevice& learned, const CountedF
 }
 
 // no frame was seen to arrive later than that many newer ones
-constexpr std::size_t most_overtaking_frames = 16;
+constexpr std::size_t most_reordered_frames = 16;
 
 /// Stamps the frames of a datagram without a time. The last frame's stamp is the arrival. The
 /// frames before it are one step apart, or less if they would reach back to the previous message.
@@ -193,7 +193,7 @@ class FrameKeys {
       if (fits(shape)) take(stamp);
     };
     if (learned.by_arrival) return stamp_by_arrivals(learned, put);
-    RowsInOrder<std::uint32_t> stamps(most_overtaking_frames);
+    RowsInOrder<std::uint32_t> stamps(most_reordered_frames);
     for (const Key& key : keys_) {
       const auto stamp = key.is_numbered ? stamp_of(learned, key.frame) : std::nullopt;
       stamps.add(stamp, key.shape, put);
@@ -261,8 +261,8 @@ class NumberedRows : public DeviceRows<Frames> {
            std::to_string(misfits_) + " " + frames + " of that kind were left out", ""});
     }
     this->warn_too_late(waiting_, frames);
-    this->note(waiting_.unstamped(), frames + " whose clock is known", "others",
-               "they were left out");
+    this->note(waiting_.unstamped(), frames + " whose clock is known",
+               frames + " without a known clock", "they were left out");
     return {};
   }
 
@@ -302,7 +302,7 @@ class NumberedRows : public DeviceRows<Frames> {
   std::shared_ptr<const LearnedDevice> learned_;
   NumberedFrames<Source> frames_;
   std::vector<PlacedFrame<typename Source::Frame>> placed_;
-  RowsInOrder<typename Source::Frame> waiting_{most_overtaking_frames};
+  RowsInOrder<typename Source::Frame> waiting_{most_reordered_frames};
   ArrivalStamps arrivals_{*learned_};  // for frames that are stamped by arrival
   std::optional<Error> misfit_;
   std::uint64_t appended_ = 0, misfits_ = 0;

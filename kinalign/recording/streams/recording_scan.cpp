@@ -186,22 +186,23 @@ class Scan {
     Findings& findings = state_.shared.findings;
     findings = stream.findings();
     for (const std::string& path : survey.truncated) {
-      findings.push_back(
-          {Severity::warning, Error{path, 0, "a file that was closed", "one that breaks off"},
-           "everything up to the break was read", "kinalign recover makes a whole file of it"});
+      findings.push_back({Severity::warning,
+                          Error{path, 0, "a file that was closed", "a truncated file"},
+                          "all data before the end of the file was read",
+                          "kinalign recover makes a complete file of it"});
     }
     append(findings, judge_end(last, survey.facts.has_value(), survey.ending));
     if (survey.more_marks > 0) {
       findings.push_back({Severity::warning,
                           Error{last, 0, fmt::format("at most {} marks", most_marks),
                                 fmt::format("{} more", survey.more_marks)},
-                          "they are left out", ""});
+                          "further marks are left out", ""});
     }
     if (survey.end && survey.end->dropped > 0) {
       findings.push_back({Severity::warning,
                           Error{last, 0, "every message that reached the recorder",
-                                fmt::format("{} fewer, of all devices", survey.end->dropped)},
-                          "the disk was too slow for too long, and memory full", ""});
+                                fmt::format("{} fewer, all devices together", survey.end->dropped)},
+                          "the disk was too slow, and the memory for waiting data was full", ""});
     }
     append(findings, judge_parts(*state_.files, state_.parts, Severity::note));
   }

@@ -23,12 +23,13 @@ Result<DeviceProtocol> maker_of(const RawChannel& channel, const DeviceRequest& 
   const auto protocol = protocol_of(channel);
   // A skeleton that no one reads would be a mistake of the manifest.
   if (!request.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
-    return Failure(Error{file, 0, "a skeleton of a noitom stream alone",
-                         "one of " + shown(channel.stream) + ", of " + shown(channel.protocol)});
+    return Failure(Error{file, 0, "a skeleton only for a noitom stream",
+                         "a skeleton for " + shown(channel.stream) + ", whose protocol is " +
+                             shown(channel.protocol)});
   }
   if (const auto known = rows_of(protocol, request.trackers)) return *known;
   if (request.trackers) {
-    return Failure(Error{file, 0, "trackers of an xsens stream",
+    return Failure(Error{file, 0, "trackers only of an xsens stream",
                          shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
   std::string known;
@@ -36,8 +37,9 @@ Result<DeviceProtocol> maker_of(const RawChannel& channel, const DeviceRequest& 
        {Protocol::nodes, Protocol::kinect, Protocol::noitom, Protocol::xsens, Protocol::slimevr}) {
     known += (known.empty() ? "" : ", ") + std::string(row_of(one).recorded_name);
   }
-  return Failure(Error{file, 0, "of stream " + shown(channel.stream) + " one of: " + known,
-                       "'" + shown(channel.protocol) + "', of which no rows can be made yet",
+  return Failure(Error{file, 0,
+                       "stream " + shown(channel.stream) + " of one of the protocols " + known,
+                       "'" + shown(channel.protocol) + "', which can't be aligned yet",
                        ErrorKind::no_rows_in_recording});
 }
 
@@ -113,10 +115,10 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceRequest& reques
   if (chosen.streams.count(choice.stream) == 0) {
     return Failure(Error{
         file, 0,
-        fmt::format("select.stream, or a stream's name, of {}",
+        fmt::format("select.stream (or the stream's name) to be one of {}",
                     chosen.streams.empty() ? "those recorded"
                                            : fmt::format("{}", fmt::join(chosen.streams, ", "))),
-        chosen.streams.empty() ? "a recording in which nothing was heard"
+        chosen.streams.empty() ? "a recording without data of a device"
                                : "'" + shown(choice.stream) + "'"});
   }
   // The stream exists, but not this node or sender: the error lists those that there are.
@@ -193,8 +195,8 @@ Findings judge_missing(const ScannedRecording& state, const Chosen& chosen) {
   if (missing == 0) return {};
   return {{Severity::warning,
            Error{state.parts.back().path, 0, "every message that reached the recorder",
-                 fmt::format("{} of {} missing between others", missing, chosen.choice.stream)},
-           "damage in the file, or a recording that went on in another part", ""}};
+                 fmt::format("{} messages of {} missing", missing, chosen.choice.stream)},
+           "the file is damaged, or the recording continues in a part that was not found", ""}};
 }
 
 /// After a clock has restarted, delayed samples can get earlier times than the samples before them.
@@ -207,12 +209,13 @@ Findings judge_order(const std::string& file, const DeviceStream& stream) {
   const std::uint64_t rising = on_axis.result().kept();
   // The survey of the device's own stamps kept more: some times fall only on the take's axis.
   if (rising >= stream.survey.kept()) return {};
-  return {{Severity::warning,
-           Error{file, 0, "samples whose times rise",
-                 fmt::format("{} that step back", stream.survey.kept() - rising)},
-           "align leaves them out",
-           "look for a restart of the device, or a sleep of the recording computer, with samples "
-           "still in the network"}};
+  return {
+      {Severity::warning,
+       Error{file, 0, "samples with rising times",
+             fmt::format("{} that step back", stream.survey.kept() - rising)},
+       "align leaves these samples out",
+       "check whether the device restarted, or the recording computer slept, while samples were "
+       "still on the network"}};
 }
 
 /// Reads until the header is known. Without any rows it reads to the end, because an error there

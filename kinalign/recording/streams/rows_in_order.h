@@ -12,14 +12,14 @@
 
 namespace kinalign {
 
-/// A queue that releases the earliest row when `most_overtaking` others wait behind it. Rows leave
+/// A queue that releases the earliest row when `most_reordered` others wait behind it. Rows leave
 /// in the order of their stamps; equal stamps keep the order of arrival. Memory is limited by the
 /// number of waiting rows.
 template <class Row>
 class RowsInOrder {
  public:
-  /// `most_overtaking`: number of rows that wait for delayed ones.
-  explicit RowsInOrder(std::size_t most_overtaking) : most_overtaking_(most_overtaking) {}
+  /// `most_reordered`: number of rows that wait for delayed ones.
+  explicit RowsInOrder(std::size_t most_reordered) : most_reordered_(most_reordered) {}
 
   /// Adds a row and passes the earliest one to `release` if enough others wait. A row without a
   /// stamp, or earlier than a row that was already released, is counted and left out.
@@ -31,7 +31,7 @@ class RowsInOrder {
       ++too_late_;
     } else {
       waiting_.emplace(*stamp, std::move(row));
-      if (waiting_.size() > most_overtaking_) release_first(release);
+      if (waiting_.size() > most_reordered_) release_first(release);
     }
   }
   /// Call after the last row. Releases all rows.
@@ -40,7 +40,7 @@ class RowsInOrder {
     while (!waiting_.empty()) release_first(release);
   }
 
-  std::size_t most_overtaking() const { return most_overtaking_; }
+  std::size_t most_reordered() const { return most_reordered_; }
   std::uint64_t too_late() const { return too_late_; }
   std::uint64_t unstamped() const { return unstamped_; }
 
@@ -52,7 +52,7 @@ class RowsInOrder {
     release(first.key(), std::move(first.mapped()));
   }
 
-  std::size_t most_overtaking_;
+  std::size_t most_reordered_;
   std::multimap<Time, Row> waiting_;
   std::optional<Time> released_;  // stamp of the last released row
   std::uint64_t too_late_ = 0, unstamped_ = 0;

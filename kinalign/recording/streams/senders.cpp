@@ -107,7 +107,7 @@ Findings judge_senders(const DeviceRequest& request, bool any_sender, const Send
   if (others.empty()) return {};
   return {{Severity::warning,
            Error{request.file.path, 0, "one sender of " + choice.stream, "also " + some_of(others)},
-           "only the busiest, " + choice.sender + ", was read",
+           "only the sender with the most messages, " + choice.sender + ", was read",
            "sender = \"...\" in select chooses another, an address or an address with its port"}};
 }
 
@@ -124,7 +124,7 @@ Error with_nodes(const DeviceRequest& request, const RecordingSurvey& survey, Er
     if (stream.name != request.choice.stream || stream.files.size() < 2) continue;
     error.expected = "one node of stream " + shown(stream.name) + ": " +
                      select_toml({{"node", stream.files.front().node}}) +
-                     "; or all of them, in place of file: " + files_toml(stream.files);
+                     "; or all nodes, with this line instead of file: " + files_toml(stream.files);
   }
   return error;
 }

@@ -113,7 +113,7 @@ class SlimeListener final : public DeviceListener {
     const std::string& file = request.file.path;
     if (arrivals_.empty()) {
       return Failure(Error{
-          file, 0, "of stream " + shown(learned.channel.stream) + " rotations of a SlimeVR tracker",
+          file, 0, "rotations of a SlimeVR tracker in stream " + shown(learned.channel.stream),
           "none", ErrorKind::no_rows_in_recording});
     }
     stamp_by_arrival(file, learned);
@@ -124,10 +124,10 @@ class SlimeListener final : public DeviceListener {
       learned.findings.push_back(
           {Severity::warning,
            Error{file, 0, "one sensor of tracker " + host_of(learned.channel.sender),
-                 fmt::format("{} of them", samples_.sensors.size())},
-           "the first that was heard was read",
-           fmt::format("{}/{} as a node's name, say, is one", host_of(learned.channel.sender),
-                       *samples_.sensors.rbegin())});
+                 fmt::format("{} sensors", samples_.sensors.size())},
+           "only the sensor that sent first was read",
+           fmt::format("to read another sensor, use a node name such as {}/{}",
+                       host_of(learned.channel.sender), *samples_.sensors.rbegin())});
     }
     return {};
   }
@@ -177,8 +177,8 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
   }
 
   Result<void> finish(ImuSamples&) override {
-    note(samples_.overtaken, "datagrams whose numbers rise", "that came late or twice",
-         "they were left out: nothing says when their samples were taken");
+    note(samples_.overtaken, "datagrams with rising numbers", "late or duplicate datagrams",
+         "they were left out, because the time of their samples is unknown");
     return {};
   }
 

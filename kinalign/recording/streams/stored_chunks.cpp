@@ -13,7 +13,7 @@ namespace {
 
 /// The error for a file whose bytes no longer fit the index.
 Error altered(const std::string& path) {
-  return {path, 0, "a file that stays as it is while it is read", "one that changed"};
+  return {path, 0, "a file that does not change while it is read", "a changed file"};
 }
 
 /// The unpacked records of a chunk. For a message outside of chunks, the record itself.

@@ -91,8 +91,8 @@ Result<Global> global_of(const XsensPose& pose, const std::string& name) {
     const auto at = static_cast<std::size_t>(s.id - 1);
     const auto turn = unit_quaternion(s.rotation);
     if (!turn || !sound(s.position)) {
-      return refused("a place and a unit quaternion",
-                     fmt::format("other numbers of {}", names[at]));
+      return refused("a finite position and a unit quaternion",
+                     fmt::format("other values for {}", names[at]));
     }
     here[at] = true;
     global.places[at] = ours(s.position);
@@ -154,13 +154,14 @@ void XsensPoser::begin(std::span<const double> heights, double reach) {
   const bool clear = (height >= 0.3 && height < 3.0) || height >= 30.0;
   const bool metres = clear ? height < 3.0 : reach < 3.0;
   metres_per_unit_ = metres ? 1.0 : centimetre;
-  findings.push_back(
-      {Severity::note,
-       Error{name_, 0, "a unit of length: the stream names none",
-             clear ? fmt::format("a pelvis {:.3g} above the lowest segment", height)
-                   : fmt::format("a pelvis {:.3g} above the lowest segment, and one {:.3g} from it",
-                                 height, reach)},
-       metres ? "lengths are read as metres" : "lengths are read as centimetres", ""});
+  findings.push_back({Severity::note,
+                      Error{name_, 0, "a unit of length, which the stream does not state",
+                            clear ? fmt::format("a pelvis {:.3g} above the lowest segment", height)
+                                  : fmt::format("a pelvis {:.3g} above the lowest segment, and a "
+                                                "segment {:.3g} from the pelvis",
+                                                height, reach)},
+                      metres ? "lengths are read as metres" : "lengths are read as centimetres",
+                      ""});
 }
 
 // The first pose also fixes the unit of length and the skeleton.
@@ -242,7 +243,8 @@ Result<void> XsensNodes::append(const XsensTrackers& trackers, Time stamp, ImuSa
     return t.raw.has_value() != header_.content.angular_velocity;
   };
   if (std::any_of(trackers.trackers.begin(), trackers.trackers.end(), other_kind)) {
-    return Failure(Error{name_, 0, "items of one size throughout", "items of 44 and of 68 bytes"});
+    return Failure(
+        Error{name_, 0, "items of one size in all samples", "items of 44 and of 68 bytes"});
   }
   const std::size_t first = out.size() * ids_.size(), cells = first + ids_.size();
   out.stamps.push_back(stamp);

@@ -30,7 +30,7 @@ enum class KinectDraw : std::uint8_t {
 inline RandomStream kinect_person_stream(KinectDraw draw, const KinectIds& ids) {
   return {ids.seed, mix64(mix64(0x4B32 + static_cast<std::uint64_t>(draw)) ^ ids.person)};
 }
-/// Stream of a take of that person: the same for all cameras.
+/// Random stream of one take of one person, the same for all cameras.
 inline RandomStream kinect_take_stream(KinectDraw draw, const KinectIds& ids) {
   const std::uint64_t person =
       mix64(mix64(0x4B33 + 16 * static_cast<std::uint64_t>(draw)) ^ ids.person);

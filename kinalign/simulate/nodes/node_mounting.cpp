@@ -21,7 +21,7 @@ struct Worn {
   double from_cm, to_cm;              // along the bone from its beginning, for a shank of 41.87 cm
   bool from_end;                      // true: backwards from its end
   Vec3 outward;                       // in the rest pose
-  double beside_cm;                   // outward from the bone's axis
+  double outward_cm;                  // outward from the bone's axis
 };
 
 std::array<Worn, 5> worn() {
@@ -57,7 +57,7 @@ Mounting mounted(const Worn& where, const Bone& bone, const RandomStream& random
   const double cm = where.from_cm + (where.to_cm - where.from_cm) * random.uniform(number, 0);
   Vec3 at = m * cm * along;
   if (where.from_end) at = bone.way - at;
-  at += m * (where.beside_cm * where.outward + Vec3(near(1), near(2), near(3)));
+  at += m * (where.outward_cm * where.outward + Vec3(near(1), near(2), near(3)));
   Eigen::Matrix3d axes;
   // x along the bone, z away from the body.
   axes << along, where.outward.cross(along), where.outward;

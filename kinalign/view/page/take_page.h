@@ -146,7 +146,7 @@ struct TakePage {
   std::string file;  // name of the take, without its folder
   std::string software, subject, action;
   AlignmentReport report;
-  // Judged by kinalign/align/verdict.h; the first screen shows them.
+  // kinalign/align/verdict.h computes these verdicts; the page's first screen shows them.
   std::vector<Verdict> verdicts;  // one for each stream
   std::vector<Concern> worst;     // at most three, worst first
   std::vector<InputFacts> inputs;

@@ -58,7 +58,7 @@ TEST_CASE("refused datagrams of trackers are counted, and reported if the user c
     return !findings.empty();
   });
   REQUIRE(findings.size() == 1);
-  CHECK(findings[0].what.found == "the MAC of another one at work");
+  CHECK(findings[0].what.found == "the MAC address of another active tracker");
   live.finish();
   const auto streams = live.session().streams();
   REQUIRE(streams.size() == 3);
@@ -397,7 +397,7 @@ TEST_CASE("a device that sends to another device's port is reported once while r
   });
   const auto of_frames = std::count_if(findings.begin(), findings.end(), [](const Finding& f) {
     return f.what.expected == "frames of kinect" &&
-           f.repair == "see which port and protocol the device sends to";
+           f.repair == "check the port and the protocol that the device sends to";
   });
   CHECK(of_frames == 1);
 }

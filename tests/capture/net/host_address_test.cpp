@@ -23,7 +23,7 @@ bool has(const std::string& network, const std::string& one) {
 
 bool one_stranger(const std::string& a, const std::string& b) {
   const HostAddress first = address(a), second = address(b);
-  const auto x = stranger(first), y = stranger(second);
+  const auto x = address_prefix(first), y = address_prefix(second);
   return std::equal(x.begin(), x.end(), y.begin());
 }
 

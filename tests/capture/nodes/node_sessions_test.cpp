@@ -187,7 +187,8 @@ TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") 
     CHECK(kinds ==
           std::vector{Kind::joined, boot_of_b == 1 ? Kind::restarted : Kind::started, Kind::twins});
     CHECK(is_warning(Kind::twins));
-    CHECK(host.count(Verdict::earlier_life) == 1);  // before it had received the answers since then
+    CHECK(host.count(Verdict::earlier_session) ==
+          1);  // before it had received the answers since then
     for (auto& [stream, clock] : clocks) {
       for (const ClockEvent& event : clock.take_events()) {
         // No clock got a counter value of the other node.

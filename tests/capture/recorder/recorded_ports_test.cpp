@@ -175,7 +175,7 @@ TEST_CASE(
   REQUIRE(findings.size() == 1);  // one finding for the host
   CHECK(findings[0].severity == Severity::warning);
   CHECK(findings[0].what.expected == "frames of slimevr");
-  CHECK(findings[0].what.found == "25 messages, none of them one");
+  CHECK(findings[0].what.found == "25 messages without such a frame");
   const auto streams = live.session().streams();
   REQUIRE(streams.size() == 3);
   CHECK(streams[0].counts.frames == 0);
@@ -208,9 +208,9 @@ TEST_CASE("what comes to the nodes' port and is no node's is told of once; stray
   const Findings findings = live.session().take_findings();
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].severity == Severity::warning);
-  CHECK(to_string(findings[0].what) == "imu: expected frames of nodes alone at port " +
+  CHECK(to_string(findings[0].what) == "imu: expected only frames of nodes at port " +
                                            std::to_string(live.port()) +
-                                           ", found 20 datagrams that are none");
+                                           ", found 20 other datagrams");
 }
 
 TEST_CASE("that the host's wall clock was set is told while recording") {

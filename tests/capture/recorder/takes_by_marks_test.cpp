@@ -205,7 +205,7 @@ TEST_CASE("while a disk stands still a second take is kept, and ends when the fi
     lab.mark(Kind::start, 4);
     const Findings findings = lab.session().take_findings();
     REQUIRE(findings.size() == 1);
-    CHECK(findings.front().what.expected == "a start after the take before is on the disk");
+    CHECK(findings.front().what.expected == "a start mark after the previous take is on the disk");
     files.still = false;
     lab.mark(Kind::stop, 5);
   }

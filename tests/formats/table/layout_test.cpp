@@ -127,11 +127,11 @@ TEST_CASE("what is no TOML is an error at its line") {
 TEST_CASE("a layout whose axes mirror has to say so") {
   const std::string axes = "name = 'a'\n" + members + "[axes]\nx = '-x'\n";
   CHECK(fault_of(axes) ==
-        "odd.toml:5: expected axes that keep right-handed, found a mirror image without mirrored = "
+        "odd.toml:5: expected right-handed axes, found a mirror image without mirrored = "
         "true");
   CHECK(fault_of(axes + "mirrored = true\n") == "none");
   CHECK(fault_of("name = 'a'\n" + members + "[axes]\nx = 'y'\n") ==
-        "odd.toml:5: expected axes that keep right-handed, found an axis that stands twice");
+        "odd.toml:5: expected right-handed axes, found one axis twice");
 }
 
 TEST_CASE("a layout of nodes has no mirror image") {
@@ -156,7 +156,7 @@ TEST_CASE("a quantity stands in a layout with all its components, each once") {
 
 TEST_CASE("a table whose columns have no names is declared by numbers") {
   CHECK(fault_of("name = 'a'\nheader = false\n[time]\ncolumn = 't'\n" + members) ==
-        "odd.toml:3: expected a column's number where no line names the columns, found t");
+        "odd.toml:3: expected a column's number, because no line names the columns, found t");
   CHECK(fault_of("name = 'a'\nheader = false\ncolumns = 2\n" + members) ==
         "odd.toml:3: expected at least 3 columns, found 2");
 }

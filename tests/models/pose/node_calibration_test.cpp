@@ -95,7 +95,7 @@ NodeCalibration calibrated(const WornFrames& worn, std::optional<Headings> how =
 Quat any_rotation(std::mt19937_64& random) { return random_turn(random).cast<double>(); }
 
 /// Nodes with random headings, worn as in docs/pose.md, each with an additional turn.
-Worn worn_as_told(const Person& person, std::mt19937_64& random, double turn) {
+Worn worn_as_described(const Person& person, std::mt19937_64& random, double turn) {
   std::uniform_real_distribution<double> angle(-pi, pi), small(-turn, turn);
   Worn out;
   for (std::size_t n = 0; n < worn_count; ++n) {
@@ -125,7 +125,7 @@ TEST_CASE("nodes worn anyhow that share a heading are found by arms that come do
     const NodeCalibration found = calibrated(frames_said);
     CHECK(found.headings == Headings::shared);
     CHECK(found.facing == Facing::arms);
-    CHECK_FALSE(found.worn_as_told);
+    CHECK_FALSE(found.worn_as_described);
     CHECK(apart(on_bones(found, frames_said), truth.bones) < 2e-5);
   }
 }
@@ -135,14 +135,14 @@ TEST_CASE("nodes worn as described have a heading each, which their mounting sho
     CAPTURE(seed);
     std::mt19937_64 random(seed);
     const Person truth = person();
-    Worn worn = worn_as_told(truth, random, 0.0);
+    Worn worn = worn_as_described(truth, random, 0.0);
     worn.heading[0] = turned(0.0, 3.0, 0.0);  // these surely differ in heading
     worn.heading[1] = turned(0.0, 0.0, 0.0);
     worn.heading[4] = turned(0.0, -1.5, 0.0);
     const WornFrames frames_said = said(truth, worn);
     const NodeCalibration found = calibrated(frames_said);
     CHECK(found.headings == Headings::mounting);
-    CHECK(found.worn_as_told);
+    CHECK(found.worn_as_described);
     for (const auto& node : found.nodes) CHECK(node->tilt_deg < 0.1);
     CHECK(apart(on_bones(found, frames_said), truth.bones) < 2e-5);
   }
@@ -154,7 +154,7 @@ TEST_CASE(
     CAPTURE(seed);
     std::mt19937_64 random(seed);
     const Person truth = person();
-    Worn worn = worn_as_told(truth, random, 0.15);
+    Worn worn = worn_as_described(truth, random, 0.15);
     worn.heading.assign(worn_count, worn.heading[0]);
     const WornFrames frames_said = said(truth, worn);
     const NodeCalibration found = calibrated(frames_said);
@@ -174,7 +174,7 @@ TEST_CASE(
 TEST_CASE("a node's turn about the vertical is taken for heading") {
   std::mt19937_64 random(1);
   const Person truth = person();
-  Worn worn = worn_as_told(truth, random, 0.0);
+  Worn worn = worn_as_described(truth, random, 0.0);
   worn.heading[1] = Quat::Identity();
   const Quat told = worn_in_t_pose(*worn_place("wrist_right"));
   worn.node_from_bone[1] = (turned(0.0, 0.2, 0.0) * told).conjugate() * truth.t_pose[1];
@@ -186,7 +186,7 @@ TEST_CASE("a node's turn about the vertical is taken for heading") {
 TEST_CASE("a heading that is wrong turns a movement about the vertical") {
   std::mt19937_64 random(2);
   const Person truth = person();
-  Worn worn = worn_as_told(truth, random, 0.0);
+  Worn worn = worn_as_described(truth, random, 0.0);
   worn.heading.assign(worn_count, Quat::Identity());
   worn.heading[2] = turned(0.0, 0.5 * pi, 0.0);
   const WornFrames frames_said = said(truth, worn);
@@ -198,11 +198,11 @@ TEST_CASE("a heading that is wrong turns a movement about the vertical") {
 TEST_CASE("arms that hang in place of a T-pose are seen by where up is for their nodes") {
   std::mt19937_64 random(3);
   const Person truth = person();
-  const Worn worn = worn_as_told(truth, random, 0.0);
+  const Worn worn = worn_as_described(truth, random, 0.0);
   const auto found = calibrate(test_layout(), pose_body(test_offsets()).skeleton, said(truth, worn),
                                {.t_pose = {180, 30}, .headings = Headings::mounting});
   REQUIRE(found);
-  CHECK(found->worn_as_told);
+  CHECK(found->worn_as_described);
   CHECK(found->nodes[0]->tilt_deg == doctest::Approx(81.0).epsilon(0.01));
   CHECK(found->nodes[1]->tilt_deg == doctest::Approx(81.0).epsilon(0.01));
   CHECK(found->nodes[4]->tilt_deg < 1.0);
@@ -211,7 +211,7 @@ TEST_CASE("arms that hang in place of a T-pose are seen by where up is for their
 TEST_CASE("an accelerometer's reading at rest is subtracted in its own space") {
   std::mt19937_64 random(4);
   const Person truth = person();
-  const Worn worn = worn_as_told(truth, random, 0.0);
+  const Worn worn = worn_as_described(truth, random, 0.0);
   WornFrames wrong = said(truth, worn);
   const Vec3 zero(0.2, -0.3, 0.1);
   for (std::size_t at = 0; at < wrong.valid.size(); at += worn_count) {
@@ -227,7 +227,7 @@ TEST_CASE("an accelerometer's reading at rest is subtracted in its own space") {
 TEST_CASE("a node without samples in the T-pose is lost, and without the root's there is nothing") {
   std::mt19937_64 random(5);
   const Person truth = person();
-  WornFrames frames_said = said(truth, worn_as_told(truth, random, 0.0));
+  WornFrames frames_said = said(truth, worn_as_described(truth, random, 0.0));
   for (std::size_t t = 0; t < t_pose_frames; ++t) frames_said.valid[worn_count * t + 3] = 0;
   const NodeCalibration found = calibrated(frames_said, Headings::mounting);
   CHECK_FALSE(found.nodes[3]);

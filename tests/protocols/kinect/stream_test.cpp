@@ -219,10 +219,10 @@ TEST_CASE("each fault of a binary message has its name") {
   CHECK(refusal_of(with(5, 5)) == Refusal::unknown_type);
   CHECK(refusal_of(with(5, 0)) == Refusal::unknown_type);
   CHECK(refusal_of(with(21, 2)) == Refusal::unknown_joint_set);
-  CHECK(refusal_of(with(20, 32 + 3)) == Refusal::stray_bits);
-  CHECK(refusal_of(with(20, 2)) == Refusal::stray_bits);      // UTC without its flag
-  CHECK(refusal_of(with(20, 1)) == Refusal::stray_bits);      // the floor without its flag
-  CHECK(refusal_of(with(20, 3 + 8)) == Refusal::stray_bits);  // hands of nobody
+  CHECK(refusal_of(with(20, 32 + 3)) == Refusal::reserved_bits);
+  CHECK(refusal_of(with(20, 2)) == Refusal::reserved_bits);      // UTC without its flag
+  CHECK(refusal_of(with(20, 1)) == Refusal::reserved_bits);      // the floor without its flag
+  CHECK(refusal_of(with(20, 3 + 8)) == Refusal::reserved_bits);  // hands of nobody
   CHECK(refusal_of(with(22, 1)) == Refusal::wrong_length);
   CHECK(refusal_of(with(22, 7)) == Refusal::wrong_fields);
   CHECK(refusal_of(with(23, 6)) == Refusal::wrong_fields);
@@ -243,7 +243,7 @@ TEST_CASE("stray bits of bodies, hellos and pings have their name") {
     CAPTURE(at);
     Bytes bytes = body;
     bytes[at] = byte;
-    CHECK(refusal_of(sealed(bytes)) == Refusal::stray_bits);
+    CHECK(refusal_of(sealed(bytes)) == Refusal::reserved_bits);
   }
   const Bytes hello = encode_kinect_binary(KinectHello{page_origin, "1", "2"});
   const Bytes ping = encode_kinect_binary(KinectPing{page_origin, 1, std::nullopt});
@@ -252,16 +252,16 @@ TEST_CASE("stray bits of bodies, hellos and pings have their name") {
     CAPTURE(at);
     for (Bytes bytes : {hello, ping, pong}) {
       bytes[at] = 2;
-      CHECK(refusal_of(sealed(bytes)) == Refusal::stray_bits);
+      CHECK(refusal_of(sealed(bytes)) == Refusal::reserved_bits);
     }
   }
   for (Bytes bytes : {ping, pong}) {
     bytes[21] = 1;
-    CHECK(refusal_of(sealed(bytes)) == Refusal::stray_bits);
+    CHECK(refusal_of(sealed(bytes)) == Refusal::reserved_bits);
   }
   Bytes echo = ping;
   echo[36] = 1;  // a nonce without its flag
-  CHECK(refusal_of(sealed(echo)) == Refusal::stray_bits);
+  CHECK(refusal_of(sealed(echo)) == Refusal::reserved_bits);
   Bytes text = hello;
   text[25] = 0x1b;
   CHECK(refusal_of(sealed(text)) == Refusal::wrong_fields);
@@ -304,8 +304,8 @@ TEST_CASE("each fault of a line has its name") {
   const std::string turned = encode_kinect_line(frame);
   const auto from = turned.find(",\"orientations\""), to = turned.find("]]", from);
   CHECK(refusal_of(turned.substr(0, from) + turned.substr(to + 2)) == Refusal::wrong_fields);
-  CHECK(with("\"hands\":[0,0,0]", "\"hands\":[0,5,0]") == Refusal::stray_bits);
-  CHECK(with("\"states\":[2,", "\"states\":[3,") == Refusal::stray_bits);
+  CHECK(with("\"hands\":[0,0,0]", "\"hands\":[0,5,0]") == Refusal::reserved_bits);
+  CHECK(with("\"states\":[2,", "\"states\":[3,") == Refusal::reserved_bits);
   CHECK(with("\"states\":[2,", "\"states\":[2,2,") == Refusal::wrong_fields);
   CHECK(with("\"positions\":[[1,", "\"positions\":[[") == Refusal::wrong_fields);
   CHECK(with("\"more_parts\":false", "\"more_parts\":0") == Refusal::wrong_fields);

@@ -278,7 +278,7 @@ TEST_CASE("noitom: in rubbish no frame has a wrong count") {
         read.findings.begin(), read.findings.end(),
         [](const Finding& f) { return f.what.expected == "frames of the BVH broadcast"; });
     REQUIRE(of_garbage != read.findings.end());
-    CHECK(of_garbage->repair == "see that nothing but the BVH broadcast is sent to this port");
+    CHECK(of_garbage->repair == "check that only the BVH broadcast is sent to this port");
   }
 }
 

@@ -45,7 +45,7 @@ TEST_CASE("what a recording does not have, and what of it is not looked at, is t
   CHECK(file.marks.size() == most_marks);
   REQUIRE(file.findings.size() == 2);
   CHECK(file.findings[0].what.found == "2 more");
-  CHECK(file.findings[1].what.found == "5 fewer, of all devices");
+  CHECK(file.findings[1].what.found == "5 fewer, all devices together");
 }
 
 TEST_CASE("whatever byte of a recording's summary is damaged, its streams are the same") {
@@ -81,9 +81,10 @@ TEST_CASE("what is not in a recording is refused by the names of what is") {
     return streams.error().expected + "; " + streams.error().found;
   };
   CHECK(refusal(stream_named("mocap", path)) ==
-        "select.stream, or a stream's name, of imu; 'mocap'");
+        "select.stream (or the stream's name) to be one of imu; 'mocap'");
   CHECK(refusal(stream_named("imu", path)) ==
-        "one node of stream imu: select = { node = \"12\" }; or all of them, in place of file: "
+        "one node of stream imu: select = { node = \"12\" }; or all nodes, with this line instead "
+        "of file: "
         "files = { 12 = \"" +
             path + "\", waist = \"" + path + "\" }; 12, 13 (waist)");
   CHECK(refusal(stream_named("imu", path, "14")) == "of stream imu node 12, 13 (waist); '14'");
@@ -208,13 +209,13 @@ TEST_CASE("two Kinects with one id are told of by check, and by who reads one of
   struct Pair {
     std::string first, second, read, meaning;
   };
-  for (const Pair& pair :
-       {Pair{"10.0.0.8:5", "10.0.0.9:5", "one sender of kinect",
-             "only the busiest, 10.0.0.8, was read"},
-        Pair{"10.0.0.8:5", "10.0.0.8:6", "one sender of kinect",
-             "only the busiest, 10.0.0.8, was read"},
-        Pair{"10.0.0.8:5", "10.0.0.8:5", "one sender of Kinect sensor 2",
-             "the newest session's were read; 100 frames of others were left out"}}) {
+  for (const Pair& pair : {Pair{"10.0.0.8:5", "10.0.0.9:5", "one sender of kinect",
+                                "only the busiest, 10.0.0.8, was read"},
+                           Pair{"10.0.0.8:5", "10.0.0.8:6", "one sender of kinect",
+                                "only the busiest, 10.0.0.8, was read"},
+                           Pair{"10.0.0.8:5", "10.0.0.8:5", "one sender of Kinect sensor 2",
+                                "frames of the newest session were read; 100 frames of other "
+                                "sessions were left out"}}) {
     CAPTURE(pair.second);
     const FreshFolder folder;
     RecordedLab lab(20261123);
@@ -279,10 +280,10 @@ TEST_CASE("where nothing is of a stream's protocol the stream is named, and wher
                                        std::pair("kinect", "frames of a Kinect")}) {
     const auto streams = open_streams(files, {stream_named(protocol, path)});
     REQUIRE_FALSE(streams);
-    CHECK(to_string(streams.error()) ==
-          path + ": expected of stream " + protocol + " " + what +
-              " (nothing in it is of that protocol: see which port and protocol the device sends "
-              "to), found none");
+    CHECK(to_string(streams.error()) == path + ": expected of stream " + protocol + " " + what +
+                                            " (no message is of this protocol: check the port and "
+                                            "the protocol that the device sends "
+                                            "to), found none");
   }
 }
 
@@ -318,7 +319,7 @@ TEST_CASE("a body that does not speak is not taken for another protocol") {
   const auto streams = open_streams(files, {options});
   REQUIRE_FALSE(streams);
   CHECK(streams.error().expected == "of stream xsens poses (type 02) of Xsens MVN");
-  CHECK(streams.error().found == "120 of other types or bodies alone");
+  CHECK(streams.error().found == "120 messages, all of other types or bodies");
 }
 
 TEST_CASE("one datagram that was passed over is one") {
@@ -330,8 +331,9 @@ TEST_CASE("one datagram that was passed over is one") {
   const RecordedStream stream =
       opened(files, stream_named("imu", folder.write("take.mcap", lab.file())));
   REQUIRE(stream.findings.size() == 1);
-  CHECK(stream.findings.front().what.found ==
-        "1 of no use: damaged, too late or come twice, or of a start that was never confirmed");
+  CHECK(
+      stream.findings.front().what.found ==
+      "1 datagrams that were damaged, late or duplicate, or of a session that was never confirmed");
 }
 
 TEST_CASE("a stranger at the trackers' port is no node of the manifest") {
@@ -487,5 +489,5 @@ TEST_CASE("mocap that was recorded without a skeleton gets the one that the mani
   options.name = "kinect";
   const auto of_kinect = open_streams(files, {options});
   REQUIRE(!of_kinect);
-  CHECK(of_kinect.error().expected == "a skeleton of a noitom stream alone");
+  CHECK(of_kinect.error().expected == "a skeleton only for a noitom stream");
 }

@@ -60,7 +60,8 @@ TEST_CASE("a bystander does not become the person who is gone, however near they
   CHECK(person(frame_at(1.0, {{8, 0.0F}, {7, 0.8F}})) == 8);
   for (double t = 1.1; t < 60.0; t += 1.0) CHECK(person(frame_at(t, {{7, 0.1F}})) == nobody);
   CHECK(person(frame_at(60.0, {{7, 0.1F}, {9, 0.4F}})) == 9);  // the person is found again
-  CHECK(told(person).find("the followed person, 59 frames with others alone") != std::string::npos);
+  CHECK(told(person).find("the followed person, 59 frames with only other bodies") !=
+        std::string::npos);
 }
 
 TEST_CASE("who was not seen beside the person is taken for it as far away as one can walk") {

@@ -62,7 +62,8 @@ inline std::vector<std::string> warnings(const RecordedStream& stream) {
 inline bool says_arrivals(const RecordedStream& stream) {
   return std::any_of(stream.findings.begin(), stream.findings.end(), [](const Finding& one) {
     return one.severity == Severity::note &&
-           one.meaning == "stamps are arrivals, late by unknown times";
+           one.meaning ==
+               "samples are stamped by their arrival, so the stamps are late by an unknown delay";
   });
 }
 

@@ -182,7 +182,7 @@ TEST_CASE("samples whose time steps back where a clock begins anew are told and 
   CHECK(back > 0);
   const auto told = warnings(stream);
   CHECK(std::count_if(told.begin(), told.end(), [&](const std::string& text) {
-          return text.find("samples whose times rise, found " + std::to_string(back) +
+          return text.find("samples with rising times, found " + std::to_string(back) +
                            " that step back") != std::string::npos;
         }) == 1);
 }
@@ -231,7 +231,7 @@ TEST_CASE("a file that breaks off anywhere is read up to there, and that is said
     const RecordedStream stream = opened(files, stream_named("imu", path));
     const Findings of_file = opened_file(files, stream_named("imu", path)).findings;
     const auto torn = std::count_if(of_file.begin(), of_file.end(), [](const Finding& f) {
-      return f.repair == "kinalign recover makes a whole file of it";
+      return f.repair == "kinalign recover makes a complete file of it";
     });
     CHECK(torn == 1);
     const Errors errors = node_errors(stream);

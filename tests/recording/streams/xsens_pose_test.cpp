@@ -94,10 +94,11 @@ TEST_CASE("xsens pose: metres or centimetres by the height of the pelvis, and it
     CHECK(frames.local_positions[1] == doctest::Approx(0.9375));
     REQUIRE(poser.findings.size() == 1);
     CHECK(to_string(poser.findings[0].what) ==
-          (centimetres ? "mvn: expected a unit of length: the stream names none, found a pelvis "
-                         "93.8 above the lowest segment"
-                       : "mvn: expected a unit of length: the stream names none, found a pelvis "
-                         "0.938 above the lowest segment"));
+          (centimetres
+               ? "mvn: expected a unit of length, which the stream does not state, found a pelvis "
+                 "93.8 above the lowest segment"
+               : "mvn: expected a unit of length, which the stream does not state, found a pelvis "
+                 "0.938 above the lowest segment"));
     CHECK(poser.findings[0].meaning ==
           (centimetres ? "lengths are read as centimetres" : "lengths are read as metres"));
   }
@@ -142,11 +143,12 @@ TEST_CASE("xsens pose: what is no whole pose of numbers is refused and leaves no
       "mvn: expected the segments 1 to 23, each once, first in a pose, found segment 4 as item 5");
   pose = pose_of(xsens_pose());
   pose.segments[4].rotation = {0, 0, 0, 0};
-  CHECK(refused(pose) == "mvn: expected a place and a unit quaternion, found other numbers of T8");
+  CHECK(refused(pose) ==
+        "mvn: expected a finite position and a unit quaternion, found other numbers of T8");
   pose = pose_of(xsens_pose());
   pose.segments[6].position[1] = NAN;
   CHECK(refused(pose) ==
-        "mvn: expected a place and a unit quaternion, found other numbers of Head");
+        "mvn: expected a finite position and a unit quaternion, found other numbers of Head");
   CHECK(frames.size() == 0);
   CHECK(poser.skeleton() == nullptr);
 }
@@ -206,6 +208,6 @@ TEST_CASE("xsens nodes: a first sample of unknown segments and a change of kind 
   result = nodes.append(trackers_of(xsens_trackers(false)), utc_time(1), samples);
   REQUIRE(!result);
   CHECK(to_string(result.error()) ==
-        "mvn: expected items of one size throughout, found items of 44 and of 68 bytes");
+        "mvn: expected items of one size in all samples, found items of 44 and of 68 bytes");
   CHECK(samples.size() == 1);
 }

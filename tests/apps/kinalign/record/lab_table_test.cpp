@@ -22,16 +22,16 @@ TEST_CASE("a lab's table has a line for each sender, and one for each device tha
   const auto lines = table(Scene());
   REQUIRE(lines.size() == 5);
   CHECK(lines[0].text ==
-        "device          rate/s lost late twice       heard                  clock   ppm battery "
+        "device          rate/s lost late dup        last                  clock   ppm battery "
         "recorded link");
   CHECK(lines[1].text ==
-        "mocap     124.9 of 125    3    0     0       0.1 s                                      "
+        "mocap     124.9 of 125    3    0   0       0.1 s                                      "
         " 11.1 MB udp 192.168.7.5:51234");
   CHECK(!lines[1].bad);
-  CHECK(lines[2].text.starts_with("kinect       0.0 of 30    3    0     0 silent 10 s "));
+  CHECK(lines[2].text.starts_with("kinect       0.0 of 30    3    0   0 silent 10 s "));
   CHECK(lines[2].bad);
   CHECK(lines[3].text ==
-        "imu waist        124.9    3    0     0       0.1 s -1000.0000 s ± 1.04 ms +20.1  3.70 V "
+        "imu waist        124.9    3    0   0       0.1 s -1000.0000 s ± 1.04 ms +20.1  3.70 V "
         " 11.1 MB udp 192.168.7.5:51234");
   CHECK(lines[4].text == "imu wrist missing: nothing yet, 60 s");
   CHECK(lines[4].bad);
@@ -41,7 +41,7 @@ TEST_CASE("a narrow table leaves out columns from the right") {
   const Scene scene;
   const auto at_80 = table(scene, 79);
   CHECK(at_80[0].text ==
-        "device          rate/s lost late twice       heard                  clock   ppm");
+        "device          rate/s lost late dup        last                  clock   ppm");
   for (std::size_t width = 45; width <= wide; ++width) {
     CAPTURE(width);
     for (const TableLine& line : table(scene, width)) CHECK(places(line.text) <= width);
@@ -53,7 +53,7 @@ TEST_CASE("a column that nobody has anything for is left out") {
   scene.lab.devices.resize(2);
   const auto lines = table(scene);
   REQUIRE(lines.size() == 3);
-  CHECK(lines[0].text == "device       rate/s lost late twice       heard recorded link");
+  CHECK(lines[0].text == "device       rate/s lost late dup        last recorded link");
 }
 
 TEST_CASE("what a port lost stands red below its device, required or not") {

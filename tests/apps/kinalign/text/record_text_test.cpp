@@ -30,7 +30,7 @@ TEST_CASE("a line about a device that has sent nothing names its port") {
   CHECK(unseen_lines(scene.lab, scene.status) ==
         std::vector<std::string>{"imu wrist: nothing has come to port 5005 yet",
                                  "suit: no connection to 192.168.7.5:7001 yet",
-                                 "camera: nobody has connected to port 7202 yet"});
+                                 "camera: no device has connected to port 7202 yet"});
   for (auto& [name, counts] : scene.status.ports) counts.links = 1;
   const auto linked = unseen_lines(scene.lab, scene.status);
   CHECK(linked[1] == "suit: nothing has come from 192.168.7.5:7001 yet");
@@ -82,9 +82,9 @@ TEST_CASE("the text about datagrams dropped at a nodes' port names them as far a
   PortCounts counts;
   counts.sifted = true;
   counts.dropped = 419;
-  CHECK(loss_of(counts, 0) == "419 thrown away: no frames of nodes");
-  CHECK(loss_of(counts, 7) == "419 thrown away, 412 of them or more no frames of nodes");
-  CHECK(loss_of(counts, 500) == "419 thrown away: no frames of nodes, or no room for them");
+  CHECK(loss_of(counts, 0) == "419 dropped: not frames of nodes");
+  CHECK(loss_of(counts, 7) == "419 dropped, at least 412 of them not frames of nodes");
+  CHECK(loss_of(counts, 500) == "419 dropped: not frames of nodes, or the buffer was full");
 }
 
 TEST_CASE("data at a port of nodes from which no node can be seen is counted in the line") {

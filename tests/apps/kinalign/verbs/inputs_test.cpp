@@ -42,10 +42,10 @@ TEST_CASE("a fault of a recording is reported under the name that the user gave"
   CHECK(refusal() ==
         "t/take.mcap: expected a recording in which a message can be read, found none");
   survey.messages = 1;
-  CHECK(refusal() == "t/take.mcap: expected a recording of kinalign's, found another MCAP file");
-  survey.facts.emplace();
   CHECK(refusal() ==
-        "t/take.mcap: expected a recording of devices, found one in which none was heard");
+        "t/take.mcap: expected a recording by kinalign record, found another MCAP file");
+  survey.facts.emplace();
+  CHECK(refusal() == "t/take.mcap: expected data of at least one device, found none");
   CHECK(recorded_manifest(survey, "t/take.mcap").error().kind == ErrorKind::no_rows_in_recording);
 }
 
