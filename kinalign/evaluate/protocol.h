@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The measures of UI-PRMD's protocol (kinect-noise-and-marks.md section 10), in its units.
+// The measures of UI-PRMD's protocol (docs/models.md), in its units.
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"

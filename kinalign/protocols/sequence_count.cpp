@@ -25,6 +25,7 @@ SequenceCounts SequenceCount::counts() const {
 Order SequenceCount::push(std::uint64_t sent, bool may_restart) {
   if (leapt_ && is_near(before_, sent) && !is_near(now_, sent)) {
     now_ = before_;
+    ++runs_;
     ++now_.counts.received;
     ++now_.counts.outliers;
   }
@@ -62,6 +63,7 @@ void SequenceCount::begin(std::int64_t number) {
   now_.counts.lost += now_.numbers.missing();
   now_.numbers = {};
   ++now_.counts.restarts;
+  ++runs_;
   take(now_.numbers.unwrap(static_cast<std::uint64_t>(number), bits_));
 }
 

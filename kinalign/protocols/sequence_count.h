@@ -41,8 +41,8 @@ struct SequenceCounts {
 
 /// A packet's place among all packets of its sender.
 struct SequencePlace {
-  std::uint64_t restarts = 0;  // before this packet
-  std::int64_t number = 0;     // unwrapped; it continues until the next restart
+  std::uint64_t run = 0;    // changes at each restart and at the end of each outlier; never returns
+  std::int64_t number = 0;  // unwrapped; numbers of one run are comparable
 };
 
 /// Counts packets by numbers of 1 to 64 bits and follows their wraps; takes 0.5 kB.
@@ -62,7 +62,7 @@ class SequenceCount {
   Order push(std::uint64_t sent, bool may_restart = true);
   SequenceCounts counts() const;
   /// The place of the packet that was pushed last.
-  SequencePlace place() const { return {now_.counts.restarts, now_.previous}; }
+  SequencePlace place() const { return {runs_, now_.previous}; }
 
  private:
   struct State {
@@ -82,7 +82,8 @@ class SequenceCount {
 
   unsigned bits_;
   State now_, before_;
-  bool leapt_ = false;  // the last packet began a new count; `before_` is the old one
+  std::uint64_t runs_ = 0;  // not in State: a run that an outlier began is not used again
+  bool leapt_ = false;      // the last packet began a new count; `before_` is the old one
 };
 
 }  // namespace kinalign

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/sources/stream_survey.h"
 
-#include "kinalign/core/file_version.h"
 #include "kinalign/check/judge_survey.h"
 #include "kinalign/check/value_survey.h"
+#include "kinalign/core/file_version.h"
 #include "kinalign/core/hash.h"
 #include "kinalign/core/utf8.h"
 #include "kinalign/sources/formats.h"

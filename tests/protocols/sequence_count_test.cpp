@@ -148,17 +148,17 @@ TEST_CASE("sequence: a packet's number goes on over a wrap, and begins again wit
   SequenceCount count;
   const auto place = [&count](std::uint64_t number) {
     count.push(number);
-    return std::pair(count.place().restarts, count.place().number);
+    return std::pair(count.place().run, count.place().number);
   };
   constexpr std::int64_t turn = std::int64_t{1} << 32;
   CHECK(place(0xffff'fffe) == std::pair(std::uint64_t{0}, turn - 2));
   CHECK(place(1) == std::pair(std::uint64_t{0}, turn + 1));
   CHECK(place(0xffff'ffff) == std::pair(std::uint64_t{0}, turn - 1));
   CHECK(place(5'000'000) == std::pair(std::uint64_t{1}, std::int64_t{5'000'000}));
-  // The packet before was an outlier.
-  CHECK(place(2) == std::pair(std::uint64_t{0}, turn + 2));
-  CHECK(place(3'000'000'000) == std::pair(std::uint64_t{1}, std::int64_t{3'000'000'000}));
-  CHECK(place(3'000'000'001) == std::pair(std::uint64_t{1}, std::int64_t{3'000'000'001}));
+  // The packet before was an outlier. No later packet shares its run.
+  CHECK(place(2) == std::pair(std::uint64_t{2}, turn + 2));
+  CHECK(place(3'000'000'000) == std::pair(std::uint64_t{3}, std::int64_t{3'000'000'000}));
+  CHECK(place(3'000'000'001) == std::pair(std::uint64_t{3}, std::int64_t{3'000'000'001}));
 }
 
 TEST_CASE(

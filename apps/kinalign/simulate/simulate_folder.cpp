@@ -20,7 +20,7 @@ constexpr int bvh_decimals = 6;
 // The link of the stamps by arrival. Its mean delay is stated in the manifest, as a user would
 // measure it.
 constexpr Link arrival_link = Link::paper;
-constexpr double arrival_delay_ms = 33.2;  // mean delay of that link: time-sync.md 3.4
+constexpr double arrival_delay_ms = 33.2;  // mean delay of that link (docs/simulated_links.md)
 
 /// Writes a clip as BVH, in blocks of frames: an hour of a body is a gigabyte of numbers.
 Result<void> write_clip(const RehearsalFolder& folder, const std::string& name,

@@ -109,8 +109,7 @@ std::string name_list(const std::vector<std::string>& names) {
 }
 
 std::string joint_lines(std::string_view name, const std::vector<std::string>& joints) {
-  return fact_line(name,
-                   fmt::format("{}: {}", counted(joints.size(), "joint"), name_list(joints)));
+  return fact_line(name, fmt::format("{}: {}", counted(joints.size(), "joint"), name_list(joints)));
 }
 
 /// A text member of an object from a file that any program may have written, on one line. Empty if

@@ -26,8 +26,7 @@ std::uint64_t refused(const SlimeVerdicts& verdicts) {
          verdicts[Verdict::late];
 }
 
-/// A tracker that changes its address is admitted one second after its last datagram from the old
-/// address.
+/// Faults that the refused datagrams of a port show, for the user.
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name) {
   constexpr std::uint64_t too_often = 3;  // a tracker that moves causes fewer
   constexpr const char* unanswered =
@@ -80,6 +79,7 @@ SlimeVerdict SlimeResponder::take_handshake(const SlimeHandshake& handshake,
   SlimeDevice* device = device_named(handshake, arrival.from);
   const bool known = device != nullptr;
   const bool moves = known && device->address != arrival.from;
+  // A tracker may change its address one second after its last datagram from the old address.
   if (moves && arrival.h_rx - device->last_arrival < left_after) return SlimeVerdict::duplicate_mac;
   if (!known || moves) {
     const std::uint64_t hash = siphash_2_4(secret_, address_prefix(arrival.from.host));

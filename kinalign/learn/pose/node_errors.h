@@ -13,8 +13,8 @@ namespace kinalign {
 
 /// Each node's errors are constant over the frames; noise is drawn for each sample. The defaults
 /// are the errors that remain after a calibration.
-/// Training with them makes a network robust: without them, calibrated nodes cost it far more
-/// (learning.md 0, finding 4). A wrong mounting or heading stays the same over a crop, as it does
+/// Training with them makes a network robust: without them, calibrated nodes cost it far more.
+/// A wrong mounting or heading stays the same over a crop, as it does
 /// over a recording.
 struct NodeErrors {
   double mount_deg = 5.0;     // rotation of the node on its bone, about each axis, 1 sigma

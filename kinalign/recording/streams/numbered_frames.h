@@ -110,8 +110,8 @@ class NumberedFrames {
       Placed placed{std::move(*frame), {}, arrival};
       if constexpr (holds_back) placed.arrival = one.arrival.value_or(arrival);
       if (place) {
-        // A channel restarts rarely; its id takes the upper bits.
-        const BootKey life = (place->restarts + 1) | BootKey{from.id} << 32U;
+        // A channel has few runs; its id takes the upper bits.
+        const BootKey life = (place->run + 1) | BootKey{from.id} << 32U;
         placed.place = CountedFrame{life, place->number, placed.arrival};
       }
       out.push_back(std::move(placed));

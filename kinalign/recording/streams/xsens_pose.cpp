@@ -144,8 +144,6 @@ bool XsensFits<XsensTrackers>::operator()(std::uint32_t shape) {
   return (shape & (*raw_ ? all_raw : none_raw)) != 0;
 }
 
-std::span<const std::string_view, xsens_segments> xsens_segment_names() { return names; }
-
 // Chooses the unit of length. Xsens' document says centimetres, but MVN sends metres. If the pelvis
 // is 0.3 to 3 above the lowest segment, the unit is metres; from 30 on it is centimetres. If the
 // person lies, the segment furthest from the pelvis decides.

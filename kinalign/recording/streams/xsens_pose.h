@@ -18,9 +18,6 @@ namespace kinalign {
 
 constexpr std::size_t xsens_segments = 23;
 
-/// Pelvis, L5, ... LeftToe. The name of segment id k is at index k - 1.
-std::span<const std::string_view, xsens_segments> xsens_segment_names();
-
 /// A value that decides whether XsensPoser accepts a pose, or XsensNodes a sample of trackers.
 std::uint32_t xsens_shape(const XsensPose& pose);
 std::uint32_t xsens_shape(const XsensTrackers& trackers);

@@ -25,8 +25,8 @@ struct MocapRun {
   double frame_s(std::size_t k) const { return first_frame_s + static_cast<double>(k) / rate_hz; }
 };
 
-/// Mean delay from a click to the first frame: 45 ms with a deviation of 6 ms, an estimate
-/// (time-sync.md 4.9 has the same), plus half a frame until the next one is due.
+/// Mean delay from a click to the first frame: 45 ms with a deviation of 6 ms, an estimate,
+/// plus half a frame until the next one is due.
 inline constexpr double click_latency_s = 0.045 + 0.5 / 60.0;
 
 /// Greater than the drift of any crystal in node_clock.h and of the camera's.

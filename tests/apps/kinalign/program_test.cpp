@@ -118,9 +118,9 @@ TEST_CASE("a fault in a settings file is reported with its line") {
     const Outcome outcome = machine.run(show, {"mix", "a"});
     CHECK(outcome.code == 2);
     const auto end = outcome.err.find('\n');
-    CHECK(
-        outcome.err.substr(end) ==
-        "\n  docs/commands.md describes a settings file, docs/formats/lab_toml.md describes a lab file\n");
+    CHECK(outcome.err.substr(end) ==
+          "\n  docs/commands.md describes a settings file, docs/formats/lab_toml.md describes a "
+          "lab file\n");
     return outcome.err.substr(0, end);
   };
   CHECK(message("[mix]\nrwos = 2\n") ==

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/streams/counted_clock.h"
 
+#include "kinalign/protocols/sequence_count.h"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -63,6 +65,28 @@ TEST_CASE("a pause in which a source did not count bends no rate, whatever is st
       CHECK(counted.findings.empty());
       CHECK(counted.step_ns == doctest::Approx(8e6).epsilon(0.002));
       CHECK(source.worst(counted) < 2500us);
+    }
+  }
+}
+
+TEST_CASE("a single wrong number shifts no other frame, also if the source restarts later") {
+  for (const std::uint64_t wrong : {1'250ULL, 5'000'000ULL}) {
+    for (const std::int64_t restart : {0, 5000}) {
+      CAPTURE(wrong);
+      CAPTURE(restart);
+      Source source(Duration{0});
+      SequenceCount count;
+      for (std::int64_t k = 0; k < 7500; ++k) {
+        const std::int64_t number = restart > 0 && k >= restart ? k - restart : k;
+        count.push(k == 3750 ? wrong : static_cast<std::uint64_t>(number));
+        CountedFrame& frame = source.frames[static_cast<std::size_t>(k)];
+        frame.life = count.place().run + 1;
+        frame.number = count.place().number;
+      }
+      const LearnedDevice counted = counted_clock(source.frames, 8e6);
+      source.frames.erase(source.frames.begin() + 3750);
+      source.sent.erase(source.sent.begin() + 3750);
+      CHECK(source.worst(counted) < 20ms);
     }
   }
 }
