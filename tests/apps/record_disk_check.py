@@ -70,7 +70,7 @@ def a_disk_with_64_mib_left_ends_the_take_in_order(folder):
         out, err = recording.program.communicate(timeout=60)
         events = [json.loads(line) for line in out.splitlines()]
         names = [event["event"] for event in events]
-        assert recording.program.returncode == 1 and "the take ends here, in order" in err, (names, err)
+        assert recording.program.returncode == 1 and "the take ends now and is complete" in err, (names, err)
         assert "disk_full" in names and "disk_low" in names and "disk_failed" not in names, names
         assert events[-1]["event"] == "stopped" and events[-1]["dropped"] == 0, events[-1]
         walk = Walk(recording.path)
@@ -186,7 +186,7 @@ def a_disk_that_stands_still_can_be_left_and_what_it_took_before_is_whole(folder
         assert recording.program.poll() is None, "it left by itself"
         recording.program.send_signal(signal.SIGINT)
         out, err = recording.program.communicate(timeout=10)
-    assert recording.program.returncode == 3 and "stands still" in err, (recording.program.returncode, err)
+    assert recording.program.returncode == 3 and "does not respond" in err, (recording.program.returncode, err)
     assert "stopped" not in out, out
     found = set(numbers(Walk(recording.path)))
     owed = [n for n, sent in enumerate(sender.sent) if sent < stood - 1]
@@ -302,7 +302,7 @@ def ctrl_c_ends_the_trial_that_goes_on_while_the_disk_still_writes_the_one_befor
         still.unlink()
         stopped = [recording.until("stopped")[-1]["files"] for _ in range(2)]
         out, err = recording.program.communicate(timeout=30)
-    assert recording.program.returncode == 0 and "Ctrl-C pressed twice loses" in err, (out, err)
+    assert recording.program.returncode == 0 and "Ctrl-C pressed twice discards" in err, (out, err)
     found = [numbers(Walk(pathlib.Path(file))) for [file] in stopped]
     assert found[0][0] == 0 and found[1][-1] == 1, found
 
@@ -320,7 +320,7 @@ def a_disk_that_stands_still_when_a_take_begins_can_be_left(folder):
         assert recording.program.poll() is None, "it left by itself"
         recording.program.send_signal(signal.SIGINT)
         err = recording.program.communicate(timeout=10)[1]
-    assert recording.program.returncode == 3 and "stands still" in err, (recording.program.returncode, err)
+    assert recording.program.returncode == 3 and "does not respond" in err, (recording.program.returncode, err)
 
 
 if __name__ == "__main__":

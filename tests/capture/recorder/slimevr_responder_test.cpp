@@ -302,10 +302,10 @@ TEST_CASE("a full table and a MAC that is used twice are findings, a tracker tha
   const Findings findings = findings_of(verdicts, "imu from 192.168.1.7:6969");
   REQUIRE(findings.size() == 2);
   CHECK(to_string(findings[0].what) ==
-        "imu from 192.168.1.7:6969: expected at most 64 trackers, found one more");
+        "imu from 192.168.1.7:6969: expected at most 64 trackers, found another tracker");
   CHECK(to_string(findings[1].what) ==
-        "imu from 192.168.1.7:6969: expected a tracker of its own, found the MAC of another one at "
-        "work");
+        "imu from 192.168.1.7:6969: expected a MAC address of its own, found the MAC of "
+        "another active tracker");
   CHECK(refused(verdicts) == 5);
 }
 

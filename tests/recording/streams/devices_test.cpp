@@ -167,7 +167,7 @@ TEST_CASE("a datagram of another program before the device's is not read, and re
   REQUIRE(!told.empty());
   CHECK(told.front() == path +
                             ": expected one sender of kinect, found also 10.0.0.66; only the "
-                            "busiest, 10.0.0.9, was read");
+                            "sender with the most messages, 10.0.0.9, was read");
 }
 
 TEST_CASE("if another sender is busier than the device, the error names both, and select the one") {
@@ -210,9 +210,9 @@ TEST_CASE("two Kinects with one id are told of by check, and by who reads one of
     std::string first, second, read, meaning;
   };
   for (const Pair& pair : {Pair{"10.0.0.8:5", "10.0.0.9:5", "one sender of kinect",
-                                "only the busiest, 10.0.0.8, was read"},
+                                "only the sender with the most messages, 10.0.0.8, was read"},
                            Pair{"10.0.0.8:5", "10.0.0.8:6", "one sender of kinect",
-                                "only the busiest, 10.0.0.8, was read"},
+                                "only the sender with the most messages, 10.0.0.8, was read"},
                            Pair{"10.0.0.8:5", "10.0.0.8:5", "one sender of Kinect sensor 2",
                                 "frames of the newest session were read; 100 frames of other "
                                 "sessions were left out"}}) {
@@ -280,7 +280,7 @@ TEST_CASE("where nothing is of a stream's protocol the stream is named, and wher
                                        std::pair("kinect", "frames of a Kinect")}) {
     const auto streams = open_streams(files, {stream_named(protocol, path)});
     REQUIRE_FALSE(streams);
-    CHECK(to_string(streams.error()) == path + ": expected of stream " + protocol + " " + what +
+    CHECK(to_string(streams.error()) == path + ": expected " + what + " in stream " + protocol +
                                             " (no message is of this protocol: check the port and "
                                             "the protocol that the device sends "
                                             "to), found none");
