@@ -168,7 +168,7 @@ def a_recording_of_which_no_message_can_be_read_becomes_nothing(folder):
     path.parent.mkdir()
     path.write_bytes(b"\x89MCAP0\r\n\x01\x15\0\0\0\0\0\0\0" + b"\x08\0\0\0kinalign")
     refused("recover", path, "-o", folder / "o.mcap",
-            naming=f"{path}: expected a recording with at least one readable message, found nothing")
+            naming=f"{path}: expected a recording with at least one readable message, found none")
     for words in (("align", path, "-o", folder / "o.h5"), ("convert", path, folder / "o.mcap")):
         refused(*words, naming=f"{path}: expected a recording in which a message can be read, found none")
     assert list(folder.iterdir()) == [path.parent]
@@ -184,7 +184,7 @@ def recover_says_first_how_much_of_a_damaged_file_is_lost(folder):
     bytes_[len(bytes_) // 2] ^= 1
     shown.write_bytes(bytes_)
     lines = done_with(1, "recover", shown, "-o", whole, "--force")[0].splitlines()
-    assert re.match(rf"{whole}: [\d,]+ of at least [\d,]+ messages in 2 channels, read again and whole", lines[0]), lines
+    assert re.match(rf"{whole}: [\d,]+ of at least [\d,]+ messages in 2 channels, read back and verified", lines[0]), lines
     assert re.match(r"  [\d,]+ are lost, ", lines[1]) and re.match(r"  damage: [\d,]+ bytes ", lines[2]), lines
     said = json.loads(done_with(1, "recover", shown, "-o", whole, "--force", "--json")[0])
     assert said["missing"] > 0 and said["skipped_bytes"] > 0, said

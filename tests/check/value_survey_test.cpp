@@ -98,8 +98,8 @@ std::string judged_hand(Hand hand, const Vec3& hip = {0.0, 0.9, 2.0}, double hip
 
 std::string zeros_of_hand(const std::string& count) {
   return "k.csv: expected points at measured positions, found " + count +
-         " at exactly 0, 0, 0, the first of 'Hand'; missing_point = [0, 0, 0] in a layout of the "
-         "file, where that means not seen\n";
+         " at exactly 0, 0, 0, the first of 'Hand'; if 0, 0, 0 means not seen, set missing_point = "
+         "[0, 0, 0] in a layout\n";
 }
 
 const Vec3 zero = Vec3::Zero(), in_front{0.4, 1.0, 2.0};
@@ -142,16 +142,16 @@ TEST_CASE("points of which none was tracked are a warning, one that was never se
         "k.csv: expected points that were tracked, found none, but 80 inferred points");
   CHECK(found[1].severity == Severity::note);
   CHECK(to_string(found[1].what) ==
-        "k.csv: expected points that were seen at least once, found 1 of 3 that never were, the "
-        "first 'Hip'");
+        "k.csv: expected points that were seen at least once, found 1 of 3 never seen, the first "
+        "is 'Hip'");
 }
 
 TEST_CASE("points far from all others mark what was not seen") {
   const Vec3 mark(-9999, -9999, -9999);
-  CHECK(judged_hand([&](auto t) { return t % 7 == 0 ? mark : in_front; }) ==
-        "k.csv: expected the points of a frame within 20 m, found 6 of 40 frames in which they are "
-        "not, 17320 m in the mean; missing_point in a layout of the file, where a number stands "
-        "for not seen\n");
+  CHECK(
+      judged_hand([&](auto t) { return t % 7 == 0 ? mark : in_front; }) ==
+      "k.csv: expected the points of a frame within 20 m, found 6 of 40 frames with points farther "
+      "apart, 17320 m on average; if a number means not seen, set missing_point in a layout\n");
 }
 
 TEST_CASE("accelerations in g, or with gravity where none should be, are distinguished from m/s2") {
@@ -163,7 +163,7 @@ TEST_CASE("accelerations in g, or with gravity where none should be, are disting
         "w.csv: expected accelerations with gravity of 6 to 40 m/s2 on average, found 96.8 m/s2\n");
   CHECK(judged_node(2.0, 1.0, false).empty());
   CHECK(judged_node(9.81, 1.0, false) ==
-        "w.csv: expected accelerations without gravity, found 9.89 m/s2 in the mean\n");
+        "w.csv: expected accelerations without gravity, found 9.89 m/s2 on average\n");
   CHECK(judged_node(9.81, 1.0, false, 2.0).empty());  // jerks of a runner, gravity removed
 }
 

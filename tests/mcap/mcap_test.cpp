@@ -155,7 +155,7 @@ TEST_CASE("of an uncompressed chunk at which the file breaks off messages are re
   REQUIRE(read.findings.size() == 1);
   CHECK(to_string(read.findings[0].what)
             .starts_with(
-                "expected a whole record, found the end of the file within a record at byte"));
+                "expected a complete record, found the end of the file within a record at byte"));
 }
 
 TEST_CASE("a message outside of chunks is unchecked but by the checksum of all data") {
@@ -201,7 +201,7 @@ TEST_CASE("of a torn chunk in which a definition is damaged the messages behind 
   const ReadMcap read = read_mcap(bytes);
   CHECK(read.messages.size() == 6 + 10);
   CHECK(std::any_of(read.findings.begin(), read.findings.end(),
-                    [](const Finding& one) { return one.meaning == "it is left out"; }));
+                    [](const Finding& one) { return one.meaning == "the record is skipped"; }));
 }
 
 TEST_CASE("a chunk with a flipped bit is left out, those behind it are read") {

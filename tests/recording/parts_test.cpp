@@ -105,7 +105,7 @@ TEST_CASE("who reads a recording whose later file is not there is told that it e
     options.files = {{file, "12"}};
     return told(open_streams(files, {options})->shared_files.front().findings);
   };
-  CHECK(said(path) == "a recording's last file, one that ends before\n");
+  CHECK(said(path) == "a recording's last file, a file without the end of the recording\n");
   CHECK(said(lab.whole()).empty());
   lab.second();
   lab.third();
@@ -273,7 +273,8 @@ TEST_CASE("a message of a torn end whose number can't be is left out, and told")
   options.files = {{folder / "take.mcap", "12"}};
   const auto streams = open_streams(files, {options});
   REQUIRE(streams);
-  CHECK(told(streams->shared_files.front().findings).find("1 with others") != std::string::npos);
+  CHECK(told(streams->shared_files.front().findings).find("1 messages with impossible numbers") !=
+        std::string::npos);
 }
 
 TEST_CASE("for a link, siblings are found in its folder and in the folder of its target") {

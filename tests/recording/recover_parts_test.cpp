@@ -85,7 +85,7 @@ TEST_CASE(
   REQUIRE(recovered);
   REQUIRE(recovered->findings.size() == 1);
   CHECK(to_string(recovered->findings.front().what) ==
-        a + ": expected a recording's last file, found one that ends before");
+        a + ": expected a recording's last file, found a file without the end of the recording");
   for (const char* name : {"a.mcap", "b.mcap"}) {
     const auto survey = survey_recording(files, folder / name);
     CHECK(ends_before(*survey));
@@ -149,7 +149,8 @@ TEST_CASE("a torn file that only repeats changes neither the order of messages n
     const auto recovered = recover_recording(files, given, folder / "b.mcap", Overwrite::yes);
     REQUIRE(recovered);
     CHECK(recovered->missing == 0);
-    for (const Finding& one : recovered->findings) CHECK(one.what.found != "one that ends before");
+    for (const Finding& one : recovered->findings)
+      CHECK(one.what.found != "a file without the end of the recording");
     const auto survey = survey_recording(files, folder / "b.mcap");
     CHECK(survey->ending == Ending::truncated);
     for (const ChannelSurvey& channel : survey->channels) CHECK(channel.missing == 0);

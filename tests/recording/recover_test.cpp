@@ -32,7 +32,7 @@ TEST_CASE("of a file that is cut anywhere recover makes a whole one with all tha
         CHECK(before.messages.empty());
         CHECK(cut < 200);
         CHECK(to_string(recovered.error()) ==
-              path + ": expected a recording with at least one readable message, found nothing");
+              path + ": expected a recording with at least one readable message, found none");
         CHECK_FALSE(std::filesystem::exists(folder / "b.mcap"));
         continue;
       }
@@ -136,7 +136,7 @@ TEST_CASE("a number that a torn end's damage made is no message, and nothing is 
     for (const ChannelSurvey& one : survey->channels) CHECK(one.missing == 0);
     for (const Findings& findings : {recovered->findings, survey->findings}) {
       const auto told = std::find_if(findings.begin(), findings.end(), [](const Finding& one) {
-        return one.what.found == "1 with others";
+        return one.what.found == "1 messages with impossible numbers";
       });
       REQUIRE(told != findings.end());
       CHECK(told->severity == Severity::error);

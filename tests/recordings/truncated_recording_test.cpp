@@ -57,7 +57,7 @@ std::vector<std::string> warnings(const std::string& bytes, const std::string& f
 TEST_CASE("a recording that breaks off is said to once, however many streams are read from it") {
   const std::string whole = four_streams().file(false);
   const auto told = warnings(whole.substr(0, 7 * whole.size() / 10));
-  const std::string torn = "take.mcap: expected a file that was closed, found one that breaks off";
+  const std::string torn = "take.mcap: expected a file that was closed, found a truncated file";
   CHECK(std::count(told.begin(), told.end(), torn) == 1);
   for (const std::string& text : told) {
     INFO(text);

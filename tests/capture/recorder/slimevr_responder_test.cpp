@@ -304,7 +304,7 @@ TEST_CASE("a full table and a MAC that is used twice are findings, a tracker tha
   CHECK(to_string(findings[0].what) ==
         "imu from 192.168.1.7:6969: expected at most 64 trackers, found another tracker");
   CHECK(to_string(findings[1].what) ==
-        "imu from 192.168.1.7:6969: expected a MAC address of its own, found the MAC of "
+        "imu from 192.168.1.7:6969: expected a MAC address of its own, found the MAC address of "
         "another active tracker");
   CHECK(refused(verdicts) == 5);
 }

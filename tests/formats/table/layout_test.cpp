@@ -137,7 +137,7 @@ TEST_CASE("a layout whose axes mirror has to say so") {
 TEST_CASE("a layout of nodes has no mirror image") {
   const std::string nodes = "name = 'a'\nkind = 'imu'\n[nodes]\nfields = ['ax', 'ay', 'az']\n";
   CHECK(fault_of(nodes + "[axes]\nx = '-x'\nmirrored = true\n") ==
-        "odd.toml:7: expected axes of nodes that keep right-handed: an orientation has no mirror "
+        "odd.toml:7: expected right-handed axes for nodes, because an orientation has no mirror "
         "image, found mirrored = true");
   CHECK(fault_of(nodes + "[axes]\nx = 'z'\nz = '-x'\nmirrored = false\n") == "none");
 }

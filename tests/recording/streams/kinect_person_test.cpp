@@ -50,8 +50,8 @@ TEST_CASE("of several bodies the one nearest to the sensor is followed, wherever
   CHECK(person(frame_at(0.0, {{7, 1.5F}, {8, 0.2F}})) == 8);
   CHECK(person(frame_at(0.1, {{7, 0.0F}, {8, 3.0F}})) == 8);
   CHECK(told(person) ==
-        "one body, several in 2 frames; the one that was nearest to the sensor at first was "
-        "followed\n");
+        "one body, several bodies in 2 frames; the body that was nearest to the sensor at the "
+        "beginning is followed\n");
 }
 
 TEST_CASE("a bystander does not become the person who is gone, however near they stood") {
@@ -72,7 +72,7 @@ TEST_CASE("who was not seen beside the person is taken for it as far away as one
   CHECK(person(frame_at(0.2, {})) == nobody);
   CHECK(person(frame_at(1.0, {{10, 3.4F}})) == nobody);
   CHECK(person(frame_at(2.0, {{10, 3.4F}})) == 10);
-  CHECK(told(person).find("one body, 3 ids in turn") != std::string::npos);
+  CHECK(told(person).find("one body, 3 ids, one after the other") != std::string::npos);
 }
 
 TEST_CASE("one person whom the SDK sees twice at one place may go on as either") {
@@ -100,5 +100,5 @@ TEST_CASE("joints that are missing or no numbers don't say where a body is") {
 TEST_CASE("an id that is asked for is taken alone") {
   KinectPerson person(7);
   CHECK(person(frame_at(0.0, {{8, 0.0F}})) == 7);
-  CHECK(told(person).starts_with("body 7, others: 1 of them; no row has a joint\n"));
+  CHECK(told(person).starts_with("body 7, 1 other ids; all joints are missing in all rows\n"));
 }

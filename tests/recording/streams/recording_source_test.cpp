@@ -194,9 +194,9 @@ TEST_CASE("rows that too many have overtaken are left out, never out of order, a
     std::string stream, expected;
     std::uint64_t rows;
   };
-  for (const Held& held : {Held{"kinect", "frames that at most 16 others overtake", 1200},
-                           Held{"mocap", "frames that at most 16 others overtake", 2500},
-                           Held{"imu", "samples that at most 64 others overtake", 1200}}) {
+  for (const Held& held : {Held{"kinect", "frames that arrive after at most 16 newer ones", 1200},
+                           Held{"mocap", "frames that arrive after at most 16 newer ones", 2500},
+                           Held{"imu", "samples that arrive after at most 64 newer ones", 1200}}) {
     CAPTURE(held.stream);
     RecordedLab lab(20261123);
     if (held.stream == "kinect") lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 40.0);
@@ -214,7 +214,7 @@ TEST_CASE("rows that too many have overtaken are left out, never out of order, a
         [&](const Finding& finding) { return finding.what.expected == held.expected; });
     REQUIRE(told != stream.findings.end());
     CHECK(told->severity == Severity::warning);
-    CHECK(told->what.found == std::to_string(lacks) + " that came later still");
+    CHECK(told->what.found == std::to_string(lacks) + " that arrived later");
     CHECK(told->meaning == "they were left out");
   }
 }

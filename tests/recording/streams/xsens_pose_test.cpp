@@ -144,11 +144,11 @@ TEST_CASE("xsens pose: what is no whole pose of numbers is refused and leaves no
   pose = pose_of(xsens_pose());
   pose.segments[4].rotation = {0, 0, 0, 0};
   CHECK(refused(pose) ==
-        "mvn: expected a finite position and a unit quaternion, found other numbers of T8");
+        "mvn: expected a finite position and a unit quaternion, found other values for T8");
   pose = pose_of(xsens_pose());
   pose.segments[6].position[1] = NAN;
   CHECK(refused(pose) ==
-        "mvn: expected a finite position and a unit quaternion, found other numbers of Head");
+        "mvn: expected a finite position and a unit quaternion, found other values for Head");
   CHECK(frames.size() == 0);
   CHECK(poser.skeleton() == nullptr);
 }

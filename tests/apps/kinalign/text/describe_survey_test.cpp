@@ -21,7 +21,7 @@ TEST_CASE("info prints a sender's counts, with its place and its restarts") {
   RecordingSurvey survey = kinect_survey(900, 900, 0);
   CountedSender& sender = survey.senders[0];
   sender.counts.order.restarts = 1;
-  CHECK(has_line(survey, "kinect: 900 messages, 0.0 MB; started anew once\n"));
+  CHECK(has_line(survey, "kinect: 900 messages, 0.0 MB; restarted once\n"));
   survey.places = {{"imu/7", "wrist"}};
   sender.stream = "imu";
   sender.node = "7";

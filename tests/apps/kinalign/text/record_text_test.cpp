@@ -99,10 +99,11 @@ TEST_CASE("data at a port of nodes from which no node can be seen is counted in 
   scene.status.ended = true;
   CHECK(unseen_lines(scene.lab, scene.status)[0] == "imu wrist: nothing came");
   scene.status.ports[0].second.dropped = 1181;
-  const std::string came = "imu wrist: 1,181 datagrams came to port 5005, none a frame of nodes";
+  const std::string came =
+      "imu wrist: 1,181 datagrams came to port 5005, none of them a frame of nodes";
   CHECK(unseen_lines(scene.lab, scene.status)[0] == came);
   // Frames that were refused, for example because no key was given.
   scene.status.ports[0].second.refused = 4;
   CHECK(unseen_lines(scene.lab, scene.status)[1] ==
-        "imu waist: 1,185 datagrams came to port 5005, none was let in");
+        "imu waist: 1,185 datagrams came to port 5005, none of them accepted");
 }
