@@ -22,6 +22,7 @@ Result<pid_t> start_child(const std::string& program, std::vector<std::string> w
                           int err) {
   // posix_spawn takes char*. The words must not move any more once their addresses are taken.
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

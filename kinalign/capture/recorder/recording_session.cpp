@@ -220,6 +220,7 @@ void RecordingSession::wait(Duration patience, std::optional<int> also) {
   if (live_) fds.push_back(live_->fd());
   if (also) fds.push_back(*also);
   std::vector<pollfd> polled;
+  polled.reserve(fds.size());
   for (const int fd : fds) polled.push_back({fd, POLLIN, 0});
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
   ::poll(polled.data(), polled.size(), static_cast<int>(ms));

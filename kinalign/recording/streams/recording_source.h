@@ -88,6 +88,7 @@ class RecordingSource {
       const std::vector<StreamOptions>& wanted = {}, const Progress& progress = {});
   RecordingSource(const RecordingSource&) = delete;
   RecordingSource& operator=(const RecordingSource&) = delete;
+  ~RecordingSource() = default;
 
   const std::string& path() const { return state_.path; }
   const RecordingParts& parts() const { return state_.parts; }
