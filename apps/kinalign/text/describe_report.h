@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A take's facts and its report as lines for people. The report may come from another program:
 // nothing in it is trusted, and members of a wrong type are left out.
 // it is trusted, what is not of its type is left out.
