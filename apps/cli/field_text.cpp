@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
@@ -52,10 +51,9 @@ Result<double> number_in(const Field& field, std::string_view text) {
 /// Ranges are stored as double for all kinds of number.
 Result<std::int64_t> integer_in(const Field& field, std::string_view text) {
   std::int64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [behind, fault] = std::from_chars(text.data(), end, value);
+  const bool is_whole = parse_integer(text, value);
   const auto near = static_cast<double>(value);
-  if (fault != std::errc{} || behind != end || near < field.least || near > field.most) {
+  if (!is_whole || near < field.least || near > field.most) {
     return instead_of("a whole number" + range_of(field), text);
   }
   return value;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/take_name.h"
 
+#include "kinalign/core/numbers.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
 namespace kinalign {
@@ -48,9 +49,7 @@ std::optional<TakeName> parse_take_name(std::string_view text) {
   const auto run = take_label(text, "_run-");
   if (!subject || !action || !run || !text.empty()) return std::nullopt;
   TakeName name{*subject, *action, 0};
-  const char* end = run->data() + run->size();
-  const auto [behind, fault] = std::from_chars(run->data(), end, name.run);
-  if (fault != std::errc{} || behind != end || name.run == 0) return std::nullopt;
+  if (!parse_integer(*run, name.run) || name.run == 0) return std::nullopt;
   return name;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/dataset/share.h"
 
+#include "kinalign/core/numbers.h"
+
 #include <array>
-#include <charconv>
 #include <optional>
 
 namespace kinalign {
@@ -27,10 +28,7 @@ using Variable = std::function<std::string(const std::string&)>;
 /// absent.
 std::optional<std::int64_t> number(const std::string& text) {
   std::int64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [behind, fault] = std::from_chars(text.data(), end, value);
-  const bool good = fault == std::errc{} && behind == end && value >= 0;
-  return good ? std::optional(value) : std::nullopt;
+  return parse_integer(text, value) && value >= 0 ? std::optional(value) : std::nullopt;
 }
 
 // A rank without a size says nothing about the share. A Slurm batch script alone has such a rank.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/live/live_words.h"
 
-#include <charconv>
+#include "kinalign/core/numbers.h"
 
 namespace kinalign {
 
@@ -19,10 +19,8 @@ std::string without_brackets(const std::string& host) {
 
 std::optional<std::uint16_t> parse_port(std::string_view text) {
   std::uint16_t port = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
   // Port 0 means "any" to the system, so it can't be a destination.
-  const bool is_port = fault == std::errc{} && end == text.data() + text.size() && port != 0;
-  return is_port ? std::optional(port) : std::nullopt;
+  return parse_integer(text, port) && port != 0 ? std::optional(port) : std::nullopt;
 }
 
 std::vector<Field> live_flags(LiveWords& o) {

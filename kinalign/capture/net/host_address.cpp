@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/net/host_address.h"
 
+#include "kinalign/core/numbers.h"
+
 #include <arpa/inet.h>
 
-#include <charconv>
 #include <optional>
 
 namespace kinalign {
@@ -20,9 +21,7 @@ std::optional<HostAddress> parse_address(const std::string& text) {
 
 std::optional<std::size_t> parse_bits(const std::string& text, std::size_t most) {
   std::size_t bits = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), bits);
-  const bool whole = fault == std::errc{} && end == text.data() + text.size();
-  return whole && bits <= most ? std::optional(bits) : std::nullopt;
+  return parse_integer(text, bits) && bits <= most ? std::optional(bits) : std::nullopt;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/import/new_folder.h"
 
+#include "kinalign/core/numbers.h"
 #include "kinalign/dataset/import/ids.h"
 #include "kinalign/dataset/scan.h"
 #include "kinalign/sources/input_facts.h"
@@ -9,8 +10,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace kinalign {
@@ -24,9 +25,8 @@ void remove_abandoned(const std::string& parent, const std::string& lead) {
   for (const std::string& name : names_in_folder(parent).value_or(std::vector<std::string>{})) {
     if (!name.starts_with(lead)) continue;
     pid_t process = 0;
-    const char* const end = name.data() + name.size();
-    const auto [behind, fault] = std::from_chars(name.data() + lead.size(), end, process);
-    if (fault != std::errc{} || behind != end || process <= 0) continue;
+    const std::string_view number = std::string_view(name).substr(lead.size());
+    if (!parse_integer(number, process) || process <= 0) continue;
     // A process that can't be signalled but exists still runs. A folder of this process is left
     // over from before.
     const bool runs = process != ::getpid() && (::kill(process, 0) == 0 || errno != ESRCH);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/protocols/kinect/lines.h"
 
+#include "kinalign/core/numbers.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -102,10 +103,7 @@ bool take_if_any(const Json& object, const char* key, std::optional<T>& to) {
 // of digits.
 bool take_id(const Json& object, std::uint64_t& to) {
   std::string digits;
-  if (!take(object, "id", digits)) return false;
-  const char* end = digits.data() + digits.size();
-  const auto [at, error] = std::from_chars(digits.data(), end, to);
-  return error == std::errc{} && at == end;
+  return take(object, "id", digits) && parse_integer(digits, to);
 }
 
 /// Reads a body into the frame. All bodies must agree on having hands and orientations.

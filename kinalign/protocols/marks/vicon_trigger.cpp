@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/protocols/marks/vicon_trigger.h"
 
+#include "kinalign/core/numbers.h"
 #include "kinalign/syntax/xml_feed.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <vector>
 
 namespace kinalign {
@@ -17,11 +17,10 @@ using Refusal = ViconRefusal;
 constexpr std::string_view blanks = " \t\r\n";
 
 // A number from 0 to `most`; the whole text must be the number.
-std::optional<std::int64_t> whole_number(std::string_view text, std::int64_t most) {
+std::optional<std::int64_t> number_up_to(std::int64_t most, std::string_view text) {
   std::int64_t value = 0;
-  const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc{} && at == text.data() + text.size() && value >= 0;
-  return whole && value <= most ? std::optional(value) : std::nullopt;
+  const bool fits = parse_integer(text, value) && value >= 0 && value <= most;
+  return fits ? std::optional(value) : std::nullopt;
 }
 
 std::string* text_named(std::string_view name, ViconTrigger& trigger) {
@@ -67,7 +66,7 @@ class TriggerReader : public XmlHandler {
     if (std::find(taken_.begin(), taken_.end(), name) != taken_.end()) return stop(Refusal::twice);
     taken_.emplace_back(name);
     if (text != nullptr) return take_text(value, *text);
-    const auto number = whole_number(value, is_delay ? most_delay_ms : INT64_MAX);
+    const auto number = number_up_to(is_delay ? most_delay_ms : INT64_MAX, value);
     if (!number) return stop(Refusal::wrong_number);
     if (is_delay) {
       trigger_.delay = std::chrono::milliseconds(*number);
