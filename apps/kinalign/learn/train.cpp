@@ -8,7 +8,7 @@
 #include "apps/kinalign/live/live_words.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/capture/net/handle.h"
+#include "kinalign/core/handle.h"
 #include "kinalign/core/hash.h"
 
 #include <fcntl.h>

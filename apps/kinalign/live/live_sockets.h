@@ -4,8 +4,8 @@
 
 #include "apps/kinalign/live/live_words.h"
 
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/core/error.h"
+#include "kinalign/core/handle.h"
 #include "kinalign/wire/time.h"
 
 #include <string>

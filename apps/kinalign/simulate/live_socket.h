@@ -2,8 +2,8 @@
 // A device's UDP socket for `simulate --live`: sends to one port and receives from that port only.
 #pragma once
 
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/core/error.h"
+#include "kinalign/core/handle.h"
 
 #include <cstdint>
 #include <span>

@@ -4,8 +4,8 @@
 // messages, which shows in the message numbers. No call blocks.
 #pragma once
 
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/core/error.h"
+#include "kinalign/core/handle.h"
 #include "kinalign/mcap/records.h"
 
 #include <cstdint>

@@ -6,8 +6,8 @@
 #pragma once
 
 #include "kinalign/capture/net/event_queue.h"
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/clock/utc_anchor.h"
+#include "kinalign/core/handle.h"
 
 #include <cstdint>
 #include <optional>

@@ -5,9 +5,9 @@
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/net/host_clock.h"
 #include "kinalign/capture/net/udp_socket.h"
+#include "kinalign/core/handle.h"
 #include "kinalign/recording/counts.h"
 
 #include <cstdint>

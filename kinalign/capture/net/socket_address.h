@@ -2,8 +2,8 @@
 // Socket addresses of the system, for UDP and TCP.
 #pragma once
 
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/net/host_address.h"
+#include "kinalign/core/handle.h"
 
 #include <netdb.h>
 #include <netinet/in.h>

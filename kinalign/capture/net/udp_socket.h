@@ -3,8 +3,8 @@
 // its arrival (CLOCK_REALTIME) and its destination address.
 #pragma once
 
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/net/host_address.h"
+#include "kinalign/core/handle.h"
 
 #include <cstdint>
 #include <optional>

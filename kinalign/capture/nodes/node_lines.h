@@ -7,9 +7,9 @@
 // descriptor on which a receiver waits.
 #pragma once
 
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/net/udp_socket.h"
 #include "kinalign/capture/nodes/node_session.h"
+#include "kinalign/core/handle.h"
 
 #include <optional>
 #include <span>

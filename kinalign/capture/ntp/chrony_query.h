@@ -2,8 +2,8 @@
 // Queries this host's chronyd from time to time, without blocking.
 #pragma once
 
-#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/ntp/chrony_tracking.h"
+#include "kinalign/core/handle.h"
 
 #include <cstdint>
 #include <optional>
