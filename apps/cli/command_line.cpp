@@ -16,10 +16,6 @@ namespace {
 constexpr std::array<std::pair<char, std::string_view>, 4> letters{
     {{'o', "out"}, {'q', "quiet"}, {'v', "verbose"}, {'h', "help"}}};
 
-Failure wrong(std::string place, std::string expected, std::string found) {
-  return Failure(Error{std::move(place), 0, std::move(expected), std::move(found)});
-}
-
 /// A minus before a digit or a point begins a number: `--yaw -12.5` has a value and no flag.
 bool looks_like_a_flag(std::string_view word) {
   return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
@@ -95,8 +91,8 @@ class Walk {
   Result<void> set_bare(const Field& field, const std::string& flag) {
     if (is_switch(field)) return set(field, flag, "true");
     if (at_ + 1 == words_.size() || looks_like_a_flag(words_[at_ + 1])) {
-      return wrong(flag, "a value after it (" + placeholder(field) + ")",
-                   at_ + 1 == words_.size() ? "nothing after it" : shown(words_[at_ + 1]));
+      return refuse(flag, "a value after it (" + placeholder(field) + ")",
+                    at_ + 1 == words_.size() ? "nothing after it" : shown(words_[at_ + 1]));
     }
     return set(field, flag, words_[++at_]);
   }
@@ -107,7 +103,7 @@ class Walk {
     const bool many = std::holds_alternative<std::vector<std::string>*>(field.value);
     // A flag given twice is mostly a mistake in a long command; lists are meant to be repeated.
     const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
-    if (!first && !many) return wrong(flag, "this flag once", "it twice");
+    if (!first && !many) return refuse(flag, "this flag once", "it twice");
     if (first && many) std::get<std::vector<std::string>*>(field.value)->clear();
     return set_field(field, text).map_error(in_file(flag));
   }
@@ -128,7 +124,7 @@ class Walk {
         KA_TRY(place_word(place, plain_[next]));
       }
       if (place.words->size() < place.least) {
-        return wrong("", place.name + " (" + place.meaning + ")", "nothing");
+        return refuse("", place.name + " (" + place.meaning + ")", "nothing");
       }
     }
     if (next == plain_.size()) return {};
@@ -140,13 +136,14 @@ class Walk {
       // People often name a lab file as they name a manifest.
       advice = "did you mean --config " + shown(further) + "?";
     }
-    return wrong("", "no more words" + (advice.empty() ? "" : " (" + advice + ")"), shown(further));
+    return refuse("", "no more words" + (advice.empty() ? "" : " (" + advice + ")"),
+                  shown(further));
   }
 
   static Result<void> place_word(const Positional& place, const std::string& word) {
     const auto& choices = place.choices;
     if (!choices.empty() && std::find(choices.begin(), choices.end(), word) == choices.end()) {
-      return wrong(place.name, any_of(choices), shown(word));
+      return refuse(place.name, any_of(choices), shown(word));
     }
     place.words->push_back(word);
     return {};
@@ -170,7 +167,7 @@ class Walk {
     std::vector<std::string> known{"--help"};
     for (const Field* field : fields_) known.push_back(flag_of(field->name));
     const std::string near = suggestion(flag, known);
-    return wrong("", "a known flag" + (near.empty() ? "" : " (" + near + ")"), shown(flag));
+    return refuse("", "a known flag" + (near.empty() ? "" : " (" + near + ")"), shown(flag));
   }
 
   const std::vector<std::string>& words_;

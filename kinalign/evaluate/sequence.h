@@ -41,6 +41,10 @@ class Mean {
     sum_ += value;
     ++count_;
   }
+  void add(const Mean& more) {
+    sum_ += more.sum_;
+    count_ += more.count_;
+  }
   std::size_t count() const { return count_; }
   std::optional<double> value() const {
     return count_ == 0 ? std::nullopt : std::optional(sum_ / static_cast<double>(count_));

@@ -46,10 +46,6 @@ class Bytes {
   std::string_view all_;
 };
 
-Failure broken(const std::string& name, std::string expected, std::string found) {
-  return Failure(Error{name, 0, std::move(expected), std::move(found)});
-}
-
 /// A member of the ZIP: the size of its bytes, and the offset of its local header.
 struct Entry {
   std::string name;
@@ -85,7 +81,7 @@ std::optional<std::size_t> find_end(const Bytes& bytes) {
 /// Reads the ZIP's central directory.
 Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& name) {
   const auto end = find_end(bytes);
-  if (!end) return broken(name, "an NPZ (numpy.savez)", "no ZIP directory at the end");
+  if (!end) return refuse(name, "an NPZ (numpy.savez)", "no ZIP directory at the end");
   // A file with many or large members has its count and offset in the ZIP64 end record. A locator
   // of 20 bytes before the end record holds the offset of that record.
   std::uint64_t count = bytes.number(*end + 10, 2), at = bytes.number(*end + 16, 4);
@@ -99,18 +95,18 @@ Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& nam
   std::vector<Entry> out;
   for (std::uint64_t i = 0; i < count; ++i) {
     if (!bytes.holds(at, entry_size) || bytes.number(at, 4) != entry_mark) {
-      return broken(name, "an entry of the ZIP directory",
+      return refuse(name, "an entry of the ZIP directory",
                     "no entry at byte " + std::to_string(at));
     }
     const std::size_t length = bytes.number(at + 28, 2), extra = bytes.number(at + 30, 2);
     if (!bytes.holds(at + entry_size, length + extra)) {
-      return broken(name, "a complete entry", "the end of the file");
+      return refuse(name, "a complete entry", "the end of the file");
     }
     Entry entry{std::string(bytes.piece(at + entry_size, length)), bytes.number(at + 24, 4),
                 bytes.number(at + 42, 4)};
     // Method 0 is «stored». Inflating would need a library, and arrays are read in place.
     if (bytes.number(at + 10, 2) != 0) {
-      return broken(name, "arrays that are stored (numpy.savez, kinalign dataset windows)",
+      return refuse(name, "arrays that are stored (numpy.savez, kinalign dataset windows)",
                     entry.name + ", which is compressed");
     }
     read_zip64(bytes, at + entry_size + length, extra, entry);
@@ -137,10 +133,10 @@ bool append_rows(const NpyArray& array, std::size_t rows, std::size_t first, std
 Result<std::vector<std::int64_t>> integers(const Arrays& arrays, const std::string& key,
                                            const std::string& name) {
   const auto found = arrays.find(key);
-  if (found == arrays.end()) return broken(name, "an array " + key, "none");
+  if (found == arrays.end()) return refuse(name, "an array " + key, "none");
   const NpyArray& array = found->second;
   if (array.header.kind != 'i' && array.header.kind != 'u') {
-    return broken(name, key + " of integers", "values of another type");
+    return refuse(name, key + " of integers", "values of another type");
   }
   std::vector<std::int64_t> out;
   for (std::size_t i = 0; i < array.header.values(); ++i) out.push_back(integer_at(array, i));
@@ -158,7 +154,7 @@ WindowsFacts::Stream stream_of(const nlohmann::json& json) {
 Result<WindowsFacts> read_facts(const std::string& text, const std::string& name) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("schema") || json.at("schema") != "kinalign.windows/1") {
-    return broken(name, "a manifest of schema kinalign.windows/1", "another schema");
+    return refuse(name, "a manifest of schema kinalign.windows/1", "another schema");
   }
   WindowsFacts out;
   try {
@@ -173,7 +169,7 @@ Result<WindowsFacts> read_facts(const std::string& text, const std::string& name
     }
     for (const auto& stream : json.at("streams")) out.streams.push_back(stream_of(stream));
   } catch (const nlohmann::json::exception& fault) {
-    return broken(name, "a complete manifest", shown(fault.what()));
+    return refuse(name, "a complete manifest", shown(fault.what()));
   }
   return out;
 }
@@ -205,11 +201,11 @@ Result<void> append_piece(const Arrays& arrays, const Piece& piece, Windows& out
       const std::vector<std::uint64_t>& shape = array.header.shape;
       const std::size_t length = shape[1];
       if (piece.skip + piece.rows > length || piece.window >= shape[0]) {
-        return broken(name, key + " with a row for each", "fewer");
+        return refuse(name, key + " with a row for each", "fewer");
       }
       if (!append_rows(array, shape[0] * length, piece.window * length + piece.skip, piece.rows,
                        stretch.streams[stream].arrays[key.substr(stream.size() + 1)])) {
-        return broken(name, key + " of numbers", "texts");
+        return refuse(name, key + " of numbers", "texts");
       }
     }
   }
@@ -238,13 +234,13 @@ Result<void> join(const Arrays& arrays, const Places& places, Windows& out,
   for (std::size_t w = 0; w < places.take.size(); ++w) {
     const std::int64_t rows = places.rows[w];
     if (rows <= 0 || rows > most_rows) {
-      return broken(name, "rows of a window", std::to_string(rows));
+      return refuse(name, "rows of a window", std::to_string(rows));
     }
     const bool same_take = w > 0 && places.take[w] == places.take[w - 1];
     const std::int64_t step = same_take ? rows_between(places, w, out.facts.rate_hz) : 0;
     begin = same_take ? begin + step : 0;
     if (begin > most_rows || begin < -most_rows) {
-      return broken(name, "stamps of a take", std::to_string(begin) + " rows in it");
+      return refuse(name, "stamps of a take", std::to_string(begin) + " rows in it");
     }
     // A window that repeats only known rows, or that begins after a gap, starts a new stretch.
     const bool goes_on = same_take && begin <= reached && begin + rows > reached &&
@@ -276,7 +272,7 @@ Result<Places> places_of(const Arrays& arrays, const std::string& name) {
   if (out.part.size() == count && out.rows.size() == count && out.time_ns.size() == count) {
     return out;
   }
-  return broken(name, "arrays of one length", "take, part, rows and time_ns differ");
+  return refuse(name, "arrays of one length", "take, part, rows and time_ns differ");
 }
 
 }  // namespace
@@ -291,13 +287,13 @@ Result<std::map<std::string, NpyArray>> stored_arrays(std::string_view npz,
   std::map<std::string, NpyArray> out;
   for (const Entry& entry : KA_TRY(entries_of(bytes, name))) {
     if (!bytes.holds(entry.at, local_size) || bytes.number(entry.at, 4) != local_mark) {
-      return broken(name, entry.name + " where the ZIP directory says", "another entry");
+      return refuse(name, entry.name + " where the ZIP directory says", "another entry");
     }
     // Name and extra field of the local header may be longer than those of the directory.
     const std::size_t begin =
         entry.at + local_size + bytes.number(entry.at + 26, 2) + bytes.number(entry.at + 28, 2);
     if (!bytes.holds(begin, entry.size)) {
-      return broken(name, "all of " + entry.name, "the end of the file");
+      return refuse(name, "all of " + entry.name, "the end of the file");
     }
     const std::string key = entry.name.substr(0, entry.name.rfind(".npy"));
     out[key] = KA_TRY(read_npy(bytes.piece(begin, entry.size), name + ": " + entry.name));
@@ -311,7 +307,7 @@ Result<Windows> read_windows(std::string_view npz, const std::string& name) {
   const bool is_text = manifest != arrays.end() && manifest->second.header.kind == 'U' &&
                        manifest->second.header.values() == 1;
   if (!is_text) {
-    return broken(name, "a file of kinalign dataset windows", "no array manifest");
+    return refuse(name, "a file of kinalign dataset windows", "no array manifest");
   }
   Windows out;
   out.facts = KA_TRY(read_facts(text_at(manifest->second, 0), name));

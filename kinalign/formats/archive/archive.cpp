@@ -2,6 +2,7 @@
 #include "kinalign/formats/archive/archive.h"
 
 #include "kinalign/core/utf8.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <archive.h>
 #include <archive_entry.h>
@@ -9,7 +10,6 @@
 #include <locale.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
 #include <set>
@@ -232,13 +232,6 @@ class ArchiveReader {
 constexpr std::string_view end_mark{"PK\5\6", 4}, entry_mark{"PK\1\2", 4};
 constexpr std::size_t end_size = 22, entry_size = 46, longest_comment = 65535;
 
-std::uint64_t zip_number(std::string_view bytes, std::size_t at, std::size_t size) {
-  std::uint64_t value = 0;
-  for (std::size_t i = size; i-- > 0;)
-    value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return value;
-}
-
 /// At the end of the file the result is shorter than `size`.
 Result<std::string> part(const ArchiveBytes& bytes, std::uint64_t at, std::uint64_t size) {
   std::string out(size, '\0');
@@ -259,7 +252,7 @@ Result<std::optional<Place>> find_list(const ArchiveBytes& bytes) {
   // The last match, because the mark may also stand in a file's contents.
   const auto at = text.rfind(end_mark);
   if (at == std::string::npos || text.size() - at < end_size) return std::nullopt;
-  const std::uint64_t size = zip_number(text, at + 12, 4);
+  const std::uint64_t size = little_at<std::uint32_t>(octets(text), at + 12);
   const std::uint64_t end = bytes.size - tail + at;
   // Such a size says that the real one is in the ZIP64 records.
   constexpr std::uint64_t in_zip64 = 0xFFFFFFFF;
@@ -279,13 +272,14 @@ Result<void> check_zip_names(const ArchiveBytes& bytes) {
     const std::string head = KA_TRY(part(bytes, at, entry_size));
     // The directory is not where it was expected; libarchive will decide.
     if (!head.starts_with(entry_mark) || head.size() < entry_size) return {};
-    const std::uint64_t name_size = zip_number(head, 28, 2);
+    const std::uint64_t name_size = little_at<std::uint16_t>(octets(head), 28);
     const std::string name = KA_TRY(part(bytes, at + entry_size, name_size));
     if (name.find('\0') != std::string::npos) {
       return refuse(bytes.name, "names without a NUL in the archive", shown(name));
     }
     // Name, extra field and comment follow the entry's fixed part.
-    at += entry_size + name_size + zip_number(head, 30, 2) + zip_number(head, 32, 2);
+    at += entry_size + name_size + little_at<std::uint16_t>(octets(head), 30) +
+          little_at<std::uint16_t>(octets(head), 32);
   }
   return {};
 }

@@ -339,13 +339,6 @@ Result<void> check_unit(const BidsSystem& system, const Quantity<n>& quantity) {
   return {};
 }
 
-/// Adds the file to the error of a reader that could not be made.
-template <class Made>
-Result<Made> placed(Result<Made> made, std::string_view file) {
-  if (!made && made.error().file.empty()) made.error().file = std::string(file);
-  return made;
-}
-
 /// Reader of all tracked points that have x, y and z; all must use one reference frame.
 /// Points without all three axes are skipped.
 Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
@@ -403,13 +396,13 @@ Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const Stre
 Result<std::unique_ptr<PointReader>> make_bids_point_reader(const BidsSystem& system,
                                                             const StreamOptions& options,
                                                             std::string_view file) {
-  return placed(points_of(system, options, file), file);
+  return points_of(system, options, file).map_error(in_file(std::string(file)));
 }
 
 Result<std::unique_ptr<ImuReader>> make_bids_node_reader(const BidsSystem& system,
                                                          const StreamOptions& options,
                                                          std::string_view file) {
-  return placed(nodes_of(system, options, file), file);
+  return nodes_of(system, options, file).map_error(in_file(std::string(file)));
 }
 
 }  // namespace kinalign

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/fuse/fuse_marks.h"
 
+#include "kinalign/evaluate/sequence.h"
 #include "kinalign/learn/pose/pose_task.h"
 #include "kinalign/models/pose/pose_metrics.h"
 #include "kinalign/motion/mahony.h"
@@ -67,20 +68,6 @@ void hide_limbs(const FuseLayout& layout, JointFrames& kinect) {
     at_s += length_s + between_s;
   }
 }
-
-struct MeanOf {
-  double sum = 0.0;
-  std::size_t count = 0;
-  void add(double value) {
-    sum += value;
-    ++count;
-  }
-  void add(const MeanOf& more) {
-    sum += more.sum;
-    count += more.count;
-  }
-  double value() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
-};
 
 /// The rotation about the vertical from the answer's headings to the true ones.
 /// Mean of angles by their sines and cosines, because angles wrap.
@@ -149,15 +136,15 @@ class FuseScore {
   }
 
   FuseErrors errors() const {
-    return {.all_cm = all_.value(),
-            .hidden_cm = hidden_.value(),
-            .seen_trunk_cm = seen_[0].value(),
-            .seen_arms_cm = seen_[1].value(),
-            .seen_legs_cm = seen_[2].value(),
-            .place_cm = place_.value(),
+    return {.all_cm = all_.value_or(0.0),
+            .hidden_cm = hidden_.value_or(0.0),
+            .seen_trunk_cm = seen_[0].value_or(0.0),
+            .seen_arms_cm = seen_[1].value_or(0.0),
+            .seen_legs_cm = seen_[2].value_or(0.0),
+            .place_cm = place_.value_or(0.0),
             .sip_deg = errors_.sip_deg,
             .frames = frames_,
-            .hidden = hidden_.count};
+            .hidden = hidden_.count()};
   }
 
  private:
@@ -173,8 +160,8 @@ class FuseScore {
   Devices devices_;
   const PoseBody& body_;
   std::vector<ScoredJoint> joints_;
-  MeanOf all_, hidden_, place_;
-  std::array<MeanOf, 3> seen_;
+  Mean all_, hidden_, place_;
+  std::array<Mean, 3> seen_;
   PoseErrors errors_;
   std::size_t frames_ = 0;
 };
