@@ -13,7 +13,6 @@
 #include "kinalign/sources/input_facts.h"
 #include "kinalign/take/remembered_path.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <system_error>

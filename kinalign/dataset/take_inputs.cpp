@@ -9,7 +9,6 @@
 #include "kinalign/sources/input_facts.h"
 #include "kinalign/take/remembered_path.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <map>

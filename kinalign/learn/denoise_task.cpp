@@ -7,7 +7,6 @@
 #include "kinalign/simulate/random.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 namespace kinalign {

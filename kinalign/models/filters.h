@@ -5,8 +5,6 @@
 
 #include "kinalign/models/joint_frames.h"
 
-#include <vector>
-
 namespace kinalign {
 
 /// Repeats the last position at which a joint was seen. A joint that stays inferred for more than

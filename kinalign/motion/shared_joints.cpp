@@ -3,8 +3,6 @@
 
 #include "kinalign/motion/index_of.h"
 
-#include <algorithm>
-
 namespace kinalign {
 
 namespace {

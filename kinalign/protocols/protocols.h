@@ -10,7 +10,6 @@
 
 #include "kinalign/core/error.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>

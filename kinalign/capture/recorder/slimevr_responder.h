@@ -12,7 +12,6 @@
 #include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/wire/siphash.h"
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>

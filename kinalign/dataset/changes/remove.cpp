@@ -8,7 +8,6 @@
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <set>
 #include <system_error>

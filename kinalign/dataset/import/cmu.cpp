@@ -8,7 +8,6 @@
 #include "kinalign/dataset/import/new_folder.h"
 #include "kinalign/formats/bvh/bvh.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 

@@ -3,7 +3,6 @@
 // recording differ in their names only by the device: G3-Kinect-CTK-P1T1-Unknown-C-0.txt.
 #include "kinalign/dataset/import/corpora.h"
 
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <vector>

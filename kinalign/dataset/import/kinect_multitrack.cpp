@@ -4,7 +4,6 @@
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/sources/formats.h"
 
-#include <algorithm>
 #include <array>
 
 namespace kinalign {

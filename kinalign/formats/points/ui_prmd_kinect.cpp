@@ -6,7 +6,6 @@
 #include "kinalign/formats/line_reader.h"
 #include "kinalign/formats/point_rows.h"
 
-#include <algorithm>
 #include <cassert>
 #include <deque>
 #include <numbers>

@@ -4,7 +4,6 @@
 #include "kinalign/syntax/toml.h"
 
 #include <algorithm>
-#include <array>
 #include <numbers>
 #include <utility>
 

@@ -7,7 +7,6 @@
 #include "kinalign/simulate/random.h"
 
 #include <cstddef>
-#include <vector>
 
 namespace kinalign {
 

@@ -3,7 +3,6 @@
 
 #include "kinalign/motion/index_of.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 

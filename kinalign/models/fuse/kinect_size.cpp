@@ -4,7 +4,6 @@
 #include "kinalign/models/joint_names.h"
 #include "kinalign/motion/median.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>

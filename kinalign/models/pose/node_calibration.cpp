@@ -8,7 +8,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <utility>
 
 namespace kinalign {
 

@@ -3,7 +3,6 @@
 
 #include "kinalign/motion/frame_arrays.h"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>

@@ -3,7 +3,6 @@
 
 #include "kinalign/wire/bytes.h"
 
-#include <algorithm>
 #include <string_view>
 
 namespace kinalign {

@@ -12,7 +12,6 @@
 #include "kinalign/wire/node_sample.h"
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>

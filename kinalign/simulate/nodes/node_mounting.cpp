@@ -7,7 +7,6 @@
 #include "kinalign/simulate/nodes/inertial_nodes.h"
 #include "kinalign/simulate/random.h"
 
-#include <algorithm>
 #include <numbers>
 #include <string_view>
 
