@@ -8,15 +8,15 @@ namespace kinalign {
 
 namespace {
 
-// Samples; a later sample proves a delay at most this far back.
+// The number of samples after which a delay can't be proven any more.
 constexpr std::uint64_t reach = 256;
 constexpr double slack = 0.05;   // relative uncertainty of the step
-constexpr double regular = 0.2;  // a step that differs by less than this share of it is usual
+constexpr double regular = 0.2;  // a step within this share of the usual step counts as usual
 constexpr double flush_share = 0.125, flush_steps = 10.0;
-constexpr double heap_share = 0.05;  // share of a step
-// At most this many samples may be so near each other without a pause.
+constexpr double heap_share = 0.05;  // share of the usual step
+// At most this many successive samples may be closer than heap_share without a pause before them.
 constexpr std::uint64_t heap = 8;
-constexpr double hidden = 2.0;  // steps of waiting that a usual step may hide
+constexpr double hidden = 2.0;  // the delay, in steps, that a step of usual length may hide
 
 }  // namespace
 
@@ -24,7 +24,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   Last last = before;
   last.t = t;
   ++last.count;
-  // The first sample may have waited for as long as a delay can be proven.
+  // Before the first sample the longest pause is assumed whose delay could still be proven.
   if (before.count == 0) {
     last.first = t;
     last.step = step_;
@@ -41,7 +41,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   const bool heels = last.step <= flush_share * step_;
   last.flush = before.flush && heels && static_cast<double>(t - before.first) < flush_steps * step_;
   if (last.flush) return last;
-  if (before.flush && heels) {  // too many for a flush: the device measured faster
+  if (before.flush && heels) {  // too many samples for a flush, so the device measured faster
     last.near = 0;
     last.first_near = false;
   }
@@ -55,9 +55,9 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   return last;
 }
 
-/// The sample's position relative to an ideal sequence with a 5 % shorter step, ns. If a later
-/// sample has a smaller value than an earlier one, the difference is the least delay of the earlier
-/// one.
+/// The sample's stamp relative to an ideal sequence whose step is 5 % shorter, ns. If a later
+/// sample has a smaller value than an earlier sample, the difference is a lower bound of the
+/// earlier sample's delay.
 double ArrivalSurveyor::after_line(const Last& last) const {
   return static_cast<double>(last.t - last.first) -
          (1.0 - slack) * step_ * static_cast<double>(last.count - 1);
@@ -71,7 +71,7 @@ void ArrivalSurveyor::add(std::int64_t t) {
   settled_ = false;
 }
 
-/// Compares the last sample with earlier ones, once it can no longer be taken back.
+/// Compares the last sample with earlier samples, once it can no longer be removed by take_back().
 void ArrivalSurveyor::settle() {
   if (settled_) return;
   settled_ = true;
@@ -81,7 +81,7 @@ void ArrivalSurveyor::settle() {
     candidates_.clear();
   }
   const std::uint64_t index = now_.count - 1;
-  // A candidate this old can't be proven late any more.
+  // The delay of such an old candidate can't be proven any more.
   while (!candidates_.empty() && candidates_.front().index + reach < index) {
     candidates_.pop_front();
   }
@@ -91,8 +91,8 @@ void ArrivalSurveyor::settle() {
   }
 }
 
-/// Counts the samples after a pause whose delay is proven by a sample that arrived too early for
-/// the step.
+/// Counts the candidates that the present sample proves to be late. `after_line` is that sample's
+/// value.
 void ArrivalSurveyor::find_late(double after_line) {
   for (Candidate& c : candidates_) {
     const double late = std::min(c.pause, c.after_line - after_line);
@@ -116,7 +116,7 @@ void ArrivalSurveyor::take_back() {
 }
 
 Arrivals ArrivalSurveyor::result() const {
-  // The last sample may still be taken back, so a copy is settled.
+  // The last sample may still be removed, so only a copy is settled.
   ArrivalSurveyor all = *this;
   all.settle();
   Arrivals found = all.late_;

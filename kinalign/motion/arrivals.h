@@ -13,34 +13,34 @@ namespace kinalign {
 /// KinectMultiTrack are at least 8 ms apart, with a step of 34 ms.
 constexpr std::int64_t near_share = 5;
 
-/// A sample that is this many steps late is older than what counts as a gap.
+/// A sample counts as late if it is delayed by at least this many steps.
 constexpr std::int64_t late_steps = 3;
 
 struct Arrivals {
-  std::uint64_t near = 0;  // samples less than a fifth of a step before the next one
+  std::uint64_t near = 0;  // samples less than a fifth of the usual step before the next sample
   std::uint64_t late = 0;  // samples stamped at least late_steps steps after they were taken
-  std::int64_t worst_late_ns = 0;  // largest delay of these; a lower bound
+  std::int64_t worst_late_ns = 0;  // the largest delay of the late samples; a lower bound
   bool first_late = false;         // the first sample is near the next one, or late
-  bool near_only = false;  // only `near` was counted, because the step is not known well enough
+  bool near_only = false;  // late samples are not counted: the step is not known well enough
 
   bool operator==(const Arrivals&) const = default;
 };
 
-/// The device takes one sample per step. Sample i was taken (j - i) steps before sample j, and
-/// sample j was taken before it arrived. This gives a lower bound of the delay: late_i >= (j - i)
-/// step - (t_j - t_i).
+/// The device takes one sample per step. Sample i was taken (j - i) steps before a later sample j,
+/// and sample j was taken before it arrived. This gives a lower bound of the delay of sample i:
+/// late_i >= (j - i) step - (t_j - t_i).
 ///
-/// Samples that arrive faster than they are taken have waited, so there is a pause of at least that
-/// length before them. This gives an upper bound, from a punctual sample k: late_i <= t_i - t_k -
+/// Samples that arrive faster than they are taken have waited, so a pause of at least the same
+/// length precedes them. This gives an upper bound, from a punctual sample k: late_i <= t_i - t_k -
 /// (i - k) step. A device that sometimes measures faster leaves no pause. The pause before the
-/// first sample is unknown. At the start only a flush counts: samples at most an eighth of a step
-/// apart that all arrive within ten steps. The step may be wrong by 5 %.
+/// first sample is unknown. Therefore only a flush counts at the start: samples at most an eighth
+/// of a step apart that all arrive within ten steps. The step may be wrong by 5 %.
 ///
-/// Near samples need less evidence: a loop that reads slightly slower than the device measures
-/// sometimes finds two or three samples, without a visible pause. Up to eight samples in a row may
-/// be closer than a twentieth of a step, and any usual step may hide a delay of two steps.
-/// Therefore, if a device begins to measure five times faster, two or three samples are wrongly
-/// counted as near; with twenty times faster, eight.
+/// Near samples need less evidence. A loop that reads slightly slower than the device measures
+/// sometimes finds two or three samples at once, without a visible pause. Up to eight successive
+/// samples may therefore be closer than a twentieth of a step, and a step of usual length may hide
+/// a delay of two steps. The price: if a device begins to measure five times faster, two or three
+/// samples are wrongly counted as near; with twenty times faster, eight.
 class ArrivalSurveyor {
  public:
   /// `step_ns` 0: the step is unknown and nothing is counted. Not `steady`: the step is not known
@@ -50,8 +50,8 @@ class ArrivalSurveyor {
 
   /// Adds a stamp, ns. Stamps must rise.
   void add(std::int64_t t);
-  /// Removes the last sample, because it was not a valid one. Only one sample can be removed before
-  /// the next add().
+  /// Removes the last sample, for example because its stamp was wrong. Only one sample can be
+  /// removed before the next add().
   void take_back();
   /// True if the last sample turns out to be delayed when the next one comes at `t`.
   bool shows_late(std::int64_t t) const {
@@ -60,22 +60,21 @@ class ArrivalSurveyor {
   Arrivals result() const;
 
  private:
-  /// A sample after a pause; it may turn out to have waited.
+  /// A sample after a pause. A later sample may prove that it was delayed.
   struct Candidate {
     std::uint64_t index = 0;
     double after_line = 0.0;
     double pause = 0.0;  // upper bound of its delay, ns
     bool late = false;
   };
-  /// The state after a sample.
-  /// behind() makes the state after a sample from the state before it, so two states are enough for
-  /// taking one sample back.
+  /// The state after a sample. behind() computes it from the state after the previous sample, so
+  /// two states are enough for removing one sample.
   struct Last {
     std::uint64_t count = 0, near = 0;
     std::uint64_t run = 0;  // number of successive near steps up to this sample
     std::int64_t first = 0, t = 0;
     double step = 0.0;   // step before this sample, ns
-    double pause = 0.0;  // upper bound of the delay from visible pauses, ns
+    double pause = 0.0;  // upper bound of the delay, from visible pauses, ns
     double doubt = 0.0;  // further delay that usual steps may hide, at most late_steps steps, ns
     bool flush = false;  // all samples so far belong to a flush
     bool first_near = false;
@@ -93,7 +92,7 @@ class ArrivalSurveyor {
   bool steady_;
   Last now_, before_;
   bool settled_ = true;               // `now_` has been compared with earlier samples
-  std::deque<Candidate> candidates_;  // among the last `reach` samples
+  std::deque<Candidate> candidates_;  // only among the last `reach` samples
   Arrivals late_;                     // without near samples
 };
 

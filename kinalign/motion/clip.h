@@ -31,7 +31,7 @@ struct Skeleton {
 /// Fails if names repeat, sizes differ or a parent does not come before its child.
 Result<void> validate(const Skeleton& skeleton);
 
-/// T frames of a skeleton with J joints: a block of a clip, or all of it.
+/// T frames of a skeleton with J joints: a part of a clip, or all of it.
 struct ClipFrames {
   std::vector<Time> stamps;             // [T] strictly rising
   std::vector<double> local_positions;  // [T,J,3] m, each joint in its parent's space

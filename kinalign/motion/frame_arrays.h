@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of rows: which ones each type of frame blocks has, for code that treats all of them
-// alike, and windows of rows that move on. Windows are short, so moving the rest costs little, and
-// spans over a window stay possible.
+// Lists the arrays of each type of frame block, for code that treats all types alike. Further
+// functions remove, append and copy rows of a window. Windows are short, so moving the remaining
+// rows costs little, and spans over a window stay possible.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -34,7 +34,7 @@ inline constexpr auto frame_arrays<ImuSamples> = std::tuple(&ImuSamples::stamps,
 /// Calls use(member) for each array.
 template <class Frames, class Use>
 void for_each_frame_array(Use&& use) {
-  // A quantity that a stream does not have is an empty array; users skip it by its size.
+  // A quantity that a stream does not have is an empty array. Callers see this from its size.
   std::apply([&use](auto... array) { (use(array), ...); }, frame_arrays<Frames>);
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sources of the tables. Heights above the hips, cm: Kinect SpineMid 32, SpineShoulder 55, Neck 63,
-// Head 78 (means of 18 recordings). Perception Neuron, for a person of 175: Spine1 24.0,
-// Spine2 34.1, Spine3 43.9, Neck 54.3, Head 63.7, end 79.7. Axis Studio: Spine1 25.1, Spine2 37.4,
-// Neck 55.8, Neck1 60.6, Head 65.3, end 81.2. Kinect hips are 15.7 cm apart, Perception Neuron's
-// 18.5 cm, hence 15 % of the way to the middle. CMU's names are those of
-// its BVH files by cgspeed.
+// Head 78 (means of 18 recordings). Perception Neuron, for a person of 175 cm: Spine1 24.0, Spine2
+// 34.1, Spine3 43.9, Neck 54.3, Head 63.7, end 79.7. Axis Studio: Spine1 25.1, Spine2 37.4, Neck
+// 55.8, Neck1 60.6, Head 65.3, end 81.2. Kinect hips are 15.7 cm apart, Perception Neuron's 18.5
+// cm. A Kinect's hip is therefore 15 % of the way from the suit's hip to the other hip. CMU's names
+// are those of its BVH files by cgspeed.
 #include "kinalign/motion/kinect_map.h"
 
 #include "kinalign/motion/index_of.h"
@@ -25,7 +25,8 @@ struct Way {
 };
 using Table = std::array<Way, kinect_joints.size()>;
 
-/// The table for Perception Neuron; both hierarchies have the same limbs.
+/// The table for both hierarchies of Perception Neuron, which have the same limbs. The arguments
+/// are the joints of the spine.
 constexpr Table limbs(const Way& mid, const Way& shoulder, const Way& neck, const Way& head) {
   return {{{"Hips"},
            mid,
@@ -89,7 +90,7 @@ const EndSite* find_end(const Skeleton& skeleton, std::size_t joint) {
 std::string fill(const Skeleton& skeleton, const Way& way, KinectPlace& place) {
   const auto from = index_of(skeleton.joint_names, way.from);
   if (!from) return std::string(way.from);
-  // share 0 and no vector along: the place is the joint itself.
+  // With share 0 and no vector `along`, the place is the joint itself.
   place = {*from, *from, 0.0, Vec3::Zero()};
   if (!way.to.empty()) {
     const auto to = index_of(skeleton.joint_names, way.to);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the places of a Kinect's 25 joints in another skeleton: at a joint, or at a share of the
-// way from a joint to another joint or to its end site. Joints are mapped by height, not by name;
-// by name the spine would be wrong by 10 to 14 cm. Remaining differences (widths, the Kinect's
-// place of a knee) are left to a calibration.
+// way from a joint to another joint or to its end site. Joints are mapped by height. A map by name
+// would be wrong by 10 to 14 cm in the spine. Remaining differences (widths, the Kinect's place of
+// a knee) are left to a calibration.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -25,9 +25,10 @@ struct KinectMap {
   std::array<KinectPlace, kinect_joints.size()> places;  // in the order of kinect_joints
 };
 
-/// The map for skeletons with known names: Perception Neuron (legacy: Axis Neuron; Studio: Axis
-/// Studio), and CMU's as converted by cgspeed. Further joints and another order are accepted. Fails
-/// if joints are missing; the message names the most similar skeleton and its missing joints.
+/// The map for skeletons with known names: Perception Neuron as written by Axis Neuron (legacy) or
+/// by Axis Studio, and the CMU motion capture database as converted to BVH by cgspeed. Further
+/// joints and another order are accepted. Fails if joints are missing; the message names the most
+/// similar skeleton and its missing joints.
 Result<KinectMap> kinect_map(const Skeleton& skeleton);
 
 /// Fills `out` [25,3] m, in the order of kinect_joints, in the space of the pose's roots.

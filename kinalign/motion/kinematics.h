@@ -16,8 +16,8 @@ struct EulerOrder {
   int first = 2, second = 0, third = 1;
 };
 
-/// Number of frames to convert at a time, one joint after another, so that the rows of channels
-/// stay in the first-level cache. This takes 0.6 of the time of whole columns of 256 frames.
+/// Number of frames to convert at a time, one joint after another. The channels of so few frames
+/// stay in the first-level cache. This takes 0.6 of the time of columns of 256 frames.
 constexpr std::size_t euler_frames = 16;
 
 /// Angles of one joint over many frames, degrees: one column for each rotation of the order

@@ -44,7 +44,7 @@ bool MahonyFilter::update(double dt_s, const InertialReading& reading) {
     waiting_s_ += dt_s;
     return false;
   }
-  // The time of ignored readings belongs to this step.
+  // This step also covers the time of the readings that were ignored before it.
   const double step = dt_s + waiting_s_;
   waiting_s_ = 0.0;
   const std::optional<Vec3> up = up_in_sensor(reading.acceleration);
@@ -56,8 +56,8 @@ bool MahonyFilter::update(double dt_s, const InertialReading& reading) {
     if (up) set_tilt(*up, heading_of(orientation_));
     return true;
   }
-  // The paper's omega_mes = v x v^, where v is the measured direction of up and v^ = orientation^T
-  // up.
+  // The correction is omega_mes = v x v^ of Mahony et al. (mahony.h). There v is the measured
+  // direction of up, and v^ = orientation^T up.
   Vec3 correction = Vec3::Zero();
   if (up) correction = up->cross(orientation_.conjugate() * Vec3::UnitY());
   // The bias and the correction act on the rate, in the sensor's space.

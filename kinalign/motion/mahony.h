@@ -44,7 +44,7 @@ class MahonyFilter {
   /// covers its time. Returns false, too, if dt_s is not above 0; then its time is not counted.
   bool update(double dt_s, const InertialReading& reading);
 
-  /// world_from_sensor, world y up. Only the heading until the direction of up was seen.
+  /// world_from_sensor, world y up. Until the direction of up is known, only the heading is set.
   const Quat& orientation() const { return orientation_; }
   const Vec3& gyroscope_bias() const { return bias_; }  // rad/s
   bool has_tilt() const { return has_tilt_; }
@@ -61,7 +61,7 @@ class MahonyFilter {
 };
 
 /// The rotation with this heading (rad, about +y) that rotates `up_in_sensor` (unit) to +y on the
-/// shortest way; for a sensor upside down by half a turn about its x axis.
+/// shortest way. A sensor that is upside down is rotated by half a turn about its x axis.
 Quat tilted(const Vec3& up_in_sensor, double heading);
 
 /// The heading of a rotation: the rotation about +y that remains without the tilt; rad, -pi to pi.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The middle of a list of values, which single wrong values do not move.
+// The middle of a list of values. Single wrong values do not change it much.
 #pragma once
 
 #include <algorithm>

@@ -9,8 +9,8 @@ namespace {
 
 using Names = std::array<std::string_view, shared_joint_count>;
 
-/// UI-PRMD's files also have a joint Head, at another place. Only these files have a Waist, which
-/// identifies them.
+/// UI-PRMD's files also have a joint Head, but at another place. Only these files have a joint
+/// Waist, so it identifies them.
 const Names& names_among(std::span<const std::string> joint_names) {
   return index_of(joint_names, "Waist") ? shared_joints_in_ui_prmd : shared_joints;
 }

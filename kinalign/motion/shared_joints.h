@@ -16,7 +16,7 @@ namespace kinalign {
 
 inline constexpr std::size_t shared_joint_count = 18;
 
-/// Names of the Kinect SDK, in the protocol's order.
+/// Names of the Kinect SDK, in the order of UI-PRMD's protocol.
 inline constexpr std::array<std::string_view, shared_joint_count> shared_joints{
     "SpineBase", "SpineMid",      "SpineShoulder", "Head",       "ShoulderLeft", "ElbowLeft",
     "WristLeft", "ShoulderRight", "ElbowRight",    "WristRight", "HipLeft",      "KneeLeft",
@@ -45,12 +45,12 @@ inline constexpr std::array<SharedBone, 11> limb_bones{{{4, 5},
                                                         {15, 16},
                                                         {16, 17}}};
 
-/// The index of each shared joint in `joint_names`, which are those of the SDK or of UI-PRMD's
-/// Kinect files; absent if the joint is missing. A suit's skeleton has no tip of the foot.
+/// The index of each shared joint in `joint_names`, which are names of the SDK or of UI-PRMD's
+/// Kinect files. Absent if the joint is missing: a suit's skeleton has no tip of the foot.
 std::array<std::optional<std::size_t>, shared_joint_count> shared_joints_there(
     std::span<const std::string> joint_names);
 
-/// The same, but fails if a joint is missing; the message names the first one.
+/// The same indices, but fails if a joint is missing; the message names the first missing joint.
 Result<std::array<std::size_t, shared_joint_count>> shared_joints_among(
     std::span<const std::string> joint_names);
 

@@ -9,16 +9,16 @@ namespace kinalign {
 
 namespace {
 
-// The class of a step > 0: the position of its leading bit, followed by the next seven bits.
+// The class of a step > 0: the number of its leading bit, followed by the next seven bits.
 std::size_t class_of(std::uint64_t step) {
   const auto bits = static_cast<unsigned>(std::bit_width(step | 1)) - 1;
   const std::uint64_t fraction = bits >= 7 ? step >> (bits - 7) : step << (7 - bits);
   return (std::size_t{bits} << 7) + (fraction & 127);
 }
 
-// Ns; a longer first step may be a clock error.
+// Nanoseconds. If the first step is longer, the stamp may be a clock error.
 constexpr std::uint64_t longest_first = 1'000'000'000;
-// A later step may be one if it is this many usual steps long.
+// If a later step is longer than this many usual steps, the stamp may be a clock error.
 constexpr std::uint64_t longest_ratio = 4;
 
 // llround() of a larger number is undefined.

@@ -44,7 +44,7 @@ class StampRule {
 
   std::optional<Time> last_, before_;  // last two kept stamps
   std::uint64_t usual_step_ = 0;       // ns, from earlier steps; 0: not known yet
-  std::optional<Time> withdrawn_;  // the first stamp, until the third shows whether it was right
+  std::optional<Time> withdrawn_;      // the first stamp, until the third shows whether it is right
 };
 
 struct StampSurvey {

@@ -10,5 +10,6 @@
 #define KA_EVERY_PROCESSOR
 #endif
 
-/// For parts of such loops: they must be inlined to be built for the same processor.
+/// Marks functions that such loops call. Inlined, they are built for the same processor as the
+/// loop.
 #define KA_INLINE inline __attribute__((always_inline))

@@ -25,8 +25,8 @@ KA_INLINE double polynomial(const std::array<double, terms>& coefficients, doubl
 }
 
 /// The coefficients of 1/first! - x/(first+2)! + x^2/(first+4)! - ..., where x is the squared
-/// angle. first 0: cosine; 1: sine divided by its argument; 4 and 5: the remainders of both after
-/// their first two terms.
+/// angle. `first` 0: cosine; 1: sine divided by its argument; 4 and 5: the rest of these two series
+/// after their first two terms.
 template <std::size_t terms>
 constexpr std::array<double, terms> alternating_series(int first) {
   std::array<double, terms> c{};

@@ -20,12 +20,12 @@ struct Curves {
   std::vector<double> positions;  // [T,J,3]
   std::vector<double> bends;      // [T,J,3] second derivatives of the positions
   std::vector<double> rotations;  // [T,J,4]
-  // [T,J,6] rates at both ends of the interval that begins with the frame.
+  // [T,J,6] angular rates at both ends of the interval that begins with the frame.
   std::vector<double> slopes;
 };
 
-/// Gaussian means of the rows near each row; `size` numbers per row. Rotations must have aligned
-/// signs; the caller normalises the results.
+/// Gaussian means over the rows near each row; `size` numbers per row. Quaternions must have
+/// aligned signs; the caller normalises the results.
 std::vector<double> smoothed(const std::vector<double>& times, const std::vector<double>& rows,
                              std::size_t size, double deviation_s) {
   std::vector<double> out(rows.size(), 0.0);
@@ -45,8 +45,8 @@ std::vector<double> smoothed(const std::vector<double>& times, const std::vector
   return out;
 }
 
-/// Chooses the sign of each rotation so that it is near the one before it.
-/// Means of q and -q would cancel out although both are the same rotation.
+/// Chooses the sign of each quaternion so that it is near the quaternion before it. The mean of q
+/// and -q would be zero, although both are the same rotation.
 void align_signs(std::vector<double>& rotations, std::size_t joints) {
   for (std::size_t i = joints; i < rotations.size() / 4; ++i) {
     const Quat q = quat(rotations, i);
@@ -107,7 +107,8 @@ void pose_at(const Curves& curves, double time, Pose& pose) {
     }
     return;
   }
-  // The ends are left out of the search, so that k is a valid interval for t at both ends, too.
+  // The first and the last time are left out of the search, so that k is a valid interval for every
+  // t.
   const auto behind = std::upper_bound(times.begin() + 1, times.end() - 1, t);
   const auto k = static_cast<std::size_t>(behind - times.begin()) - 1;
   const std::span all_positions(curves.positions), all_bends(curves.bends);
@@ -156,7 +157,7 @@ Result<Motion> motion_of(const Clip& clip, const ClipMotionOptions& options) {
   }
   curves.positions = clip.frames.local_positions;
   curves.rotations = clip.frames.local_rotations;
-  // Before the means are taken.
+  // The signs are aligned before the means are taken.
   align_signs(curves.rotations, curves.joints);
   if (options.smooth_s > 0.0) {
     curves.positions =

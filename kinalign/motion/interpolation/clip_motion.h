@@ -10,9 +10,9 @@
 namespace kinalign {
 
 struct ClipMotionOptions {
-  /// Standard deviation of the Gaussian that smooths the frames first, s; 0: none. A suit's noise
-  /// and the rounding of a file grow with the square of the rate in second derivatives. 10 ms halve
-  /// motion at 19 Hz and leave 98 % of it at 3 Hz.
+  /// Standard deviation of the Gaussian that smooths the frames first, s; 0: none. In second
+  /// derivatives, a suit's noise and a file's rounding grow with the square of the frame rate. A
+  /// deviation of 10 ms halves the amplitude of motion at 19 Hz and keeps 98 % of it at 3 Hz.
   double smooth_s = 0.01;
 };
 

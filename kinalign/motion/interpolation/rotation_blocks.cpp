@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the slopes of the spline as SciPy does: the rates by elimination in blocks of three, b from
-// the previous sweep, at most ten sweeps. If knots are too far apart, the sweeps do not converge
-// and SciPy's curve is the result of the tenth one. Only this method gives the same curve for such
-// knots.
+// Finds the slopes of the spline as SciPy does. Each sweep finds the angular rates by elimination
+// in blocks of three numbers; the small term b (rotation_slopes.h) comes from the previous sweep.
+// If knots are too far apart, the sweeps do not converge and SciPy's curve is the result of the
+// tenth sweep. Only this method gives the same curve for such knots.
 #include "kinalign/motion/arrays.h"
 #include "kinalign/motion/interpolation/rotation_slopes.h"
 
@@ -38,7 +38,7 @@ struct Interval {
 };
 
 /// One row of the elimination, for an inner knot: rate = inverse (constant - b) - left * (rate
-/// before) - after * (rate after), with the rate before eliminated.
+/// before) - after * (rate after). The rate before is eliminated.
 struct Row {
   Mat3 inverse, left, after;
   Vec3 constant, solution;
@@ -69,7 +69,8 @@ void eliminate(Blocks& s) {
 
 constexpr double most_turn = 1000.0;
 
-/// One sweep: solves for all rates with b from the previous ones. Returns the largest change, rad.
+/// One sweep: computes b from the previous rates and solves for all rates. Returns the largest
+/// change, rad.
 double sweep(Blocks& s) {
   const std::size_t n = s.intervals.size();
   // The rates at both ends are given; only those between are unknown.
@@ -94,9 +95,9 @@ double sweep(Blocks& s) {
 }
 
 constexpr int most_sweeps = 10;       // the limit of SciPy
-constexpr double negligible = 1e-13;  // rad in one interval; the curve changes by a seventh of that
+constexpr double negligible = 1e-13;  // rad in one interval; the curve changes by a seventh of this
 
-/// Sweeps until the expected further change, from the rate at which changes shrink, is negligible.
+/// Sweeps until the further change is negligible. It is estimated from how fast the changes shrink.
 void iterate(Blocks& s) {
   double last = 0.0;
   for (int i = 0; i < most_sweeps; ++i) {

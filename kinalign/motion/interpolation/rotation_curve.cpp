@@ -106,11 +106,12 @@ void blend(const Samples& s, std::size_t count, const double* knots, double* out
 }
 
 /// Handles samples that are more than a whole turn from the left knot, where weigh() is not valid.
-/// Rare.
+/// Such samples are rare.
 void turn_far(const Samples& s, std::size_t count, std::span<const double> knots, double* out) {
   for (std::size_t i = 0; i < count; ++i) {
     if (s.square[i] <= most_rotation_parts) continue;
-    // The stored vector is knot c, so the product with the conjugate gives c again.
+    // The stored vector is the product knot c. The product with the conjugate of the knot gives c
+    // again.
     const Quat knot = quat(knots, s.interval[i]), vector = quat(s.vector[i], 0);
     const Vec3 c = s.fraction[i] * (knot.conjugate() * vector).vec();
     put_quat({out + 4 * i, 4}, 0, knot * rotation(c));

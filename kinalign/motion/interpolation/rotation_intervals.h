@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The intervals between neighbouring rotations. This header is internal to the rotation spline.
+// The intervals between neighbouring rotations. Only the files of the rotation spline use this
+// header.
 #pragma once
 
 #include "kinalign/motion/interpolation/rotation_spline.h"
@@ -43,7 +44,8 @@ struct TurnParts {
   double square, product, mixed;
 };
 
-/// From the squared length x, up to pi^2. Avoids differences of nearly equal numbers.
+/// Computes these quantities from x, the squared length of r, at most pi^2. No nearly equal numbers
+/// are subtracted, so no digits are lost.
 KA_INLINE TurnParts turn_parts(double x) {
   constexpr auto cosine_rest = alternating_series<8>(2), sine_rest = alternating_series<8>(3);
   constexpr auto product = [] {
@@ -53,7 +55,7 @@ KA_INLINE TurnParts turn_parts(double x) {
   }();
   const double y = x / 16.0;  // square of a quarter of the angle
   const double c = polynomial(cosine_rest, y), s = polynomial(sine_rest, y);
-  /// Cos of a quarter of the angle; sin of it divided by it.
+  /// The cosine of a quarter of the angle, and its sine divided by the quarter of the angle.
   const double cosine = 1.0 - y * c, sine = 1.0 - y * s;
   const double across = cosine * sine, along = (c + s - y * c * s) / 16.0;
   const double sagitta = sine * sine / 8.0;  // (1 - cosine of half the angle) / x

@@ -2,11 +2,13 @@
 // Finds the slopes for many knots that are close to each other. Two ideas make this fast.
 //
 // First, W(r) = H^-1 D is nearly a rotation by half of r. Rates are therefore expressed in spaces
-// that follow the knots at half their rotation: z[k] = H(r[0]) ... H(r[k-1]) w[k], and likewise r.
-// In the system of rotation_slopes.h this replaces W by D and w by z. The terms with D - 1, D^-1 -
-// 1 and b are all of the order of |r|^2 / 24; they go to the right side and are iterated. The left
-// side is then the same tridiagonal system of scalars for x, y and z. With knots 0.3 rad apart,
-// each sweep reduces the error to 1/300.
+// that follow the knots at half their rotation: z[k] = H(r[0]) ... H(r[k-1]) w[k]. The vectors r
+// are expressed in the same spaces. In the system of rotation_slopes.h this replaces W by D and w
+// by z. The terms with D - 1, D^-1 - 1 and b are all of the order of
+// r
+// ^2 / 24. They are moved to the right side and found by iteration. The left side is then the same
+// tridiagonal system of scalars for x, y and z. With knots 0.3 rad apart, each sweep reduces the
+// error to 1/300.
 //
 // Second, the rows of such a system depend on each other in sequence. The knots are therefore cut
 // into eight pieces, which vector code sweeps in parallel. A piece starts from the result of its
@@ -50,8 +52,7 @@ struct Pieces {
   Row& last() const { return rows[size - 1]; }
 };
 
-// Number of rows at an end of a piece in which the effect of a change beyond it fades to at most
-// 2^-32.
+// A change beyond the end of a piece fades to at most 2^-32 within this number of rows.
 constexpr std::size_t seam = 32;
 
 void gather(const RotationIntervals& in, const Pieces& to) {
@@ -66,7 +67,7 @@ void gather(const RotationIntervals& in, const Pieces& to) {
   }
 }
 
-/// Computes, for lane i, all factors of an interval's row that do not change from step to step.
+/// Computes, for lane i, all factors of an interval's row that do not change from sweep to sweep.
 KA_INLINE void measure(const Row& before, Row& row, std::size_t i) {
   const Quaternion turn = load(before.turn, i);
   const Vector r = load(row.r, i);
@@ -98,7 +99,8 @@ KA_INLINE void eliminate(const Row& before, Row& row, const Row& after, std::siz
   store(row.scale[i] * constant - row.before[i] * load(before.solution, i), row.solution, i);
 }
 
-/// Also solves forwards with D = 1 and b = 0, which is the start of the iteration.
+/// Computes the factors of all rows. Also solves forwards with D = 1 and b = 0, which is the start
+/// of the iteration.
 KA_EVERY_PROCESSOR
 void set_up(std::span<Row> rows) {
   for (std::size_t j = 1; j < rows.size(); ++j) {
@@ -188,8 +190,9 @@ double backwards(std::span<Row> rows) {
   return *std::max_element(change.begin(), change.end());
 }
 
-/// Copies into an outer row of each piece the value that its neighbour found for the same knot in
-/// row `from`; step 1: the neighbour is one lane before, -1: one lane after. Returns the changes.
+/// Copies a value into an outer row of each piece: the value that its neighbour found for the same
+/// knot in row `from`. `step` 1: the neighbour is one lane before; -1: one lane after. Returns the
+/// changes.
 VectorLanes take_over(const Row& from, Row& to, VectorLanes Row::*what, std::ptrdiff_t step) {
   VectorLanes change{};
   const std::size_t source = step > 0 ? 0 : 1, target = 1 - source;
@@ -202,7 +205,7 @@ VectorLanes take_over(const Row& from, Row& to, VectorLanes Row::*what, std::ptr
   return change;
 }
 
-/// Propagates a change in an outer row of a piece to the following rows.
+/// Propagates a change in an outer row of a piece to the next rows of the piece.
 KA_EVERY_PROCESSOR
 void mend(Row* row, std::ptrdiff_t step, VectorLanes change, Lane Row::*weight,
           VectorLanes Row::*what) {
@@ -251,10 +254,11 @@ void hand_out(const Pieces& s, RotationSlopes& to) {
 }
 
 constexpr double negligible = 1e-13;  // rad in one interval; the curve changes by a seventh of that
-// More sweeps rarely save the slower method, and make the estimate worse.
+// If this many sweeps are not enough, more sweeps rarely help, and the estimate of the change gets
+// worse.
 constexpr int most_sweeps = 8;
 
-/// Sweeps until the expected further change, from the rate at which changes shrink, is negligible.
+/// Sweeps until the further change is negligible. It is estimated from how fast the changes shrink.
 /// Returns false if the changes do not shrink fast.
 bool settle(const Pieces& s) {
   double last = take_back(s);

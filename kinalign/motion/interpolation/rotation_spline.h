@@ -7,8 +7,8 @@
 //
 // The curve equals that of SciPy's RotationSpline (scipy/spatial/transform/_rotation_spline.py,
 // after "Smooth Attitude Interpolation",
-// github.com/scipy/scipy/files/2932755/attitude_interpolation.pdf). At both ends the rate is that
-// of the first and of the last interval.
+// github.com/scipy/scipy/files/2932755/attitude_interpolation.pdf). At the first and the last knot
+// the angular rate is the mean rate of the adjacent interval.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace kinalign {
 
-/// The curve at a place depends on knots up to this many away, to 1e-12 rad if neighbouring knots
-/// differ by at most 2.5 rad. Knots farther away change it by less than 1e-14; the rest is the
-/// error of the iteration.
+/// This many knots on each side of a place determine the curve there to 1e-12 rad, if neighbouring
+/// knots differ by at most 2.5 rad. Knots farther away change the curve by less than 1e-14 rad; the
+/// remaining error is that of the iteration.
 constexpr std::size_t rotation_spline_reach = 60;
 
 /// `knots` [T,4] unit w,x,y,z at strictly rising `times` [T] s, T >= 1.

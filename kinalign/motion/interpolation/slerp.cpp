@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the angle once per interval and two short polynomials per sample, without square roots
-// and branches: 0.3 of the time of Eigen's slerp (bench/slerp_bench.cpp).
+// and branches. This takes 0.3 of the time of Eigen's slerp (bench/slerp_bench.cpp).
 #include "kinalign/motion/interpolation/slerp.h"
 
 #include "kinalign/motion/targets.h"

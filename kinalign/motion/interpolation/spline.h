@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Natural cubic splines at irregular stamps, for all channels of a row together (paper section
-// 3.2).
+// Natural cubic splines at irregular stamps, for all channels of a row together (section 3.2 of the
+// HFUT-MMD paper, README.md).
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@
 
 namespace kinalign {
 
-/// The spline at a place depends on knots up to this many away, to less than 2e-18 of a channel's
-/// largest value. The influence of a knot at least halves from one knot to the next, because the
-/// system's diagonal 2(h + h') is twice the sum of its neighbours.
+/// This many knots on each side of a place determine the spline there, to less than 2e-18 of a
+/// channel's largest value. The influence of a knot at least halves from one knot to the next,
+/// because the system's diagonal 2(h + h') is twice the sum of the two numbers beside it.
 constexpr std::size_t spline_reach = 60;
 
 /// Rows of C channels at strictly rising times (s, from a nearby origin).

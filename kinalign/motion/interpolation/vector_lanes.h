@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors and quaternions of eight independent computations. A loop over the lanes that loads,
-// computes and stores becomes vector code. A lane has the size of a cache line; structures of lanes
-// are aligned to it (alignas), which makes them twice as fast.
+// Vectors and quaternions of eight independent computations, the lanes. A loop over the lanes that
+// loads, computes and stores becomes vector code. Eight numbers fill a cache line. Structures of
+// them are aligned to it (alignas), which makes the loops twice as fast.
 #pragma once
 
 #include "kinalign/motion/targets.h"

@@ -10,11 +10,12 @@ namespace kinalign {
 namespace {
 
 constexpr double tolerance = 1e-4;
-// First change of a number that is not 0, as its share; first change of 0.
+// The first simplex changes each number by this share of it, or a number that is 0 by first_step.
 constexpr double first_share = 0.05, first_step = 0.00025;
 constexpr std::size_t calls_a_number = 200;
 
-/// A place and its cost. Costs are kept, because each call of the cost function visits all frames.
+/// A place and its cost. The cost is stored, because each call of the cost function visits all
+/// frames.
 struct Corner {
   std::vector<double> at;
   double cost = 0.0;
@@ -30,7 +31,7 @@ class Simplex {
       at[k] = at[k] != 0.0 ? (1.0 + first_share) * at[k] : first_step;
       add(std::move(at));
     }
-    // The first corner is `start`; each other one differs from it in one number.
+    // The first corner is `start`; each other corner differs from it in one number.
     sort();
   }
 
@@ -45,7 +46,7 @@ class Simplex {
         size = std::max(size, std::abs(corner.at[k] - best()[k]));
       }
     }
-    // Both conditions, as in SciPy: places near each other with about the same cost.
+    // The corners must be close to each other and have about the same cost, as in SciPy.
     return size <= tolerance && rise <= tolerance;
   }
 
@@ -55,14 +56,15 @@ class Simplex {
     const std::vector<double> middle = middle_of_others();
     Corner& worst = corners_.back();
     Corner reflected = corner(middle, 1.0);
-    // Better than the best: the step may go further.
+    // The reflected corner is better than the best one, so a longer step is tried, too.
     if (reflected.cost < corners_.front().cost) {
       Corner expanded = corner(middle, 2.0);
       worst = expanded.cost < reflected.cost ? std::move(expanded) : std::move(reflected);
     } else if (reflected.cost < corners_[corners_.size() - 2].cost) {
       worst = std::move(reflected);
     } else {
-      // No better than the second worst: a contraction, on the better side of the middle.
+      // The reflected corner is not better than the second worst. A contraction is tried on the
+      // better side of the middle.
       const bool outside = reflected.cost < worst.cost;
       Corner contracted = corner(middle, outside ? 0.5 : -0.5);
       const bool better =
@@ -131,7 +133,7 @@ class Simplex {
 std::vector<double> minimise(const CostFunction& cost, const std::vector<double>& start) {
   const std::size_t most = calls_a_number * start.size();
   Simplex simplex(cost, start);
-  // SciPy limits steps and calls alike.
+  // SciPy has the same limit for steps and for calls of the cost function.
   for (std::size_t steps = 1; steps < most && simplex.calls() < most; ++steps) {
     if (simplex.is_small()) break;
     simplex.step();

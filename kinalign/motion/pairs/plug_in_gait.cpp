@@ -82,15 +82,15 @@ constexpr Side right_side{right_arm, right_leg, rsho, relb, rwra, rwrb,
                           rthi,      rkne,      rtib, rank, rtoe, -1.0};
 
 constexpr double shoulder_below_marker_m = 0.05;
-// From the lateral marker to the joint's centre.
+// The distance from the lateral marker to the joint's centre.
 constexpr double knee_depth_m = 0.057, ankle_depth_m = 0.042;
 constexpr double least_width_m = 0.20, most_width_m = 0.30;  // width of a pelvis
 
-// The limit avoids a division by zero for markers that were not seen and hold zeros.
+// The limit avoids a division by zero for markers that were not seen, whose positions are zeros.
 Vec3 unit(const Vec3& v) { return v / std::max(v.norm(), 1e-11); }
 
-/// Plug-in-Gait's chord function: the joint's centre is `depth` from the lateral marker,
-/// perpendicular to the segment, in the plane of the joint above, the marker and the wand marker,
+/// Plug-in-Gait's chord function. The joint's centre is `depth` from the lateral marker, at a right
+/// angle to the segment. It lies in the plane of the joint above, the marker and the wand marker,
 /// on the side away from the wand.
 Vec3 chord(const Vec3& above, const Vec3& marker, const Vec3& wand, double depth) {
   const Vec3 segment = above - marker, to_wand = wand - marker;
@@ -158,8 +158,8 @@ PelvisSize pelvis_size(const MarkerFrames& markers) {
   return {median(depths), std::clamp(median(widths), least_width_m, most_width_m)};
 }
 
-/// Writes the joints of one frame into the arrays.
-/// Joints are read back by the functions for the joints below them, so the order of calls matters.
+/// Writes the joints of one frame into the arrays. Each function reads joints that earlier
+/// functions wrote, so the order of calls matters.
 class FrameJoints {
  public:
   FrameJoints(JointCentres& out, std::size_t frame) : out_(out), at_(frame * shared_joint_count) {}
@@ -230,7 +230,7 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(square / static_cast<double>(values.size()));
 }
 
-constexpr double cm = 0.01;  // m; the tolerances of the minimiser are meant for centimetres
+constexpr double cm = 0.01;  // m; the minimiser's tolerances suit numbers in centimetres
 
 /// The frames in which `count` joints, from joint `first` on, are all valid.
 std::vector<std::size_t> whole_frames(const JointCentres& joints, std::size_t first,
@@ -253,7 +253,7 @@ double elbow_shift(const JointCentres& joints, const Side& side) {
   const auto frames = whole_frames(joints, side.arm, 3);
   if (frames.empty()) return 0.0;
   std::vector<double> lengths(frames.size());
-  // The forearm is a bone: the true elbow is where its length varies least.
+  // The forearm is a bone, so the true elbow is where the forearm's length varies least.
   const auto cost = [&](std::span<const double> shift) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const std::size_t at = frames[i] * shared_joint_count + side.arm;

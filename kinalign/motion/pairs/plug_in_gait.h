@@ -29,10 +29,9 @@ struct MarkerFrames {
   std::size_t frames() const { return seen.size() / plug_in_gait_markers.size(); }
 };
 
-/// The offset of joints from the places computed from the markers alone. Markers are 1 to 5 cm
-/// above a joint.
-/// The shift is the same in all frames of a person, because it is a property of the markers'
-/// places.
+/// The offset of joints from the places that are computed from the markers alone, because markers
+/// are 1 to 5 cm above a joint. The offset is the same in all frames of a person: it depends only
+/// on where the markers are attached.
 struct SideShift {
   double elbow_m = 0.0;       // along the line from the elbow to the shoulder
   double knee_along_m = 0.0;  // along the thigh to the hip

@@ -51,8 +51,8 @@ std::optional<double> rms_at(const PointPiece& rough, const PieceCurve& precise,
   return std::sqrt(square / static_cast<double>(moments.count));
 }
 
-/// The values of NumPy's arange, exact to the last bit. A frame at the very end of the precise
-/// piece is inside or outside by rounding, and that can decide between two shifts.
+/// The values of NumPy's arange, exact to the last bit. Rounding decides whether a frame at the
+/// very end of the precise piece is inside, and one frame can decide between two shifts.
 std::vector<double> arange(double start, double step, std::size_t count) {
   // NumPy takes the step from the first two values, which are rounded.
   const double exact_step = (start + step) - start;
@@ -98,7 +98,7 @@ CurvePoints PieceCurve::at(double shift_s, double rate_hz, std::size_t frames) c
   spline_at(knots_of(piece_, numbers_), bends_, places,
             std::span(out.positions).subspan(3 * first * joints, 3 * places.size() * joints));
   for (std::size_t i = 0; i < places.size(); ++i) {
-    // The spline has a value everywhere, but between an invalid sample and another it is a guess.
+    // The spline has a value everywhere. Next to an invalid sample that value is only a guess.
     const auto before = static_cast<std::size_t>(std::floor(places[i])) * joints;
     const auto behind = static_cast<std::size_t>(std::ceil(places[i])) * joints;
     for (std::size_t j = 0; j < joints; ++j) {
@@ -114,12 +114,12 @@ std::optional<FoundShift> find_shift(const PointPiece& rough, const PieceCurve& 
                                      const ShiftOptions& options) {
   const double rough_s = rough.seconds(), precise_s = precise.piece().seconds();
   const double overlap = options.least_overlap * std::min(rough_s, precise_s);
-  // Shifts with which the rough piece begins before the precise one are negative.
+  // A shift is negative if the rough piece begins before the precise one.
   const double from = overlap - rough_s, to = precise_s - overlap + 1e-9;
   const auto steps = static_cast<std::size_t>(std::ceil((to - from) / options.first_step_s));
   const auto best = best_of(rough, precise, arange(from, options.first_step_s, steps));
   if (!best) return std::nullopt;
-  // Three steps to each side of the best shift.
+  // The second search visits three steps on each side of the best shift.
   std::vector<double> fine = arange(-3.0 * options.last_step_s, options.last_step_s, 7);
   for (double& shift : fine) shift += best->shift_s;
   return best_of(rough, precise, fine);

@@ -26,14 +26,14 @@ struct PointPiece {
   double seconds() const { return (static_cast<double>(frames()) - 1.0) / rate_hz; }
 };
 
-/// The points of a curve at the stamps of another piece.
+/// The points of a curve at the stamps of another recording.
 struct CurvePoints {
   std::vector<double> positions;    // [F,J,3] m; zeros outside the curve's piece
   std::vector<std::uint8_t> valid;  // [F,J] 1 if both samples around the stamp are valid
 };
 
-/// A natural cubic spline through a piece. All points of the piece need a place; for invalid points
-/// it is a guess. The piece's arrays must live longer.
+/// A natural cubic spline through a piece. Invalid points also need a position, for example an
+/// interpolated one. The arrays of the piece must outlive the curve.
 /// The knots are numbered, so a place on the curve is a time multiplied by the rate.
 class PieceCurve {
  public:
@@ -54,7 +54,7 @@ class PieceCurve {
 struct ShiftOptions {
   double least_overlap = 0.8;  // share of the shorter piece
   double first_step_s = 1.0 / 30.0;
-  /// Searched within three such steps around the best shift of the first search.
+  /// Step of the second search, which covers three steps to each side of the best shift so far.
   double last_step_s = 0.01;
 };
 
