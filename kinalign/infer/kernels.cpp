@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled twice: CMakeLists.txt sets KA_KERNELS to the name of the build. The file includes no
-// header with inline functions, because the linker would merge those of both builds and a processor
-// without AVX2 could then meet AVX2 code.
+// This file is compiled twice: CMakeLists.txt sets KA_KERNELS to the name of the build. The file
+// includes no header with inline functions. The linker would keep one copy of such a function for
+// both builds, and a processor without AVX2 could then run AVX2 code.
 #include "kinalign/infer/kernels.h"
 
 namespace kinalign::KA_KERNELS {
@@ -13,7 +13,8 @@ namespace {
 using std::size_t;
 
 #ifdef __AVX2__
-// The tile sizes go by the number of vector registers: 16, of 8 floats with AVX2 and of 4 without.
+// The tile sizes are chosen for 16 vector registers. With AVX2 a register has 8 floats, without it
+// 4.
 constexpr size_t lanes = 8;
 constexpr size_t tile_rows = 6;    // 6 x 2 sums fit into 12 of 16 registers
 constexpr size_t tile_panels = 4;  // for a single frame: 4 x 2 sums
@@ -45,7 +46,7 @@ KA_INLINE void put(const Vector& vector, float* values) {
 
 // ---- products
 
-/// sums[r,j] += in[r in_stride] w[j]: one channel of one tap.
+/// Adds one channel of one tap to the sums: sums[r,j] += in[r in_stride] w[j].
 template <size_t Rows, size_t Vectors>
 KA_INLINE void add_channel(Vector (&sums)[Rows][Vectors], const float* in, size_t in_stride,
                            const Vector (&w)[Vectors]) {
@@ -107,7 +108,7 @@ void tile(const Product& p, size_t t, size_t first) {
   float sums[Rows * width] = {};
   for (size_t r = 0; r < Rows; ++r) {
     // Without a bias the sums begin with the values of `out`, so a second product can be added to a
-    // first.
+    // first one.
     const float* start = p.bias != nullptr ? p.bias + begin : out + r * p.out_stride;
     for (size_t i = 0; i < n; ++i) sums[r * width + i] = start[i];
   }
@@ -129,8 +130,8 @@ void last_rows(const Product& p, size_t t, size_t panel, size_t rows) {
   }
 }
 
-// Panel by panel over one block of frames: the weights of a panel are read from memory once for all
-// frames of the block.
+// Works panel by panel over one block of frames. The weights of a panel are then read from memory
+// once for all frames of the block.
 void multiply_block(const Product& p, size_t from, size_t until) {
   for (size_t panel = 0; panel * panel_width < p.outputs; ++panel) {
     size_t t = from;
@@ -139,8 +140,8 @@ void multiply_block(const Product& p, size_t from, size_t until) {
   }
 }
 
-// With one frame there are no rows to share the weights. Several panels at once keep the registers
-// busy instead.
+// With a single frame each weight is used only once. Several panels are summed at once, so that all
+// registers are in use.
 void multiply_frame(const Product& p) {
   const size_t panels = (p.outputs + panel_width - 1) / panel_width;
   size_t panel = 0;
@@ -185,7 +186,8 @@ KA_INLINE float magnitude(float x) { return x < 0.0F ? -x : x; }
 
 KA_INLINE float sigmoid_of(float x) { return 1.0F / (1.0F + exp_of(-x)); }
 
-/// Cephes, tanhf: a polynomial near 0, where the difference of two close numbers would lose digits.
+/// tanh x, as in Cephes (tanhf). Near 0 a polynomial is used, because the difference of two close
+/// numbers would lose digits.
 KA_INLINE float tanh_of(float x) {
   const float z = x * x;
   float p = -5.70498872745e-3F;
@@ -258,7 +260,7 @@ KA_INLINE float sum_of(const float* values, size_t n, float mean) {
     const float x = values[i] - mean;
     sum += Power == 1 ? x : x * x;
   }
-  // The remainder comes before the partial sums; this order is part of the result.
+  // The remainder is added before the partial sums. Another order would change the last bits.
   for (size_t j = 0; j < lanes; ++j) sum += sums[j];
   return sum;
 }

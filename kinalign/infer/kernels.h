@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loops in which a network spends its time. kernels.cpp is compiled once for every processor
-// and once for x86-64-v3 (AVX2 and FMA); the program chooses at its start. Each result is summed in
-// one fixed order for any number of frames. Results of the two builds differ by about 1e-6, because
-// the second one fuses multiplication and addition.
+// The loops that take most of a network's time. kernels.cpp is compiled once for every processor
+// and once for x86-64-v3 (AVX2 and FMA); the program chooses one build when it starts. Each result
+// is summed in one fixed order for any number of frames. Results of the two builds differ by about
+// 1e-6, because the second build fuses multiplication and addition.
 #pragma once
 
 #include <cstddef>
@@ -42,10 +42,10 @@ struct Kernels {
   /// Normalises one frame. `in` and `out` may be the same.
   void (*layer_norm)(const float* in, float* out, const float* weight, const float* bias,
                      std::size_t channels);
-  /// One step: from the sums of all four gates, i f g o, to the new cell and output.
+  /// Computes the new cell and output of one step from the sums of the gates i, f, g and o.
   void (*lstm_gates)(const float* gates, float* cell, float* out, std::size_t units);
-  /// One step from the sums of the input and of the state, r z n each. `previous` and `out` may be
-  /// the same.
+  /// Computes the new output of one step from the sums of the input and of the state, each for the
+  /// gates r, z and n. `previous` and `out` may be the same.
   void (*gru_gates)(const float* from_input, const float* from_state, const float* previous,
                     float* out, std::size_t units);
 };

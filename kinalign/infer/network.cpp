@@ -13,8 +13,8 @@ namespace kinalign {
 namespace {
 
 /// Values between two layers [T,C]: a block of the workspace, or the caller's input.
-/// A sequence with a block owns it until `drop`. One without a block is the caller's input and must
-/// not be changed.
+/// A sequence with a block owns the block until `drop`. A sequence without a block is the caller's
+/// input and must not be changed.
 struct Sequence {
   const float* data = nullptr;
   std::size_t frames = 0, channels = 0;
@@ -25,9 +25,9 @@ struct Sequence {
 
 constexpr std::size_t window_block = 256;  // rows of along_time that are processed together
 
-/// One run. Each layer's function owns its input: it returns the block to the workspace or passes
-/// it on.
-/// Blocks are returned as early as possible, so that later layers of the run use them again.
+/// One run of the network. The function of each layer owns its input: it returns the input's block
+/// to the workspace or passes the block on. Blocks are returned as early as possible, so that later
+/// layers of the run use them again.
 class Run {
  public:
   Run(const Kernels& kernels, Workspace& workspace) : kernels_(kernels), workspace_(workspace) {}
@@ -49,7 +49,7 @@ class Run {
         return recurrent(layer, in);
       case LayerKind::layer_norm:
         return layer_norm(layer, in);
-      // Acts in training only.
+      // Dropout acts in training only.
       case LayerKind::dropout:
         return in;
       case LayerKind::slice:
@@ -69,7 +69,7 @@ class Run {
     }
   }
 
-  // A new block of the workspace.
+  // A sequence in a free block of the workspace.
   Sequence fresh(std::size_t frames, std::size_t channels) {
     const std::size_t block = workspace_.take(frames * channels);
     return {workspace_.values(block), frames, channels, block};
@@ -145,24 +145,24 @@ class Run {
     input.out_stride = gates.channels;
     input.frames = in.frames;
     kernels_.multiply(input);
-    const Sequence state = fresh(1, 2 * units);  // output before the first frame; cell
+    const Sequence state = fresh(1, 2 * units);  // output before the first frame, then the cell
     float* const cell = writable(state) + units;
     std::fill_n(writable(state), 2 * units, 0.0F);
-    // A gru needs the sums of the state apart from those of the input. An lstm adds them to the
-    // gates.
+    // A gru needs the sums of the state separately from those of the input. An lstm adds the sums
+    // of the state to the gates.
     const Sequence scratch = fresh(1, gates.channels);
     // Each step reads the previous output where it was written, so nothing is copied.
     const float* previous = state.data;
     for (std::size_t i = 0; i < in.frames; ++i) {
       const std::size_t t = reverse ? in.frames - 1 - i : i;
-      // Gates of frame t, with the input's part in them already.
+      // The gates of frame t. They already contain the sums of the input.
       float* const gate = writable(gates) + t * gates.channels;
       Product recurrent = weights.from_state.product();
       recurrent.in = previous;
       recurrent.frames = 1;
       float* const next = out + t * layer.outputs;
       if (layer.layer.kind == LayerKind::lstm) {
-        // The product has no bias, so it is added to the sums of the input.
+        // The product has no bias, so its sums are added to `out`, here the sums of the input.
         recurrent.out = gate;
         kernels_.multiply(recurrent);
         kernels_.lstm_gates(gate, cell, next, units);
@@ -178,7 +178,7 @@ class Run {
     drop(gates);
   }
 
-  /// Works in place if the values are in a block.
+  /// Normalises each frame, in place if the values are in a block.
   Sequence layer_norm(const PreparedLayer& layer, Sequence in) {
     const Sequence out = in.block ? in : fresh(in.frames, in.channels);
     for (std::size_t t = 0; t < in.frames; ++t) {
@@ -236,7 +236,8 @@ class Run {
   /// Runs all branches on the same input, and joins, adds or multiplies their outputs.
   Sequence branches(const PreparedLayer& layer, Sequence in) {
     const Sequence out = fresh(in.frames, layer.outputs);
-    // Without a block, so that no branch changes or returns the values that the next branch reads.
+    // The shared input has no block, so no branch changes or returns the values that the next
+    // branch reads.
     const Sequence shared{in.data, in.frames, in.channels, std::nullopt};
     std::size_t column = 0;
     for (std::size_t b = 0; b < layer.branches.size(); ++b) {
@@ -268,10 +269,9 @@ class Run {
     return out;
   }
 
-  /// Each window of a channel is one row of the branch's input. The branch runs on `window_block`
-  /// rows at a time.
-  /// The branch's results are added up at their frames, and divided by the number of windows at the
-  /// end.
+  /// Averages the branch's results over windows. Each window of a channel is one row of the
+  /// branch's input; the branch runs on `window_block` rows at a time. The results are added up at
+  /// their frames and divided by the number of windows at the end.
   Sequence along_time(const PreparedLayer& layer, Sequence in) {
     const std::size_t frames = in.frames, channels = in.channels, window = layer.layer.window;
     if (frames == 0) return in;
@@ -284,7 +284,8 @@ class Run {
         const std::size_t at = begin * channels + c;
         Sequence rows = fresh(std::min(windows - begin, window_block), window);
         for (std::size_t i = 0; i < rows.size(); ++i) {
-          // Row i / window, column i % window: the frame `begin` + row + column of this channel.
+          // Row i / window and column i % window get the frame `begin` + row + column of this
+          // channel.
           writable(rows)[i] = in.data[at + (i / window + i % window) * channels];
         }
         rows = list(layer.branches.front(), rows);

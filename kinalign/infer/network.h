@@ -28,8 +28,8 @@ class Workspace {
   float* values(std::size_t block) { return blocks_[block].values.data(); }
   void give_all_back();
 
-  /// Lengths before max_pools whose unpool has not run yet.
-  /// Filled by max_pool, emptied by unpool.
+  /// The number of frames before each max_pool whose unpool has not run yet. Filled by max_pool,
+  /// emptied by unpool.
   std::vector<std::size_t> frames_before_pools;
 
  private:

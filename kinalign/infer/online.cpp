@@ -138,8 +138,8 @@ class Step {
     std::copy_n(in, layer.inputs, first);
     std::copy_n(in, layer.inputs, first + state.rows * layer.inputs);
     state.row = state.row + 1 == state.rows ? 0 : state.row + 1;
-    // The oldest frame is at the place of the next one. In the second copy all later frames follow
-    // it.
+    // The oldest frame is at the place of the next frame. In the second copy all later frames
+    // follow the oldest one.
     const float* const oldest =
         state.ring.data() + (state.row == 0 ? state.rows : state.row) * layer.inputs;
     multiply(layer.weights, oldest, layer.layer.dilation * layer.inputs, state.out.data());

@@ -12,13 +12,14 @@
 
 namespace kinalign {
 
-/// Runs a network on frames as they arrive, for one sequence. Several of them may share a network,
-/// for example one for each person.
+/// Runs a network on frames as they arrive, for one sequence. Several objects of this class may
+/// share a network, for example one object for each person.
 class OnlineNetwork {
  public:
-  /// Allocates all memory. The weights stay in `network`, which must live longer and may be moved.
-  /// Fails if a layer needs later frames: a bidirectional layer, a centred convolution, max_pool,
-  /// along_time. The error names the layer. Centred convolutions with one tap are accepted.
+  /// Allocates all memory. The weights stay in `network`, which must outlive this object and may be
+  /// moved. Fails if a layer needs later frames: a bidirectional layer, a centred convolution,
+  /// max_pool, along_time. The error names the layer. Centred convolutions with one tap are
+  /// accepted.
   static Result<OnlineNetwork> make(const Network& network);
 
   OnlineNetwork(OnlineNetwork&&) noexcept;

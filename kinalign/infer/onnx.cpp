@@ -202,7 +202,7 @@ class Graph {
     return node("Slice", {in, begin, end, integer(axis)});
   }
 
-  /// A linear layer as MatMul and Add, because ONNX wants the transposed weights.
+  /// Adds a linear layer as MatMul and Add, because ONNX wants the transposed weights.
   std::string linear(const std::string& in) {
     const Tensor& weight = tensor("weight");
     const std::size_t rows = weight.shape[0], columns = weight.shape[1];
@@ -252,8 +252,8 @@ class Graph {
     std::vector<ProtobufMessage> attributes{
         text_attribute("direction", layer.bidirectional ? "bidirectional" : "forward"),
         attribute("hidden_size", static_cast<std::int64_t>(layer.out))};
-    // The reset gate acts after the product with the state, as in PyTorch. ONNX's default is before
-    // it.
+    // The reset gate acts after the product with the state, as in PyTorch. By default the reset
+    // gate of ONNX acts before the product.
     if (!lstm) attributes.push_back(attribute("linear_before_reset", std::int64_t{1}));
     const auto out = node(lstm ? "LSTM" : "GRU", inputs, attributes);  // [T,directions,1,out]
     return node("Reshape", {transposed(out, {2, 0, 1, 3}), integers({0, 0, -1})});
@@ -274,7 +274,7 @@ class Graph {
     return node("ReduceMean", {in}, {list_attribute("axes", {2})});
   }
 
-  /// Written out as mean, variance and scale, with the epsilon of PyTorch.
+  /// Adds a layer_norm as mean, variance and scale, with the epsilon of PyTorch.
   std::string layer_norm(const std::string& in) {
     const auto centred = node("Sub", {in, mean(in)});
     const auto variance = mean(node("Mul", {centred, centred}));
@@ -283,14 +283,14 @@ class Graph {
     return node("Add", {scaled, stored("bias")});
   }
 
-  /// x/2 (1 + erf(x/sqrt 2)), the exact form.
+  /// Adds gelu in its exact form, x/2 (1 + erf(x/sqrt 2)).
   std::string gelu(const std::string& in) {
     const auto erf = node("Erf", {node("Mul", {in, number(std::sqrt(0.5F))})});
     const auto twice = node("Mul", {in, node("Add", {erf, number(1.0F)})});
     return node("Mul", {twice, number(0.5F)});
   }
 
-  /// ceil_mode keeps an odd last frame.
+  /// Adds a max_pool. The attribute ceil_mode keeps an odd last frame.
   std::string max_pool(const std::string& in) {
     const auto out = node("MaxPool", {transposed(in, {0, 2, 1})},
                           {attribute("ceil_mode", std::int64_t{1}),
@@ -308,7 +308,7 @@ class Graph {
     return slice(twice, integer(0), frames, 1);
   }
 
-  /// All branches on the same input, followed by Concat, Add or Mul.
+  /// Adds all branches on the same input, followed by Concat, Add or Mul.
   std::string branches(const Layer& layer, const std::string& in, std::size_t channels) {
     const std::string path = path_;
     Names results;
@@ -326,9 +326,9 @@ class Graph {
     return out;
   }
 
-  /// A convolution cuts the windows out: its tap k is 1 in channel k and 0 in all others. The
-  /// transposed convolution adds the results at their places. The channels are the batch, because
-  /// each channel is processed alone.
+  /// Adds an along_time. A convolution cuts the windows out: its tap k is 1 in channel k and 0 in
+  /// all others. A transposed convolution adds the results at their frames. The channels become the
+  /// batch, because each channel is processed alone.
   std::string along_time(const Layer& layer, const std::string& in) {
     const auto window = static_cast<std::int64_t>(layer.window);
     std::vector<float> taps(layer.window * layer.window, 0.0F);
@@ -359,7 +359,8 @@ class Graph {
   ProtobufMessage graph_, constants_;
 };
 
-/// Name of the result's frame dimension: that of the input, unless a max_pool has no unpool.
+/// The name of the result's frame dimension. It is the input's name, unless a max_pool has no
+/// unpool.
 std::string frames_behind(const Architecture& architecture) {
   const auto& layers = architecture.layers;
   const auto count = [&layers](LayerKind kind) {

@@ -99,8 +99,8 @@ class Packer {
     return out;
   }
 
-  /// The two biases of an lstm are always added, so they are added here once. In a gru the reset
-  /// gate acts on the second one, so both are kept.
+  /// In an lstm the two biases are always added, so they are added here once. In a gru the reset
+  /// gate acts on the second bias, so both are kept.
   DirectionWeights direction(const Layer& layer, const std::string& path,
                              const std::string& ending) const {
     const Tensor& bias_hh = tensor(path, "bias_hh" + ending);

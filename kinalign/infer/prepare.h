@@ -16,8 +16,8 @@ namespace kinalign {
 Result<void> check_tensors(const Architecture& architecture,
                            const std::map<std::string, Tensor>& tensors, const std::string& prefix);
 
-/// Checks the tensors and packs them. Fails in the cases in which Network::make fails.
-/// Called once for each network. The tensors are copied, so the file may go.
+/// Checks the tensors and packs them. Fails in the cases in which Network::make fails. Called once
+/// for each network. The values are copied, so `tensors` need not live longer.
 Result<PreparedNetwork> prepare(const Architecture& architecture,
                                 const std::map<std::string, Tensor>& tensors,
                                 const std::string& prefix);

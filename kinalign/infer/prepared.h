@@ -40,8 +40,8 @@ struct PackedWeights {
   Product product() const;
 };
 
-/// Weights of one direction of a recurrent layer. The gates' sums of the input and of the state are
-/// separate products, because those of the input are computed for all frames at once.
+/// Weights of one direction of a recurrent layer. The products with the input and with the state
+/// are separate, because those with the input are computed for all frames at once.
 struct DirectionWeights {
   PackedWeights from_input;  // lstm: the bias is the sum of both biases
   PackedWeights from_state;  // gru: has its own bias; lstm: none
@@ -61,8 +61,8 @@ struct PreparedLayer {
 /// Applies relu, leaky_relu, gelu, tanh or sigmoid to values in place.
 void apply_activation(const Kernels& kernels, const Layer& layer, float* values, std::size_t n);
 
-/// Everything that does not change between runs. Several threads may run one network at the same
-/// time; what changes is in the workspace or the state.
+/// The parts of a network that do not change between runs. Several threads may run one network at
+/// the same time, because all changing values are in the workspace or the state.
 struct PreparedNetwork {
   Architecture architecture;
   std::size_t outputs = 0;

@@ -10,7 +10,8 @@
 namespace kinalign {
 
 /// A message. Fields are written in the order of the calls.
-/// Wire types: 0 varint, 2 bytes with their length, 5 four bytes. A message in a message is bytes.
+/// Wire types: 0 is a varint, 2 is bytes after their length, 5 is four bytes. A nested message is
+/// written as bytes.
 class ProtobufMessage {
  public:
   ProtobufMessage& add(unsigned field, std::int64_t value) {
@@ -38,7 +39,8 @@ class ProtobufMessage {
 
  private:
   void tag(unsigned field, unsigned type) { varint(std::uint64_t{field} << 3U | type); }
-  /// Seven bits a byte, lowest first; the high bit says that more follow.
+  /// Writes seven bits in each byte, the lowest first. The high bit of a byte says that more bytes
+  /// follow.
   void varint(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7U) bytes_ += static_cast<char>(value | 0x80U);
     bytes_ += static_cast<char>(value);

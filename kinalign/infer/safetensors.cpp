@@ -167,8 +167,8 @@ Result<std::map<std::string, std::string>> read_metadata(const Json& json,
   return out;
 }
 
-/// The JSON header, which follows its length of 8 bytes.
-/// The length is compared with what the file has before anything of that size is used.
+/// The JSON header. The eight bytes before it state its length. That length is compared with the
+/// size of the file before the header is read.
 Result<std::string_view> header_of(std::string_view bytes, const std::string& file) {
   std::uint64_t length = 0;
   if (bytes.size() < sizeof length) {

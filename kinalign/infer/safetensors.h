@@ -21,7 +21,7 @@ struct Tensor {
   bool operator==(const Tensor&) const = default;
 };
 
-/// The content of a file. Maps keep the names sorted, so writing has one order.
+/// The content of a file. Maps sort the names, so the same tensors are always written in one order.
 struct TensorFile {
   std::map<std::string, std::string> metadata;
   std::map<std::string, Tensor> tensors;  // by name

@@ -92,7 +92,7 @@ class Check {
       const std::string place = path_below(path, i);
       channels = KA_TRY(one(layers[i], channels, place, depth));
       // Pools and unpools are nested like brackets: each unpool ends the last open pool of the same
-      // list.
+      // list of layers.
       if (layers[i].kind == LayerKind::max_pool) ++pools;
       if (layers[i].kind != LayerKind::unpool) continue;
       if (pools == 0) return wrong(place, "a max_pool before the unpool", "none");
@@ -158,7 +158,7 @@ class Check {
     if (!(layer.rate >= 0.0 && layer.rate < 1.0)) {
       return wrong(path, "a rate from 0 to below 1", std::to_string(layer.rate));
     }
-    // Written as a difference, because a sum of two numbers from a file could wrap.
+    // The check is written as a difference, because a sum of two numbers from a file could wrap.
     if (layer.kind == LayerKind::slice &&
         (layer.begin > inputs || layer.out > inputs - layer.begin)) {
       return wrong(path, "a slice of " + counted(inputs, "channels"),
@@ -299,7 +299,7 @@ std::optional<std::size_t> reach(const Layer& layer, Side side) {
   }
 }
 
-// Layers in a row: their distances add up.
+// The distances of successive layers add up.
 std::optional<std::size_t> reach(const std::vector<Layer>& layers, Side side) {
   std::size_t all = 0;
   for (const Layer& layer : layers) {

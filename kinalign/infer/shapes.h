@@ -22,7 +22,7 @@ inline constexpr std::size_t most_channels = 16384;
 inline constexpr std::size_t most_kernel = 1023;
 inline constexpr std::size_t most_dilation = 4096;
 inline constexpr std::size_t most_parameters = 200'000'000;
-/// Number of values of other frames that all convolutions together keep.
+/// Limit of the values of other frames that all convolutions together store for the next frame.
 inline constexpr std::size_t most_kept = std::size_t{1} << 26U;
 
 /// A tensor that an architecture needs. Values are row-major.
@@ -33,12 +33,11 @@ struct Parameter {
   bool operator==(const Parameter&) const = default;
 };
 
-/// Fails if a layer does not fit the one before it, or if a limit above is exceeded. The error
+/// Fails if a layer does not fit the layer before it, or if a limit above is exceeded. The error
 /// names the layer. Each unpool belongs to the last open max_pool in its own list of layers. Within
 /// a branch every max_pool needs an unpool. Layers within an along_time must process each row alone
 /// (linear, layer_norm, slice, or a function of single values). The functions below need a valid
-/// architecture.
-/// Called for each architecture that is read, made or exported.
+/// architecture, so this function is called for each one that is read, made or exported.
 Result<void> validate(const Architecture& architecture);
 
 /// All tensors, in the order of the layers.
@@ -52,9 +51,9 @@ std::size_t outputs(const std::vector<Layer>& layers, std::size_t inputs);
 /// Input channels of each branch of a layer.
 std::size_t branch_inputs(const Layer& layer, std::size_t inputs);
 
-/// Number of frames after (before) frame t on which frame t of the result depends. Empty if it
-/// depends on the whole sequence: in bidirectional and pooled networks, and for look_back in all
-/// recurrent ones.
+/// The number of frames after (look_ahead) or before (look_back) a frame that can change the result
+/// at that frame. Empty if the whole sequence can: in bidirectional and pooled networks, and for
+/// look_back in all recurrent networks.
 std::optional<std::size_t> look_ahead(const Architecture& architecture);
 std::optional<std::size_t> look_back(const Architecture& architecture);
 

@@ -21,9 +21,8 @@ struct Rows {
   const float* at(std::size_t row) const { return data + row * stride; }
 };
 
-/// One layer's results for the window.
-/// Rows before `computed` are valid for the window as it is now; `forget_rows` shifts them with the
-/// window.
+/// One layer's results for the window. The first `computed` rows are valid for the present window.
+/// If frames leave the window, `forget_rows` moves the rows with it.
 struct LayerWindow {
   const PreparedLayer* layer = nullptr;
   std::size_t before = 0, after = 0;  // number of frames before and after that a result depends on
@@ -34,7 +33,7 @@ struct LayerWindow {
   std::vector<Rows> found;  // the branches' results in the current run
 };
 
-// Later frames that a list of layers needs: those of its layers, added up.
+// The number of later frames that a list of layers needs, summed over its layers.
 std::size_t after_all(const std::vector<LayerWindow>& layers) {
   std::size_t out = 0;
   for (const LayerWindow& layer : layers) out += layer.after;
@@ -74,16 +73,15 @@ void forget_rows(std::vector<LayerWindow>& layers, std::size_t count) {
   }
 }
 
-/// One run over a window of `frames` rows.
-/// Layers are visited in order. Each one computes its rows from the first that may have changed,
-/// and tells the next layer which rows those are.
+/// One run over a window of `frames` rows. Layers are visited in order. Each layer computes its
+/// rows from the first one that may have changed, and returns that row's index to the next layer.
 class WindowRun {
  public:
   WindowRun(const Kernels& kernels, std::size_t frames, Values& scratch)
       : kernels_(kernels), frames_(frames), scratch_(scratch) {}
 
-  /// The rows before `end` of the last layer's result. Earlier layers compute as many more rows as
-  /// later layers need.
+  /// Returns the rows before `end` of the last layer's result. Each earlier layer computes as many
+  /// more rows as the layers after it need.
   Rows list(std::vector<LayerWindow>& layers, Rows in, std::size_t end) {
     std::size_t after = after_all(layers);
     for (LayerWindow& layer : layers) {
@@ -141,9 +139,8 @@ class WindowRun {
   }
 
   /// Computes rows `from` ... `end` - 1 of a linear or conv layer. Frames outside the window are
-  /// zeros.
-  /// The input rows are copied into one array with zeros around them, so the kernel gets the same
-  /// numbers as in Network::run.
+  /// zeros. The input rows are copied into one array with zeros around them, so that the kernel
+  /// gets the same numbers as in Network::run.
   void multiply(LayerWindow& layer, const Rows& in, std::size_t from, std::size_t end) {
     const std::size_t channels = layer.layer->inputs;
     const std::size_t rows = end - from + layer.before + layer.after;
@@ -209,7 +206,7 @@ bool are_bounded(const std::vector<Layer>& layers) {
 
 }  // namespace
 
-/// The window before and after a run: `frames` counts its rows, `layers` hold their results.
+/// The data that are kept between runs: the number of frames, and the results of each layer.
 struct WindowNetwork::State {
   const Network* network = nullptr;
   std::size_t frames = 0;           // of the previous run that are still in the window
@@ -238,12 +235,12 @@ std::span<const float> WindowNetwork::run(std::span<const float> in, std::size_t
                                           std::size_t changed, std::size_t end) {
   const Network& network = *state_->network;
   assert(in.size() == frames * network.inputs() && end > 0 && end <= frames);
-  // Also true for a network without layers, which costs nothing to run.
+  // A network without layers is run here, too; it costs nothing.
   if (state_->layers.empty()) {
     network.run(in, frames, state_->workspace, state_->all);
     return std::span<const float>(state_->all).first(end * network.outputs());
   }
-  // Rows that the previous run did not have are new, whatever the caller says.
+  // Rows beyond the window of the previous run are new, whatever `changed` says.
   changed = std::min(changed, state_->frames);
   state_->frames = frames;
   const FlushToZero flush;

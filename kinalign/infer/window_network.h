@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a network over a moving window of the newest frames. Each run computes only values that
-// depend on new or changed frames, and only as far as results are requested. Frame by frame, a
-// convolution with five taps thus costs a few frames instead of the whole window. Networks whose
-// results depend on all frames (lstm, gru, max_pool, unpool, along_time) run over the whole window
+// Runs a network over a moving window of the newest frames. Each run computes only the values that
+// depend on new or changed frames, and only as far as results are requested. For each new frame, a
+// convolution with five taps thus costs a few frames instead of the whole window. Networks with
+// layers that use many frames (lstm, gru, max_pool, unpool, along_time) run over the whole window
 // each time.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace kinalign {
 /// new frames after it.
 class WindowNetwork {
  public:
-  /// The weights stay in `network`, which must live longer and must not be moved.
+  /// The weights stay in `network`, which must outlive this object and must not be moved.
   explicit WindowNetwork(const Network& network);
   WindowNetwork(WindowNetwork&&) noexcept;
   WindowNetwork& operator=(WindowNetwork&&) noexcept;
@@ -29,14 +29,15 @@ class WindowNetwork {
   /// The first `count` frames have left the window.
   void forget(std::size_t count);
 
-  /// Computes the results [end, outputs] of the window's frames before `end`, which must be at
-  /// least 1. `in` [frames, inputs] is the window. Rows from `changed` on differ from the previous
-  /// run; rows that it did not have are new anyway. If look_back() (shapes.h) is bounded and the
-  /// window reaches as far back, the results equal those of Network::run over all frames since the
-  /// start, bit by bit. Otherwise they equal those of Network::run over the window. The span is
-  /// valid until the next call.
-  /// Frames near the end of the window lack the later ones that a centred convolution reads; zeros
-  /// stand for these. Their results change when more frames arrive.
+  /// Computes the results [end, outputs] of the first `end` frames of the window (`end` >= 1). `in`
+  /// [frames, inputs] is the whole window. The frames before `changed` must be the same as in the
+  /// previous run. Frames that were not in the previous run always count as changed.
+  /// Suppose that before each new frame the window contains look_back() frames (shapes.h), or all
+  /// frames since the start. The results then equal those of Network::run over all frames since the
+  /// start, bit by bit. Otherwise they equal those of Network::run over the window.
+  /// A centred convolution also reads later frames. At the end of the window these are missing, and
+  /// zeros are used instead. The last results therefore change when more frames arrive. The
+  /// returned span is valid until the next call.
   std::span<const float> run(std::span<const float> in, std::size_t frames, std::size_t changed,
                              std::size_t end);
 
