@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-// A standard deviation over fewer frames says nothing about a bone.
+// With fewer frames the standard deviation of a bone's length is not meaningful.
 constexpr std::size_t least_cells = 5;
 
 /// The lengths of a bone, m, in the frames in which both of its ends are valid.
@@ -31,8 +31,8 @@ std::vector<std::optional<double>> median_lengths(std::span<const Sequence> take
                                                   std::span<const Bone> bones) {
   std::vector<std::optional<double>> out(bones.size());
   for (std::size_t b = 0; b < bones.size(); ++b) {
-    // All stretches of a take are one sample: a bone has one length, and more frames make its
-    // median firmer.
+    // The frames of all sequences are taken together: a bone has one length, and a median over more
+    // frames is more exact.
     std::vector<double> all;
     for (const Sequence& sequence : take) {
       const auto lengths = lengths_of(sequence, sequence.truth, bones[b]);
@@ -51,8 +51,8 @@ std::optional<LengthMarks> length_marks(const Sequence& sequence, Prediction pre
   for (std::size_t b = 0; b < bones.size(); ++b) {
     const auto lengths = lengths_of(sequence, prediction, bones[b]);
     if (!given[b] || lengths.size() < least_cells) continue;
-    // The error is a mean over frames, so a bone that is seen often counts more. The constancy
-    // counts each bone once.
+    // The error is a mean over frames, so a bone that is seen often counts more. The constancy is a
+    // mean over bones.
     for (const double length : lengths) error.add(std::abs(length - *given[b]));
     constancy.add(deviation(lengths));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares bone lengths with given lengths (UI-PRMD's protocol: BONE and CONST).
+// Compares bone lengths with given lengths: BONE and CONST of UI-PRMD's protocol (docs/models.md).
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
@@ -13,8 +13,8 @@ namespace kinalign {
 std::vector<std::optional<double>> median_lengths(std::span<const Sequence> take,
                                                   std::span<const Bone> bones);
 
-/// How well a prediction keeps its bones. The error needs known lengths; the constancy only
-/// compares a prediction with itself.
+/// The accuracy of a prediction's bone lengths. `error_m` needs known lengths; `constancy_m` is
+/// computed from the prediction alone.
 struct LengthMarks {
   double error_m = 0.0;      // mean over all frames and bones of |length - given|
   double constancy_m = 0.0;  // mean over bones of the length's standard deviation

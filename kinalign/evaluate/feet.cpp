@@ -10,8 +10,9 @@ namespace kinalign {
 
 namespace {
 
-/// The lowest percentile of a foot's true height, m. The minimum itself would follow a single
-/// outlier. The floor is found per foot, since ankles and toes stand at different heights.
+/// The height that 1 % of a foot's true heights stay below, m. The minimum itself would depend on a
+/// single outlier. The floor is found for each foot, because ankles and toes have different
+/// heights.
 std::optional<double> floor_of(const Sequence& sequence, std::size_t foot) {
   std::vector<double> heights;
   for (std::size_t t = 0; t < sequence.frames(); ++t) {
@@ -51,7 +52,8 @@ double skate(std::span<const double> places, std::size_t i, const Sequence& sequ
   return step.norm() * sequence.rate_hz;
 }
 
-/// The sums of both skates over the same frames, so that they can be compared.
+/// The means of the predicted and the true skate over the same frames, so that they can be
+/// compared.
 struct FootMeans {
   Mean skate, true_skate;
 
@@ -70,8 +72,8 @@ struct FootMeans {
 
 std::optional<FeetMarks> feet_marks(const Sequence& sequence, Prediction prediction,
                                     std::span<const std::size_t> feet,
-                                    // The truth decides where a foot stands; a prediction that
-                                    // lifts the foot can't avoid its marks.
+                                    // The truth decides which frames are contacts, so a prediction
+                                    // that lifts the foot is still measured.
                                     const ContactOptions& options) {
   assert(prediction.size() == sequence.truth.size());
   FootMeans means;

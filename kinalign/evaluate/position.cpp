@@ -30,7 +30,7 @@ void append_fitted(const Sequence& sequence, Prediction prediction,
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& sizes = svd.singularValues();
-  // All on one line: the rotation about that line is undefined.
+  // If all joints are on one line, the rotation about that line is undefined.
   if (!(sizes[1] > 1e-9 * sizes[0])) return;
   // The closest orthogonal matrix may be a reflection. Flipping the weakest axis makes it a
   // rotation.
@@ -58,8 +58,8 @@ std::vector<double> distances(const Sequence& sequence, Prediction prediction) {
 
 std::vector<double> fitted_distances(const Sequence& sequence, Prediction prediction,
                                      std::size_t least_joints) {
-  // With fewer joints a similarity fit has almost as many unknowns (7) as the joints have
-  // coordinates.
+  // With fewer than four joints, a similarity fit has almost as many unknowns (7) as the joints
+  // have coordinates.
   assert(prediction.size() == sequence.truth.size() && least_joints >= 4);
   std::vector<double> out;
   std::vector<std::size_t> cells;

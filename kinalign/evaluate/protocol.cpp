@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-// The protocol's units. The metrics below return metres.
+// The units of UI-PRMD's protocol. The functions called below return metres.
 constexpr double cm = 0.01, mm = 0.001;
 constexpr std::size_t least_fitted_joints = 12;
 
@@ -32,8 +32,8 @@ std::optional<double> mean_cm(const std::vector<double>& distances) {
 
 }  // namespace
 
-/// All rows use these lengths, so that a method can't be right by changing its bones along with the
-/// motion.
+/// All methods are compared with these lengths, so a method gains nothing by changing its bones
+/// during the motion.
 std::vector<std::optional<double>> limb_lengths(std::span<const Sequence> take) {
   return median_lengths(take, bones());
 }
@@ -48,7 +48,7 @@ ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
     out.bone_cm = lengths->error_m / cm;
     out.constancy_cm = lengths->constancy_m / cm;
   }
-  // A frame is the protocol's unit of time; the values are not divided by the step.
+  // The protocol measures time in frames, so the values are not divided by the frame time.
   out.acceleration_mm = acceleration_error(sequence, prediction).value_or(0.0) / mm;
   const Jitter third = jitter(sequence, prediction).value_or(Jitter{});
   out.jitter_mm = third.predicted / mm;
@@ -56,11 +56,11 @@ ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
   return out;
 }
 
-/// JIT divides the mean jitters of all repetitions. A mean of ratios would follow the repetitions
-/// that hardly move.
+/// JIT is the mean predicted jitter divided by the mean true jitter. A mean of the ratios would
+/// depend mostly on repetitions with little motion.
 ProtocolMeans protocol_row(std::span<const ProtocolMarks> repetitions) {
   Mean position, fitted, bone, constancy, acceleration, jitter, true_jitter;
-  // Absent measures are left out of their mean and don't count as 0.
+  // Absent measures are left out of their mean; they don't count as 0.
   const auto add = [](Mean& mean, const std::optional<double>& value) {
     if (value) mean.add(*value);
   };

@@ -17,7 +17,7 @@ struct Sequence {
   std::size_t joints = 0;
   double rate_hz = 0.0;
   std::span<const double> truth;        // [T,J,3] m, y up
-  std::span<const std::uint8_t> valid;  // [T,J] 0: the cell does not count
+  std::span<const std::uint8_t> valid;  // [T,J] 0: the joint does not count in this frame
 
   std::size_t frames() const { return joints == 0 ? 0 : valid.size() / joints; }
   bool has(std::size_t frame, std::size_t joint) const {
@@ -25,7 +25,7 @@ struct Sequence {
   }
 };
 
-/// A method's answer [T,J,3] m for every cell.
+/// The positions that a method predicts for every joint in every frame, [T,J,3] m.
 using Prediction = std::span<const double>;
 
 /// Indices of the two joints of a bone.
@@ -33,8 +33,8 @@ struct Bone {
   std::size_t a = 0, b = 0;
 };
 
-/// A running mean; absent if nothing was added. An absent mark stays visible in a table, whereas a
-/// 0 would look like a perfect one.
+/// A running mean; absent if nothing was added. In a table an absent value is visible, whereas a 0
+/// would look like a perfect result.
 class Mean {
  public:
   void add(double value) {

@@ -29,14 +29,15 @@ Vec3 third_difference(std::span<const double> places, std::size_t i, std::size_t
   return second_difference(places, i + joints, joints) - second_difference(places, i, joints);
 }
 
-/// Speeds as distances between successive frames [T-1,J], m, minus each joint's mean over valid
-/// steps. Without the mean removed, two speeds that are merely positive would correlate.
+/// The distances between successive frames [T-1,J], m, minus the mean of each joint over its valid
+/// steps. With the mean left in, any two motions would correlate, because all distances are
+/// positive.
 struct Speeds {
   std::vector<double> values;
   std::vector<std::uint8_t> valid;
 };
 
-/// The steps are in the order of the cells: step i leads from cell i to the cell one frame later.
+/// Step i leads from cell i (a joint in a frame) to the same joint one frame later.
 Speeds centred_speeds(const Sequence& sequence, std::span<const double> places) {
   const std::size_t joints = sequence.joints;
   Speeds out;
@@ -56,8 +57,8 @@ Speeds centred_speeds(const Sequence& sequence, std::span<const double> places) 
   return out;
 }
 
-/// The correlation of the predicted speeds with the truth's, `lag` cells earlier; 0 if one does not
-/// move.
+/// The correlation of the predicted speeds with the true speeds `lag` cells earlier; 0 if one of
+/// the motions stands still.
 double correlation(const Speeds& predicted, const Speeds& truth, std::ptrdiff_t lag) {
   const auto size = static_cast<std::ptrdiff_t>(truth.values.size());
   double both = 0.0, own = 0.0, true_square = 0.0;
@@ -78,7 +79,7 @@ std::optional<double> acceleration_error(const Sequence& sequence, Prediction pr
   assert(prediction.size() == sequence.truth.size());
   Mean mean;
   for (std::size_t i = 0; i < sequence.valid.size(); ++i) {
-    // Only complete windows count. A padded frame would add a jump that no method made.
+    // Only complete windows count. A padded frame would add a jump that is not in the prediction.
     if (!valid_from(sequence, i, 3)) continue;
     const Vec3 apart = second_difference(prediction, i, sequence.joints) -
                        second_difference(sequence.truth, i, sequence.joints);
@@ -105,7 +106,7 @@ std::optional<double> lag_s(const Sequence& sequence, Prediction prediction,
   const Speeds predicted = centred_speeds(sequence, prediction);
   const Speeds truth = centred_speeds(sequence, sequence.truth);
   const auto most = static_cast<std::ptrdiff_t>(most_frames);
-  // A lag of one frame is `joints` cells, since the speeds of all joints stand in one array.
+  // The speeds of all joints stand in one array, so a lag of one frame is `joints` cells.
   const auto joints = static_cast<std::ptrdiff_t>(sequence.joints);
   std::vector<double> all;
   for (std::ptrdiff_t lag = -most; lag <= most; ++lag) {
@@ -115,7 +116,7 @@ std::optional<double> lag_s(const Sequence& sequence, Prediction prediction,
   for (std::size_t k = 1; k < all.size(); ++k) {
     if (all[k] > all[best]) best = k;
   }
-  // At the end of the range the true maximum may lie outside.
+  // If the best shift is the first or the last one, the true maximum may lie outside the range.
   if (best == 0 || best + 1 == all.size()) return std::nullopt;
   const double bend = all[best - 1] - 2.0 * all[best] + all[best + 1];
   // The top of the parabola through the best correlation and its two neighbours, in frames.

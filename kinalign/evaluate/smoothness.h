@@ -7,12 +7,13 @@
 
 namespace kinalign {
 
-/// Mean of |second difference - the truth's|, m/frame^2; multiply by rate_hz^2 for m/s^2. Values at
-/// different rates must not be compared. Absent if no cell is valid in three successive frames.
+/// The mean distance between the second differences of the prediction and of the truth, m/frame^2;
+/// multiply by rate_hz^2 for m/s^2. Values at different rates must not be compared. Absent if no
+/// joint is valid in three successive frames.
 std::optional<double> acceleration_error(const Sequence& sequence, Prediction prediction);
 
-/// The roughness of both motions over the same frames. Human motion has jitter of its own, so a
-/// prediction is compared with the truth's and not with 0.
+/// The roughness of both motions over the same frames. True motion also has jitter, so the
+/// predicted jitter is compared with the true one and not with 0.
 struct Jitter {
   double predicted = 0.0, truth = 0.0;  // mean |third difference|, m/frame^3
   /// Below 0.7: over-smoothed; above 2: visibly shaky. Absent if the truth does not move.
@@ -28,8 +29,8 @@ std::optional<Jitter> jitter(const Sequence& sequence, Prediction prediction);
 std::optional<double> lag_s(const Sequence& sequence, Prediction prediction,
                             std::size_t most_frames = 15);
 
-/// The standard deviation over time of the joints' distances from the root, divided by the truth's.
-/// Below 1 if a method flattens motion. Absent if the truth does not move.
+/// The standard deviation over time of the joints' distances from the root, divided by that of the
+/// truth. Below 1 if the predicted motion is too small. Absent if the truth does not move.
 std::optional<double> amplitude_ratio(const Sequence& sequence, Prediction prediction,
                                       std::size_t root);
 

@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-// Beyond this number of pairs the normal approximation is used, as the header says.
+// Beyond this number of pairs the normal approximation is used (statistics.h).
 constexpr std::size_t most_exact = 50;
 
 /// The differences that are not 0, sorted by absolute value.
@@ -88,7 +88,7 @@ double quantile(std::vector<double> values, double q) {
   const double place = q * static_cast<double>(values.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(below);
-  // The next larger value is the smallest of those that nth_element left above the place.
+  // The next larger value is the smallest of the values that nth_element put after `at`.
   std::nth_element(values.begin(), at, values.end());
   const double share = place - static_cast<double>(below);
   if (share == 0.0) return *at;

@@ -30,7 +30,7 @@ WilcoxonTest wilcoxon_signed_rank(std::span<const double> differences);
 /// Holm's correction (Scand. J. Stat. 6, 1979) of the p values of several tests; the order is kept.
 std::vector<double> holm(std::span<const double> p);
 
-/// A mean with the interval that contains it at the level of the options.
+/// A mean with its confidence interval. BootstrapOptions::level is the interval's probability.
 struct MeanInterval {
   double mean = 0.0, low = 0.0, high = 0.0;
 };
@@ -39,9 +39,9 @@ struct BootstrapOptions {
   std::size_t draws = 10'000;
   double level = 0.95;
 };
-/// The percentile interval of the mean over people, one value each, drawn with replacement. The
-/// same seed gives the same interval. With fewer than 8 people their values should be printed
-/// instead.
+/// The mean over people (one value each) and its bootstrap percentile interval: people are drawn
+/// with replacement. The same seed gives the same interval. With fewer than 8 people, print their
+/// values instead.
 MeanInterval bootstrap_mean(std::span<const double> people, const BootstrapOptions& options = {});
 
 }  // namespace kinalign

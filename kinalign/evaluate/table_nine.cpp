@@ -9,8 +9,10 @@ namespace kinalign {
 
 namespace {
 
-/// |Y O| / (T + 2) of a window whose first and last frames are repeated once. It is the Frobenius
-/// norm of second differences; the first differences in the corners of O are 0 because of the
+/// E_s of one window: the Frobenius norm of the second differences, divided by T + 2. The first and
+/// the last frame are repeated once. The paper writes
+/// Y O
+/// / (T + 2). The corners of its matrix O give first differences; these are 0 because of the
 /// repetition.
 double roughness(std::span<const double> places, std::size_t joints) {
   const std::size_t width = 3 * joints, frames = places.size() / width;

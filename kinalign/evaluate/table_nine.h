@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three columns of the paper's table 9, literally (definitions from the code of BRA_DGN,
-// because the paper states no units). Use the other metrics to judge methods: E_s does not depend
-// on the truth, and a frozen pose scores 0.
+// The three columns of table 9 of the HFUT-MMD paper (README.md). The paper states no units, so the
+// definitions are those in the code of its method BRA_DGN. Use the other measures of this room to
+// judge methods: E_s does not depend on the truth, and a pose that never moves scores 0.
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
@@ -10,8 +10,7 @@
 
 namespace kinalign {
 
-/// The three columns, in the unit of the positions. They are kept although they judge badly,
-/// because the paper's table has no others.
+/// The three columns, in the unit of the positions. They exist only for comparison with the paper.
 struct TableNine {
   double position = 0.0;  // E_p: mean square of a coordinate's error, unit^2
   double bone = 0.0;      // E_b: mean |length - true length|, unit

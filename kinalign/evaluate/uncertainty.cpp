@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-// Two metres in bins of a millimetre.
+// The bins of one millimetre cover errors up to two metres.
 constexpr std::size_t most_bins = 2000;
 
 }  // namespace
@@ -18,7 +18,7 @@ void RadiusMarks::add(double error_m, double radius_m) {
   sum_m += radius_m;
   const double last = most_bins - 1;
   const auto bin = static_cast<std::size_t>(std::clamp(1000.0 * error_m, 0.0, last));
-  // The histogram grows only as far as the largest error, so that a good method's marks stay small.
+  // The histogram grows only as far as the largest error, so it is short for an accurate method.
   if (errors.size() <= bin) errors.resize(bin + 1);
   ++errors[bin];
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of a stated uncertainty.
+// Compares the uncertainty that a method states with its errors.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,10 @@
 
 namespace kinalign {
 
-/// A radius is stated for each cell and should contain a certain share of all errors. The stated
-/// radii are informative if they are smaller on average than the one common radius that contains as
-/// many errors. Sums of several takes may be added, since all members are counts or sums.
+/// A method states a radius for each joint in each frame (a cell). A certain share of all errors
+/// should be smaller than the radius. The stated radii are informative if their mean is smaller
+/// than the one common radius that contains as many errors. Sums of several takes may be added,
+/// since all members are counts or sums.
 struct RadiusMarks {
   std::size_t cells = 0, within = 0;  // within: the error is at most the stated radius
   double sum_m = 0.0;                 // sum of the stated radii
@@ -23,7 +24,8 @@ struct RadiusMarks {
 
   double covered() const;        // share of errors within the stated radius; 0 without cells
   double mean_radius_m() const;  // 0 without cells
-  /// The smallest radius, in whole millimetres, that contains as large a share. 0 without cells.
+  /// The smallest common radius, in whole millimetres, that contains as many errors as the stated
+  /// radii. 0 without cells.
   double one_radius_m() const;
 };
 
