@@ -11,8 +11,8 @@ namespace kinalign {
 
 namespace {
 
-// A Kinect's left-right line shrinks or flips if a person stands sideways to it.
-// The direction of a shorter line is noise, so it does not change the heading.
+// If a person stands sideways to a Kinect, the line from a left to a right joint becomes short or
+// flips. The direction of a shorter line is noise, so it does not change the heading.
 constexpr double least_width = 0.15;  // m, summed over the left/right pairs
 
 /// The index of the first of `words` that is among `names`.
@@ -50,9 +50,9 @@ void fill_between(JointFrames& body, std::size_t joint, std::size_t before, std:
   }
 }
 
-/// Fills the gaps of one joint; see fill_missing().
-/// One pass over the frames: `last` is the newest frame so far in which the joint was seen. Frames
-/// before the first one get its position, in the causal form too, because there is no earlier one.
+/// Fills the gaps of one joint in one pass over the frames; see fill_missing(). `last` is the
+/// newest frame so far in which the joint was seen. Frames before the first such frame get its
+/// position, also if `causal`, because there is no earlier position.
 void fill_joint(JointFrames& body, std::size_t joint, bool causal) {
   std::optional<std::size_t> last;
   for (std::size_t t = 0; t < body.frames(); ++t) {
@@ -67,7 +67,8 @@ void fill_joint(JointFrames& body, std::size_t joint, bool causal) {
     }
     last = t;
   }
-  // Frames after the last one in which the joint was seen. If causal, the loop has filled them.
+  // Frames after the last one in which the joint was seen. If `causal`, the loop above has filled
+  // them.
   if (!last || causal) return;
   for (std::size_t t = *last + 1; t < body.frames(); ++t) copy_joint(body, *last, t, joint);
 }
@@ -131,8 +132,8 @@ std::vector<BodyFrame> body_frames(const BodyJoints& joints, const JointFrames& 
     for (std::size_t k = 0; k < 3; ++k) last.root[k] = static_cast<float>(root[k]);
     out[t] = last;
   }
-  // Frames before the first known heading get that heading; else a body that enters sideways would
-  // start with an arbitrary one.
+  // Frames before the first known heading get that heading. Otherwise a body that enters sideways
+  // would start with an arbitrary heading.
   for (std::size_t t = 0; first_known && t < *first_known; ++t) {
     out[t].cosine = out[*first_known].cosine;
     out[t].sine = out[*first_known].sine;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Root and heading of a body, found from the input device alone, because no ground truth exists
-// when a model is used. Source: Holden's heading from hips and shoulders, applied to the input.
+// when a model is used. The heading follows Holden: hips and shoulders define it.
 #pragma once
 
 #include "kinalign/models/joint_frames.h"
@@ -24,9 +24,9 @@ struct BodyJoints {
 /// names contain no root or no left/right pair.
 std::optional<BodyJoints> body_joints(const std::vector<std::string>& names);
 
-/// A space that goes along with the body: origin at its root, y up, x to its left.
-/// Networks work in this space, so that they need not learn every place and every direction that a
-/// person can face. The vertical stays the world's.
+/// A space that moves with the body: origin at its root, y up, x to its left. Networks work in this
+/// space, so they need not learn every position and every direction that a person can face. The
+/// vertical stays the world's.
 struct BodyFrame {
   std::array<float, 3> root{};       // m
   float cosine = 1.0F, sine = 0.0F;  // the heading; (cosine, 0, sine) points to the body's left

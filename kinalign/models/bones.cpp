@@ -10,10 +10,11 @@ namespace kinalign {
 
 namespace {
 
-// Both values are chosen by trials, in which this projection improved positions on UI-PRMD and
-// halved the bone error. Setting lengths outward from the root alone made hands and feet worse.
+// Both values were found by trials on UI-PRMD, in which they improved positions and halved the
+// error of bone lengths. Setting lengths only from the root outward made hands and feet worse.
 constexpr int sweeps = 40;
-/// Over-relaxation of a joint's mean move; the sweeps converge sooner.
+/// A joint moves by this multiple of its mean move (over-relaxation), so that fewer sweeps are
+/// needed.
 constexpr float beyond = 1.2F;
 
 /// Joints in an order in which every parent stands before its children.
@@ -44,9 +45,8 @@ class Frame {
       : parents_(parents), lengths_(lengths), joints_(joints), moves_(3 * parents.size()) {}
 
   /// Moves both ends of each bone by half the error of its length. The moves of a joint are
-  /// averaged.
-  /// Corrections are first summed, then applied, so the result does not depend on the order of the
-  /// bones.
+  /// averaged. All moves are first summed and then applied, so the result does not depend on the
+  /// order of the bones.
   void sweep() {
     std::fill(moves_.begin(), moves_.end(), 0.0F);
     std::vector<int>& counts = counts_;
@@ -77,7 +77,7 @@ class Frame {
   /// length 0 points up.
   void set_lengths(const std::vector<std::size_t>& order) {
     // Directions come from the joints before this pass, because each step moves the parent of the
-    // next.
+    // next joint.
     const std::vector<float> before(joints_, joints_ + 3 * parents_.size());
     for (const std::size_t j : order) {
       if (parents_[j] < 0) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives the joints of a method's answer bones of constant length.
+// Moves the joints that a method returns, so that bones have constant lengths.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ std::vector<float> typical_lengths(const std::vector<int>& parents,
                                    std::span<const float> positions);
 
 /// Changes the joints [T,J,3] so that every bone has its length, with small moves. Each frame is
-/// processed alone: sweeps first move both ends of each bone (position-based dynamics); then one
+/// processed alone. First, sweeps move both ends of each bone (position-based dynamics). Then one
 /// pass from the roots outward makes the lengths exact.
 void impose_lengths(const std::vector<int>& parents, const std::vector<float>& lengths,
                     std::span<float> positions);

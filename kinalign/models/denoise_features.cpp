@@ -20,9 +20,9 @@ void move(const std::vector<BodyFrame>& frames, std::span<float> positions, cons
   for (std::size_t i = 0; i < row * frames.size(); i += 3) turn(frames[i / row], &positions[i]);
 }
 
-/// For each output the input joint of the same name, else that of its nearest ancestor; -1: none.
-/// Both lists are compared by Kinect names. A finger that only a suit has thus starts at the wrist
-/// or hand of the input.
+/// For each output the input joint of the same name, else the input joint of its nearest ancestor;
+/// -1: none. Both lists are compared by Kinect names. A finger that only a suit has thus starts at
+/// the wrist or hand of the input.
 std::vector<int> inputs_standing_for(const DenoiseLayout& layout) {
   const auto seen = kinect_names(layout.inputs), answered = kinect_names(layout.outputs);
   std::vector<int> out;

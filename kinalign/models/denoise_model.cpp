@@ -16,9 +16,9 @@ Steadier::Steadier(const Steadying& how, const DenoiseLayout& layout)
       inputs_(mirror_partners(layout.inputs)),
       outputs_(mirror_partners(layout.outputs)) {}
 
-// A mirrored person also moves like a person. The mean of both answers cancels errors that prefer
-// one side (mirror averaging). Smoothing comes before the bones, because smoothing
-// changes their lengths.
+// The mirror image of a person's motion is a possible motion, too. The mean of the results for both
+// cancels errors that prefer one side (mirror averaging). Smoothing comes before the constant
+// bones, because smoothing changes bone lengths.
 Denoised Steadier::steadied(const Answer& answer, const JointFrames& body, Denoised plain) const {
   std::vector<float>& positions = plain.positions;
   if (how_.mirror) {
@@ -38,7 +38,8 @@ Denoised Steadier::steadied(const Answer& answer, const JointFrames& body, Denoi
 }
 
 Result<Denoiser> Denoiser::make(DenoiseModel model) {
-  // A network that states a spread has one more channel for each output joint, after the positions.
+  // A network that also estimates its error (the spread) has one more channel for each output
+  // joint, after the positions.
   const std::size_t answers = model.layout.answers();
   const std::size_t outputs = answers + (model.states_spread ? model.layout.outputs.size() : 0);
   Network network = KA_TRY(Network::make(model.architecture, tensors_below(model.tensors, "net.")));
@@ -48,7 +49,7 @@ Result<Denoiser> Denoiser::make(DenoiseModel model) {
       return std::count_if(layers.begin(), layers.end(),
                            [&](const Layer& layer) { return layer.kind == kind; });
     };
-    // Branches keep the number of frames by themselves (validate() of infer/shapes.h).
+    // Within branches validate() (infer/shapes.h) has already checked this.
     if (count(LayerKind::max_pool) != count(LayerKind::unpool)) {
       return Failure(
           Error{"", 0, "a network with as many frames out as in", "a max_pool without unpool"});
@@ -98,7 +99,8 @@ Denoised Denoiser::answer_of(const DenoiseFeatures& features, std::span<const fl
           model_.answer_mean[c] + scale * answers[t * row + c];
     }
     for (std::size_t j = 0; j < joints && model_.states_spread; ++j) {
-      // The network states the logarithm of centimetres, so that the spread is always positive.
+      // The network outputs the logarithm of the spread in centimetres, so the spread is always
+      // positive.
       const double centimetres = std::exp(static_cast<double>(answers[t * row + width + j]));
       out.spread.push_back(static_cast<float>(centimetres * 0.01 * model_.spread_factor));
     }
@@ -106,7 +108,8 @@ Denoised Denoiser::answer_of(const DenoiseFeatures& features, std::span<const fl
   return out;
 }
 
-// bra-p's second network was trained on motion in the body's frame, so this runs before to_world().
+// The second network of the method bra-p was trained on motion in the body's frame, so it runs
+// before to_world().
 void Denoiser::apply_second(Denoised& answer) {
   if (!second_) return;
   std::vector<float> out;
@@ -126,7 +129,8 @@ Denoised Denoiser::answer(const JointFrames& body) {
   return answer;
 }
 
-// If the steadying mirrors, the network runs twice: for the body and for its mirror image.
+// If the model averages with the mirror image, the network runs twice: for the body and for the
+// image.
 Denoised Denoiser::clean(const JointFrames& body) {
   const auto again = [this](const JointFrames& other) { return answer(other); };
   return steadier_.steadied(again, body, answer(body));

@@ -15,29 +15,29 @@
 
 namespace kinalign {
 
-/// Post-processing of an answer, the same for every method.
+/// Post-processing of the joints that a network or a filter returns, the same for every method.
 struct Steadying {
-  bool mirror = true;                 // average the answers to the body and to its mirror image
-  Smoothing smoothing{.window = 11};  // smoothing of the answer over time
+  bool mirror = true;                 // average the results for the body and for its mirror image
+  Smoothing smoothing{.window = 11};  // smoothing of the result over time
   bool bones = true;                  // give each bone one length over the whole take
 
   bool operator==(const Steadying&) const = default;
 };
 
-/// All that training decides and use must repeat: the layout of joints, the scales, the networks
-/// and the steadying. Denoiser::make() checks that the networks fit the layout.
+/// Everything that training decides and that use must repeat: the layout of joints, the scales, the
+/// networks and the post-processing. Denoiser::make() checks that the networks fit the layout.
 struct DenoiseModel {
   ModelFacts facts;
   DenoiseLayout layout;
   double answer_scale = 0.05;  // metres per unit of the network's output
-  bool states_spread = false;  // the network also outputs the spread of each joint
-  double spread_factor = 1.0;  // calibrates the spread that the network states
+  bool states_spread = false;  // the network also outputs each joint's expected error (spread)
+  double spread_factor = 1.0;  // corrects the spread that the network outputs
   Steadying steadying;
   std::vector<float> input_mean, input_scale;  // [C]
   std::vector<float> answer_mean;              // [3 Jout] m
   Architecture architecture;                   // the first network ("net")
-  std::optional<Architecture> second;     // optional network that refines the first one's answers
-  std::map<std::string, Tensor> tensors;  // names begin with "net." or "second."
+  std::optional<Architecture> second;          // optional network that refines the joints
+  std::map<std::string, Tensor> tensors;       // names begin with "net." or "second."
 };
 
 /// The bytes of a model's file. The same model gives the same bytes.
@@ -50,25 +50,25 @@ Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::strin
 /// deviations per axis.
 inline constexpr double radius_90 = 2.5003;
 
-/// A method's answer.
+/// The joints that a method returns for its input.
 struct Denoised {
   std::vector<float> positions;  // [T,Jout,3] m, in the input's space
-  std::vector<float> spread;     // [T,Jout] m per axis (1 sigma); empty where none is stated
+  std::vector<float> spread;  // [T,Jout] m per axis (1 sigma); empty if the method states no spread
 };
 
-/// A method as a function: from a body to its answer, in the space of the body.
-/// The networks of a model and the filters without learning (filters.h) have this form, so that
-/// comparisons steady all of them alike.
+/// A method as a function: from a body to its cleaned joints, in the same space. The networks of
+/// models and the filters without learning (filters.h) have this form, so that all of them get the
+/// same post-processing in comparisons.
 using Answer = std::function<Denoised(const JointFrames& body)>;
 
-/// Steadies answers, the same way for every method: the mean of the answers to a body and to its
-/// mirror image, smoothed, with bones of constant length.
+/// Post-processes the joints of any method: averages the results for a body and for its mirror
+/// image, smooths them, and gives bones constant lengths.
 class Steadier {
  public:
   Steadier(const Steadying& how, const DenoiseLayout& layout);
 
-  /// Returns `plain`, the answer to `body`, with steadied positions. `answer` is called again for
-  /// the mirror image. The spread is not changed.
+  /// Returns `plain`, the result for `body`, with post-processed positions. `answer` is called
+  /// again for the mirror image. The spread is not changed.
   Denoised steadied(const Answer& answer, const JointFrames& body, Denoised plain) const;
 
  private:
@@ -85,9 +85,10 @@ class Denoiser {
 
   const DenoiseModel& model() const { return model_; }
 
-  /// `body`: frames of the layout's input joints at the layout's rate. Returns the steadied answer.
+  /// `body`: frames of the layout's input joints at the layout's rate. Returns post-processed
+  /// joints.
   Denoised clean(const JointFrames& body);
-  /// The network's answer without the steadying, for comparisons.
+  /// The network's joints without post-processing, for comparisons.
   Denoised answer(const JointFrames& body);
 
   const Network& network() const { return network_; }
@@ -97,8 +98,8 @@ class Denoiser {
   /// body's frames (to_world() brings them to the world). apply_second() comes next.
   Denoised answer_of(const DenoiseFeatures& features, std::span<const float> answers,
                      std::size_t first, std::size_t end) const;
-  /// Replaces the joints, in the body's frames, by what the second network makes of them, if the
-  /// model has one.
+  /// Replaces the joints, in the body's frames, by the output of the second network. Without a
+  /// second network nothing changes.
   void apply_second(Denoised& answer);
 
  private:

@@ -117,7 +117,7 @@ std::string misfit(const DenoiseLayout& layout) {
   return is_sound(layout.smoothing) ? "" : "smoothing";
 }
 
-/// The same for the whole model.
+/// Names the first part of the model that is not valid; empty if all are valid.
 std::string misfit(const DenoiseModel& model) {
   const DenoiseLayout& layout = model.layout;
   std::string fault = misfit(layout);

@@ -17,7 +17,8 @@ namespace {
 constexpr double most_frames = 1e7;
 // Limits for input that a model can't use, or that its user should know of. docs/denoise.md lists
 // the usual causes: millimetres, or another axis that points up.
-/// M, of the head below the root; a person lying down has both at one height.
+/// If the head is lower than the root by more than this, m, the y axis does not point up. Head and
+/// root of a person who lies down are at about the same height.
 constexpr float least_below = 0.2F;
 constexpr float most_reach = 1.6F;                   // m, from the root to a joint
 constexpr double most_speed = 8.0;                   // m/s, of the root
@@ -48,7 +49,7 @@ Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
       return Failure(Error{"", 0, "rising stamps", "frame " + std::to_string(i) + " is earlier"});
     }
   }
-  // Pauses and dropped frames hardly change the median, so these alone don't refuse a recording.
+  // Pauses and dropped frames hardly change the median, so they alone do not make the check fail.
   const double step = usual_step(stamps);
   if (step * rate_hz > 2.0 || step * rate_hz < 0.25) {
     return Failure(Error{"", 0, "about " + text_of(rate_hz, "frames a second"),
@@ -80,7 +81,7 @@ Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std:
 }
 
 /// The median height of the body, m, over frames in which more than half of the joints are seen.
-/// The median keeps single frames with joints far off from refusing a whole recording.
+/// With a median, single frames with far joints do not make a whole recording invalid.
 double body_size(const JointFrames& body) {
   std::vector<double> sizes;
   for (std::size_t t = 0; t < body.frames(); ++t) {
@@ -98,7 +99,7 @@ double body_size(const JointFrames& body) {
   return sizes.empty() ? 0.0 : upper_median(std::move(sizes));
 }
 
-/// The head and the root of a body, where the model has both.
+/// The indices of the head and the root of a body, if the model has both.
 struct Upright {
   std::size_t head = 0, root = 0;
 };
@@ -168,8 +169,8 @@ void put_joint(const PointFrames& points, const Between& where, std::size_t at, 
   const std::size_t a = where.before * names + where.joint, b = a + names;
   const double share = where.share;
   auto seen = std::min(points.state[a], points.state[b]);
-  // At the time of a sample only that sample's state counts. Else a joint would also be missing in
-  // the frame before or after a missing one.
+  // At the time of a sample only that sample's state counts. Otherwise a joint would also be
+  // missing in the frames before and after a frame in which it is missing.
   if (share < 1e-6) seen = points.state[a];
   if (share > 1 - 1e-6) seen = points.state[b];
   body.seen[at] = static_cast<std::uint8_t>(seen);
@@ -183,13 +184,13 @@ void put_joint(const PointFrames& points, const Between& where, std::size_t at, 
 }  // namespace
 
 EvenSpan span_of(Time first, Time last, double rate_hz) {
-  // The extra half step: stamps of 33.3 ms with jitter still give a row for each frame.
+  // With the extra half step, stamps of 33.3 ms with jitter still give a frame for each sample.
   const double steps = static_cast<double>(to_ns(last) - to_ns(first)) * 1e-9 * rate_hz + 0.5;
   return {first, static_cast<std::size_t>(std::clamp(steps, 0.0, most_frames)) + 1};
 }
 
-// One pass: `before` only moves forward, because the grid's times rise. Times up to half a step
-// beyond both ends use the first or the last sample, to match span_of().
+// Everything is done in one pass: `before` only moves forward, because the grid's times rise. Times
+// up to half a step beyond both ends use the first or the last sample, as in span_of().
 JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places,
                            const PointFrames& points, const EvenGrid& grid) {
   const auto at_s = [&](std::size_t i) {

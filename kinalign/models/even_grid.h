@@ -40,8 +40,8 @@ struct EvenFrames {
                                    // than a person can be
 };
 
-/// Resamples the joints `places` [J] of `points` to the frames of grid.span, with the rules of
-/// even_frames(). An absent place gives a joint that is missing in every frame. Needs at least two
+/// Resamples the joints `places` [J] of `points` to the frames of grid.span, by the rules of
+/// even_frames(). If a place is absent, that joint is missing in every frame. Needs at least two
 /// samples; the input is not checked.
 JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places,
                            const PointFrames& points, const EvenGrid& grid);

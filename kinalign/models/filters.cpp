@@ -25,7 +25,7 @@ float* place(JointFrames& body, std::size_t frame, std::size_t joint) {
   return &body.positions[(frame * body.joints + joint) * 3];
 }
 
-/// The weight of a new value in a first-order low-pass with that cut-off.
+/// The weight of a new value in a first-order low-pass with this cut-off frequency.
 double share_of(double cut_hz, double rate_hz) {
   const double r = 2.0 * std::numbers::pi * cut_hz / rate_hz;
   return r / (r + 1.0);
@@ -49,8 +49,8 @@ class AxisSmoother {
     noise_ *= how.jerk;
   }
 
-  /// The first spread (variances in m^2, m^2/s^2 and m^2/s^4) leaves speed and acceleration open,
-  /// so that the first measurements decide them.
+  /// At the start the variances (m^2, m^2/s^2 and m^2/s^4) of speed and acceleration are large, so
+  /// that the first measurements decide both.
   void begin(double value) {
     steps_.clear();
     state_ = {value, 0.0, 0.0};
@@ -111,8 +111,8 @@ class AxisSmoother {
 void hold(JointFrames& body, double rate_hz) {
   const auto trusted = static_cast<std::size_t>(trusted_inferred_s * rate_hz);
   for (std::size_t j = 0; j < body.joints; ++j) {
-    // A Kinect's guess is used for a moment only; a longer run of inferred frames counts as
-    // missing.
+    // An inferred joint is a guess of the Kinect and is used only for a short time. In a longer run
+    // of inferred frames the joint counts as missing.
     std::size_t inferred = 0;
     for (std::size_t t = 0; t < body.frames(); ++t) {
       std::uint8_t& seen = body.seen[t * body.joints + j];
@@ -123,7 +123,8 @@ void hold(JointFrames& body, double rate_hz) {
   fill_missing(body, true);
 }
 
-// The paper's formulas. The derivative uses the previous filtered position, as there.
+// The formulas are those of Casiez et al. (filters.h). The derivative uses the previous filtered
+// position, as in theirs.
 void one_euro(const OneEuro& how, JointFrames& body, double rate_hz) {
   fill_missing(body, true);
   const double slow = share_of(how.derivative_hz, rate_hz);

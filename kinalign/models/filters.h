@@ -11,15 +11,15 @@ namespace kinalign {
 /// 0.2 s counts as missing from then on. Causal.
 void hold(JointFrames& body, double rate_hz);
 
-/// Values chosen by trials on UI-PRMD. `least_hz` sets how calm a still joint is; `slope` lets
-/// the filter follow a fast one.
+/// The values were found by trials on UI-PRMD. A lower `least_hz` makes a still joint calmer; a
+/// higher `slope` lets the filter follow fast motion.
 struct OneEuro {
   double least_hz = 1.2;       // cut-off frequency at rest
   double slope = 3.0;          // Hz added to the cut-off for each m/s
   double derivative_hz = 1.0;  // cut-off frequency of the speed's low-pass
 };
-/// One Euro filter (Casiez, Roussel, Vogel, CHI 2012). All three axes share the cut-off that the
-/// joint's speed in space gives. Causal.
+/// One Euro filter (Casiez, Roussel, Vogel, CHI 2012). The joint's speed in space decides one
+/// cut-off frequency for all three axes. Causal.
 void one_euro(const OneEuro& how, JointFrames& body, double rate_hz);
 
 struct Kalman {

@@ -40,8 +40,7 @@ constexpr std::array<Word, 20> prmd_words{{{"Waist", "SpineBase"},
                                            {"ToesRight", "FootRight"}}};
 
 /// The names of usual mocap suits. "Neck1" becomes "NeckTop", and UI-PRMD's "Neck" becomes
-/// "NeckBase": a Kinect has no such joints, and its names stay free for the joints at its own
-/// places.
+/// "NeckBase". A Kinect has no joints at these places, so none of its names fits.
 constexpr std::array<Word, 22> mocap_words{{{"Hips", "SpineBase"},
                                             {"Spine1", "SpineMid"},
                                             {"Spine3", "SpineShoulder"},

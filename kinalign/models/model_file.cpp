@@ -43,7 +43,7 @@ Result<ModelHeader> read_model_header(const TensorFile& file, const std::string&
   const auto text = file.metadata.find(header_key);
   ModelHeader header;
   if (text != file.metadata.end()) {
-    // Only checks; its result loses the order of members.
+    // This call only checks the text, because its result does not keep the order of the members.
     KA_TRY(parse_strict_json(text->second, name));
     header = ModelHeader::parse(text->second, nullptr, false);
   }

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// Joints; a stream with fewer Kinect joints is not a Kinect's.
+/// A stream with fewer joints that a Kinect has does not come from a Kinect.
 constexpr std::size_t least_known = 10;
 
 /// The joint names of a stream. Fails if there is no such stream or it has no names; the message

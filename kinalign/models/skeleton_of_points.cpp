@@ -38,10 +38,9 @@ std::optional<Vec3> known_direction(const std::string& joint) {
   return std::nullopt;
 }
 
-/// The tree from its root outward, and the clip's joint that turns each bone.
-/// A joint of a skeleton has one rotation, but each of its children needs a direction of its own. A
-/// point with several children therefore gets one extra joint for each child, which turns that
-/// child's bone.
+/// The tree from its root outward, and the clip's joint that turns each bone. A joint of a skeleton
+/// has one rotation, but each of its bones needs its own direction. A point with several children
+/// therefore gets one extra joint for each child, which turns the bone to that child.
 struct Plan {
   std::vector<std::size_t> order;                  // indices of the points, root first
   std::vector<std::vector<std::size_t>> children;  // children of each point
@@ -88,14 +87,14 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
   return plan;
 }
 
-/// The rest direction to each joint from its parent. A joint without a known direction takes that
-/// of a known joint below it (a clavicle), else its parent's (a finger).
+/// The rest direction to each joint from its parent. If the direction is not known, that of a known
+/// joint below is used (for a clavicle), else that of the parent (for a finger).
 std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
   const auto names = kinect_names(body.names);
   std::vector<std::optional<Vec3>> ways;
   ways.reserve(names.size());
   for (const std::string& name : names) ways.push_back(known_direction(name));
-  // Children before parents: a joint without a direction gets one from the joint below it.
+  // Children come before parents here: a joint without a direction gets that of the joint below it.
   for (std::size_t i = plan.order.size(); i-- > 1;) {
     const auto p = static_cast<std::size_t>(body.parents[plan.order[i]]);
     if (!ways[p]) ways[p] = ways[plan.order[i]];
@@ -150,7 +149,7 @@ class Poser {
     }
   }
 
-  /// Adds one frame: finds all global rotations and stores them against their parents.
+  /// Adds one frame: finds all global rotations and stores them relative to their parents.
   void append(const float* frame, Time stamp) {
     const Skeleton& skeleton = clip_.skeleton;
     const std::size_t joints = skeleton.joints(), t = clip_.frames.size();
@@ -176,7 +175,8 @@ class Poser {
 
   Vec3 direction(const float* frame, std::size_t from, std::size_t to) const {
     const Vec3 way = at(frame, to) - at(frame, from);
-    // Two joints at one place have no direction; the rest direction keeps the rotation finite.
+    // Two joints at one place have no direction. The rest direction is used, so the rotation stays
+    // finite.
     const double length = way.norm();
     return length > 1e-9 ? Vec3(way / length) : rest_[to];
   }

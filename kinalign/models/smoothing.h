@@ -8,8 +8,9 @@
 
 namespace kinalign {
 
-/// Weights [window] of a window's values. Their sum is the value at `at` (0 ... window - 1, may be
-/// fractional) of the polynomial of that order that fits the window best.
+/// Weights [window] of a window's values. The weighted sum is the value of a polynomial at the
+/// place `at` (0 ... window - 1, may be fractional). The polynomial has that order and fits the
+/// window best.
 std::vector<double> polynomial_weights(std::size_t window, std::size_t order, double at);
 
 struct Smoothing {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a file of windows (schema kinalign.windows/1, docs/windows.md) and joins the windows to the
-// whole stretches of each take. Reads NPZ with stored (uncompressed) members, as kinalign and
-// numpy.savez write it. It does not need libarchive, so that `learn` also builds on a GPU
-// machine.
+// Reads a file of windows (schema kinalign.windows/1, docs/windows.md) and joins windows that
+// overlap to whole stretches of each take. Reads NPZ with stored (uncompressed) members, as
+// kinalign and numpy.savez write it. It does not need libarchive, so that `learn` can also be built
+// on a GPU machine without that library.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -21,8 +21,8 @@ struct StretchStream {
   std::map<std::string, std::vector<float>> arrays;  // "positions" [T,C], "valid", "state", ...
 };
 
-/// Rows of one take between two gaps.
-/// Networks must not learn across a gap, so each stretch is a sequence of its own.
+/// Rows of one take between two gaps. Networks must not learn across a gap, so each stretch is a
+/// separate sequence.
 struct Stretch {
   std::size_t take = 0;  // index in the manifest's list of takes
   std::size_t part = 0;  // index in the manifest's list of parts

@@ -21,7 +21,7 @@ struct FilteredBone {
 };
 
 /// Parents come before their children. The Kinect shows no direction for some bones of the trunk;
-/// those keep their rotation against the bone below.
+/// these keep their rotation relative to their parent.
 constexpr std::array<FilteredBone, 15> filtered_bones{{
     {"lowerback", "", ""},
     {"upperback", "lowerback", ""},
@@ -73,9 +73,8 @@ JointFrames smoothed_kinect(const FuseInput& input, const Smoothing& smoothing) 
 }
 
 /// Filters one frame after another. A bone that no device measures keeps its last rotation against
-/// its parent.
-/// `world_` holds the rotations of the current frame; `held_` those against the parent, of the last
-/// frame. `layout` and `options` must live longer.
+/// `world_` has the rotations of the current frame; `held_` has the rotations relative to the
+/// parent in the last frame. `layout` and `options` must outlive this object.
 class BoneFilter {
  public:
   BoneFilter(const FuseLayout& layout, const PoseBody& body, const BoneFilterOptions& options)
@@ -87,8 +86,8 @@ class BoneFilter {
         held_(body.bones.size(), Turn::Identity()),
         world_(body.bones.size() + 1, Turn::Identity()) {}
 
-  /// Turns root and bones in the world for frame t, and appends the pose. The root's node has
-  /// precedence over the Kinect.
+  /// Estimates the rotations of root and bones in the world for frame t, and appends the pose. If
+  /// the root's node is valid, it is used for the root and not the Kinect.
   void step(const FuseInput& input, const JointFrames& kinect, std::size_t t, FusedPose& out) {
     Turn& root = world_.back();
     if (const auto node = orientation_at(input.nodes, t, layout_.nodes.leaves())) {
@@ -110,7 +109,7 @@ class BoneFilter {
     const auto across = direction_at(kinect, t, *hips_), up = direction_at(kinect, t, *spine_);
     if (!across || !up) return;
     const Eigen::Vector3f x = across->direction;
-    // The hips' line is kept as it is, and the spine's is made perpendicular to it.
+    // The line across the hips is kept as it is. The line of the spine is made perpendicular to it.
     const Eigen::Vector3f y = (up->direction - x.dot(up->direction) * x).normalized();
     root.col(0) = x;
     root.col(1) = y;
@@ -129,8 +128,8 @@ class BoneFilter {
     if (node) {
       own = node->toRotationMatrix();
     } else {
-      // Starts from the rest rotation in each frame: a chain of shortest-way turns would add a
-      // twist.
+      // Each frame starts from the rest rotation. Shortest-way rotations added frame after frame
+      // would accumulate a twist.
       own = seen ? above : turned_back_to_rotation(above * held_[part.bone]);
     }
     if (seen) turn_along(part.seen->axis, *seen, node.has_value(), own);
@@ -157,7 +156,7 @@ class BoneFilter {
   const BoneFilterOptions& options_;
   std::vector<Part> parts_;
   std::optional<SeenBone> hips_, spine_;
-  std::vector<Turn> held_;   // rotations against the parent bone, in the last frame
+  std::vector<Turn> held_;   // rotations relative to the parent bone, in the last frame
   std::vector<Turn> world_;  // rotations in the world; the last element is the root
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fuses Kinect and nodes without learning: each bone's rotation is estimated from the devices that
-// measure it. A node measures a whole rotation. A direction that the Kinect sees turns that
-// rotation along the shortest way, weighted by both spreads, unless the difference exceeds the
-// gate. A bone without a node starts from its parent's rotation and follows the Kinect's direction.
-// A bone that no device measures keeps its last rotation against its parent. docs/fuse.md calls
-// this form «filter».
+// measure it. A node measures a whole rotation. The direction of the bone in the Kinect then turns
+// that rotation along the shortest way, weighted by the uncertainty of both. If the two differ by
+// more than the option `gate`, the direction is ignored. A bone without a node starts from its
+// parent's rotation and follows the Kinect's direction. A bone that no device measures keeps its
+// last rotation relative to its parent. docs/fuse.md calls this method «filter».
 #pragma once
 
 #include "kinalign/models/fuse/node_headings.h"
@@ -16,7 +16,7 @@ namespace kinalign {
 
 /// A person's pose in the world.
 struct FusedPose {
-  std::vector<Turn> rotations;           // [T,B] against the root
+  std::vector<Turn> rotations;           // [T,B] relative to the root
   std::vector<Eigen::Quaternionf> root;  // [T] orientation in the world
   std::vector<Eigen::Vector3f> place;    // [T] m, position of the root in the world
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input channels of a network that fuses a Kinect and inertial nodes, the same in training and at
+// Input channels of a network that fuses a Kinect and inertial nodes, the same in training and in
 // use. Both devices share one grid and one world; each may be absent. All channels are in one space
 // that moves with the body: the orientation of the root's node if it is valid, else the heading of
 // the hips and shoulders that the Kinect sees.
@@ -60,16 +60,15 @@ std::vector<std::string> fuse_joint_names();
 /// needs: SpineBase, hips, shoulders.
 Result<void> validate(const FuseLayout& layout);
 
-/// The space of one frame, and its origin.
-/// The network's answers for a frame are in this space. So it is kept beside the channels until the
-/// answers are turned back into the world.
+/// The space of one frame, and its origin. The network's output for a frame is in this space. Each
+/// space is therefore stored until the output is transformed back into the world.
 struct FuseSpace {
   Eigen::Quaternionf turn = Eigen::Quaternionf::Identity();  // the space's rotation in the world
   Eigen::Vector3f place = Eigen::Vector3f::Zero();  // m, the Kinect's SpineBase in the world
 };
 
 /// Makes the channels frame after frame. If neither device shows the heading or the position, the
-/// last one is kept.
+/// last known heading or position is kept.
 class FuseFeatureMaker {
  public:
   explicit FuseFeatureMaker(const FuseLayout& layout);

@@ -14,7 +14,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t smoothed_kinect_frames = 11;
-constexpr std::size_t least_tracked_joints = 8;  // of 21, that tell where a body stands
+constexpr std::size_t least_tracked_joints = 8;  // of 21; needed to find a position
 
 /// True if the Kinect sees at least one joint in any frame.
 bool is_placed(const FuseInput& input) {
@@ -24,8 +24,8 @@ bool is_placed(const FuseInput& input) {
 
 }  // namespace
 
-// The network gives the rotations of root and bones in the space of the frame. Bones are then
-// expressed against the root, as PoseBody needs them.
+// The network outputs the rotations of root and bones in the space of the frame. The bones are then
+// expressed relative to the root, as PoseBody needs them.
 FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
                        std::span<Turn> rotations) {
   const Turn root = turn_of_answer(&answers[6 * rotations.size()]);
@@ -80,7 +80,7 @@ FusedPose Fuser::answer(const FuseInput& input) {
   return pose_of({features.space, answers, 0, input.frames()});
 }
 
-// The nodes are hidden from the network here, because their headings are not known yet.
+// The network gets only the Kinect's data here, because the nodes' headings are not known yet.
 std::vector<HeadingState> Fuser::headings(const FuseInput& given) {
   FuseInput input = given;
   unexchange(model_.layout, input);
@@ -107,7 +107,7 @@ FusedPose Fuser::measured_pose_of(const FuseAnswers& output, const FuseInput& in
   turn_to_measured(input, output.first, out);
   place_at_seen(input, output.first, out);
   if (!model_.smoothing) return out;
-  // Rotations are smoothed over five frames, places over nine (Smoothing{}).
+  // Rotations are smoothed over five frames, positions over nine (Smoothing{}).
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
   std::vector<Turn> roots;
   for (const Eigen::Quaternionf& root : out.root) roots.emplace_back(root.toRotationMatrix());
@@ -124,9 +124,9 @@ FusedPose Fuser::measured_pose_of(const FuseAnswers& output, const FuseInput& in
   return out;
 }
 
-/// Moves the body of each frame by the median of the ways from its joints to those that the Kinect
-/// tracks. A network places the root as it has learnt it from other skeletons, whose hips lie
-/// elsewhere. A frame with few tracked joints keeps the network's place.
+/// Moves the body of each frame onto the joints that the Kinect tracks, by the median of the
+/// joints' differences. The network has learnt the root's position from other skeletons, whose hips
+/// lie elsewhere. A frame with few tracked joints keeps the network's position.
 void Fuser::place_at_seen(const FuseInput& input, std::size_t first, FusedPose& pose) const {
   const std::size_t joints = model_.body.skeleton.joints();
   const auto about_root =

@@ -15,7 +15,8 @@
 
 namespace kinalign {
 
-/// Metres per unit of the network's output for the root's position against the Kinect's SpineBase.
+/// Metres per unit of the network's output for the root's position relative to the Kinect's
+/// SpineBase.
 inline constexpr float fuse_place_unit_m = 0.1F;
 
 /// BodyModel holds the network and the body; the layout adds the channels of both devices.
@@ -34,7 +35,7 @@ struct FusedFrame {
   Eigen::Quaternionf root = Eigen::Quaternionf::Identity();
   Eigen::Vector3f place = Eigen::Vector3f::Zero();
 };
-/// Converts one frame of a network's output [answers]. Fills `rotations` [B], each against the
+/// Converts one frame of a network's output [answers]. Fills `rotations` [B], each relative to the
 /// root.
 FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
                        std::span<Turn> rotations);

@@ -24,7 +24,7 @@ constexpr std::array<KinectBone, 7> kinect_bones{{{"SpineBase", "SpineShoulder",
                                                   {"HipRight", "KneeRight", 0.371},
                                                   {"KneeLeft", "AnkleLeft", 0.382},
                                                   {"KneeRight", "AnkleRight", 0.382}}};
-/// M, mean length of thigh plus shank of UI-PRMD's people by Vicon.
+/// Mean length of thigh plus shank of UI-PRMD's people, measured by Vicon, m.
 constexpr double legs_of_them = 0.837;
 constexpr std::size_t least_size_frames = 30;
 constexpr std::uint8_t is_tracked = 2;
@@ -60,8 +60,8 @@ std::optional<double> legs_by_kinect(const std::vector<std::string>& joints,
     measured += *seen;
     compared += bone.length;
   }
-  // One factor for the whole body: the sum of the measured bones divided by that of the same bones
-  // of UI-PRMD's people. Bones that were not seen count on neither side.
+  // One factor for the whole body: the sum of the measured bones, divided by the sum of the same
+  // bones of UI-PRMD's people. Bones that the Kinect did not track are in neither sum.
   if (compared < 0.5 * all) return std::nullopt;
   return legs_of_them * measured / compared;
 }

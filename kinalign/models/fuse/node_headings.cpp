@@ -179,7 +179,7 @@ class HeadingSmoother {
     }
     std::vector<HeadingState> out(frames * nodes);
     for (std::size_t n = 0; n < nodes; ++n) {
-      // Backwards per node, because the filters of two nodes do not depend on each other.
+      // Each node is smoothed alone, because the filters of two nodes do not depend on each other.
       HeadingFilter::Filter later;
       for (std::size_t t = frames; t-- > 0;) {
         HeadingFilter::Filter& now = after[t * nodes + n];
@@ -243,7 +243,7 @@ std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& 
                    heading_of(root->cast<double>()));
   }
   if (static_cast<double>(yaws.size()) < layout.nodes.rate_hz) return std::nullopt;
-  // Angles relative to their mean, so that the median does not depend on where they wrap.
+  // Angles are taken relative to their mean, so that the median does not depend on where they wrap.
   double sine = 0.0, cosine = 0.0;
   for (const double yaw : yaws) {
     sine += std::sin(yaw);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Estimates the heading error of each node from a Kinect that sees the bone which carries the node.
 // A node knows the vertical; its heading is unknown at first and drifts. If a bone is not vertical,
-// its direction in the Kinect shows the heading error. That direction comes from the Kinect's
-// joints alone, or from the joints and a model's pose for them. The pose helps because a Kinect
-// puts an elbow 5 cm off, which is 10 degrees of a forearm, and the model corrects a part of that.
+// its direction in the Kinect's data shows the heading error. That direction comes from the
+// Kinect's joints alone, or from these joints and the pose that a model estimates from them. The
+// pose helps: a Kinect puts an elbow 5 cm off, which turns a forearm by 10 degrees, and the model
+// corrects a part of that.
 //
 // Each node has an extended Kalman filter of four numbers: the heading error and the rotation of
 // the node on its bone. A measurement is the bone's direction. Whole sequences are then smoothed
@@ -40,8 +41,8 @@ struct CarriedBone {
 std::vector<CarriedBone> carried_bones(const FuseLayout& layout, const PoseBody& body);
 
 /// Turns each bone whose node is valid in frame `t` three quarters of the way to the node's
-/// rotation. `nodes`: with corrected headings. `root`: in the world. `rotations` [B]: against the
-/// root.
+/// rotation. `nodes`: with corrected headings. `root`: in the world. `rotations` [B]: relative to
+/// the root.
 void turn_to_nodes(std::span<const CarriedBone> carried, const NodeFrames& nodes, std::size_t t,
                    const Eigen::Quaternionf& root, std::span<Turn> rotations);
 
@@ -94,9 +95,9 @@ using NodeDirections = std::vector<std::optional<SeenDirection>>;
 
 /// Directions from the Kinect's joints alone.
 NodeDirections directions_of_joints(const HeadingFilter& filter, const JointFrames& kinect);
-/// The mean of the direction between the Kinect's joints and the direction in a pose, where the
-/// Kinect sees the bone. Their errors differ, and each one alone is worse (docs/models_nodes.md).
-/// `rotations` [T,B]: against the root. `root` [T]: in the world.
+/// The mean of two directions, if the Kinect sees the bone: the one between the Kinect's joints,
+/// and the one in a pose. Their errors differ, and each direction alone is worse
+/// (docs/models_nodes.md). `rotations` [T,B]: relative to the root. `root` [T]: in the world.
 NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames& kinect,
                                   std::span<const Turn> rotations,
                                   std::span<const Eigen::Quaternionf> root);
@@ -107,8 +108,8 @@ std::vector<HeadingState> node_headings(HeadingFilter filter, const NodeFrames& 
 
 /// The rotation about the vertical, rad, from the world of all nodes to the Kinect's world: the
 /// median difference between the heading of hips and shoulders and that of the root's node. Empty
-/// if both are seen together for less than a second. It starts a filter near the truth; single
-/// nodes may still differ.
+/// if both are seen together for less than a second. The filters start from this value, although
+/// the headings of single nodes may differ from it.
 std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& input);
 /// Rotates the world of all nodes about the vertical by `yaw`, rad.
 void turn_world(NodeFrames& nodes, double yaw);

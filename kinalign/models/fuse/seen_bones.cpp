@@ -29,9 +29,9 @@ constexpr std::array<SeenWay, 11> seen_ways{{{"lowerback", "root", "lowerneck"},
                                              {"ltibia", "ltibia", "lfoot"},
                                              {"rfemur", "rfemur", "rtibia"},
                                              {"rtibia", "rtibia", "rfoot"}}};
-// the largest share of an angle, for small angles
+// A bone is turned by this share of the angle to the seen direction, if the angle is small.
 constexpr float seen_share = 0.5F;
-// rad; at this angle the share is halved
+// Rad; at this angle the share is halved.
 constexpr float far_turn = 0.25F * std::numbers::pi_v<float>;
 
 constexpr float least_length_m = 0.03F;
@@ -93,7 +93,7 @@ void turn_to_seen(std::span<const SeenBone> bones, const JointFrames& kinect, st
                   const Eigen::Quaternionf& root, std::span<Turn> rotations) {
   for (const SeenBone& bone : bones) {
     const auto seen = direction_at(kinect, t, bone);
-    // An inferred joint is the Kinect's own guess, so it does not overrule the network.
+    // An inferred joint is the Kinect's own guess, so it does not change the network's rotation.
     if (!seen || !seen->tracked) continue;
     Turn& own = rotations[bone.bone];
     const Eigen::AngleAxisf way(

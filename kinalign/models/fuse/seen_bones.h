@@ -12,8 +12,8 @@
 
 namespace kinalign {
 
-/// A bone that a Kinect shows, between two of its joints.
-/// If the bone's rotation in the world is R, the Kinect should see it along R `axis`.
+/// A bone that a Kinect shows, between two of its joints. If the bone's rotation in the world is R,
+/// the expected direction from the first joint to the second is R `axis`.
 struct SeenBone {
   std::size_t from = 0, to = 0;            // indices into the Kinect's joints
   Eigen::Vector3f axis{0.0F, 1.0F, 0.0F};  // unit, in the bone's own space
@@ -46,7 +46,7 @@ std::optional<SeenDirection> direction_at(const JointFrames& kinect, std::size_t
 /// Turns each bone whose two joints are tracked in frame `t` towards the Kinect's direction, along
 /// the shortest way. The share of the angle is one half, and less for large angles (a quarter at 45
 /// degrees). A network answers an unknown movement with a similar one that it has learnt; the seen
-/// joints correct the difference. `root`: in the world. `rotations` [B]: against the root.
+/// joints correct the difference. `root`: in the world. `rotations` [B]: relative to the root.
 void turn_to_seen(std::span<const SeenBone> bones, const JointFrames& kinect, std::size_t t,
                   const Eigen::Quaternionf& root, std::span<Turn> rotations);
 

@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t remembered_frames = 60;  // kept if the network uses the whole sequence
+constexpr std::size_t remembered_frames = 60;  // frames kept if the network uses the whole sequence
 /// Extra frames, to fill joints that are missing at the start of the window.
 constexpr std::size_t filled_frames = 15;
 
@@ -24,8 +24,8 @@ std::size_t smoothed_frames(const DenoiseModel& model) {
 }
 
 /// The first row at which the network must run again; `rows` and `before` begin with the same
-/// frames. Only changes after the last equal row count. Rows at the start of the window also change
-/// when the window moves, but their earlier values were computed with more frames and are better.
+/// frame. Only rows after the last unchanged row count as changed. Rows at the start of the window
+/// also change when the window moves, but their earlier results used more frames and are better.
 std::size_t first_changed(std::span<const float> rows, std::span<const float> before,
                           std::size_t channels) {
   std::size_t row = std::min(rows.size(), before.size()) / channels;
@@ -67,7 +67,7 @@ std::optional<std::vector<float>> LiveCleaner::finish() {
   return joints_at(next_);
 }
 
-/// The network's joints of rows `first` ... `end` - 1 [.., Jout, 3], in the body's frames.
+/// The network's joints [.., Jout, 3] in rows `first` ... `end` - 1, in the body's frames.
 std::vector<float> LiveCleaner::positions_of(Seen& seen, DenoiseFeatures features,
                                              std::size_t first, std::size_t end) {
   denoiser_->standardise(features);
@@ -80,7 +80,7 @@ std::vector<float> LiveCleaner::positions_of(Seen& seen, DenoiseFeatures feature
   return std::move(out.positions);
 }
 
-/// The answer for `row`, post-processed as by Steadier but without constant bones.
+/// The joints of `row`, post-processed as by Steadier but without constant bones.
 std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
   const DenoiseModel& model = denoiser_->model();
   const Smoothing& smoothing = model.steadying.smoothing;
@@ -108,7 +108,7 @@ std::vector<float> LiveCleaner::steadied_at(std::size_t row) {
   return row_of(positions, row - first, model.layout.answers());
 }
 
-/// Answers `row` and removes rows from the window that no later answer needs.
+/// Computes the joints of `row` and removes rows from the window that no later frame needs.
 std::vector<float> LiveCleaner::joints_at(std::size_t row) {
   std::vector<float> out = steadied_at(row);
   const DenoiseLayout& layout = denoiser_->model().layout;
@@ -134,7 +134,8 @@ void LiveCleaner::forget_first() {
   }
 }
 
-// Live lines use lengths of the last ten seconds; a file gets the medians of the whole run instead.
+// Live joints use the bone lengths of the last ten seconds. A file gets the medians of the whole
+// run instead.
 std::vector<float> LiveCleaner::whole() const {
   std::vector<float> out = answers_;
   const std::vector<int>& parents = denoiser_->model().layout.parents;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a model that cleans skeletons on live frames. Answers have a fixed delay, and the network
-// runs over a window of the newest frames. Bone lengths are the medians of the last ten seconds.
+// Runs a model that cleans skeletons on live frames. Each frame is returned after a fixed delay,
+// and the network runs over a window of the newest frames. Bone lengths are the medians of the last
+// ten seconds.
 #pragma once
 
 #include "kinalign/infer/window_network.h"
@@ -16,11 +17,11 @@ namespace kinalign {
 /// `window_` and the rows of both `Seen` always begin with the same frame.
 class LiveCleaner {
  public:
-  /// Frames, for the bone lengths: 10 s at 30 Hz.
+  /// Bone lengths are medians over this many frames: 10 s at 30 Hz.
   static constexpr std::size_t remembered_lengths = 300;
 
-  /// `denoiser` must live longer. `look_ahead`: the delay of an answer in frames. It is reduced to
-  /// the number of later frames that network and smoothing use.
+  /// `denoiser` must outlive this object. `look_ahead`: the delay of an answer in frames. It is
+  /// reduced to the number of later frames that network and smoothing use.
   LiveCleaner(Denoiser& denoiser, std::size_t look_ahead);
 
   std::size_t look_ahead() const { return ahead_; }
@@ -28,7 +29,7 @@ class LiveCleaner {
   /// Takes the next frame of the layout's input joints. Returns the joints [Jout,3] m of the frame
   /// look_ahead() frames earlier; empty if there is no such frame yet.
   std::optional<std::vector<float>> step(const JointFrames& frame);
-  /// Call when no further frames come: returns the next remaining frame; empty if all are answered.
+  /// Call when no further frames come: returns the next remaining frame; empty if none remains.
   std::optional<std::vector<float>> finish();
 
   /// All answers [T,Jout,3] m for a file: each bone has one length over the whole recording.

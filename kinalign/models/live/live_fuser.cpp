@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t remembered_by_network = 60;
 /// Frames on each side used by Smoothing{} for the root's position.
 constexpr std::size_t smoothed_places = 4;
-/// Earlier rows that smoothing needs: for positions at the window's end, and for the Kinect's
+/// Earlier rows that the smoothing needs, of positions at the window's end and of the Kinect's
 /// joints.
 constexpr std::size_t smoothed_rows = 9;
 
@@ -72,7 +72,8 @@ LiveFuser::LiveFuser(Fuser& fuser, std::size_t look_ahead)
 }
 
 void LiveFuser::begin_headings() {
-  // A new calibration may turn the nodes' world, so the turn between both worlds is found anew.
+  // A new calibration may rotate the nodes' world, so the rotation between both worlds is estimated
+  // again.
   yaw_.reset();
   filter_.reset();
 }
@@ -142,7 +143,7 @@ std::span<const float> LiveFuser::answers_to_both(const FuseInput& corrected, st
   return both_.network.run(both_.rows, frames, next_, end);
 }
 
-/// Answers the next `count` rows and removes rows from the window that no later answer needs.
+/// Computes the poses of the next `count` rows and removes rows that no later frame needs.
 void LiveFuser::answer_rows(std::size_t count, std::vector<FusedFramePose>& out) {
   const std::size_t bones = fuser_->model().layout.nodes.bones.size();
   const std::size_t frames = window_.frames(), end = next_ + count;

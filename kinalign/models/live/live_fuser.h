@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a model that fuses a Kinect and nodes on live frames. Answers have a fixed delay, and the
-// network runs over a window of the newest frames. Node headings are estimated from earlier frames
-// only. An answered frame keeps the headings that it was answered with; later frames in the window
-// get the newest headings.
+// Runs a model that fuses a Kinect and nodes on live frames. Each pose is returned after a fixed
+// delay, and the network runs over a window of the newest frames. Node headings are estimated from
+// earlier frames only. A returned frame keeps the headings that it was computed with; later frames
+// in the window get the newest headings.
 #pragma once
 
 #include "kinalign/infer/window_network.h"
@@ -17,7 +17,7 @@ namespace kinalign {
 
 /// The pose of one frame in the Kinect's world.
 struct FusedFramePose {
-  std::vector<Turn> rotations;  // [B] against the root
+  std::vector<Turn> rotations;  // [B] relative to the root
   Eigen::Quaternionf root = Eigen::Quaternionf::Identity();
   Eigen::Vector3f place = Eigen::Vector3f::Zero();  // m
 };
@@ -30,12 +30,12 @@ class LiveFuser {
   /// unknown.
   static constexpr std::size_t most_waiting = 1800;
 
-  /// `fuser` must live longer and must not be moved. `look_ahead`: see LiveCleaner.
+  /// `fuser` must outlive this object and must not be moved. `look_ahead`: see LiveCleaner.
   LiveFuser(Fuser& fuser, std::size_t look_ahead);
 
   std::size_t look_ahead() const { return ahead_; }
-  /// True once the rotation between the devices' worlds is known, which needs one second in which
-  /// both see the person. Frames are answered only then.
+  /// True once the rotation between the devices' worlds is known. This needs one second in which
+  /// both devices see the person. Before that no pose is returned.
   bool is_turned() const { return yaw_.has_value(); }
   /// Call when the nodes have a new calibration: their headings are estimated anew from the next
   /// frame on.
@@ -43,9 +43,9 @@ class LiveFuser {
 
   /// Takes the next frame; `input` contains only this frame.
   void add(const FuseInput& input);
-  /// Appends all poses that can be answered now, up to the frame look_ahead() frames before the
-  /// newest. The network runs once for all of them. A program that has fallen behind thus catches
-  /// up, and its frames use more later frames.
+  /// Appends all poses that can be computed now, up to the frame look_ahead() frames before the
+  /// newest. The network runs once for all of them, so a program that was too slow catches up. Its
+  /// frames then use more later frames.
   void answer(std::vector<FusedFramePose>& out);
   /// Call when no further frames come: appends the remaining poses.
   void finish(std::vector<FusedFramePose>& out);

@@ -44,14 +44,14 @@ std::optional<Time> LiveJoints::newest() const {
 }
 
 // Two rows are needed to interpolate. If the Kinect is late or silent, the frame is made without
-// it: the run must go on.
+// it, because the run must go on.
 bool LiveJoints::is_ready(Time time, Time now) const {
   if (rows_.stamps.empty() || (rows_.size() > 1 && rows_.stamps.back() >= time)) return true;
   return now >= time + patience || (now >= time && now - arrival_ > silence);
 }
 
 JointFrames LiveJoints::frame(Time time) {
-  // The newest row is always kept: it shows when the Kinect last saw anything.
+  // The newest row is always kept: it shows when the Kinect last sent joints.
   const auto end = rows_.stamps.empty() ? rows_.stamps.end() : rows_.stamps.end() - 1;
   const auto old =
       std::lower_bound(rows_.stamps.begin(), end, time - kept_rows) - rows_.stamps.begin();

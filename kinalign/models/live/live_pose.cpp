@@ -10,7 +10,7 @@ LivePose::LivePose(const PoseSolver& solver, const LiveWornOptions& options, std
       solver_(solver, look_ahead) {}
 
 void LivePose::advance(Time now, std::vector<LivePoseFrame>& out) {
-  // No other device is waited for, so the condition for one is always true.
+  // A pose from nodes needs no other device, so the condition for other devices is always true.
   worn_.advance(
       now, [](Time) { return true; }, ready_);
   answer(out);

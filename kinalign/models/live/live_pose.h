@@ -18,11 +18,11 @@ struct LivePoseFrame {
   std::vector<std::uint8_t> valid;  // [N] per node
 };
 
-/// Samples go in through worn(); advance() then gives the poses. The solver answers some frames
+/// Samples go in through worn(); advance() then returns the poses. The solver returns some frames
 /// late, so `pending_` keeps the stamp and the validity of each frame until then.
 class LivePose {
  public:
-  /// `solver` must live longer and must not be moved. `look_ahead`: see WindowSolver.
+  /// `solver` must outlive this object and must not be moved. `look_ahead`: see WindowSolver.
   LivePose(const PoseSolver& solver, const LiveWornOptions& options, std::size_t look_ahead);
 
   LiveWorn& worn() { return worn_; }
@@ -45,7 +45,7 @@ class LivePose {
     Time stamp{};
     std::vector<std::uint8_t> valid;
   };
-  std::deque<Pending> pending_;  // frames in the solver that have no answer yet
+  std::deque<Pending> pending_;  // frames in the solver that have no pose yet
 };
 
 }  // namespace kinalign

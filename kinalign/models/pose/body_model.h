@@ -34,7 +34,7 @@ Result<void> read_body_model(std::string_view bytes, const std::string& name, Bo
                              const std::function<Result<void>(const ModelHeader&)>& read_own,
                              const std::function<Result<std::size_t>()>& channels);
 
-/// The model's network. Fails if its number of inputs or outputs is another.
+/// The model's network. Fails if it does not have `channels` inputs and `answers` outputs.
 Result<Network> network_of_body(const BodyModel& model, std::size_t channels, std::size_t answers);
 
 }  // namespace kinalign

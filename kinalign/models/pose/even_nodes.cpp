@@ -36,16 +36,16 @@ void make_angular_velocity(NodeTrack& track) {
   const std::size_t samples = track.stamps.size();
   track.angular_velocity.assign(3 * samples, 0.0);
   for (std::size_t i = 0; i + 1 < samples; ++i) {
-    // The turn in the node's own space; the last sample keeps 0.
+    // The rotation to the next sample, in the node's own space. The last sample keeps 0.
     const Quat turn = quat(track.orientation, i).conjugate() * quat(track.orientation, i + 1);
     vec3(track.angular_velocity, i) =
         rotation_vector(turn.normalized()) / seconds_between(track.stamps[i], track.stamps[i + 1]);
   }
 }
 
-/// One node's samples, prepared for evaluation at any time.
-/// Accelerations are rotated into the world once, before averaging: in the node's space a turning
-/// node would mix its axes. `track` must live longer.
+/// One node's samples, prepared for evaluation at any time. Accelerations are rotated into the
+/// world before they are averaged: in the space of a turning node, the mean would mix directions.
+/// `track` must outlive this object.
 class NodeCurve {
  public:
   explicit NodeCurve(const NodeTrack& track) : track_(track) {

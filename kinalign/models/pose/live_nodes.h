@@ -36,10 +36,10 @@ class LiveNodes {
 
   LiveNodes(std::size_t nodes, double rate_hz);
 
-  /// Adds a sample. A sample is dropped and counted in left_out() if its stamp is a duplicate, if
-  /// it has no acceleration, if it has neither orientation nor angular velocity with gravity, if it
-  /// lacks a quantity that the node's first sample had or differs in gravity, if it arrives out of
-  /// order and the node sends no orientation, or if 4096 samples of the node are kept.
+  /// Adds a sample. It is dropped and counted in left_out() in these cases: its stamp is a
+  /// duplicate; it has no acceleration; it has neither orientation nor angular velocity with
+  /// gravity; it lacks a quantity that the node's first sample had, or differs in gravity; it
+  /// arrives out of order and the node sends no orientation; 4096 samples of the node are kept.
   void add(std::size_t node, const NodeReadings& sample);
 
   /// The stamp of the root's first sample, at which the grid begins; absent before it.

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-// Between attempts at a calibration that needs later frames.
+// Time between attempts at a calibration that needs later frames.
 constexpr double between_tries_s = 0.5;
 
 WornFrames frames_from(const WornFrames& all, std::size_t first) {
@@ -108,9 +108,9 @@ void LiveWorn::look_for_t_pose() {
   marked_.reset();
 }
 
-/// The reason why a calibration can't be used; absent: none. A later T-pose must not lose a node
-/// that was calibrated before. A T-pose given by the options is used as it is if enough nodes sent
-/// samples.
+/// The reason why a calibration can't be used; absent if it can. A later T-pose must calibrate all
+/// nodes that were calibrated before. A T-pose given by the options is used as it is if enough
+/// nodes sent samples.
 std::optional<std::string> LiveWorn::fault_of(const NodeCalibration& found) const {
   const auto sent = std::count_if(found.nodes.begin(), found.nodes.end(),
                                   [](const auto& node) { return node.has_value(); });
@@ -127,9 +127,9 @@ std::optional<std::string> LiveWorn::fault_of(const NodeCalibration& found) cons
   return std::nullopt;
 }
 
-/// Calibrates by one stretch; false if it was refused. A stretch given by the options is used as it
-/// is. Another one is refused if fault_of() finds a fault or, if a mark gave it, the person moves
-/// in it.
+/// Calibrates by one stretch of frames; false if it was refused. A stretch given by the options is
+/// used as it is. Any other stretch is refused if fault_of() finds a fault. If a mark gave it, it
+/// is also refused if the person moves in it.
 bool LiveWorn::take_t_pose(const TPose& t_pose) {
   const double fastest = fastest_turn_deg(recent_, t_pose);
   if (marked_ && fastest > most_turn_deg_s) {

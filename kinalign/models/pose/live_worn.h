@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Live nodes on their bones: resamples them and calibrates them by a T-pose. Frames before the end
-// of the T-pose are output together once the calibration is known.
+// Resamples live nodes and calibrates them by a T-pose, so that they have the orientations of their
+// bones. Frames before the end of the T-pose are output together once the calibration is known.
 #pragma once
 
 #include "kinalign/models/pose/live_nodes.h"
@@ -14,7 +14,7 @@
 
 namespace kinalign {
 
-/// Start and end, s.
+/// Start and end of a T-pose, s.
 struct TPoseSeconds {
   double from = 0.0, to = 0.0;
 };
@@ -48,16 +48,17 @@ class LiveWorn {
   /// Frames before the calibration are kept for at most this long. The output begins with them.
   static constexpr double most_waiting_s = 60.0;
 
-  /// `layout` and `body` must live longer.
+  /// `layout` and `body` must outlive this object.
   LiveWorn(const PoseLayout& layout, const Skeleton& body, const LiveWornOptions& options);
 
   /// Adds a sample of node `node` of the layout. Frames are made by advance().
   void add(std::size_t node, const NodeReadings& sample) { nodes_.add(node, sample); }
-  /// A T-pose is held from `at` on. The nodes are calibrated, or calibrated again, unless the
-  /// person moves or an arm hangs down in it. Call only after nodes().begin() is known.
+  /// States that the person holds a T-pose from `at` on. The nodes are calibrated, or calibrated
+  /// again, unless the person moves or an arm hangs down in it. Call only after nodes().begin() is
+  /// known.
   void mark_t_pose(Time at) { marked_ = std::max(at, time_of(forgotten_)); }
 
-  /// True if other devices, too, have the data for a frame at that time.
+  /// Whether the other devices also have their data for a frame at that time.
   using Also = std::function<bool(Time time)>;
   /// Makes all frames that are ready and appends the calibrated ones to `out`. `now`: arrival of
   /// the newest message.

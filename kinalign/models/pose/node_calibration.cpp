@@ -18,7 +18,7 @@ namespace {
 constexpr double most_m_s2 = 100.0;
 
 constexpr double still_deg_s = 20.0, least_still_s = 1.0, most_still_s = 3.0;
-// Rad, mean angle of an arm from the T-pose that is needed to see its direction.
+// The heading is found from an arm only if its mean angle from the T-pose is at least this, rad.
 constexpr double least_swing = 0.3;
 
 double in_degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
@@ -98,8 +98,8 @@ MeanAngle mean_angle(const std::vector<double>& angles) {
   return out;
 }
 
-/// The heading of an arm's world from the arm's mean rotation since the T-pose. The person's own
-/// turns are removed first. Empty if the arm hardly left the T-pose.
+/// The heading of the world of an arm's node, from the arm's mean rotation since the T-pose.
+/// Rotations of the whole person are removed first. Empty if the arm hardly left the T-pose.
 std::optional<double> heading_by_arm(const WornFrames& worn, std::size_t node, const Quat& arm_rest,
                                      const Quat& root_rest, bool is_left) {
   Vec3 sum = Vec3::Zero();

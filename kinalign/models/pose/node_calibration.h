@@ -49,7 +49,8 @@ double fastest_turn_deg(const WornFrames& worn, const TPose& t_pose);
 /// How the nodes' headings are found; see the head of this file.
 enum class Headings : std::uint8_t { shared, mounting };
 
-/// The constants of one node. Nodes without a valid frame in the T-pose have none and are lost.
+/// The constants of one node. A node without a valid frame in the T-pose has none and can't be
+/// used.
 struct NodeOnBone {
   Quat heading = Quat::Identity();         // Y, about +y
   Quat node_from_bone = Quat::Identity();  // M
@@ -67,14 +68,15 @@ struct NodeCalibration {
   Facing facing = Facing::mounting;  // the source of the person's heading
   /// Spread of the headings from the mountings; large if the nodes do not share a heading.
   double spread_deg = 0.0;
-  /// True for all nodes except those on arms, as far as their tilt shows it.
+  /// True if all nodes except those on arms are worn as docs/pose.md says, as far as their tilt
+  /// shows.
   bool worn_as_described = false;
 };
 
 /// deg. With a larger tilt a node is not worn as docs/pose.md says, or its limb is not in a T-pose.
 inline constexpr double most_tilt_deg = 40.0;
 
-/// deg. Headings farther apart than this are not one heading for all nodes.
+/// deg. If headings are farther apart than this, the nodes do not share one heading.
 inline constexpr double most_shared_deg = 35.0;
 
 struct CalibrationOptions {

@@ -15,8 +15,9 @@ using Direction = std::array<double, 3>;
 
 // In CMU's skeletons the ankle joint of a standing person lies behind the knee: the shank is 12 to
 // 31 degrees off the vertical in the standing poses of 16 people, 20 on average. In a recorded walk
-// with optical truth (UNSW), ankles were 11 to 16 cm off with these 20 degrees and 18 to 20 cm
-// without. The shanks of a simulated suit are vertical: 13 cm with the 20 degrees, 7 cm without.
+// with optical truth (UNSW), ankles were 11 to 16 cm off with these 20 degrees, and 18 to 20 cm off
+// without them. For a simulated suit, whose shanks are vertical, they were 13 cm off with the 20
+// degrees and 7 cm without.
 constexpr Direction cmu_shank{0.0, -0.94, -0.34};
 
 constexpr std::array<WornPlace, 6> places{{
@@ -124,7 +125,7 @@ Result<std::vector<Quat>> t_pose_rotations(const PoseLayout& layout, const Skele
       return Failure(Error{"", 0, "a model for nodes on known places of the body", shown(node)});
     }
     const Vec3 direction = vec3_of(place->t_pose);
-    // Waist and head: their bones have no direction that a T-pose fixes.
+    // A T-pose does not fix the directions of the bones at waist and head.
     if (direction.isZero()) {
       out.push_back(Quat::Identity());
       continue;

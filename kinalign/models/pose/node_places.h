@@ -16,7 +16,7 @@
 
 namespace kinalign {
 
-/// Directions are for a person in a T-pose who faces +z: x to the left, y up.
+/// A place on the body. Directions are for a person in a T-pose who faces +z: x to the left, y up.
 struct WornPlace {
   std::string_view name;         // "wrist_left"
   std::string_view bone;         // a joint of pose_body.h; the bone begins there

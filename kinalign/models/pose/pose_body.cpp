@@ -16,7 +16,7 @@ int place_of(std::span<const std::string> names, std::string_view name) {
   return at ? static_cast<int>(*at) : -1;
 }
 
-/// The rotation of joint `j` against the root; `frame` [B].
+/// The rotation of joint `j` relative to the root; `frame` [B].
 Turn turn_of(const PoseBody& body, std::span<const Turn> frame, std::size_t j) {
   const int bone = body.turned_by[j];
   return bone < 0 ? Turn::Identity() : frame[static_cast<std::size_t>(bone)];
@@ -115,8 +115,8 @@ ClipFrames clip_frames(const PoseBody& body, std::span<const Turn> rotations,
     vec3(out.local_positions, t * joints) = Vec3(0.0, height, 0.0);
     put_quat(out.local_rotations, t * joints, root[t].cast<double>().normalized());
     for (std::size_t j = 1; j < joints; ++j) {
-      // Networks answer with rotations against the root, so that errors do not add up along a
-      // chain. A clip stores them against the parent.
+      // Networks output rotations relative to the root, so that errors do not add up along a chain.
+      // A clip stores them relative to the parent.
       const Turn above = turn_of(body, frame, static_cast<std::size_t>(body.skeleton.parents[j]));
       const Turn local = above.transpose() * turn_of(body, frame, j);
       vec3(out.local_positions, t * joints + j) = body.skeleton.rest_offsets[j];

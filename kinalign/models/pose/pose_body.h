@@ -67,8 +67,8 @@ inline constexpr std::array<std::string_view, 15> pose_bones{
     "lfemur", "ltibia",    "rfemur",   "rtibia", "lowerback", "upperback", "thorax", "upperneck",
     "head",   "lclavicle", "lhumerus", "lwrist", "rclavicle", "rhumerus",  "rwrist"};
 
-/// Networks estimate one rotation per bone; several joints may share it. So [B] is shorter than
-/// [J].
+/// Networks estimate one rotation per bone. Several joints may share it, so there are fewer bones
+/// [B] than joints [J].
 struct PoseBody {
   Skeleton skeleton;               // joint 0 is the only root
   std::vector<std::string> bones;  // [B] names
@@ -95,7 +95,7 @@ Turn turn_of_answer(const float* answer);
 inline Turn turned_back_to_rotation(const Turn& sum) { return turn_of_six(sum.data()); }
 
 /// Positions [T,J,3] m relative to the root, in the root's space, from the bones' rotations [T,B]
-/// against the root. `rest_offsets` [J]: of this body or of another person.
+/// relative to the root. `rest_offsets` [J]: of this body or of another person.
 std::vector<float> bone_positions(const PoseBody& body, std::span<const Vec3> rest_offsets,
                                   std::span<const Turn> rotations);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input channels of a network for inertial nodes, the same in training and at use. All channels are
+// Input channels of a network for inertial nodes, the same in training and in use. All channels are
 // in the space of the root's node, so the direction that a person faces does not matter.
 #pragma once
 
@@ -41,9 +41,9 @@ std::optional<Eigen::Quaternionf> orientation_at(const NodeFrames& nodes, std::s
                                                  std::size_t n);
 
 enum class PoseInputs : std::uint8_t {
-  /// Each leaf gives the first two columns (6 numbers) of its rotation against the root, and its
-  /// acceleration minus the root's. The root gives the vertical and its own acceleration. All nodes
-  /// give their angular velocity. One flag per leaf: is it valid? Units: 10 m/s2, 3 rad/s.
+  /// Each leaf gives the first two columns (6 numbers) of its rotation relative to the root, and
+  /// its acceleration minus the root's. The root gives the vertical and its own acceleration. All
+  /// nodes give their angular velocity. One flag per leaf: is it valid? Units: 10 m/s2, 3 rad/s.
   ours,
   /// Each leaf gives its rotation matrix (9 numbers) and its acceleration (Huang et al., «Deep
   /// inertial poser», SIGGRAPH Asia 2018).

@@ -15,8 +15,8 @@ bool is_among(std::string_view name, Names names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The angle between two rotations, degrees. It uses the chord, because the trace alone loses small
-/// angles.
+/// The angle between two rotations, degrees. It is computed from the chord, because the trace is
+/// inexact for small angles.
 double angle_between(const Turn& a, const Turn& b) {
   const double half_chord = static_cast<double>((a - b).norm()) / (2.0 * std::numbers::sqrt2);
   return 2.0 * std::asin(std::min(half_chord, 1.0)) * 180.0 / std::numbers::pi;

@@ -10,12 +10,12 @@
 
 namespace kinalign {
 
-/// Means over all frames.
+/// Mean errors over all frames.
 struct PoseErrors {
   double sip_deg = 0.0;    // global rotation of thighs and upper arms
   double angle_deg = 0.0;  // global rotation of all bones but neck and head
   double head_deg = 0.0;   // global rotation of neck and head
-  /// Position of the joints below hips, chest and shoulders, these included.
+  /// Position error of the joints for which is_scored_joint() is true.
   double position_cm = 0.0;
   double jitter = 0.0;       // m/s3, mean third difference of these joints in the answer
   double true_jitter = 0.0;  // m/s3, the same in the truth
@@ -37,8 +37,8 @@ PoseErrors pose_errors(const PoseBody& body, std::span<const Turn> answer, const
                        double rate_hz);
 
 /// True if position errors count this joint. Root, hips, lower back, lower neck and clavicles are
-/// left out because they hardly move against the root. Toes and fingers are left out because they
-/// are only guessed.
+/// left out because they hardly move relative to the root. Toes and fingers are left out because
+/// they are only guessed.
 bool is_scored_joint(std::string_view name);
 
 }  // namespace kinalign

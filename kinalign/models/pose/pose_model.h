@@ -24,7 +24,7 @@ Result<PoseModel> read_pose_model(std::string_view bytes, const std::string& nam
 
 /// `root` is the orientation of the root's node: a network for nodes does not estimate it.
 struct SolvedPose {
-  std::vector<Turn> rotations;           // [T,B] against the root
+  std::vector<Turn> rotations;           // [T,B] relative to the root
   std::vector<Eigen::Quaternionf> root;  // [T] rotation in the world
 };
 

@@ -28,8 +28,8 @@ struct SuitJoint {
 
 /// CMU's "lwrist" turns the forearm about its own axis, two thirds along it; "lhand" begins at the
 /// wrist. Fingers are placed on the line of the forearm, because suits without gloves have none. No
-/// suit has toes; they are placed 13 cm before the ankle and 6 cm below it. If a skeleton has one
-/// neck joint, the upper neck joint is placed halfway to the head.
+/// suit has toes; they are placed 13 cm in front of the ankle and 6 cm below it. If a skeleton has
+/// one neck joint, the upper neck joint is placed halfway to the head.
 constexpr std::array<SuitJoint, pose_joints.size()> suit_joints{{
     {"root", {"Hips"}, {"Hips"}},
     {"lfemur", {"LeftUpLeg"}, {"LeftUpLeg"}},

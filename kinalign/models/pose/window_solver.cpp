@@ -53,7 +53,7 @@ std::optional<FramePose> WindowSolver::finish() {
   return pose_at(next_);
 }
 
-/// Answers one row and removes rows from the window that no later answer needs.
+/// Computes the pose of one row and removes rows from the window that no later frame needs.
 std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
   const std::size_t bones = solver_->model().layout.bones.size();
   const std::size_t frames = roots_.size();

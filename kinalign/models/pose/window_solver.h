@@ -16,14 +16,14 @@ namespace kinalign {
 
 /// The pose of one frame.
 struct FramePose {
-  std::vector<Turn> rotations;  // [B] against the root
+  std::vector<Turn> rotations;  // [B] relative to the root
   Eigen::Quaternionf root = Eigen::Quaternionf::Identity();
 };
 
 class WindowSolver {
  public:
-  /// `solver` must live longer and must not be moved. `look_ahead`: the delay of an answer in
-  /// frames. It is reduced to the number of later frames that network and smoothing use.
+  /// `solver` must outlive this object and must not be moved. `look_ahead`: the delay of an answer
+  /// in frames. It is reduced to the number of later frames that network and smoothing use.
   WindowSolver(const PoseSolver& solver, std::size_t look_ahead);
 
   std::size_t look_ahead() const { return ahead_; }
