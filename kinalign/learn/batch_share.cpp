@@ -3,8 +3,8 @@
 
 namespace kinalign {
 
-// The sum runs on the CPU: with CUDA, gradients go through the processor's memory
-// (docs/training_processes.md).
+// The processes exchange their sums on the CPU. With CUDA, gradients are therefore copied to the
+// processor's memory (docs/training_processes.md).
 torch::Tensor BatchShare::total(const torch::Tensor& part) const {
   if (is_alone() || broken_) return part.detach();
   torch::Tensor values = part.detach().to(torch::kCPU).clone();
@@ -12,8 +12,8 @@ torch::Tensor BatchShare::total(const torch::Tensor& part) const {
   return values.to(part.device());
 }
 
-// Sent as a sum to which all other processes add zeros, so that one operation between processes is
-// enough. A flag says whether there is a value.
+// The value is sent as a sum to which all other processes add zeros, so that one operation between
+// processes is enough. A flag says whether there is a value.
 std::optional<double> BatchShare::of_first(const std::optional<double>& value) const {
   if (is_alone()) return value;
   const double is_there = is_first() && value ? 1.0 : 0.0;

@@ -24,8 +24,8 @@ struct BatchPart {
   }
 };
 
-/// After one failed sum, `broken_` stays true and no further sum is tried: the processes are then
-/// no longer in step.
+/// The connection of a process to the others. If one sum fails, `broken_` stays true and no further
+/// sum is tried, because the processes are then at different steps.
 class BatchShare {
  public:
   /// Adds the tensors of all processes, in place and on the CPU. Returns false if a process has
@@ -40,7 +40,7 @@ class BatchShare {
       : rank_(rank), size_(size), sum_(std::move(sum)) {}
 
   bool is_alone() const { return size_ == 1; }
-  /// True for the process that judges the network, keeps checkpoints and writes files for all.
+  /// True for the process that measures the validation error, stores checkpoints and writes files.
   bool is_first() const { return rank_ == 0; }
   /// True if another process has ended too early.
   bool is_broken() const { return broken_; }
@@ -48,14 +48,15 @@ class BatchShare {
   /// This process's part of a batch. If there are more processes than examples, some parts are
   /// empty.
   BatchPart part(std::int64_t batch) const {
-    // Rounded in the same way for all ranks, so the parts cover the batch without gap or overlap.
+    // The numbers are rounded in the same way for all ranks, so the parts cover the batch without
+    // gap or overlap.
     const std::int64_t begin = batch * rank_ / size_;
     return {begin, batch * (rank_ + 1) / size_ - begin, batch};
   }
 
   /// The sum over all processes, without gradient.
   torch::Tensor total(const torch::Tensor& part) const;
-  /// The value of the first process, sent to all.
+  /// The value of the first process, which is sent to all processes.
   std::optional<double> of_first(const std::optional<double>& value) const;
 
  private:

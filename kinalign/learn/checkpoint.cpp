@@ -50,8 +50,8 @@ void read_numbers(const Json& json, TrainingState& out) {
 }
 
 // --- TensorBoard: protobuf records, each with a masked CRC-32C of its length and of its data.
-// Protobuf is written by hand, because few kinds of field are needed. The
-// layout is that of event.proto and tfrecord in the source of TensorFlow.
+// Protobuf is written by hand here, because few kinds of field are needed. The layout is that of
+// event.proto and tfrecord in the source of TensorFlow.
 
 /// CRC-32C (Castagnoli), bit by bit: 0x82f63b78 is its polynomial in reversed order.
 std::uint32_t crc32c(std::string_view bytes) {
@@ -143,8 +143,8 @@ Result<TrainingState> read_checkpoint(std::string_view bytes, const std::string&
   }
   TrainingState out;
   try {
-    // Moments and average belong to one loss on one set of data; with others the result would not
-    // be that of the stopped run.
+    // Adam's moments and the average belong to one loss on one set of data. With another loss or
+    // other data the result would not be that of the stopped run.
     if (json.at("job").get<std::string>() != job) {
       return Failure(Error{name, 0, "the run of this method, data and settings", "another run"});
     }
@@ -161,7 +161,7 @@ Result<TrainingState> read_checkpoint(std::string_view bytes, const std::string&
   return out;
 }
 
-// Six digits are enough for people; a checkpoint keeps the numbers in full.
+// Six digits are enough for people; a checkpoint has all digits of the numbers.
 std::string csv_of(const std::vector<TrainingPoint>& points) {
   std::string out = "step,loss,rate,gradient,judgement\n";
   for (const TrainingPoint& point : points) {

@@ -10,9 +10,9 @@
 namespace kinalign {
 
 /// A SafeTensors file of all tensors. `job` describes what is trained; a continued run must have
-/// the same job.
-/// A run that goes on from it gives the same bytes as a run without a stop (docs/training.md). So
-/// the file holds both moments of Adam, the average and all points of the log too.
+/// the same job. A run that continues from the file gives the same bytes as a run without a stop
+/// (docs/training.md). So the file also has both moments of Adam, the average of the weights and
+/// all points of the log.
 std::string write_checkpoint(const TrainingState& state, const std::string& job);
 
 /// Fails if the file is not a checkpoint or belongs to another job.

@@ -11,15 +11,15 @@ namespace kinalign {
 
 namespace {
 
-// The paper gives no sizes; these are our choice (noise 1 cm, one joint in ten
-// dropped).
+// The article on BRA-P (methods/bra.cpp) gives no sizes. These are our choice: noise of 1 cm, one
+// joint in ten dropped.
 constexpr std::size_t clean_units = 256, latent_layers = 5;
 constexpr std::int64_t batch = 32, crop = 61;
 constexpr double noise = 0.01, dropped = 0.1;  // m; share of dropped joints
 
-/// Training task: removes noise from clean motion.
-/// The truth is brought into the body's frame of the input, the space of the answers that the
-/// network later sees.
+/// Training task: removes noise from clean motion. The network later gets joints in the body's
+/// frame of a Kinect. The clean motion is therefore transformed into the body's frame of the pair's
+/// input.
 class CleanMotionTask : public TrainingTask {
  public:
   CleanMotionTask(const DenoiseLayout& layout, const std::vector<Pair>& pairs, torch::Device device)
@@ -58,12 +58,13 @@ class CleanMotionTask : public TrainingTask {
     auto rough = clean + torch::randn_like(clean) * noise;
     const auto kept = torch::rand({batch, 1, clean.size(2) / 3, 1}, clean.options()).gt(dropped);
     rough = (rough.reshape({batch, crop, -1, 3}) * kept).flatten(2);
-    // The noise is drawn for the whole batch in every process, so that all draw the same.
+    // Every process draws the noise of the whole batch, so that all processes have the same noise.
     const BatchPart part = share().part(batch);
     const auto own = [&](const torch::Tensor& x) {
       return x.slice(0, part.begin, part.begin + part.count);
     };
-    // In cm: the squared error, and half the error of accelerations, which makes the answer smooth.
+    // The loss in cm: the squared error, plus half the error of accelerations, which makes the
+    // motion smooth.
     const auto error = (network.forward(own(rough), part) - own(clean)) * 100.0;
     return part.mean(error.pow(2) * weights_) +
            0.5 * part.mean(second_differences(error).abs() * weights_);
@@ -103,13 +104,13 @@ Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::ve
   torch::manual_seed(options.seed + 1);
   TorchNetwork network(clean_motion_architecture(layout.answers()));
   network.to(device);
-  // Another seed than the first network's, so that both do not draw the same crops.
+  // The seed differs from that of the first network, so that both do not draw the same crops.
   TrainingOptions own = options;
   own.seed = options.seed + 1;
   own.judge_every = 0;
   own.patience = 0;
-  // No checkpoints here: an interrupted run starts this part again, because checkpoints belong to
-  // the first network, which is trained afterwards.
+  // This part stores no checkpoints, because checkpoints belong to the first network, which is
+  // trained afterwards. An interrupted run starts this part again.
   if (auto done = train(network, task, own, {}, {.progress = hooks.progress, .share = hooks.share});
       !done) {
     return Failure(done.error());
@@ -120,7 +121,7 @@ Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::ve
 torch::Tensor motion_features(const TorchNetwork& network, const torch::Tensor& answers) {
   Architecture encoder = network.architecture();
   encoder.layers.resize(latent_layers);
-  // Normalised for each frame, so that the loss does not depend on the scale of the hidden layer.
+  // The features are normalised for each frame, so that the loss does not depend on their scale.
   const auto features = run_layers(encoder.layers, network.tensors(), answers);
   return torch::layer_norm(features, {features.size(2)});
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// BRA-P's second network: an autoencoder of clean motion. During training its features judge the
-// answer of the first network. At use it refines the first network's answer.
+// The second network of BRA-P (methods/bra.cpp): an autoencoder of clean motion. During training
+// its features are a part of the first network's loss. In use it refines the first network's
+// output.
 #pragma once
 
 #include "kinalign/learn/trainer.h"
@@ -9,8 +10,9 @@
 
 namespace kinalign {
 
-/// A network from answers [B,T,3 Jout] m, in the body's frame, to cleaner ones of the same shape.
-/// The form of BRA's network, with a narrow layer in the middle, which motion_features() reads.
+/// A network from joints [B,T,3 Jout] m, in the body's frame, to cleaner joints of the same shape.
+/// It has the form of BRA's network, with a narrow layer in the middle, which motion_features()
+/// reads.
 Architecture clean_motion_architecture(std::size_t answers);
 
 /// Trains the network on the truth of `pairs`, with noise of 1 cm on the joints and random dropout
@@ -19,7 +21,7 @@ Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::ve
                                       const TrainingOptions& options, torch::Device device,
                                       const TrainingHooks& hooks);
 
-/// The features [B,T,C] of the network's narrow middle layer.
+/// The features [B,T,C] in the network's narrow middle layer, for joints as in that function.
 torch::Tensor motion_features(const TorchNetwork& network, const torch::Tensor& answers);
 
 }  // namespace kinalign

@@ -14,7 +14,8 @@ namespace kinalign {
 namespace {
 
 constexpr double centimetres = 100.0;
-// A joint that hardly moves must not have its noise scaled up.
+// The scale of a joint that hardly moves has this lower limit; otherwise its noise would be scaled
+// up.
 constexpr double least_position_scale = 0.01, least_step_scale = 0.001;  // m
 /// Random numbers reserved for each example of a batch.
 constexpr std::uint64_t lanes_per_example = 8;
@@ -49,8 +50,8 @@ std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands)
   const auto inputs = inputs_of_outputs(layout);
   std::vector<float> out;
   for (std::size_t j = 0; j < inputs.size(); ++j) {
-    // The first output of an input joint is that joint itself; all others share the weight of one
-    // joint.
+    // The first output that stands for an input joint is that joint itself. All other outputs that
+    // stand for it share the weight of one joint.
     const auto same = std::count(inputs.begin(), inputs.end(), inputs[j]);
     const bool is_own = std::find(inputs.begin(), inputs.end(), inputs[j]) - inputs.begin() ==
                         static_cast<std::ptrdiff_t>(j);
@@ -84,8 +85,8 @@ DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
     begins.push_back(layout_.parents[j]);
     bone_weights.push_back(weights[j]);
   }
-  // With a mean of 1, other weights of joints change neither the learning rate nor the balance of
-  // the terms.
+  // The weights are scaled to a mean of 1. They then change neither the learning rate nor the
+  // balance of the loss terms.
   const auto of_mean_one = [&](const std::vector<float>& values) {
     const auto tensor = torch::tensor(values);
     return (tensor / tensor.mean()).to(device_);
@@ -96,8 +97,8 @@ DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
   bone_begins_ = torch::tensor(begins, torch::kInt64).to(device_);
 }
 
-// The truth goes into the frame that was found from the input, not into its own. So errors of root
-// and heading stay in the loss, and the network can repair them.
+// The truth is transformed into the body's frame of the input. Errors of root and heading thus
+// remain in the loss, and the network can correct them.
 DenoiseTask::Example DenoiseTask::example_of(const Pair& pair) const {
   const DenoiseFeatures features = denoise_features(layout_, pair.input);
   std::vector<float> truth = pair.truth;
@@ -108,8 +109,8 @@ DenoiseTask::Example DenoiseTask::example_of(const Pair& pair) const {
           to_torch(std::vector<float>(pair.valid.begin(), pair.valid.end()), {frames, joints})};
 }
 
-// The body is mirrored in its own space and its features are computed anew, because the body's
-// frame changes sides too.
+// The body is mirrored in the world and its features are computed again, because the body's frame
+// is mirrored, too.
 DenoiseTask::Example DenoiseTask::mirrored(const Pair& pair) const {
   Pair other = pair;
   mirror(other.input, input_partners_);
@@ -140,7 +141,8 @@ void DenoiseTask::set_scales() {
   for (const auto& variants : examples_) {
     for (const Example& one : variants) {
       inputs.push_back(one.input);
-      // Sums in double: a float would lose digits over hundreds of thousands of frames.
+      // The sums are double, because a float would lose digits over hundreds of thousands of
+      // frames.
       const auto weights = one.valid.unsqueeze(-1);
       const auto offsets = ((one.truth - one.base) * weights).to(torch::kFloat64).sum(0);
       const auto counts = weights.to(torch::kFloat64).sum(0);
@@ -154,7 +156,7 @@ void DenoiseTask::set_scales() {
   scale.slice(0, 0, positions).clamp_min_(least_position_scale);
   if (training_.one_scale) scale.slice(0, 0, positions).fill_(training_.answer_scale);
   scale.slice(0, positions, 2 * positions).clamp_min_(least_step_scale);
-  // States are between 0 and 1 already.
+  // States are not scaled, because they are between 0 and 1 already.
   scale.slice(0, 2 * positions).fill_(1.0);
   use_scales({values_of(all.mean(0)), values_of(scale), values_of(sum / count.clamp_min(1.0))});
 }
@@ -166,7 +168,7 @@ void DenoiseTask::put_truth_in(Example& one) const {
   const auto inputs = inputs_of_outputs(layout_);
   const auto mean = to_torch(scales_.input_mean, {whole(scales_.input_mean.size())});
   const auto offsets = one.truth - (one.base + answer_mean_.cpu());
-  // Backwards, so that the first output is written last and wins.
+  // The loop runs backwards, so that the first output is written last and remains.
   for (std::size_t j = inputs.size(); j-- > 0;) {
     const std::int64_t begin = 3 * whole(inputs[j]);
     auto channels = one.input.slice(1, begin, begin + 3);
@@ -191,7 +193,8 @@ DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step,
     const auto& variants = examples_[below(0, examples_.size())];
     const Example& one = variants[below(1, variants.size())];
     const std::int64_t frames = one.input.size(0);
-    // A stretch shorter than the crop is taken whole; its repeated rows get the weight 0 below.
+    // If a stretch is shorter than the crop, all of it is used; its repeated rows get the weight 0
+    // below.
     const auto most = static_cast<std::size_t>(std::max<std::int64_t>(frames - training_.crop, 0));
     const std::int64_t begin = whole(below(2, most + 1));
     input.push_back(rows(one.input, begin, training_.crop));
@@ -209,7 +212,7 @@ DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step,
 
 torch::Tensor DenoiseTask::answers(const TorchNetwork& network, const torch::Tensor& input,
                                    const torch::Tensor& base, bool training) const {
-  // The same arithmetic as Denoiser::answer_of(), so that training and use agree.
+  // The arithmetic is that of Denoiser::answer_of(), so that training and use agree.
   const auto out = network.forward((input - input_mean_) / input_scale_, training);
   const auto positions = out.slice(2, 0, whole(layout_.answers())).reshape(base.sizes());
   return base + answer_mean_ + positions * training_.answer_scale;
@@ -225,7 +228,7 @@ torch::Tensor DenoiseTask::weigh(const Batch& batch, const BatchPart& part,
   };
   auto loss = weights.distance * mean_of(lengths_of(error), valid);
   if (weights.square > 0.0) {
-    // Divided by 100: cm^2 become dm^2, the unit of DenoiseLoss::square.
+    // The division by 100 converts cm^2 to dm^2, the unit of DenoiseLoss::square.
     loss = loss + weights.square * mean_of(error.pow(2).mean(-1), valid) / 100.0;
   }
   const auto n = batch.valid.size(1);
@@ -249,8 +252,8 @@ torch::Tensor DenoiseTask::weigh(const Batch& batch, const BatchPart& part,
            weights.bone * mean_of((bones(answer) - bones(batch.truth)).abs(), both * bone_weights_);
   }
   if (spread.defined()) {
-    // One spread (cm) for three axes; the gradient does not flow into the error. A normal
-    // distribution would let a joint that the Kinect puts a metre off outweigh everything else.
+    // The spread (cm) is the same for three axes. No gradient flows through it into the error. With
+    // a normal distribution, a joint that the Kinect puts a metre off would outweigh all others.
     const auto square = error.detach().pow(2).sum(-1) * torch::exp(-2.0 * spread);
     const auto likelihood =
         3.0 * spread + 0.5 * (student_freedom + 3.0) * torch::log1p(square / student_freedom);
@@ -292,8 +295,8 @@ torch::Tensor DenoiseTask::first_answer() const {
   return torch::cat({zeros, 0.5 * torch::log(of_an_axis.clamp_min(1e-4))});
 }
 
-// Only the positions are used, and only frames in which all joints of the truth are valid. Targets
-// are in the unit of the network's output.
+// Only the positions are used as input, and only frames in which all joints of the truth are valid.
+// Targets are in the unit of the network's output.
 LinearAnswer DenoiseTask::linear_answer() const {
   const std::int64_t positions = 3 * whole(layout_.inputs.size()),
                      joints = whole(layout_.outputs.size());
@@ -319,7 +322,7 @@ double DenoiseTask::spread_factor(const TorchNetwork& network) const {
   torch::NoGradGuard guard;
   std::vector<torch::Tensor> ratios;
   for (const auto& variants : examples_) {
-    // The pair itself, without its mirror image.
+    // The pair itself is used, without its mirror image.
     const Example& one = variants.front();
     const auto input = one.input.unsqueeze(0).to(device_), base = one.base.unsqueeze(0).to(device_);
     const auto out = network.forward((input - input_mean_) / input_scale_, false);
@@ -333,8 +336,8 @@ double DenoiseTask::spread_factor(const TorchNetwork& network) const {
   return sorted[sorted.size(0) * 9 / 10].item<double>() / radius_90;
 }
 
-/// The mean error of position plus half that of the second difference, cm, over the validation
-/// pairs.
+/// The mean error of position plus half the mean error of the second differences, cm, over the
+/// validation pairs.
 std::optional<double> DenoiseTask::judge(const TorchNetwork& network) {
   if (judged_.empty()) return std::nullopt;
   torch::NoGradGuard guard;

@@ -14,16 +14,16 @@
 
 namespace kinalign {
 
-/// Weights of the terms of the loss. Lengths are in centimetres.
-/// Defaults are those of our own method; other methods set the terms of their papers.
+/// Weights of the terms of the loss. Lengths are in centimetres. The defaults are those of our own
+/// method `refine`; other methods set the terms of their publications.
 struct DenoiseLoss {
   double distance = 1.0;      // mean distance of joints
   double square = 0.0;        // mean square in dm^2, used by BRA and CNN
   double acceleration = 0.5;  // mean distance of second differences
   double bone = 0.2;          // mean difference of bone lengths
-  double smooth = 0.0;        // mean length of the answer's second differences
-  double spread = 0.1;  // negative log likelihood of the stated spread, if the network states one
-  double hands = 1.0;   // factor for wrists, hands and their bones
+  double smooth = 0.0;        // mean length of the output's second differences
+  double spread = 0.1;        // negative log likelihood of the spread, if the network outputs it
+  double hands = 1.0;         // factor for wrists, hands and their bones
   double hidden = 0.0;  // BRA-P: squared difference of the features of the network of clean motion
 };
 
@@ -36,7 +36,8 @@ struct DenoiseTraining {
   /// The last Jout channels are the logarithm of each joint's spread, cm.
   bool states_spread = false;
   double answer_scale = 0.05;  // metres per unit of the network's output
-  /// `answer_scale` is also the scale of all input positions; else each channel has its own.
+  /// True: `answer_scale` also scales all input positions. False: each input channel has its own
+  /// scale.
   bool one_scale = false;
   bool from_truth = false;  // replace the input's joints by the truth where the truth is valid
 };
@@ -47,13 +48,14 @@ struct DenoiseScales {
   std::vector<float> answer_mean;              // [3 Jout] m, mean of truth minus base
 };
 
-/// Weights [Jout] of the joints in a loss. An output that is a joint of the Kinect counts 1. Other
-/// outputs that share one input joint count 1 together: otherwise the forty finger joints of a suit
-/// would be two thirds of the loss, and no Kinect sees them. `hands`: factor for wrists and hands.
+/// Weights [Jout] of the joints in a loss. An output that is a joint of the Kinect counts 1. All
+/// other outputs that share one input joint count 1 together. Otherwise the forty finger joints of
+/// a suit, which no Kinect sees, would be two thirds of the loss. `hands`: factor for wrists and
+/// hands.
 std::vector<float> weights_of_outputs(const DenoiseLayout& layout, double hands);
 
 /// Features of all pairs are computed once, in the constructor; a step only cuts crops from them.
-/// Scales come from the training pairs alone, so that judged people stay unknown.
+/// The scales come from the training pairs alone, so they contain nothing of the validation people.
 class DenoiseTask : public TrainingTask {
  public:
   /// `learnt`: pairs to train on. `judged`: pairs of other people for validation; may be empty.
@@ -63,36 +65,35 @@ class DenoiseTask : public TrainingTask {
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override;
   std::optional<double> judge(const TorchNetwork& network) override;
 
-  /// The answers [B,T,Jout,3] m in the body's frame, for features from denoise_features().
+  /// The network's joints [B,T,Jout,3] m in the body's frame, for features from denoise_features().
   torch::Tensor answers(const TorchNetwork& network, const torch::Tensor& input,
                         const torch::Tensor& base, bool training) const;
 
-  /// The output of a network whose answer is the base: zeros, and the logarithm of each joint's
-  /// actual spread about the base. With another initial spread the likelihood would outweigh all
-  /// other losses at first.
+  /// The output with which the network returns its base joints: zeros, and the logarithm of each
+  /// joint's actual spread about the base. With another initial spread the likelihood would at
+  /// first outweigh all other terms of the loss.
   torch::Tensor first_answer() const;
 
-  /// Ridge regression from the positions of nine frames to the answers, over all training pairs. If
-  /// a spread is stated, the bias contains the logarithm of each joint's spread about the
-  /// regression.
+  /// Ridge regression from the positions of nine frames to the network's output, over all training
+  /// pairs. If the network outputs a spread, the bias contains the logarithm of each joint's spread
+  /// about the regression.
   LinearAnswer linear_answer() const;
 
-  /// The factor for the stated spread that puts 90 % of the training pairs within the 90 % radius;
-  /// 1 if no spread is stated.
+  /// The factor of the network's spread with which 90 % of the training joints are within the 90 %
+  /// radius; 1 if the network outputs no spread.
   double spread_factor(const TorchNetwork& network) const;
 
   const DenoiseScales& scales() const { return scales_; }
   /// Replaces the scales found from the pairs by those of a model, to continue its training.
   void use_scales(DenoiseScales scales);
-  /// Sets the features for the loss `hidden`: a function of answers [B,T,3 Jout] m in the body's
+  /// Sets the features for the loss `hidden`: a function of joints [B,T,3 Jout] m in the body's
   /// frame.
   void compare_features(std::function<torch::Tensor(const torch::Tensor&)> features) {
     features_ = std::move(features);
   }
 
  private:
-  /// The features of one sequence.
-  /// A whole stretch on the CPU; batches are moved to the device when they are drawn.
+  /// The features of one whole stretch, on the CPU. Batches are moved to the device when drawn.
   struct Example {
     // `valid` is 0 or 1 and serves as a weight in each mean.
     torch::Tensor input, base, truth, valid;  // [T,C], [T,Jout,3], [T,Jout,3], [T,Jout]
@@ -102,8 +103,8 @@ class DenoiseTask : public TrainingTask {
   };
   Example example_of(const Pair& pair) const;
   Example mirrored(const Pair& pair) const;
-  /// Finds the mean and the deviation of each input channel, and the answers' mean offset from the
-  /// base, over all examples.
+  /// Finds the mean and the deviation of each input channel, and the mean offset of the truth from
+  /// the base, over all examples.
   void set_scales();
   void put_truth_in(Example& one) const;
   Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;

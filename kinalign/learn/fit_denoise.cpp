@@ -29,7 +29,7 @@ DenoiseModel begun_model(const DenoiseMethod& method, const DenoiseLayout& layou
 
 }  // namespace
 
-// A residual that begins at 0 makes the network start as good as its base.
+// The network outputs corrections of its base. If they begin at 0, it starts as good as its base.
 void begin_network(const DenoiseMethod& method, const DenoiseTask& task, TorchNetwork& network) {
   if (method.begins == Begins::as_base) network.zero_last(task.first_answer());
   if (method.begins != Begins::linear) return;
@@ -84,7 +84,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   if (method.perceptual) {
     clean =
         KA_TRY(fit_clean_motion(layout, divided.learnt, options.training, options.device, hooks));
-    // Fixed, so that the first network can't please the loss by changing its judge.
+    // The second network is fixed; otherwise training could lower the loss by changing its
+    // features.
     for (auto& [name, tensor] : clean->tensors()) tensor.set_requires_grad(false);
     task.compare_features(
         [&](const torch::Tensor& answers) { return motion_features(*clean, answers); });
@@ -93,7 +94,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
       put_tensors(*clean, "second.", out.model.tensors);
     }
   }
-  // Seeded here and not earlier, because fit_clean_motion() draws from the same generator.
+  // The generator is seeded here and not earlier, because fit_clean_motion() draws from it, too.
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
   if (from == nullptr) begin_network(method, task, network);
@@ -101,8 +102,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   network.to(options.device);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
   if (method.training.states_spread) {
-    // The network is too sure on people that it has learnt; the ratio of ridge's errors corrects
-    // that for unseen people.
+    // On people that it was trained on, the network's spread is too small. The ratio of the ridge
+    // regression's errors on unseen and on known people corrects this.
     out.model.spread_factor = task.spread_factor(network) * unseen_ratio(layout, divided.learnt);
   }
   out.model.architecture = network.architecture();

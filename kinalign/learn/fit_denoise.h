@@ -19,8 +19,8 @@ struct FitOptions {
   torch::Device device = torch::kCPU;
 };
 
-/// Pairs to train on, and pairs to judge the network during training.
-/// The two parts should not share people, else the judgement rewards a network for knowing them.
+/// Pairs to train on (`learnt`), and pairs for validation (`judged`). Both should not contain the
+/// same person, because the validation error would then be too small.
 struct DividedPairs {
   std::vector<Pair> learnt, judged;
 };

@@ -32,7 +32,7 @@ void LinearFit::add(const torch::Tensor& input, const torch::Tensor& target,
 LinearAnswer LinearFit::solved(double penalty) const {
   const std::int64_t width = kernel_ * channels_, answers = moment_.size(1);
   auto penalties = torch::full({width + 1}, penalty, torch::kFloat64);
-  // The bias is not penalised; this keeps the system solvable without rows.
+  // The bias gets only this small penalty, which keeps the system solvable if no row was added.
   penalties[width] = 1e-6;
   const auto weights = torch::linalg_solve(gram_ + torch::diag(penalties), moment_);
   // The squared error follows from the same sums: y'y - 2 w'm + w'G w.

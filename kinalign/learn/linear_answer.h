@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The linear map with which a correcting network begins: ridge regression on a few frames (Hoerl
-// and Kennard, 1970), in closed form.
+// A linear map as the start of a network that outputs corrections: ridge regression on a few frames
+// (Hoerl and Kennard, 1970), in closed form.
 #pragma once
 
 #include <torch/torch.h>

@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-// In the picture's units; right and left are wide enough for the labels of both axes.
+// In the picture's units. `right` and `left` are wide enough for the labels of both axes.
 constexpr double width = 640.0, height = 320.0, left = 70.0, right = 70.0, top = 40.0,
                  bottom = 45.0;
 

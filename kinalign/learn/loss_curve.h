@@ -9,10 +9,9 @@
 
 namespace kinalign {
 
-/// Plots the loss over the steps on a logarithmic axis, and the judgements on an axis of their own
-/// from their least to their greatest value. Without points only the axes are drawn.
-/// A loss falls by powers of ten, so a linear axis would show only its beginning. The file needs no
-/// script and no font of its own.
+/// Plots the loss over the steps on a logarithmic axis, because a loss falls by powers of ten. The
+/// validation errors have a separate axis, from the smallest to the largest. Without points only
+/// the axes are drawn. The picture contains no script and no font.
 std::string loss_curve(const std::vector<TrainingPoint>& points, const std::string& title);
 
 }  // namespace kinalign

@@ -8,15 +8,15 @@
 
 namespace kinalign {
 
-/// Lengths of vectors [...,3], smooth at zero.
-/// The square root has no finite gradient at 0; with vectors in cm the constant stands for 0.1 mm.
+/// Lengths of vectors [...,3]. The constant keeps the gradient of the square root finite at 0. For
+/// vectors in cm it stands for 0.1 mm.
 inline torch::Tensor lengths_of(const torch::Tensor& vectors) {
   return (vectors.pow(2).sum(-1) + 1e-4).sqrt();
 }
 
 /// The weighted mean of `values`; 0 if all weights are 0. For a part of a batch: the part's
-/// contribution to the mean over the batch.
-/// Weights are summed over all processes and values are not: gradients of the parts then add up.
+/// contribution to the mean over the batch. The weights are summed over all processes and the
+/// values are not, so that the gradients of the parts add up.
 inline torch::Tensor weighted_mean(const torch::Tensor& values, const torch::Tensor& weights,
                                    const BatchShare& share = {}) {
   return (values * weights).sum() / share.total(weights.sum()).clamp_min(1e-6);

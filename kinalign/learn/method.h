@@ -10,27 +10,28 @@
 
 namespace kinalign {
 
-/// The output of a network before its training.
+/// The weights of a network before its training.
 enum class Begins : std::uint8_t {
   as_drawn,  // random weights
-  as_base,   // the base plus the mean offset
+  as_base,   // weights with which the network outputs the base plus the mean offset
   linear,    // DenoiseTask::linear_answer(); the network is a sum of (slice, conv) and a correction
 };
 
-/// A network that cleans skeletons.
-/// All in which two methods differ. DenoiseTask and train() are the same for all of them.
+/// A method that cleans skeletons. Methods differ only in these members; DenoiseTask and train()
+/// are the same for all.
 struct DenoiseMethod {
   std::string_view name, summary, source;
-  /// The network from the layout's channels to its answers, plus one channel per joint if it states
-  /// a spread.
+  /// The network from the layout's channels to its outputs: three for each joint, plus one for each
+  /// joint if the network outputs a spread.
   Architecture (*architecture)(const DenoiseLayout& layout);
   DenoiseTraining training;
   TrainingOptions options;
-  /// The network outputs corrections of the smoothed input joint; false: positions.
+  /// True: the network outputs corrections of the smoothed input joints. False: it outputs
+  /// positions.
   bool from_base = true;
   Begins begins = Begins::as_drawn;
   bool perceptual = false;  // BRA-P: trains a network of clean motion first, for the loss
-  bool has_second = false;  // that network also refines the answers at use
+  bool has_second = false;  // the network of clean motion also refines the joints in use
 };
 
 }  // namespace kinalign

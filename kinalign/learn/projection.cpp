@@ -58,7 +58,7 @@ torch::Tensor in_world(const FrameTensors& frames, const torch::Tensor& body) {
   return turned + frames.root;
 }
 
-/// The mean of `values` where `weights` is 1; 0 if it is 1 nowhere.
+/// The mean of `values` where `weights` is 1; 0 if no weight is 1.
 torch::Tensor mean_where(const torch::Tensor& values, const torch::Tensor& weights) {
   return (values * weights).sum() / weights.sum().clamp_min(1.0);
 }
@@ -69,7 +69,7 @@ torch::Tensor mean_of(const torch::Tensor& values) {
 }
 
 /// A model's network in two halves: from the input to its code, and from the code to the motion.
-/// The two halves meet at the unpool: the pooled code before it is what the steps of Adam change.
+/// The halves meet at the unpool. Adam changes the pooled code before it.
 class Autoencoder {
  public:
   Autoencoder(const DenoiseModel& model, const DenoiseFeatures& features)
@@ -77,8 +77,8 @@ class Autoencoder {
     const auto& layers = model.architecture.layers;
     const std::size_t middle = unpool_of(layers);
     encoder_.assign(layers.begin(), layers.begin() + static_cast<std::ptrdiff_t>(middle));
-    // The decoder keeps the numbers of the layers, because tensors are named by them; the encoder's
-    // layers become the identity.
+    // The decoder keeps the numbers of the layers, because tensors are named by them. The layers of
+    // the encoder become the identity there.
     decoder_ = layers;
     for (std::size_t i = 0; i <= middle; ++i) decoder_[i] = {.kind = LayerKind::dropout};
     for (const Parameter& parameter : parameters(model.architecture)) {
@@ -98,7 +98,7 @@ class Autoencoder {
 
   /// The decoded motion [T,Jout,3] m in the body's frame.
   torch::Tensor motion(const torch::Tensor& code) const {
-    // The average unpool of use, not the random one of training.
+    // This is the average unpool of a network in use, not the random one of training.
     const auto unpooled = 0.5 * code.repeat_interleave(2, 1).slice(1, 0, frames_);
     const auto out = run_layers(decoder_, tensors_, unpooled);
     const std::int64_t channels = base_.size(1) * 3;
@@ -113,9 +113,9 @@ class Autoencoder {
   torch::Tensor input_, base_;
 };
 
-/// The constraints of a motion, found from the input and the answer.
-/// Lengths and path come from the answer, standing feet from the input. Feet are compared in the
-/// world, because a foot that stands still moves in the body's frame.
+/// The constraints of a motion. Bone lengths and the root's path come from the model's result,
+/// standing feet from the input. Feet are compared in the world, because a foot that stands still
+/// moves in the body's frame.
 class Constraints {
  public:
   Constraints(const DenoiseLayout& layout, const JointFrames& body, const DenoiseFeatures& features,
@@ -201,7 +201,7 @@ std::vector<std::uint8_t> standing_frames(std::span<const float> foot, double ra
   std::vector<double> heights;
   for (std::size_t t = 0; t < frames; ++t) heights.push_back(foot[3 * t + 1]);
   if (frames < 2) return out;
-  // A low quantile and not the minimum: one wrong frame must not lower the floor.
+  // A low quantile is used and not the minimum, so that one wrong frame does not lower the floor.
   const double floor_m = quantile(heights, usual_lowest);
   for (std::size_t t = 0; t < frames; ++t) {
     const float* a = &foot[3 * (t == 0 ? 0 : t - 1)];
@@ -209,7 +209,7 @@ std::vector<std::uint8_t> standing_frames(std::span<const float> foot, double ra
     const double speed = rate_hz * std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
     out[t] = speed < fastest_m_s && heights[t] < floor_m + highest_m ? 1 : 0;
   }
-  // Stands that are too short do not count.
+  // Runs of standing frames that are too short do not count.
   for (auto begin = out.begin(); begin != out.end();) {
     const auto end = std::find_if(begin, out.end(), [begin](auto one) { return one != *begin; });
     if (end - begin < least_standing) std::fill(begin, end, 0);
@@ -241,7 +241,7 @@ Result<Projected> project(const DenoiseModel& model, const JointFrames& body,
     const Constraints constraints(model.layout, body, features, answer);
     out.before = errors_of(constraints.squares(answer));
     code.set_requires_grad(true);
-    // An epsilon of 1e-5, as in the released code.
+    // The epsilon of 1e-5 is that of the released code.
     torch::optim::Adam adam({code}, torch::optim::AdamOptions(options.rate).eps(1e-5));
     for (std::int64_t step = 0; step < options.steps; ++step) {
       adam.zero_grad();

@@ -2,7 +2,7 @@
 // Constraint projection (Holden, Saito, Komura, SIGGRAPH 2016, section 6): gradient steps in the
 // hidden space of a convolutional autoencoder until the decoded motion meets constraints. Standing
 // feet do not slide, bones keep their lengths, the root keeps its path. All constraints come from
-// the input and the model's answer, so no ground truth is needed.
+// the input and the model's result, so no ground truth is needed.
 #pragma once
 
 #include "kinalign/models/denoise_model.h"
@@ -17,7 +17,7 @@ struct ProjectionOptions {
   std::int64_t steps = 50;  // number of steps of Adam
   double rate = 0.01;       // learning rate of Adam
   // Weights of mean squares in cm^2: motion of standing feet between frames, distance of roots from
-  // the answer, deviation of bones from their median length.
+  // the model's result, deviation of bones from their median length.
   double feet = 10.0, path = 10.0, bones = 1.0;
 };
 
@@ -27,10 +27,10 @@ struct ConstraintErrors {
   double path_cm = 0.0, bone_cm = 0.0;
 };
 
-/// The caller steadies the answer like any other answer (Steadier).
+/// The projected joints. The caller post-processes them like those of any method (Steadier).
 struct Projected {
-  Denoised answer;                 // in the space of the body, without the steadying
-  ConstraintErrors before, after;  // the model's answer; the projected answer
+  Denoised answer;                 // in the space of the body, not yet post-processed
+  ConstraintErrors before, after;  // of the model's result; of the projected one
 };
 
 /// True if the model's network has a hidden space: exactly one unpool in its list of layers, and no

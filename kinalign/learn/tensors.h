@@ -15,8 +15,7 @@ namespace kinalign {
 /// LibTorch counts in signed numbers.
 inline std::int64_t whole(std::size_t value) { return static_cast<std::int64_t>(value); }
 
-/// Copies the values into a tensor of that shape.
-/// The tensor owns its memory, so the vector may go away.
+/// Copies the values into a tensor of that shape, which does not depend on the vector any more.
 inline torch::Tensor to_torch(const std::vector<float>& values,
                               const std::vector<std::int64_t>& shape) {
   auto out = torch::empty(shape, torch::kFloat32);

@@ -25,9 +25,8 @@ torch::Tensor uniform(std::vector<std::int64_t> shape, double bound) {
   return torch::empty(shape).uniform_(-bound, bound);
 }
 
-/// Makes the tensors of layers; returns the number of output channels.
-/// The order of the layers decides which random numbers each tensor gets, so it is part of a
-/// result's repeatability.
+/// Makes the tensors of layers; returns the number of output channels. The order of the layers
+/// decides which random numbers each tensor gets, so another order would give other weights.
 class Maker {
  public:
   explicit Maker(Tensors& tensors) : tensors_(tensors) {}
@@ -96,8 +95,8 @@ class Maker {
       }
       tensors_[path + ".weight_hh_l0" + way] = torch::cat(squares);
       auto bias = uniform({gates * units}, bound);
-      // LSTM: input, forget, cell, output. An open forget gate lets gradients reach far back at
-      // first.
+      // The gates of an LSTM are input, forget, cell, output. A forget gate that is open at first
+      // lets gradients reach far back in time.
       if (gates == 4) bias.slice(0, units, 2 * units).fill_(1.0);
       tensors_[path + ".bias_ih_l0" + way] = bias;
       // PyTorch has two biases for each gate. One of them is enough at the start.
@@ -126,7 +125,8 @@ class Runner {
   Runner(const Tensors& tensors, std::optional<BatchPart> part) : tensors_(tensors), part_(part) {}
 
   torch::Tensor run(const Layers& layers, const std::string& path, torch::Tensor x) const {
-    // An unpool restores the length before the matching max_pool; the last pool is undone first.
+    // An unpool restores the length before the matching max_pool. The last max_pool is restored
+    // first.
     std::vector<std::int64_t> lengths;
     for (std::size_t i = 0; i < layers.size(); ++i) {
       const Layer& layer = layers[i];
@@ -215,7 +215,8 @@ class Runner {
     return x * kept;
   }
 
-  /// In training each value goes to a random one of its two frames; at use half of it goes to both.
+  /// In training each value goes to a random one of its two frames. In use half of it goes to both
+  /// frames.
   torch::Tensor unpool(const torch::Tensor& x, std::int64_t length) const {
     const auto twice = x.repeat_interleave(2, 1).slice(1, 0, length);
     if (!part_) return twice * 0.5;
@@ -241,7 +242,7 @@ class Runner {
     return out;
   }
 
-  /// Applies the branch to each channel as a sequence of its own. Overlapping windows are averaged.
+  /// Applies the branch to each channel as a separate sequence. Overlapping windows are averaged.
   torch::Tensor along_time(const Layer& layer, const std::string& path,
                            const torch::Tensor& x) const {
     const std::int64_t frames = x.size(1), window = whole(layer.window);
@@ -261,8 +262,8 @@ class Runner {
     return mean.reshape({x.size(0), x.size(2), -1}).slice(2, 0, frames).transpose(1, 2);
   }
 
-  /// cuDNN can't run recurrent layers backward from its inference form. Its training form differs
-  /// only by the dropout between layers, and each of our layers is a single one.
+  /// cuDNN can't compute gradients of recurrent layers from its inference form. Its training form
+  /// differs only by the dropout between layers, and each of our recurrent layers is a single one.
   static bool has_gradients() { return torch::GradMode::is_enabled(); }
 
   static torch::Tensor state(const Layer& layer, const torch::Tensor& x) {

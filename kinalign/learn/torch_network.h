@@ -14,8 +14,8 @@
 
 namespace kinalign {
 
-/// Values agree with those of infer's Network up to rounding, so a model that was trained here runs
-/// without LibTorch. Tensors are kept by name, as the file of a model has them.
+/// Its outputs agree with those of infer's Network up to rounding, so a model that was trained here
+/// runs without LibTorch. Tensors have the names that a model's file has.
 class TorchNetwork {
  public:
   /// Draws the weights from torch's generator, which must be seeded before: uniform within
@@ -23,14 +23,14 @@ class TorchNetwork {
   /// 1.
   explicit TorchNetwork(Architecture architecture);
 
-  /// From [B,T,inputs] to [B,T,outputs]. `training`: with dropout.
+  /// Maps [B,T,inputs] to [B,T,outputs]. `training`: with dropout.
   torch::Tensor forward(const torch::Tensor& input, bool training) const;
   /// In training, for a part of a batch. The random dropout is that of the whole batch.
   torch::Tensor forward(const torch::Tensor& input, const BatchPart& part) const;
 
   /// Sets the weights of the last linear or conv layer to 0, so that the network outputs `bias`
-  /// [outputs], or 0 if it is undefined.
-  /// A network that corrects an answer then begins without a correction.
+  /// [outputs], or 0 if `bias` is undefined. A network that outputs corrections then begins without
+  /// a correction.
   void zero_last(const torch::Tensor& bias = {});
   void to(torch::Device device);
 

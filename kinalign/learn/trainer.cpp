@@ -15,12 +15,12 @@ using WeightMap = std::map<std::string, torch::Tensor>;
 
 /// Adam's decay of the first and the second moment.
 constexpr double first_decay = 0.9, second_decay = 0.98, epsilon = 1e-8;
-// The average follows quickly at first and slowly later.
+// The moving average of the weights uses a smaller decay at first, so that it follows quickly.
 constexpr double average_decay = 0.999;
 // A single step that is not finite is skipped; several in a row mean that training has failed.
 constexpr int most_failures = 5;
-// Checkpoints usually come at multiples of this number, just after a point. No sum is then open
-// when a state is stored.
+// A point of the log is written at multiples of this number of steps. Checkpoints usually follow a
+// point, so that no sum is incomplete when a state is stored.
 constexpr std::int64_t point_every = 50;
 
 /// Moves from `from` to `to` along half a cosine; `share` goes from 0 to 1.
@@ -60,8 +60,8 @@ void begin(const TorchNetwork& network, TrainingState& state) {
   state.average = copy_of(network.tensors());
 }
 
-/// The norm of all gradients together.
-/// In double and tensor by tensor, in the order of names, so that the result is repeatable.
+/// The norm of all gradients together. It is summed in double, tensor by tensor in the order of
+/// names, so that the result is repeatable.
 double gradient_norm(const WeightMap& tensors) {
   double sum = 0.0;
   for (const auto& [name, tensor] : tensors) {
@@ -94,13 +94,13 @@ void step_weights(TorchNetwork& network, const TrainingOptions& options, double 
   }
 }
 
-/// Judges the network with the weights that would be kept, and stores the best ones.
+/// Measures the validation error with the weights that would be kept, and stores the best weights.
 std::optional<double> judge(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState& state) {
-  // Training goes on from the plain weights, so they come back after the judgement.
+  // Training goes on from the weights without the average, so they are restored afterwards.
   const WeightMap now = copy_of(network.tensors());
   if (options.average) put_weights(state.average, network);
-  // The first process judges for all, so that all stop at the same step.
+  // The first process decides for all, so that all processes stop at the same step.
   const BatchShare& share = task.share();
   const auto judgement = share.of_first(share.is_first() ? task.judge(network) : std::nullopt);
   if (!judgement || !state.best_judgement || *judgement < *state.best_judgement) {
@@ -136,7 +136,7 @@ double joined(double loss, WeightMap& tensors, const BatchShare& share) {
   for (auto& [name, tensor] : tensors) {
     if (tensor.grad().defined()) pieces.push_back(tensor.grad().flatten().to(torch::kCPU));
   }
-  // Loss and gradients travel in one tensor: one message between the processes for each step.
+  // Loss and gradients are sent in one tensor, so each step needs one message between processes.
   const torch::Tensor all = share.total(torch::cat(pieces));
   std::int64_t at = 1;
   for (auto& [name, tensor] : tensors) {
@@ -157,8 +157,7 @@ std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
     if (tensor.grad().defined()) tensor.mutable_grad().reset();
   }
   const auto step = static_cast<std::uint64_t>(state.step);
-  // The seed of each step is a function of its number, so a run that goes on draws the same
-  // dropout.
+  // The seed of each step is a function of its number, so a continued run draws the same dropout.
   torch::manual_seed(mix64(mix64(options.seed) ^ step));  // for dropout
   const torch::Tensor loss = task.loss(network, options.seed, step);
   loss.backward();
@@ -189,8 +188,9 @@ double rate_at(const TrainingOptions& options, std::int64_t step) {
   return eased(options.rate, first / 1e4, std::min(1.0, (at - peak) / std::max(1.0, end - peak)));
 }
 
-// Each turn: gradients, a step, a judgement if it is due, a point of the log, a checkpoint. The
-// checkpoint comes last, so that it contains the judgement and the point of its step.
+// Each turn computes gradients, makes a step, validates if due, writes a point of the log and
+// stores a checkpoint. The checkpoint comes last, so that it contains the validation error and the
+// point.
 Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState state,
                             const TrainingHooks& hooks) {
@@ -218,7 +218,7 @@ Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
     if (last || judgement || is_due(state.step, point_every)) {
       add_point(options, judgement, sums, state);
     }
-    // `weights` of the state is brought up to date only here; all else in it is always current.
+    // Only here `weights` of the state is updated; all other members are always current.
     if (!last && hooks.keep && is_due(state.step, hooks.every)) {
       state.weights = copy_of(network.tensors());
       KA_TRY(hooks.keep(state));

@@ -17,8 +17,8 @@
 
 namespace kinalign {
 
-/// A training task: batches with their loss, and a judgement of the network.
-/// train() calls loss() once a step, and judge() in the first process only.
+/// A training task: batches with their loss, and a validation of the network. train() calls loss()
+/// once a step, and judge() in the first process only.
 class TrainingTask {
  public:
   TrainingTask() = default;
@@ -39,21 +39,21 @@ class TrainingTask {
   BatchShare share_;
 };
 
-/// Defaults are a method's usual choice; each method sets its own, and `kinalign train` may change
-/// steps, rate, seed, judgements and patience.
+/// Defaults are the usual choice; each method sets its own values. `kinalign train` may change
+/// steps, rate, seed, validation and patience.
 struct TrainingOptions {
   std::int64_t steps = 1200;
   double rate = 2e-3;            // the highest learning rate
   double rise = 0.3;             // share of the steps in which the rate rises
   double weight_decay = 1e-2;    // applies to matrices only
   double longest_gradient = 1;   // norm of the gradient; longer gradients are scaled down to it
-  bool average = true;           // judge and keep the moving average of the weights
-  std::int64_t judge_every = 0;  // steps between judgements; 0: only at the end
-  std::int64_t patience = 0;     // stop after so many judgements without improvement; 0: never
+  bool average = true;           // validate and keep the moving average of the weights
+  std::int64_t judge_every = 0;  // steps between validations; 0: only at the end
+  std::int64_t patience = 0;     // stop after so many validations without improvement; 0: never
   std::uint64_t seed = 1;
 };
 
-/// A line of the log. A judgement is there only at steps at which the network was judged.
+/// A line of the log. `judgement` is the validation error, at steps at which it was measured.
 struct TrainingPoint {
   std::int64_t step = 0;
   double loss = 0.0;  // mean since the last point

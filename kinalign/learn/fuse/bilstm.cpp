@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's bidirectional LSTM (figure 10); the paper gives no sizes. One network is trained for
-// both devices, with each of them missing at times. Two more are trained for one device each.
+// The bidirectional LSTM of the HFUT-MMD paper (README.md; figure 10 there). One network is trained
+// for both devices, each of which is missing at times. Two more are trained for one device each.
 #include "kinalign/learn/fuse/fuse_methods.h"
 
 namespace kinalign {
 
 namespace {
 
-// Our choice, because the paper gives none.
+// These sizes are our choice, because the paper gives none.
 constexpr std::size_t bilstm_units = 192, bilstm_width = 256;
 
 /// The layers of the network.
@@ -26,8 +26,8 @@ Architecture bilstm_architecture(const FuseLayout& layout) {
 
 }  // namespace
 
-// Three networks for the paper's comparison. Those of one device show what the device gives if no
-// weights are shared.
+// Three networks for the comparison in the HFUT-MMD paper. The networks for one device show the
+// accuracy of that device without shared weights.
 FuseMethod bilstm_method(Devices devices) {
   FuseMethod out{.name = "bilstm",
                  .summary = "the paper's bidirectional LSTM on a Kinect and nodes",
@@ -35,7 +35,7 @@ FuseMethod bilstm_method(Devices devices) {
                  .architecture = bilstm_architecture,
                  .training = {},
                  .options = {.steps = 900, .rate = 2e-3, .rise = 0.1, .average = false}};
-  // The paper names no variation of its data, so crops stay as they are.
+  // The paper mentions no augmentation, so crops are not varied.
   out.training.variety = no_variety;
   out.training.draws.devices = devices;
   if (devices == Devices::kinect) {

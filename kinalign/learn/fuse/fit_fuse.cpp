@@ -15,8 +15,8 @@ Result<FuseFit> fit_fuse(const FuseMethod& method, const FuseData& data, const F
   const FuseLayout layout = fuse_layout(data);
   KA_TRY(validate(layout));
   FuseTask task(layout, method.training, data, options.device);
-  // After the task, which draws only from its own streams: the first weights depend on the seed
-  // alone.
+  // The generator is seeded after the task is made. The task draws from its own streams, so the
+  // first weights depend on the seed alone.
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
   if (from != nullptr) KA_TRY(go_on_from(*from, task, network));

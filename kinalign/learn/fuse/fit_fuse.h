@@ -13,7 +13,7 @@ struct FuseFit {
   std::vector<TrainingPoint> points;
 };
 
-/// The data's nodes with our channels, and all joints of the Kinect that fusion uses.
+/// The layout for the nodes of `data` and all joints of the Kinect that fusion uses.
 FuseLayout fuse_layout(const FuseData& data);
 
 /// `from`: a model of the same method to continue from.

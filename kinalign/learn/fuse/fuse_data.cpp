@@ -17,7 +17,7 @@ namespace kinalign {
 namespace {
 
 constexpr double kinect_hz = 30.0;
-// Places of a Kinect before a person, in its working range.
+// Limits for the place of a simulated Kinect in front of a person, within its working range.
 constexpr double nearest_m = 2.2, farthest_m = 3.2, camera_height_m = 0.9;
 constexpr double most_yaw_deg = 45.0;
 constexpr std::int64_t tick_100ns = 333'333;  // Kinect time between frames
@@ -50,7 +50,8 @@ std::vector<double> true_joints(const PoseBody& body, const PoseSequence& sequen
     const Eigen::Quaterniond root = roots[t].cast<double>();
     for (const std::size_t j : which) {
       const Eigen::Map<const Eigen::Vector3f> about_root(&places[3 * (t * joints + j)]);
-      // From the root's space into the world: bone_positions() knows neither place nor heading.
+      // bone_positions() knows neither place nor heading, so positions are moved from the root's
+      // space into the world here.
       const Vec3 place = sequence.places[t] + root * about_root.cast<double>();
       out.insert(out.end(), {place.x(), place.y(), place.z()});
     }
@@ -74,7 +75,8 @@ RigidTransform camera_of(const PoseSequence& sequence, const RandomStream& rando
   const double distance = nearest_m + random.uniform(0, 1) * (farthest_m - nearest_m);
   const Vec3 to_camera = Eigen::AngleAxisd(yaw, Vec3::UnitY()) * front.normalized();
   Eigen::Matrix3d axes;
-  // The space of a Kinect: z out of the camera, y up. `axes` turns it into the world.
+  // The space of a Kinect has z out of the camera and y up. `axes` rotates this space into the
+  // world.
   axes.col(2) = -to_camera;
   axes.col(1) = Vec3::UnitY();
   axes.col(0) = axes.col(1).cross(axes.col(2));
@@ -128,7 +130,7 @@ JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
     ticks.push_back({number, static_cast<double>(t) / kinect_hz, number * tick_100ns});
   }
   const auto joints_at = [&](double seconds, std::span<double> out) {
-    // The camera asks for times between frames, too; the nearest frame answers.
+    // The simulated camera also asks for times between frames; it gets the nearest frame.
     const double at =
         std::clamp(std::round(seconds * kinect_hz), 0.0, static_cast<double>(frames - 1));
     const auto from =
@@ -142,10 +144,9 @@ JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
 
 namespace {
 
-/// Simulates Kinects for all parts. A person has the same number in all parts, so the noise of that
-/// person is the same.
-/// `take_` counts all draws, so each one has its own camera and random errors of its own besides
-/// the person's.
+/// Simulates Kinects for all parts of the split. A person has the same number in all parts, so the
+/// noise of that person is the same. `take_` counts all draws, so each draw has its own camera and
+/// further random errors.
 class SimulatedKinects {
  public:
   SimulatedKinects(const PoseBody& body, std::uint64_t seed) : body_(body), seed_(seed) {}
@@ -182,7 +183,8 @@ Result<std::vector<std::vector<JointFrames>>> own_kinect(
     JointFrames& own = out.emplace_back().emplace_back();
     own.joints = names.size();
     for (std::size_t t = 0; t < one.frames(); ++t) {
-      // A sequence has fewer frames than its stretch: another rate, and both ends cut off.
+      // The sequence has fewer frames than its stretch, because its rate is lower and both ends are
+      // cut off.
       const std::size_t row = one.first_row + t * one.rows_a_frame;
       const auto at = static_cast<std::ptrdiff_t>(row * names.size());
       const auto end = at + static_cast<std::ptrdiff_t>(names.size());
@@ -196,7 +198,7 @@ Result<std::vector<std::vector<JointFrames>>> own_kinect(
 
 }  // namespace
 
-// pose_data() gives people, nodes and truth. The Kinect is added for the same frames.
+// People, nodes and truth come from pose_data(). The Kinect is added for the same frames.
 Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
                            const std::vector<std::string>& nodes, const FuseDataOptions& options) {
   FuseData out;

@@ -12,8 +12,9 @@
 
 namespace kinalign {
 
-/// The Kinect's draws stand beside the sequences, because simulating a Kinect takes longer than
-/// cutting a crop. So it is done once, and a crop chooses one of the draws.
+/// Sequences of people with nodes (`pose`) and the Kinect's joints for them. Simulating a Kinect
+/// takes longer than cutting a crop. The Kinects are therefore simulated once, and each crop
+/// chooses one of them.
 struct FuseData {
   PoseData pose;
   /// For each sequence of the part with that name: the Kinect's joints in the world of the nodes,
@@ -27,7 +28,7 @@ struct FuseDataOptions {
   std::string kinect;     // name of the file's Kinect stream; empty: simulate
 };
 
-/// Reads sequences like pose_data(). Fails, too, if options.kinect names a stream that is absent. A
+/// Reads sequences like pose_data(). Also fails if options.kinect names a stream that is absent. A
 /// simulated Kinect stands 2.2 to 3.2 m from the middle of a sequence, within 45 degrees of the
 /// person's front.
 Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,

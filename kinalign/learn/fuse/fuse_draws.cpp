@@ -10,8 +10,8 @@ namespace kinalign {
 
 namespace {
 
-/// Lanes of the random stream, one for each decision.
-/// With a lane of its own, a decision does not change if another one is left out.
+/// Lanes of the random stream, one for each decision. Each decision has its own lane, so it does
+/// not change if another decision is left out.
 enum Lane : std::uint64_t {
   lane_heading,
   lane_device,
@@ -29,7 +29,7 @@ void lose_a_part(FuseInput& input, const FuseLayout& layout, const FuseDraws& dr
   const double length =
       layout.nodes.rate_hz * (draws.least_lost_s + random.uniform(0, lane_length) *
                                                        (draws.most_lost_s - draws.least_lost_s));
-  // A loss may reach over the end of the crop; it is then shorter.
+  // If a loss would reach beyond the end of the crop, it is shortened.
   const auto begin = static_cast<std::size_t>(random.uniform(0, lane_begin) * frames);
   const auto end = std::min(input.frames(), begin + static_cast<std::size_t>(std::lround(length)));
   const auto one_of = [&](std::size_t count) {
@@ -61,7 +61,8 @@ void lose_kinect(JointFrames& kinect) { std::fill(kinect.seen.begin(), kinect.se
 
 void lose_nodes(NodeFrames& nodes) { std::fill(nodes.valid.begin(), nodes.valid.end(), 0); }
 
-// The order matters: errors first, then losses, then the step that a model does at use.
+// The order matters: errors first, then losses, then the step that is also done when a model is
+// used.
 FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws& draws,
                       std::uint64_t seed, std::uint64_t number) {
   // Two streams for each crop: choices, and errors of nodes.
@@ -71,7 +72,7 @@ FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws
   input.nodes = with_errors(std::move(input.nodes), errors, of_errors);
   if (draws.devices == Devices::kinect) lose_nodes(input.nodes);
   if (draws.devices == Devices::nodes) lose_kinect(input.kinect);
-  // One number decides on both devices, so that they are never lost together.
+  // One random number decides about both devices, so that both are never missing together.
   if (draws.devices == Devices::both) {
     const double device = random.uniform(0, lane_device);
     if (device < draws.without_kinect) {

@@ -14,8 +14,8 @@ namespace kinalign {
 
 enum class Devices : std::uint8_t { both, kinect, nodes };
 
-/// Modality dropout: a network that has seen each device missing serves either
-/// device alone, and both. In every crop at least one device is left.
+/// Modality dropout: each device is missing in some crops, so the trained network works with either
+/// device alone and with both. In every crop at least one device is left.
 struct FuseDraws {
   Devices devices = Devices::both;  // a device that is not listed is always missing
   NodeErrors errors{.yaw_deg = 8.0};
@@ -24,7 +24,7 @@ struct FuseDraws {
   double unknown_heading = 0.15, without_kinect = 0.2, without_nodes = 0.2, lost_part = 0.5;
   /// Share of lost parts that are a limb of the Kinect; the others are nodes.
   double lost_limb = 0.7;
-  double unknown_deg = 20.0;  // unknown headings are uniform within +- this
+  double unknown_deg = 20.0;  // unknown headings are uniform within +- this, degrees
   double least_lost_s = 0.3, most_lost_s = 5.0;
 };
 
@@ -43,7 +43,7 @@ inline constexpr std::array<KinectLimbJoints, 4> kinect_limb_joints{{
 /// Sets the joints of limb `limb` to missing in frames begin ... end - 1. `names` [J].
 void lose_limb(JointFrames& kinect, const std::vector<std::string>& names, std::size_t limb,
                std::size_t begin, std::size_t end);
-/// Positions and orientations stay in the arrays; only states and flags say that they are lost.
+/// Marks all joints or nodes as missing. Their positions and orientations stay in the arrays.
 void lose_kinect(JointFrames& kinect);
 void lose_nodes(NodeFrames& nodes);
 

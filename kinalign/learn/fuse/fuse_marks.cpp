@@ -17,11 +17,11 @@ namespace kinalign {
 
 namespace {
 
-// Fixed, so that all methods are judged on the same errors.
+// The seed is fixed, so that all methods are measured with the same errors.
 constexpr std::uint64_t fuse_marks_seed = 7;
 constexpr std::array<double, 4> hidden_s{0.5, 1.0, 2.0, 5.0};
 constexpr double between_s = 2.0;   // pause between two hidden limbs
-constexpr float invented_m = 0.2F;  // a joint farther off counts as hidden
+constexpr float invented_m = 0.2F;  // a joint that the Kinect puts farther off counts as hidden
 constexpr double heading_seconds = 60.0;
 
 enum class JointGroup : std::uint8_t { trunk, arms, legs };
@@ -59,8 +59,8 @@ void hide_limbs(const FuseLayout& layout, JointFrames& kinect) {
   const double rate_hz = layout.nodes.rate_hz;
   double at_s = 1.0;
   for (std::size_t k = 0; at_s * rate_hz < static_cast<double>(kinect.frames()); ++k) {
-    // Limbs and lengths are shifted against each other after each round, so each limb is hidden for
-    // each length in turn.
+    // The sequences of limbs and of lengths are shifted relative to each other after each round, so
+    // each limb is hidden for each length in turn.
     const double length_s = hidden_s[(k / kinect_limb_joints.size() + k) % hidden_s.size()];
     lose_limb(kinect, layout.joints, k % kinect_limb_joints.size(),
               static_cast<std::size_t>(at_s * rate_hz),
@@ -69,8 +69,8 @@ void hide_limbs(const FuseLayout& layout, JointFrames& kinect) {
   }
 }
 
-/// The rotation about the vertical from the answer's headings to the true ones.
-/// Mean of angles by their sines and cosines, because angles wrap.
+/// The rotation about the vertical from the predicted headings to the true ones. The mean angle is
+/// found from sines and cosines, because angles wrap.
 Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& predicted,
                                 const std::vector<Eigen::Quaternionf>& roots) {
   double sine = 0.0, cosine = 0.0;
@@ -84,9 +84,8 @@ Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& predicted
       Eigen::AngleAxisf(static_cast<float>(std::atan2(sine, cosine)), Eigen::Vector3f::UnitY()));
 }
 
-/// Sums the errors of a method's answers.
-/// Distances are those about the root, in directions of the world. A joint that the Kinect lacks
-/// counts in all_cm only.
+/// Sums the errors of a method's poses. Distances are relative to the root, in directions of the
+/// world. A joint that the Kinect lacks counts only in all_cm.
 class FuseScore {
  public:
   FuseScore(Devices devices, const FuseLayout& layout, const PoseBody& body)
@@ -97,7 +96,8 @@ class FuseScore {
     const auto roots = true_roots(truth);
     const auto predicted = bone_positions(body_, truth.rest_offsets, answer.rotations);
     const auto real = bone_positions(body_, truth.rest_offsets, truth.rotations);
-    // Nodes alone can't know the heading; the Kinect shows it, so its error counts there.
+    // From nodes alone the heading can't be found, so its error is removed. With a Kinect the error
+    // counts.
     const Eigen::Quaternionf turn = devices_ == Devices::nodes ? heading_turn(answer.root, roots)
                                                                : Eigen::Quaternionf::Identity();
     const std::size_t joints = body_.skeleton.joints();
@@ -148,7 +148,7 @@ class FuseScore {
   }
 
  private:
-  /// A tracked joint far from the truth is as useless as a missing one.
+  /// True if the joint is not tracked, or is tracked but too far from the truth.
   static bool is_hidden(const JointFrames& kinect, std::size_t t, std::size_t j,
                         const Eigen::Vector3f& true_place) {
     const std::size_t at = t * kinect.joints + j;
@@ -166,15 +166,16 @@ class FuseScore {
   std::size_t frames_ = 0;
 };
 
-/// Only states and flags change, so the arrays keep their shapes.
+/// Marks the data of all other devices as missing. Only states and flags change, so the arrays keep
+/// their shapes.
 FuseInput without_others(FuseInput input, Devices devices) {
   if (devices == Devices::kinect) lose_nodes(input.nodes);
   if (devices == Devices::nodes) lose_kinect(input.kinect);
   return input;
 }
 
-/// A person's sequences one after another. Each node's errors are constant over the session.
-/// Headings need tens of seconds to show, longer than a sequence, so sequences are joined.
+/// The sequences of a person one after another. Each node's errors are constant over the session.
+/// The headings can be estimated only over tens of seconds, which is longer than a sequence.
 struct Session {
   FuseInput input;
   std::vector<std::size_t> sequences;
@@ -207,7 +208,7 @@ std::map<std::string, Session> sessions_of(const FuseData& data, const NodeError
   return out;
 }
 
-/// Errors of a calibration, with all nodes present: losses come from hide_limbs() alone.
+/// The errors that a calibration leaves, with all nodes present. Only hide_limbs() causes losses.
 NodeErrors session_errors(double yaw_deg) {
   NodeErrors out;
   out.yaw_deg = yaw_deg;
@@ -268,7 +269,7 @@ Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout&
       all.add(score);
       mark.people.emplace(name, score.errors());
     }
-    // Over all frames of all people, so long sessions weigh more.
+    // This mean is over all frames of all people, so long sessions count more.
     mark.all = all.errors();
   }
   return out;
@@ -280,7 +281,7 @@ std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLay
   const auto after = static_cast<std::size_t>(heading_seconds * layout.nodes.rate_hz);
   std::vector<HeadingMark> out;
   for (const std::string& node : layout.nodes.nodes) out.push_back({.node = node});
-  // crop_of() needs the sides, although nothing is mirrored here.
+  // crop_of() needs the sides, although this function mirrors nothing.
   const Sides sides(data.pose.body, layout.nodes.nodes, layout.joints);
   const auto truths = sessions_of(data, no_node_errors());
   for (const auto& [name, session] : sessions_of(data, errors)) {
@@ -290,8 +291,7 @@ std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLay
     const FuseInput shown{crop_of(session.input.nodes, first, sides),
                           crop_of(session.input.kinect, first, sides)};
     const auto found = headings(shown);
-    // The heading of the last frame is applied to all frames: it contains all that is known after
-    // 60 s.
+    // The heading estimated for the last frame is applied to all frames, because it uses all 60 s.
     std::vector<HeadingState> last;
     for (std::size_t t = 0; t < after; ++t) {
       last.insert(last.end(), found.end() - static_cast<std::ptrdiff_t>(out.size()), found.end());

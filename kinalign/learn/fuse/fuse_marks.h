@@ -22,14 +22,14 @@ struct FuseErrors {
   double all_cm = 0.0;
   /// Joints that the Kinect does not track or puts more than 20 cm off.
   double hidden_cm = 0.0;
-  double seen_trunk_cm = 0.0, seen_arms_cm = 0.0, seen_legs_cm = 0.0;  // all other joints
+  double seen_trunk_cm = 0.0, seen_arms_cm = 0.0, seen_legs_cm = 0.0;  // the other joints
   double place_cm = 0.0;  // of the root in the Kinect's world; no meaning for nodes alone
-  double sip_deg = 0.0;   // global rotation of thighs and upper arms against the root
-  /// Number of frames; number of hidden joints summed over frames.
+  double sip_deg = 0.0;   // rotation of thighs and upper arms relative to the root
+  /// `frames`: number of frames. `hidden`: number of hidden joints, summed over frames.
   std::size_t frames = 0, hidden = 0;
 };
 
-/// A mean over all frames, and one for each person: a mean alone hides that people differ.
+/// The mean errors over all frames, and those of each person, because people differ.
 struct FuseMark {
   Devices devices = Devices::both;
   FuseErrors all{};

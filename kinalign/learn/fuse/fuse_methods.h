@@ -12,7 +12,7 @@ namespace kinalign {
 /// A method is a network, its data and its training. FuseTask and train() serve all of them.
 struct FuseMethod {
   std::string_view name, summary, source;
-  /// The network from the layout's channels to its answers.
+  /// The network from the layout's channels to its outputs.
   Architecture (*architecture)(const FuseLayout& layout);
   FuseTraining training;
   TrainingOptions options;
@@ -20,7 +20,7 @@ struct FuseMethod {
 
 FuseMethod gated_method();
 FuseMethod gated_online_method();
-/// The paper's network, for both devices, the Kinect alone, or the nodes alone.
+/// The network of the HFUT-MMD paper, for both devices, the Kinect alone, or the nodes alone.
 FuseMethod bilstm_method(Devices devices);
 
 std::vector<FuseMethod> fuse_methods();

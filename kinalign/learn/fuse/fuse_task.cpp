@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-// Fixed, so that scales and judgements don't depend on the run's seed.
+// These seeds are fixed, so that scales and validation errors don't depend on the run's seed.
 constexpr std::uint64_t fuse_judging_seed = 5, scales_seed = 3;
 constexpr std::size_t scales_batches = 8;
 constexpr float least_scale_of_fusion = 0.05F;  // flags that hardly vary must not be scaled up
@@ -46,14 +46,14 @@ FuseTask::FuseTask(FuseLayout layout, FuseTraining training, const FuseData& dat
   make_judged();
 }
 
-// Validation inputs are standardised already, so they are made again.
+// The validation inputs are standardised with the old scales, so they are made again.
 void FuseTask::use_scales(std::vector<float> mean, std::vector<float> scale) {
   input_mean_ = std::move(mean);
   input_scale_ = std::move(scale);
   make_judged();
 }
 
-/// Prepares the validation sequences: with node errors, without missing devices or parts.
+/// Prepares the validation sequences with node errors, but without missing devices or parts.
 void FuseTask::make_judged() {
   judged_.clear();
   for (std::size_t i = 0; i < data_.pose.judged.size(); ++i) {
@@ -73,7 +73,7 @@ void FuseTask::make_judged() {
 void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, Rows& rows) const {
   const FuseFeatures features = fuse_features(layout_, input);
   rows.input.insert(rows.input.end(), features.input.begin(), features.input.end());
-  // The waist's node has no error in a sequence, so its orientation is the root's.
+  // In a sequence the waist's node has no error, so its orientation is that of the root.
   const auto roots = true_roots(sequence);
   const std::size_t bones = layout_.nodes.bones.size(), base = 0;  // SpineBase
   const Eigen::Quaternionf turn = truth_turn(input, roots.front());
@@ -84,7 +84,7 @@ void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, Rows& r
     for (std::size_t b = 0; b < bones; ++b) {
       rows.rotations.emplace_back(root * sequence.rotations[t * bones + b]);
     }
-    // The root comes last, as in the network's answers.
+    // The root comes after the bones, as in the network's output.
     rows.rotations.push_back(root);
     const Eigen::Vector3f way =
         from_world * (sequence.places[t].cast<float>() - space.place) / fuse_place_unit_m;
@@ -99,7 +99,7 @@ void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, Rows& r
 /// Standardises the inputs, and copies a batch to the device.
 FuseTask::Batch FuseTask::tensors_of(Rows rows, std::size_t batch, std::size_t frames) const {
   const std::int64_t b = whole(batch), t = whole(frames);
-  // find_scales() draws before there are any scales.
+  // When find_scales() draws batches, there are no scales yet.
   if (!input_mean_.empty()) standardise(input_mean_, input_scale_, rows.input);
   return {
       .input = to_torch(rows.input, {b, t, whole(layout_.channels())}).to(device_),
@@ -126,7 +126,7 @@ FuseTask::Batch FuseTask::draw(std::uint64_t seed, std::uint64_t step,
                  seen.size() - 1);
     const PoseSequence one = crop_of(data_.pose.learnt[drawn.sequence], drawn.crop, sides_);
     const FuseInput clean{one.nodes, crop_of(seen[which], drawn.crop, sides_)};
-    // Another seed than that of `places`, so that both don't draw the same numbers.
+    // The seed differs from that of `places`, so that both don't draw the same numbers.
     add(one, drawn_input(clean, layout_, training_.draws, mix64(seed + 1), number), rows);
   }
   return tensors_of(std::move(rows), batch, crop);
@@ -145,9 +145,9 @@ void FuseTask::find_scales() {
   }
 }
 
-/// The weighted sum of the errors of rotations, of the root's place, of the joints' positions and
-/// of their accelerations.
-/// The last three numbers of an answer are the way to the root; all before are sixes of rotations.
+/// The weighted sum of four errors: rotations, the root's position, the joints' positions and their
+/// accelerations. The last three numbers of the network's output are the vector to the root. All
+/// numbers before them are rotations, six for each.
 torch::Tensor FuseTask::loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) {
   const BatchPart part = share().part(whole(training_.batch));
   const Batch batch = draw(seed, step, part);
@@ -156,8 +156,8 @@ torch::Tensor FuseTask::loss(const TorchNetwork& network, std::uint64_t seed, st
   const auto rotations = rotations_of(sixes);
   const PoseLoss& weights = training_.loss;
   auto out = weights.matrices * part.mean((rotations - batch.rotations).pow(2).sum({-1, -2}));
-  // The way is in dm, the unit of the answers. If the Kinect does not see SpineBase, the way has
-  // the weight 0: its beginning is then an old place.
+  // The vector is in dm, the unit of the network's output. If the Kinect does not see SpineBase,
+  // the vector begins at an old position and gets the weight 0.
   const auto miss = metres_of(answers.slice(2, answers.size(2) - 3) - batch.way);
   out = out + training_.place * weighted_mean(miss, batch.placed, share());
   const auto error =
@@ -169,7 +169,8 @@ torch::Tensor FuseTask::loss(const TorchNetwork& network, std::uint64_t seed, st
 std::optional<double> FuseTask::judge(const TorchNetwork& network) {
   if (judged_.empty()) return std::nullopt;
   torch::NoGradGuard guard;
-  // Positions only: they contain the errors of all rotations above a joint.
+  // Only positions are compared: the position of a joint contains the errors of all rotations above
+  // it.
   double sum = 0.0, frames = 0.0;
   for (const Batch& one : judged_) {
     const auto answers = network.forward(one.input, false);

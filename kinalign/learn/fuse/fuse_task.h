@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fusion as a training task: crops of both devices' data, and the loss of a pose in their world.
+// Fusion as a training task: crops of both devices' data, and the loss of a pose in the world.
 #pragma once
 
 #include "kinalign/learn/fuse/fuse_data.h"
@@ -23,11 +23,11 @@ struct FuseTraining {
   std::size_t batch = 32, crop = 64;
 };
 
-/// The truth is expressed in the space of each frame, as the network's answers are. That space
-/// comes from the input with its errors, so it is found anew for each crop.
+/// The network's output is in the space of each frame, and so is the truth. That space depends on
+/// the errors of the input, so it is found again for each crop.
 class FuseTask : public TrainingTask {
  public:
-  /// `data` must live longer.
+  /// `data` must outlive this object.
   FuseTask(FuseLayout layout, FuseTraining training, const FuseData& data, torch::Device device);
 
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our network: a branch of temporal convolutions for each device, and a gate that weighs the
-// branches channel by channel, depending on both devices' data. If a joint of the Kinect is missing
-// or guessed, its part of the gate closes and the nodes decide.
+// Our network: a branch of temporal convolutions for each device. A gate weighs the branches
+// channel by channel, depending on both devices' data. If a joint of the Kinect is missing or
+// guessed, the gate reduces its channels and the nodes decide.
 #include "kinalign/learn/fuse/fuse_methods.h"
 #include "kinalign/learn/pose/pose_methods.h"
 
@@ -15,9 +15,9 @@ Layer gated_block(std::size_t dilation, bool causal) {
   return residual_block(gated_width, dilation, causal, 0.1);
 }
 
-/// One device's channels from `begin` on, their convolutions, and their half of the gate.
-/// The gate reads all channels, those of the other device too, and closes or opens each channel of
-/// this branch by a factor between 0 and 1.
+/// One device's channels from `begin` on, their convolutions, and their half of the gate. The gate
+/// reads the channels of both devices. It multiplies each channel of this branch by a factor
+/// between 0 and 1.
 std::vector<Layer> gated_branch(std::size_t begin, std::size_t channels, bool causal) {
   return {
       {.kind = LayerKind::product,
@@ -57,7 +57,7 @@ FuseMethod gated_method() {
           .options = {.steps = 2000, .rate = 2e-3, .rise = 0.1, .average = false}};
 }
 
-// Causal convolutions see no later frame, so the network needs no look-ahead live.
+// Causal convolutions use no later frame, so the network needs no look-ahead on live frames.
 FuseMethod gated_online_method() {
   FuseMethod out = gated_method();
   out.name = "gated-online";

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // BRA: Li, Zhou, Zhu, Xie, Zhao, Liu, «Bidirectional recurrent autoencoder for 3D skeleton motion
-// data refinement», Computers & Graphics 81, 2019. Its layer sizes are not published; these are
-// those of the nearest published successor. BRA-P: Li, Zhu, Zheng, Li, IEEE Access 8, 2020: the
-// same network with a loss on the features of a second network that has learnt clean motion. At use
-// the second network refines the answer of the first.
+// data refinement», Computers & Graphics 81, 2019. Its layer sizes are not published, so the sizes
+// of the nearest published successor are used. BRA-P: Li, Zhu, Zheng, Li, IEEE Access 8, 2020. It
+// is the same network, but its loss also compares features of a second network, which was trained
+// on clean motion. In use the second network refines the output of the first one.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -30,8 +30,8 @@ Architecture bra_architecture(const DenoiseLayout& layout) {
            {.kind = LayerKind::linear, .out = layout.answers()}}};
 }
 
-// The terms of the paper's loss: squared distance, bone lengths, smoothness. Answers are positions
-// about the root, so their unit is larger than that of corrections.
+// The terms of the published loss: squared distance, bone lengths, smoothness. The network outputs
+// positions relative to the root, which are larger than corrections, so their unit is larger, too.
 DenoiseTraining bra_training() {
   return {.loss = {.distance = 0.0,
                    .square = 1.0,

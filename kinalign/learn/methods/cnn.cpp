@@ -2,7 +2,7 @@
 // CNN: the convolutional autoencoder of Holden, Saito, Komura, «A deep learning framework for
 // character motion synthesis and editing», SIGGRAPH 2016. The paired form learns from rough input
 // and clean output. The manifold form, as published, learns from clean motion only, with a quarter
-// of its inputs dropped; at use it maps a rough motion to the clean motion with the same code.
+// of its inputs dropped. In use it maps a rough motion to the clean motion with the same code.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::size_t cnn_hidden = 256, cnn_kernel = 25;
 
-/// Input channels `seen`, the code, and the answer.
-/// Kernels of 25 frames, 256 hidden channels, pooling by 2 and dropout of 0.25 are those of the
-/// released code. Pooling keeps the greater of two frames; in training its inverse
-/// puts the value into a random one of them.
+/// The layers: input channels `seen`, the code, and the output. Kernels of 25 frames, 256 hidden
+/// channels, pooling by 2 and dropout of 0.25 are those of the released code. Pooling keeps the
+/// larger of two frames. In training its inverse puts the value into a random one of the two
+/// frames.
 Architecture autoencoder(const DenoiseLayout& layout, const Layer& seen) {
   return {layout.channels(),
           {seen,
@@ -32,8 +32,8 @@ Architecture cnn_architecture(const DenoiseLayout& layout) {
   return autoencoder(layout, {.kind = LayerKind::slice, .out = 6 * layout.inputs.size()});
 }
 
-/// Uses positions of the output joints; at use the Kinect's joints take their place.
-/// Input and answer have one scale (`one_scale`), as an autoencoder needs it.
+/// Uses positions of the output joints, for which the Kinect's joints are used later. Input and
+/// output have one scale (`one_scale`), as an autoencoder needs it.
 Architecture manifold_architecture(const DenoiseLayout& layout) {
   return autoencoder(layout, chosen_positions(layout));
 }

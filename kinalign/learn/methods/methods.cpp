@@ -8,7 +8,7 @@ std::vector<DenoiseMethod> denoise_methods() {
           bra_method(),    bra_p_method(),         bra_p_plain_method(), smoothnet_method()};
 }
 
-// An input joint may stand for several outputs; it is then selected several times.
+// If an input joint stands for several outputs, it is selected several times.
 Layer chosen_positions(const DenoiseLayout& layout) {
   Layer out{.kind = LayerKind::concat};
   for (const std::size_t joint : inputs_of_outputs(layout)) {

@@ -17,7 +17,7 @@ DenoiseMethod bra_p_method();
 DenoiseMethod bra_p_plain_method();
 DenoiseMethod smoothnet_method();
 
-/// All of them, in the order in which they are listed for users.
+/// All methods, in the order in which they are listed for users.
 std::vector<DenoiseMethod> denoise_methods();
 
 /// A layer that selects, for each output, the position of the input joint that stands for it.

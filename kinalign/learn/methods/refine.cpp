@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our network: a small convolutional network over 35 frames corrects the smoothed input joint plus
-// the mean offset. It also states the spread of each joint. The second form adds a linear map of
-// nine frames: it is better for the people, rooms and cameras of the training and worse for others
-// (docs/models.md).
+// the mean offset. It also outputs the spread (the expected error) of each joint. The second form
+// adds a linear map of nine frames. It is better for people, rooms and cameras of the training data
+// and worse for others (docs/models.md).
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t refine_width = 128;
 
-/// x + relu(conv(dropout(x))), where conv covers three frames, `dilation` apart.
-/// A residual block: with small weights it hands its input on, so gradients reach the first layers.
+/// A residual block: x + relu(conv(dropout(x))), where conv covers three frames, `dilation` apart.
+/// With small weights its output is its input, so gradients reach the first layers.
 Layer refine_block(std::size_t dilation) {
   return {.kind = LayerKind::sum,
           .branches = {

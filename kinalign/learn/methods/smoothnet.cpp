@@ -2,7 +2,7 @@
 // SmoothNet: Zeng, Yang, Ju, Li, Wang, Xu, «SmoothNet: a plug-and-play network for refining human
 // poses in videos», ECCV 2022, in the size of its released 3DPW configuration. The same weights
 // smooth every coordinate of every joint, so the network can't learn the mean offset of a joint.
-// The mean offset is added afterwards, as the method `offset` does it.
+// The mean offset is added afterwards, as in the method `offset`.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t smooth_window = 32, smooth_hidden = 512, smooth_narrow = 16;
 
-/// x + f(x), where f is a network with a narrow middle.
+/// A block x + f(x), where f is a network with a narrow middle layer.
 Layer smooth_block() {
   return {.kind = LayerKind::sum,
           .branches = {{},

@@ -18,7 +18,7 @@ torch::Tensor rotations_of(const torch::Tensor& answers) {
       torch::tensor(std::vector<float>(six_of_identity.begin(), six_of_identity.end()))
           .to(answers.device());
   const auto six = answers.reshape({answers.size(0), answers.size(1), bones, 6}) + identity;
-  // norm() has the gradient 0 at 0; sqrt() of a sum of squares has none there.
+  // norm() has the gradient 0 at 0, whereas sqrt() of a sum of squares has no gradient there.
   const auto unit = [&](const torch::Tensor& x) { return x / (x.norm(2, {-1}, true) + least); };
   // The same steps as turn_of_six(), so that training and use agree.
   const auto a = unit(six.slice(3, 0, 3)), second = six.slice(3, 3, 6);
@@ -45,7 +45,8 @@ torch::Tensor metres_of(const torch::Tensor& vectors) {
   return (vectors.pow(2).sum(-1) + 1e-10).sqrt();
 }
 
-/// Finds the carrier of each joint and the path to each scored joint.
+/// Finds the bone that rotates each joint's offset (its carrier), and the path to each scored
+/// joint.
 BodyTensors::BodyTensors(const PoseBody& body, torch::Device device)
     : bones_(whole(body.bones.size())) {
   const Skeleton& skeleton = body.skeleton;
@@ -58,7 +59,7 @@ BodyTensors::BodyTensors(const PoseBody& body, torch::Device device)
     carriers.push_back(bone < 0 ? whole(body.bones.size()) : bone);
     if (!is_scored_joint(skeleton.joint_names[j])) continue;
     ++scored;
-    // A row of the matrix that sums the turned offsets from the root to one joint.
+    // One row of the matrix: it sums the rotated offsets from the root to one joint.
     std::vector<float> path(joints - 1, 0.0F);
     for (std::size_t at = j; at != 0; at = static_cast<std::size_t>(skeleton.parents[at])) {
       path[at - 1] = 1.0F;
@@ -69,7 +70,7 @@ BodyTensors::BodyTensors(const PoseBody& body, torch::Device device)
   paths_ = to_torch(paths, {scored, whole(joints) - 1}).to(device);
 }
 
-// Without a rotation of the root, the identity takes its place: all is then in the root's space.
+// Without a rotation of the root the identity is used; all positions are then in the root's space.
 torch::Tensor BodyTensors::places_of(const torch::Tensor& rotations,
                                      const torch::Tensor& offsets) const {
   auto all = rotations;
@@ -77,7 +78,7 @@ torch::Tensor BodyTensors::places_of(const torch::Tensor& rotations,
     const auto identity = torch::eye(3, all.options()).expand({all.size(0), all.size(1), 1, 3, 3});
     all = torch::cat({all, identity}, 2);
   }
-  // Every offset is turned by its carrier, all at once. One matrix product then sums the paths, so
+  // All offsets are rotated by their carriers at once. One matrix product then sums the paths, so
   // no loop over joints is needed.
   const auto carriers = all.index_select(2, carriers_);
   const auto below_root = offsets.slice(1, 1).unsqueeze(1).unsqueeze(-1);  // [B,1,J-1,3,1]

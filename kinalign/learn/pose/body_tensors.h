@@ -11,10 +11,8 @@
 
 namespace kinalign {
 
-/// The rotations [B,T,bones,3,3] for a network's answers [B,T,6 bones]. Row k of a matrix is column
-/// k of the rotation.
-/// Matrices stand transposed, because Turn is column-major: its nine numbers in memory are the
-/// columns.
+/// The rotations [B,T,bones,3,3] for a network's outputs [B,T,6 bones]. The matrices are
+/// transposed: row k is column k of the rotation, because Turn is column-major.
 torch::Tensor rotations_of(const torch::Tensor& answers);
 
 /// A copy of all rotations in one list.
@@ -25,15 +23,15 @@ torch::Tensor tensor_of(const std::vector<Turn>& turns, const std::vector<std::i
 /// Lengths of vectors [...,3] m, with a finite gradient at 0.
 torch::Tensor metres_of(const torch::Tensor& vectors);
 
-/// Computes positions of joints from rotations: knows which bone carries which joint, and the path
-/// from the root to each scored joint.
+/// Computes positions of joints from rotations. It knows the bone that rotates each joint's offset
+/// (its carrier), and the path from the root to each scored joint.
 class BodyTensors {
  public:
   BodyTensors(const PoseBody& body, torch::Device device);
 
   /// Positions [B,T,S,3] m, relative to the root, of the joints that position errors count
-  /// (is_scored_joint()). `rotations`: in the form of rotations_of(), either of the bones against
-  /// the root, or of the bones and then the root in any one space. `offsets` [B,J,3] m.
+  /// (is_scored_joint()). `rotations`: in the form of rotations_of(), either of the bones relative
+  /// to the root, or of the bones and then the root in any one space. `offsets` [B,J,3] m.
   torch::Tensor places_of(const torch::Tensor& rotations, const torch::Tensor& offsets) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// Sums in double, so that a variance of many frames keeps its digits. Frames are added in any
+/// The sums are double, so that a variance of many frames keeps its digits. Frames are added in any
 /// number of pieces.
 class ChannelSums {
  public:

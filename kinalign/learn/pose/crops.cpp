@@ -19,7 +19,7 @@ struct Moment {
   }
 };
 
-/// Beyond the last frame of a sequence its last frame stands still.
+/// The place of frame i of the crop in the sequence. Beyond the end the last frame is repeated.
 Moment moment_of(const Crop& crop, std::size_t i, std::size_t frames) {
   const double last = static_cast<double>(frames - 1);
   const double at = std::min(
@@ -41,12 +41,12 @@ void append_vector(std::vector<float>& out, const Eigen::Vector3f& vector) {
   out.insert(out.end(), vector.begin(), vector.end());
 }
 
-/// The mirror images of vectors and rotations in the plane x = 0. A rotation turns the other way
-/// about the mirrored axis.
+/// The mirror images of vectors and of angular velocities in the plane x = 0. A rotation goes the
+/// other way about the mirrored axis.
 Eigen::Vector3f in_mirror(const Eigen::Vector3f& v) { return {-v.x(), v.y(), v.z()}; }
 Eigen::Vector3f rate_in_mirror(const Eigen::Vector3f& v) { return {v.x(), -v.y(), -v.z()}; }
 Eigen::Quaternionf in_mirror(const Eigen::Quaternionf& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
-// R becomes S R S with S = diag(-1, 1, 1).
+// The mirror image of the rotation R is S R S with S = diag(-1, 1, 1).
 Turn in_mirror(const Turn& turn) {
   const Eigen::Vector3f signs(-1.0F, 1.0F, 1.0F);
   return signs.asDiagonal() * turn * signs.asDiagonal();
@@ -57,10 +57,9 @@ std::size_t source_of(const Crop& crop, const std::vector<std::size_t>& partners
   return crop.variation.mirrored ? partners[at] : at;
 }
 
-/// Appends one sample of a node. Accelerations change with the square of the speed, rates with the
-/// speed.
-/// A body twice as large that moves in the same way has twice the acceleration, so size is a
-/// factor, too.
+/// Appends one sample of a node. Angular velocities change with the speed of the crop,
+/// accelerations with its square. A larger body that moves in the same way also has larger
+/// accelerations, so size is a factor, too.
 void append_node(const NodeFrames& nodes, const Moment& moment, std::size_t n,
                  const Variation& variation, NodeFrames& out) {
   const std::size_t a = moment.before * nodes.nodes + n, b = moment.after * nodes.nodes + n;
@@ -87,7 +86,7 @@ void append_node(const NodeFrames& nodes, const Moment& moment, std::size_t n,
 
 Variation draw_variation(const Variety& variety, const RandomStream& random) {
   const auto about_one = [&](double most, std::uint64_t lane) {
-    // Faster and slower by the same factor are equally likely.
+    // A speed-up and a slow-down by the same factor are equally likely.
     return std::pow(1.0 + most, 2.0 * random.uniform(1, lane) - 1.0);
   };
   return {random.chance(1, 0, variety.mirrored), about_one(variety.speed, 1),
@@ -156,7 +155,7 @@ PoseSequence crop_of(const PoseSequence& sequence, const Crop& crop, const Sides
       const std::size_t from = source_of(crop, sides.bones, b);
       const Turn& before = sequence.rotations[moment.before * bones + from];
       const Turn& after = sequence.rotations[moment.after * bones + from];
-      // A mean of two matrices is no rotation and is brought back to one.
+      // A mean of two matrices is no rotation, so it is converted to one.
       const Turn turn =
           moment.share > 0.0F ? turned_back_to_rotation(moment.between(before, after)) : before;
       out.rotations.push_back(crop.variation.mirrored ? in_mirror(turn) : turn);

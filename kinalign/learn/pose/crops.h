@@ -13,9 +13,8 @@
 
 namespace kinalign {
 
-/// Limits of the random variation of crops.
-/// Augmentations of input and truth alike. Speed and size are off by default
-/// (docs/training.md).
+/// Limits of the random variation of crops (augmentation), the same for input and truth. Speed and
+/// size are not varied by default (docs/training.md).
 struct Variety {
   double mirrored = 0.5;  // share of mirrored crops
   double speed = 0.0;     // a crop is at most this share faster or slower
@@ -24,7 +23,7 @@ struct Variety {
 
 inline constexpr Variety no_variety{.mirrored = 0.0, .speed = 0.0, .size = 0.0};
 
-/// One draw of a Variety: factors of speed and size, 1 for none.
+/// One random draw within a Variety: factors of speed and size, 1 for no change.
 struct Variation {
   bool mirrored = false;
   double speed = 1.0, size = 1.0;
@@ -41,8 +40,8 @@ struct Crop {
   std::size_t source_frames() const;
 };
 
-/// For each node, bone and joint its counterpart on the other side of the body.
-/// Found once for all crops, by names.
+/// For each node, bone and joint the index of its counterpart on the other side of the body, found
+/// by names once for all crops.
 struct Sides {
   std::vector<std::size_t> nodes, bones, joints, kinect;
   /// True if each node on one side has a counterpart on the other; else crops are never mirrored.
@@ -53,11 +52,11 @@ struct Sides {
 };
 
 /// The crop, with its speed, size and mirroring applied. Rotations and vectors are interpolated
-/// between two frames; a sample or joint is valid if it is valid in both frames.
+/// between two frames; a sample or joint is valid if it is valid in both of these frames.
 NodeFrames crop_of(const NodeFrames& nodes, const Crop& crop, const Sides& sides);
 JointFrames crop_of(const JointFrames& kinect, const Crop& crop, const Sides& sides);
-/// Crops nodes, rotations, places and the person's rest offsets.
-/// Truth and input are varied together, so that they still belong together.
+/// Crops nodes, rotations, positions and the person's rest offsets. Truth and input get the same
+/// variation.
 PoseSequence crop_of(const PoseSequence& sequence, const Crop& crop, const Sides& sides);
 
 }  // namespace kinalign

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // DIP: Huang, Kaufmann, Aksan, Black, Hilliges, Pons-Moll, «Deep inertial poser», SIGGRAPH Asia
-// 2018: a bidirectional LSTM with two layers, on rotations and accelerations against the root. It
-// outputs six numbers per bone instead of nine, so that each output is a rotation. The loss is the
-// squared distance of matrices instead of the published likelihood, because its deviations are not
-// used here.
+// 2018. It is a bidirectional LSTM with two layers, on rotations and accelerations relative to the
+// root. It outputs six numbers per bone instead of nine, so that each output is a rotation. The
+// loss is the squared distance of matrices and not the published likelihood, because the deviations
+// that the likelihood estimates are not used here.
 #include "kinalign/learn/pose/pose_methods.h"
 
 namespace kinalign {
 
 namespace {
 
-/// The method's layers with `units` in each direction.
-/// Our default width is 256: a window of 26 frames in the published width takes 55 ms on one core,
-/// more than a frame has.
+/// The method's layers with `units` in each direction. Our default width is 256, because a window
+/// of 26 frames with the published width takes 55 ms on one core. That is longer than a frame.
 Architecture dip_layers(const PoseLayout& layout, std::size_t units) {
   const Layer recurrent{.kind = LayerKind::lstm, .out = units, .bidirectional = true};
   return {layout.channels(),
@@ -28,7 +27,7 @@ Architecture dip_layers(const PoseLayout& layout, std::size_t units) {
 
 Architecture dip_architecture(const PoseLayout& layout) { return dip_layers(layout, 256); }
 
-/// The published widths, with a layer of 256 before the output.
+/// The layers with the published widths, and a layer of 256 before the output.
 Architecture dip_512_architecture(const PoseLayout& layout) {
   const Layer recurrent{.kind = LayerKind::lstm, .out = 512, .bidirectional = true};
   return {layout.channels(),
@@ -70,7 +69,7 @@ PoseMethod dip_robust_method() {
   PoseMethod out = dip_method();
   out.name = "dip-robust";
   out.summary = "DIP's network, trained as ours";
-  // The defaults are the training of our own method: errors of nodes, lost nodes, and all terms of
+  // The default training is that of our own method: errors of nodes, lost nodes, and all terms of
   // the loss.
   out.training = {};
   return out;

@@ -14,10 +14,11 @@ Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const F
   if (from != nullptr) KA_TRY(go_on_from(*from, task, network));
   network.to(options.device);
   PoseFit out;
-  // After the network is on its device, where the drawn batches are, too.
+  // This comes after the network is on its device, because the drawn batches are on the device,
+  // too.
   if (method.begin != nullptr) method.begin(task, options.training.seed, network);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
-  // A method with 0 steps has no log, but its judgement belongs into one.
+  // A method with 0 steps has no log. Its validation error is written to the log here.
   if (out.points.empty()) out.points.push_back({.judgement = task.judge(network)});
   out.model.facts.task = "pose";
   out.model.facts.method = method.name;

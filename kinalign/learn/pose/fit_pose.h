@@ -26,8 +26,8 @@ Result<void> go_on_from(const BodyModel& from, Task& task, TorchNetwork& network
   return take_tensors(from.tensors, "net.", network);
 }
 
-/// Copies the learnt weights and scales into a model.
-/// `body` is the mean body of the training people, which the model answers with (PoseBody).
+/// Copies the learnt weights and scales into a model. `body`: the mean body of the training people,
+/// which the model's poses have (PoseBody).
 template <class Task>
 void put_learnt(const Task& task, const TorchNetwork& network, const PoseBody& body,
                 BodyModel& out) {

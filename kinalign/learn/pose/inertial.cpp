@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our network: a temporal convolutional network over 61 frames. Its inputs contain those of
-// GlobalPose (Yi et al., 2024: angular velocity, the vertical, the root's own acceleration) and a
-// flag for each valid node. It is trained with the errors of a calibration and with lost nodes.
+// Our network: a temporal convolutional network over 61 frames. Its inputs are those of GlobalPose
+// (Yi et al., 2024: angular velocity, the vertical, the root's own acceleration) and others, with a
+// flag for each valid node. It is trained with the errors that a calibration leaves and with lost
+// nodes.
 #include "kinalign/learn/pose/pose_methods.h"
 
 namespace kinalign {
@@ -14,8 +15,8 @@ Layer inertial_block(std::size_t dilation, bool causal) {
   return residual_block(inertial_width, dilation, causal, 0.15);
 }
 
-/// Blocks with dilations 1, 2, 4 and 8 and five frames each: 61 frames. The causal form looks 60
-/// frames back and none ahead.
+/// Blocks with dilations 1, 2, 4 and 8 and five frames each: 61 frames in all. The causal form uses
+/// 60 earlier frames and no later ones.
 Architecture inertial_layers(const PoseLayout& layout, bool causal) {
   return {layout.channels(),
           {{.kind = LayerKind::linear, .out = inertial_width},
@@ -58,7 +59,7 @@ PoseMethod inertial_method() {
           .options = {.steps = 4500, .rate = 2e-3, .rise = 0.1, .average = false}};
 }
 
-// The answer waits only for the frames of the smoothing (docs/pose_live.md).
+// A pose waits only for the later frames that the smoothing uses (docs/pose_live.md).
 PoseMethod inertial_online_method() {
   PoseMethod out = inertial_method();
   out.name = "inertial-online";

@@ -43,11 +43,10 @@ Eigen::Quaternionf turned_by_vector(const Eigen::Vector3f& vector) {
   return Eigen::Quaternionf(Eigen::AngleAxisf(angle, vector / angle));
 }
 
-/// Errors of one node that are constant over all frames.
-/// `world` turns the node's world, `mount` sits between node and bone, as Y and M do in
-/// models/pose/node_calibration.h.
+/// Errors of one node that are constant over all frames. `world` rotates the node's world; `mount`
+/// is a rotation between node and bone. They act like Y and M in models/pose/node_calibration.h.
 struct NodeError {
-  // Multiplied to the orientation from the left and from the right.
+  // The orientation is multiplied by `world` from the left and by `mount` from the right.
   Eigen::Quaternionf world, mount;
   Eigen::Vector3f leak;  // m/s2, gravity left in the acceleration
   bool lost = false;
@@ -60,7 +59,8 @@ NodeError draw_error(const NodeErrors& errors, Draws& draws) {
   for (float& value : mount_vector) value = draws.normal(mount);
   tilt_vector.x() = draws.normal(tilt);
   tilt_vector.z() = draws.normal(tilt);
-  // A calibration leaves any heading within its bounds; drift is a random walk, so it is normal.
+  // The heading error after a calibration is uniform within its bounds. Drift is a random walk, so
+  // it is normal.
   const double heading = radians_of(errors.yaw_deg) * (2.0 * draws.uniform() - 1.0) +
                          static_cast<double>(draws.normal(radians_of(errors.drift_deg)));
   const Eigen::Vector3f yaw_vector(0.0F, static_cast<float>(heading), 0.0F);
@@ -116,8 +116,8 @@ NodeFrames with_errors(NodeFrames nodes, const NodeErrors& errors, const RandomS
     for (std::size_t t = 0; t < nodes.frames(); ++t) {
       put_error(errors, error, t * nodes.nodes + n, draws, nodes);
     }
-    // Samples were drawn all the same, so that the errors of the next nodes do not depend on a
-    // loss.
+    // The samples of a lost node are drawn, too, so that the errors of the next nodes do not depend
+    // on the loss.
     if (error.lost && !is_root) nodes = without_node(std::move(nodes), n);
   }
   return nodes;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random errors of calibrated nodes: those that remain after a T-pose, and heading drift since
-// then.
+// Random errors of calibrated nodes: those that remain after a T-pose, and the heading drift after
+// the T-pose.
 #pragma once
 
 #include "kinalign/models/pose/pose_features.h"
@@ -10,17 +10,15 @@
 
 namespace kinalign {
 
-/// Each node's errors are constant over the frames; noise is drawn for each sample. The defaults
-/// are the errors that remain after a calibration.
-/// Training with them makes a network robust: without them, calibrated nodes cost it far more.
-/// A wrong mounting or heading stays the same over a crop, as it does
-/// over a recording.
+/// Each node's errors are constant over the frames of a crop, as they are over a recording; noise
+/// is drawn for each sample. The defaults are the errors that remain after a calibration. A network
+/// that is trained without such errors gets much worse with calibrated nodes.
 struct NodeErrors {
   double mount_deg = 5.0;     // rotation of the node on its bone, about each axis, 1 sigma
   double tilt_deg = 1.5;      // error of the vertical, about x and z, 1 sigma
   double yaw_deg = 10.0;      // heading error, uniform within +- this
   double drift_deg = 0.0;     // heading drift since the calibration, 1 sigma
-  double gravity_leak = 0.5;  // share of the gravity that the tilt leaves in the acceleration
+  double gravity_leak = 0.5;  // share of the gravity due to the tilt that stays in the acceleration
   double acceleration_noise = 0.15;  // m/s2, 1 sigma
   double angular_noise = 0.02;       // rad/s, 1 sigma
   double lost_share = 0.1;           // share of the leaves that have no sample at all
@@ -28,8 +26,8 @@ struct NodeErrors {
 
 /// No errors.
 NodeErrors no_node_errors();
-/// The drift after a time of a heading that drifts 3 degrees in a minute (random walk), degrees, 1
-/// sigma.
+/// The drift of a heading after some minutes, degrees, 1 sigma: a random walk of 3 degrees in the
+/// first minute.
 double drift_after(double minutes);
 
 /// Adds errors to `nodes`. The last node, the root's, is never lost. The same stream gives the same

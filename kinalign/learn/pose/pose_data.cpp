@@ -18,16 +18,15 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-// Models of poses answer at 30 Hz. A file may have a multiple of this rate; accelerations then use
-// the frames between.
+// Models of poses work at 30 Hz. If a file has a multiple of this rate, accelerations are computed
+// from all its frames.
 constexpr double pose_rate_hz = 30.0;
 constexpr double acceleration_reach_s = 4.0 / 60.0;  // similar to the band of a node at 15 Hz
 constexpr double least_seconds = 1.5;
 constexpr std::size_t least_upright = 60;  // frames
 
-/// A node's place: on a bone, a share of the way to another joint, plus a lever.
-/// Nodes sit where docs/pose.md says. The lever lies in the bone's space, so it turns with the
-/// bone.
+/// A node's place: on the line from a bone's joint to another joint, plus a lever. Nodes are worn
+/// as docs/pose.md says. The lever is in the bone's space, so it turns with the bone.
 struct NodePlace {
   std::string_view name, bone, towards;
   double share;
@@ -95,9 +94,8 @@ Result<FileSkeleton> file_skeleton(const Windows& windows, const std::string& st
 }
 
 /// A stretch of the file: global rotations and positions of the joints of pose_joints, frame by
-/// frame.
-/// The arrays belong to the stretch and are not copied; go_to() computes one frame. Files hold
-/// rotations against the parent, so all joints are multiplied from the root outward.
+/// frame. The arrays belong to the stretch and are not copied; go_to() computes one frame. Files
+/// have rotations relative to the parent, so all rotations are multiplied from the root outward.
 class GlobalFrames {
  public:
   static Result<GlobalFrames> make(const FileSkeleton& skeleton, const Stretch& stretch,
@@ -184,9 +182,8 @@ void append(std::vector<float>& out, const Vec3& vector) {
   for (const double value : vector) out.push_back(static_cast<float>(value));
 }
 
-/// Makes sequences at 30 Hz from the frames of a file.
-/// All frames of the file are walked once: accelerations need positions at the file's rate. Only
-/// every `stride_`-th frame is kept.
+/// Makes sequences at 30 Hz from the frames of a file. All frames of the file are used once,
+/// because accelerations need positions at the file's rate. Only every `stride_`-th frame is kept.
 class SequenceMaker {
  public:
   SequenceMaker(const FileSkeleton& skeleton, double file_rate_hz)
@@ -206,7 +203,8 @@ class SequenceMaker {
     for (std::size_t t = 0; t < frames.frames(); ++t) {
       frames.go_to(t);
       rotations = frames.rotations();
-      // The person's own zero goes before nodes and truth are made, so that both have it.
+      // The person's rotations get their common zero (upright_zero.h) before nodes and truth are
+      // made.
       for (std::size_t j = 0; j < rotations.size(); ++j) rotations[j] = rotations[j] * turns[j];
       add_nodes(frames, rotations, motion);
       if (!is_kept(t, frames.frames())) continue;
@@ -236,7 +234,7 @@ class SequenceMaker {
 
   void add_truth(const std::vector<Mat3>& rotations, PoseSequence& out) const {
     for (const std::size_t bone : skeleton_.bones) {
-      // Against the root: the heading of a person must not be learnt.
+      // Rotations are relative to the root, because a network must not learn the person's heading.
       out.rotations.emplace_back((rotations[0].transpose() * rotations[bone]).cast<float>());
     }
   }
@@ -264,7 +262,7 @@ class SequenceMaker {
   std::size_t stride_, reach_;
 };
 
-/// Second differences over a joint that was not measured would give accelerations that nobody made.
+/// True if all joints were measured. Second differences over interpolated joints would be wrong.
 bool is_all_valid(const Stretch& stretch, const std::string& stream) {
   const auto& arrays = stretch.streams.at(stream).arrays;
   const auto valid = arrays.find("valid");
@@ -306,7 +304,8 @@ WindowsFacts::Take take_of(const Windows& windows, const Stretch& stretch) {
   return stretch.take < takes.size() ? takes[stretch.take] : WindowsFacts::Take{};
 }
 
-/// A file without a split has one part; all of it is then used for training.
+/// The list for the stretch's part of the split. A file without a split has one part, which is used
+/// for training.
 std::vector<PoseSequence>& part_of(const Windows& windows, const Stretch& stretch, PoseData& out) {
   const auto& parts = windows.facts.parts;
   const std::string name = stretch.part < parts.size() ? parts[stretch.part] : "";
@@ -314,8 +313,8 @@ std::vector<PoseSequence>& part_of(const Windows& windows, const Stretch& stretc
   return name == "validation" ? out.judged : out.tested;
 }
 
-/// Upright frames of each person, over all parts. A person's zero is found from all frames of that
-/// person.
+/// The frames of each person who stands upright, from all parts. They give the zero of the person's
+/// rotations.
 Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windows,
                                                             const FileSkeleton& skeleton,
                                                             const std::string& stream) {
@@ -332,7 +331,8 @@ Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windo
   return out;
 }
 
-/// The change of each joint's zero: of the trunk by the upright stand, of limbs by CMU's rest pose.
+/// The change of each joint's zero: from the upright stand for the trunk, from CMU's rest pose for
+/// limbs.
 std::vector<Mat3> all_turns(const UprightFrames& person, const PoseSkeleton& skeleton,
                             const std::vector<Vec3>& offsets) {
   std::vector<Mat3> out = person.turns();
@@ -373,7 +373,7 @@ Result<void> add_sequences(const Windows& windows, const std::string& stream,
 Result<void> check_nodes(const std::vector<std::string>& nodes) {
   PoseLayout layout;
   layout.nodes = nodes;
-  // validate() demands a bone, and only the nodes are checked here.
+  // validate() needs at least one bone, but only the nodes are checked here.
   layout.bones = {"any"};
   KA_TRY(validate(layout));
   if (nodes.back() != "waist")
@@ -402,7 +402,8 @@ Result<PoseData> pose_data(const Windows& windows, const std::string& stream,
   if (times < 0.99 || std::abs(times - std::round(times)) > 0.01 * times) {
     return Failure(Error{"", 0, "a multiple of 30 Hz", std::to_string(rate_hz) + " Hz"});
   }
-  // A first pass over all stretches: a person's zero must be known before sequences are made.
+  // This is a first pass over all stretches: a person's zero must be known before sequences are
+  // made.
   const auto upright = KA_TRY(upright_frames(windows, skeleton, stream));
   PoseData out;
   out.nodes = nodes;

@@ -13,13 +13,12 @@
 namespace kinalign {
 
 /// A stretch of T frames at 30 Hz. Rotations are relative to each person's upright stand
-/// (upright_zero.h).
-/// The nodes are free of errors here. Each training crop gets fresh ones, so that no two crops have
-/// the same (node_errors.h).
+/// (upright_zero.h). The nodes have no errors here. Each training crop gets new random errors
+/// (node_errors.h).
 struct PoseSequence {
   std::string subject, action;
   NodeFrames nodes;                // [T,N] without errors
-  std::vector<Turn> rotations;     // [T,B] global, against the root
+  std::vector<Turn> rotations;     // [T,B] global, relative to the root
   std::vector<Vec3> places;        // [T] m, position of the root in the world
   std::vector<Vec3> rest_offsets;  // [J] m, the person's own
   /// The source: frame t is row first_row + t * rows_a_frame of this stretch of the file.
@@ -28,7 +27,7 @@ struct PoseSequence {
   std::size_t frames() const { return nodes.frames(); }
 };
 
-/// All that a training on poses needs, in memory. PoseTask keeps a reference to it.
+/// All data for training on poses, in memory. PoseTask keeps a reference to it.
 struct PoseData {
   std::vector<std::string> nodes;  // [N] the last one is the root's
   PoseBody body;                   // mean body of the training people
@@ -41,7 +40,7 @@ struct PoseData {
 
 /// Names of all known places: waist, wrist_left, wrist_right, ankle_left, ankle_right, head.
 std::vector<std::string> known_pose_nodes();
-/// The paper's five nodes; the root is the last one.
+/// The five nodes of the HFUT-MMD paper (README.md); the root is the last one.
 std::vector<std::string> usual_pose_nodes();
 
 /// Reads sequences. `stream`: a skeleton with CMU's joints or those of a suit (pose_skeleton.h), at

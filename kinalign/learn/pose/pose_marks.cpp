@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-// Fixed, so that every model meets the same errors.
+// The seed is fixed, so that every model gets the same errors.
 constexpr std::uint64_t marks_seed = 5;
 constexpr double later_minutes = 20.0;
 
@@ -20,7 +20,7 @@ struct MarkedState {
 };
 
 std::vector<MarkedState> marked_states(const std::string& lost) {
-  // The default errors are those that a calibration leaves. Losses are a state of their own.
+  // The default errors are those that a calibration leaves. Lost nodes are measured separately.
   NodeErrors calibrated;
   calibrated.lost_share = 0.0;
   NodeErrors later = calibrated;
@@ -49,7 +49,7 @@ Result<std::vector<PoseMark>> pose_marks(PoseSolver& solver, const PoseData& dat
       const PoseSequence& one = data.tested[i];
       NodeFrames nodes = with_errors(one.nodes, state.errors, RandomStream(marks_seed, i));
       if (state.is_one_lost) nodes = without_node(std::move(nodes), lost);
-      // Lengths of the person, not of the model: only rotations are judged.
+      // The bone lengths are the person's and not the model's, so only rotations are compared.
       const TruePose truth{one.rotations, one.rest_offsets};
       auto rotations = solver.answer(nodes).rotations;
       mark.answer.add(pose_errors(data.body, rotations, truth, layout.rate_hz));

@@ -17,7 +17,7 @@ namespace kinalign {
 struct PoseMark {
   /// State of the nodes: "clean", "calibrated", "20 minutes later", "wrist_left lost".
   std::string nodes;
-  PoseErrors answer;                           // the network's answer
+  PoseErrors answer;                           // of the network's output
   PoseErrors smoothed;                         // the result of PoseSolver::solve()
   std::map<std::string, PoseErrors> people{};  // smoothed, by person
 };

@@ -15,7 +15,7 @@ namespace kinalign {
 struct PoseMethod {
   std::string_view name, summary, source;
   PoseInputs inputs = PoseInputs::ours;
-  /// The network from the layout's channels to its answers.
+  /// The network from the layout's channels to its outputs.
   Architecture (*architecture)(const PoseLayout& layout);
   PoseTraining training;
   TrainingOptions options;
@@ -24,8 +24,8 @@ struct PoseMethod {
   void (*begin)(const PoseTask& task, std::uint64_t seed, TorchNetwork& network) = nullptr;
 };
 
-/// The block of the networks "inertial" and "gated": its input plus a convolution of five taps over
-/// it.
+/// The block of the networks "inertial" and "gated": its input plus a convolution of that input
+/// with five taps.
 Layer residual_block(std::size_t width, std::size_t dilation, bool causal, double dropout);
 
 PoseMethod inertial_method();

@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double length_power = 0.75;  // below 1, because long takes repeat themselves
+constexpr double length_power = 0.75;  // below 1, because long takes repeat similar motion
 constexpr std::uint64_t judging_seed = 5;
 constexpr float least_scale = 1e-3F;
 
@@ -66,8 +66,8 @@ void PoseTask::use_scales(std::vector<float> mean, std::vector<float> scale) {
   make_judged();
 }
 
-/// Makes the inputs of the judged people once: with the same errors at each judgement, so that
-/// judgements can be compared.
+/// Makes the inputs of the validation people once. Each validation then has the same errors, so its
+/// results can be compared.
 void PoseTask::make_judged() {
   judged_.clear();
   for (std::size_t i = 0; i < data_.judged.size(); ++i) {
@@ -82,14 +82,14 @@ void PoseTask::make_judged() {
 }
 
 /// Finds each input channel's mean and deviation over the training people, if the method
-/// standardises its inputs.
-/// Else mean 0 and scale 1 are kept: the features are in units near 1 already.
+/// standardises its inputs. Otherwise mean 0 and scale 1 are kept, because the features have units
+/// near 1.
 void PoseTask::find_scales() {
   const std::size_t channels = layout_.channels();
   input_mean_.assign(channels, 0.0F);
   input_scale_.assign(channels, 1.0F);
   if (!training_.standardised) return;
-  // Over nodes without errors: errors are drawn only later.
+  // The nodes have no errors here, because errors are drawn later.
   ChannelSums sums(channels);
   for (const PoseSequence& one : data_.learnt) sums.add(pose_features(layout_, one.nodes).input);
   for (std::size_t c = 0; c < channels; ++c) {
@@ -112,7 +112,7 @@ PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step,
   std::vector<Turn> rotations;
   for (std::size_t k = first; k < first + batch; ++k) {
     const std::uint64_t number = step * training_.batch + k;
-    // One stream for the crop, one for its errors.
+    // One random stream decides on the crop, the other one on its errors.
     const RandomStream places(seed, 2 * number), errors(seed, 2 * number + 1);
     const auto drawn = crops_.draw(places, crop, training_.variety);
     const PoseSequence one = crop_of(data_.learnt[drawn.sequence], drawn.crop, sides_);
@@ -142,7 +142,7 @@ torch::Tensor PoseTask::loss(const TorchNetwork& network, std::uint64_t seed, st
   const PoseLoss& weights = training_.loss;
   auto out = weights.matrices * part.mean((rotations - batch.rotations).pow(2).sum({-1, -2}));
   if (weights.position <= 0.0 && weights.acceleration <= 0.0) return out;
-  // Positions of the true body with both rotations, about the root.
+  // Positions relative to the root, computed for the true body with both sets of rotations.
   const auto error =
       body_.places_of(rotations, batch.offsets) - body_.places_of(batch.rotations, batch.offsets);
   out = out + weights.position * part.mean(metres_of(error));

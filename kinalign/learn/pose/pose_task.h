@@ -15,9 +15,8 @@
 
 namespace kinalign {
 
-/// Weights of the terms of the loss.
-/// Positions and accelerations go through the body, so an error near the root counts for all joints
-/// below it.
+/// Weights of the terms of the loss. Positions and accelerations are computed with the body, so an
+/// error near the root counts for all joints below it.
 struct PoseLoss {
   double matrices = 1.0;       // squared distance of rotation matrices, summed over their entries
   double position = 5.0;       // distance of joints, m
@@ -50,11 +49,11 @@ class CropDraws {
   std::vector<double> reached_;  // cumulative weights of the sequences
 };
 
-/// Crops are cut and get their errors when a batch is drawn, so no crop occurs twice. Judged inputs
-/// are made once.
+/// Crops are cut and get their errors when a batch is drawn, so no crop occurs twice. Validation
+/// inputs are made once.
 class PoseTask : public TrainingTask {
  public:
-  /// `data` must live longer.
+  /// `data` must outlive this object.
   PoseTask(PoseLayout layout, PoseTraining training, const PoseData& data, torch::Device device);
 
   torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override;

@@ -47,10 +47,10 @@ void UprightFrames::add(std::span<const Eigen::Matrix3d> rotations, const Vec3& 
 
 std::vector<Eigen::Matrix3d> UprightFrames::turns() const {
   std::vector<Eigen::Matrix3d> out(from_root_.size(), Eigen::Matrix3d::Identity());
-  // Only the tilt of the root is removed: its heading is no matter of a zero.
+  // Only the tilt of the root is removed. Its heading does not belong to the zero.
   out[0] = Quat::FromTwoVectors(Vec3::UnitY(), vertical_).toRotationMatrix();
   for (std::size_t j = 0; j < out.size(); ++j) {
-    // A mean of rotations is no rotation; the nearest one takes its place (SVD).
+    // A mean of rotations is no rotation, so the nearest rotation is used (SVD).
     if (in_trunk_[j]) out[j] = nearest_rotation(from_root_[j]).transpose() * out[0];
   }
   return out;

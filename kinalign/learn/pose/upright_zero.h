@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives the rotations of all people the same zero. A motion capture system calibrates each person
-// anew, so the same bone name has different directions: in upright persons the pelvis is up to 24
-// degrees off the vertical, the head up to 57. Here the upright stand is the identity for root,
-// trunk and head. Limbs keep their zero, the direction of their bone. Positions of joints do not
-// change.
+// Gives the rotations of all people the same zero, which is the pose with rotation 0. A motion
+// capture system calibrates each person separately, so the same bone name has different directions:
+// in upright persons the pelvis is up to 24 degrees off the vertical, the head up to 57. Here the
+// upright stand is the identity for root, trunk and head. Limbs keep their zero, the direction of
+// their bone. Positions of joints do not change.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -28,13 +28,12 @@ class UprightFrames {
   std::size_t count() const { return count_; }
 
   /// For each joint [J] the rotation X that changes its zero: its rotation G becomes G X. Needs at
-  /// least one frame.
-  /// The heading of the root is kept, because a zero must not turn a person round.
+  /// least one frame. The heading of the root is kept.
   std::vector<Eigen::Matrix3d> turns() const;
 
  private:
   std::vector<bool> in_trunk_;              // [J]
-  std::vector<Eigen::Matrix3d> from_root_;  // [J] sums of the trunk's rotations against the root
+  std::vector<Eigen::Matrix3d> from_root_;  // [J] sums of the rotations relative to the root
   Vec3 vertical_ = Vec3::Zero();            // sum of the vertical in the root's space
   std::size_t count_ = 0;
 };
