@@ -56,19 +56,20 @@ Result<void> check_known(const Catalogue& catalogue, const AddRequest& request,
   return {};
 }
 
-/// The one spelling of a path, without links.
+/// The absolute path without links, so that one file has one spelling.
 std::string one_spelling(const std::string& path) {
   std::error_code fault;
   const fs::path whole = fs::weakly_canonical(path, fault);
   return fault ? path : whole.string();
 }
 
-/// Links are resolved on both sides, so a file is judged by its real place.
+/// True if the file or folder `path` is below `folder`, after all links are followed.
 bool is_below(const std::string& path, const std::string& folder) {
   return one_spelling(path).starts_with(one_spelling(folder) + "/");
 }
 
-/// A file's path in a manifest: relative to `base` if the file lies below the data set's folder.
+/// A file's path in a manifest: relative to `base` if the file lies below the data set's folder,
+/// else absolute.
 std::string as_named(const std::string& path, const std::string& folder, const std::string& base) {
   std::string whole = one_spelling(path);
   if (!is_below(path, folder)) return whole;
@@ -90,7 +91,8 @@ class CopyPlan {
   /// there.
   Manifest plan(Manifest manifest) {
     for (StreamOptions& stream : manifest.streams) {
-      // The reader must see the original paths while the stream's own are replaced one by one.
+      // The reader must see the original paths while the stream's own paths are replaced one by
+      // one.
       const StreamOptions given_stream = stream;
       for (std::size_t i = 0; i < stream.files.size(); ++i) {
         stream.files[i].path = place(given_stream, given_stream.files[i]);
@@ -103,11 +105,12 @@ class CopyPlan {
   const std::vector<RawCopy>& copies() const { return copies_; }
 
  private:
-  /// A file with further files keeps the name of its folder, since readers find them by it.
+  /// Plans the copy of one file. If its reader opens further files, the copy is in a folder with
+  /// the same name, because readers find the further files by the folder's name.
   std::string place(const StreamOptions& stream, const StreamFile& file) {
     if (is_below(file.path, folder_)) return file.path;
     auto further = further_files_of(files_, stream, file);
-    // A layout is no neighbour of the file; it is placed by itself.
+    // A layout is not found through the file's folder, so it is copied separately.
     std::erase(further, stream.layout);
     if (further.empty()) {
       // The parts of a recording are found by their names, so all of them are copied.
@@ -119,7 +122,7 @@ class CopyPlan {
     const fs::path base = fs::path(one_spelling(file.path)).parent_path();
     const fs::path own = fs::path(to_) / stream.name / base.filename();
     for (const std::string& one : further) {
-      // The files keep their places relative to each other.
+      // All these files keep their paths relative to each other.
       const fs::path step = fs::path(one_spelling(one)).lexically_relative(base);
       copies_.push_back({one, (own / step).lexically_normal().string()});
     }
@@ -127,12 +130,13 @@ class CopyPlan {
     return copies_.back().to;
   }
 
-  /// Files of one name from several folders are kept apart by their streams.
+  /// Plans the copy of a file without further files. If two streams have files of the same name,
+  /// the second one is copied into a folder with the stream's name.
   std::string place_alone(const std::string& stream, const std::string& path) {
     if (is_below(path, folder_)) return path;
     std::string to = to_ + std::string(file_name(path));
     for (const RawCopy& one : copies_) {
-      // Two streams may read one file; it is copied once.
+      // If two streams read the same file, it is copied once.
       if (one.from == path) return one.to;
       if (one.to == to) to = to_ + stream + "/" + std::string(file_name(path));
     }
@@ -146,9 +150,10 @@ class CopyPlan {
   std::vector<RawCopy> copies_;
 };
 
-/// A manifest's text without its own run, so that the same raw files under another run are found.
+/// A manifest's text without the take's own name. Two takes from the same raw files then have the
+/// same text, although their runs differ.
 std::string without_own_name(std::string text, const TakeName& name) {
-  // The take's own folder occurs in the paths of copied files only.
+  // The take's own folder occurs only in the paths of copied files.
   const std::string own = raw_folder(name);
   for (auto at = text.find(own); at != std::string::npos; at = text.find(own, at)) {
     text.erase(at, own.size());
@@ -174,21 +179,22 @@ Result<bool> same_bytes(FileSystem& files, const RawCopy& copy) {
   return from.sha256 == KA_TRY(facts_of(files, copy.to, "hashing", {})).sha256;
 }
 
-/// Makes the copies. A copy made before stays, so that a stopped job can go on. False: another file
-/// has the place of a copy, from a take that was removed or that another process adds.
+/// Makes the copies. A copy that exists already is kept, so that a stopped job can continue.
+/// Returns false if a file with other bytes is in the place of a copy: it belongs to a removed
+/// take, or to one that another process adds.
 Result<bool> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) {
   for (const RawCopy& copy : copies) {
     KA_TRY(make_folders(fs::path(copy.to).parent_path().string()));
     const Result<void> copied =
         is_there(copy.to) ? Result<void>{} : copy_file(files, copy.from, copy.to);
-    // Another process may have made the copy meanwhile; then its bytes decide.
+    // Another process may have made the same copy meanwhile, so the bytes are compared.
     if (!copied && !is_there(copy.to)) return Failure(copied.error());
     if (!KA_TRY(same_bytes(files, copy))) return false;
   }
   return true;
 }
 
-/// The wanted run if it is free, else the next one after all others.
+/// The wanted run if it is free, else the run after all existing ones.
 std::uint32_t free_run(const std::set<std::uint32_t>& runs, std::uint32_t wanted) {
   if (wanted > 0 && !runs.contains(wanted)) return wanted;
   return runs.empty() ? 1 : *runs.rbegin() + 1;
@@ -199,7 +205,7 @@ std::uint32_t free_run(const std::set<std::uint32_t>& runs, std::uint32_t wanted
 /// Reads the runs and manifests of a subject and an action.
 Result<TakeAdder::Known> TakeAdder::read_known(const std::string& subject,
                                                const std::string& action) const {
-  // The folder of a new person does not exist yet.
+  // For a new person this creates the folder.
   KA_TRY(make_folders(folder_ + "/sub-" + subject));
   Known out;
   for (const auto& [name, there] : KA_TRY(scan_takes(folder_, subject))) {
@@ -207,14 +213,14 @@ Result<TakeAdder::Known> TakeAdder::read_known(const std::string& subject,
     out.runs.insert(name.run);
     const auto text =
         read_whole(files_, path_of(folder_, name, TakeFile::manifest), longest_manifest);
-    // A take without a readable manifest can't be recognised, but its run is taken.
+    // A take without a readable manifest can't be compared, but its run counts as taken.
     if (text) out.by_text.emplace(without_own_name(*text, name), name);
   }
   return out;
 }
 
 /// The takes of a person and action, read when they are first needed. The pointer is valid until
-/// known_ is changed.
+/// `known_` is changed.
 Result<TakeAdder::Known*> TakeAdder::known(const std::string& subject, const std::string& action) {
   const auto key = std::pair(subject, action);
   auto at = known_.find(key);
@@ -224,17 +230,17 @@ Result<TakeAdder::Known*> TakeAdder::known(const std::string& subject, const std
   return &at->second;
 }
 
-/// The take that was added from the same manifest before. With copies, their bytes must be the
-/// same, too.
+/// The take that was added before from the same manifest. If the raw files are to be copied, the
+/// bytes of the copies must be the same, too.
 Result<std::optional<TakeName>> TakeAdder::find_same(const Known& known, const Manifest& manifest,
                                                      const std::string& text, bool copy) const {
   const auto [begin, end] = known.by_text.equal_range(text);
-  // Several takes may have the same text if their copies differ.
+  // Several takes may have the same manifest text and differ in the copied raw files.
   for (auto one = begin; one != end; ++one) {
-    // Without copies the text alone decides: it names the same files.
+    // If nothing is copied, equal texts name the same raw files, so the takes are the same.
     bool same = true;
     if (copy) {
-      // The copies would lie in the folder of that take.
+      // The raw files are compared with the copies of the existing take.
       CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder(one->second));
       plan.plan(manifest);
       for (const RawCopy& file : plan.copies()) same = same && KA_TRY(same_bytes(files_, file));
@@ -254,7 +260,8 @@ Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
   for (;;) {  // repeat until no other process takes the same run
     Known& there = *KA_TRY(known(name.subject, name.action));
     name.run = free_run(there.runs, request.run);
-    // The copies depend on the run, so they are planned anew for each run that is tried.
+    // The copies' paths contain the run, so the copies are planned again for each run that is
+    // tried.
     CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder(name));
     const std::string text =
         placed_text(request.copy ? plan.plan(manifest) : manifest, folder_, name);
@@ -275,16 +282,16 @@ Result<Added> TakeAdder::add(const Manifest& given, const std::string& base,
       there.by_text.emplace(nameless, name);
       return Added{name, false};
     }
-    // Only a file that appeared meanwhile is a reason to try the next run.
+    // Only if the file has appeared meanwhile, the next run is tried.
     if (!is_there(path) || there.runs.contains(name.run)) return Failure(written.error());
-    // The other process took the run; its takes are read again.
+    // Another process took the run, so the takes are read again.
     known_.erase({name.subject, name.action});
   }
 }
 
 /// Subject and action come from the recording, if it states them.
 Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress& progress) {
-  // The clocks need not be learnt to list the devices.
+  // The devices can be listed without learning their clocks.
   const auto source = KA_TRY(RecordingSource::open(
       files_, request.path, RecordingSource::Devices::surveyed, {}, progress));
   const RecordingSurvey survey = source->survey();
@@ -302,12 +309,12 @@ Result<Added> TakeAdder::add_take(const AddRequest& request) {
   const Error blame{request.path, 0, "a take that HDF5 can read", ""};
   const std::string ids = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {
     const TakeReader reader = KA_TRY(TakeReader::open(files_, request.path));
-    // The child passes on text; a line end separates the two ids.
+    // The child process returns one text; a line end separates the two ids.
     return reader.header().subject + "\n" + reader.header().action;
   }));
   const std::string subject = ids.substr(0, ids.find('\n'));
   const std::string action = ids.substr(ids.find('\n') + 1);
-  // An empty request agrees with every take.
+  // An empty id in the request agrees with every take.
   const auto differs = [&](const std::string& wanted, const std::string& own) {
     return !wanted.empty() && wanted != own;
   };
@@ -322,7 +329,7 @@ Result<Added> TakeAdder::add_take(const AddRequest& request) {
   for (const std::uint32_t run : there.runs) {
     const TakeName one{subject, action, run};
     const RawCopy copy{request.path, path_of(folder_, one, TakeFile::take)};
-    // The same take was added before, under this run.
+    // The same take was added before, with this run.
     if (is_there(copy.to) && KA_TRY(same_bytes(files_, copy))) return Added{one, true};
   }
   const TakeName name{subject, action, free_run(there.runs, 0)};

@@ -20,12 +20,12 @@ namespace kinalign {
 /// One file to add, with the options of the user.
 struct AddRequest {
   std::string path;             // a recording, a recording.toml or a take
-  std::string subject, action;  // empty: as the file states
+  std::string subject, action;  // empty: those that the file states
   bool copy = false;            // copy raw files to sourcedata/sub-03/NAME/
   std::uint32_t run = 0;        // wanted run of a manifest, if free; 0: the next free one
 };
 
-/// The name that the take got, or that it has already.
+/// The name of the added take. If the same take exists already, its name.
 struct Added {
   TakeName name;
   bool was_there = false;  // the same manifest or take was added before
@@ -35,7 +35,7 @@ struct Added {
 /// adding many takes costs little more than writing their manifests.
 class TakeAdder {
  public:
-  /// All three arguments must outlive it.
+  /// All three arguments must outlive this object.
   TakeAdder(FileSystem& files, const std::string& folder, const Catalogue& catalogue)
       : files_(files), folder_(folder), catalogue_(catalogue) {}
 
@@ -43,15 +43,15 @@ class TakeAdder {
   /// take. Fails if the file is of another kind, or if dataset.toml lacks the subject or the
   /// action. Paths of files below the data set's folder become relative, others absolute.
   Result<Added> add(const AddRequest& request, const Progress& progress);
-  /// The same for a manifest that is in no file. `base` ("" or ending in '/') is the folder of its
-  /// paths; `request.path` names it in messages.
+  /// Adds a take by a manifest that is not in a file. `base` ("" or ending in '/') is the folder to
+  /// which its paths are relative; `request.path` names the manifest in messages.
   Result<Added> add(const Manifest& manifest, const std::string& base, const AddRequest& request);
 
  private:
   /// The existing takes of a subject and an action.
   struct Known {
     std::set<std::uint32_t> runs;
-    /// The takes by their manifest's text without its own folder's name.
+    /// The takes by their manifest's text, without the take's own name in it.
     std::multimap<std::string, TakeName> by_text;
   };
   Result<Known> read_known(const std::string& subject, const std::string& action) const;
@@ -64,7 +64,7 @@ class TakeAdder {
   FileSystem& files_;
   const std::string& folder_;
   const Catalogue& catalogue_;
-  // Filled when a person and an action are first added to.
+  // An entry is filled when the first take of that person and action is added.
   std::map<std::pair<std::string, std::string>, Known> known_;  // by subject and action
 };
 

@@ -24,13 +24,13 @@ namespace {
 struct Candidate {
   TakeName name;
   TakeFiles files;
-  Manifest manifest;  // empty for a take without one
+  Manifest manifest;  // empty for a take without a manifest
   std::vector<TakeInput> inputs;
   std::optional<TakeSummary> summary;
   std::uint64_t bytes = 0;  // size of the inputs; the take's own size if it has none
 };
 
-/// Finds the reason why a take has to be made, and the size of its inputs.
+/// Finds the reason why a take has to be made again, and the size of its inputs.
 class Planner {
  public:
   Planner(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
@@ -49,31 +49,32 @@ class Planner {
       return out;
     }
     out.manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
-    // Inputs that only the summary names, such as further files of a reader, are included.
+    // The inputs also include files that only the summary names, such as further files of a reader.
     out.inputs = inputs_of(files_, out.manifest, folder_of(folder_, name),
                            out.summary ? out.summary->inputs : std::vector<InputFacts>{});
     for (const TakeInput& input : out.inputs) out.bytes += size_of(input.path);
     return out;
   }
 
-  // The checks go from the cheapest to the dearest: files, parameters, size, and the hashes of
-  // inputs last.
+  // The checks that take the least time come first: files, parameters, size. The hashes of inputs
+  // come last.
   Result<BuildReason> judge(const Candidate& one) const {
-    // A take without a manifest can't be made; at most its summary is missing.
+    // A take without a manifest can't be made again. At most its summary is missing.
     if (!one.files.manifest) {
-      // The size is compared, not the hash: `verify` reads every byte.
+      // Only the size is compared here. The command `verify` reads every byte.
       const bool same = one.summary && one.summary->bytes == one.bytes;
       return same ? BuildReason::up_to_date : BuildReason::no_summary;
     }
     if (!one.summary || !one.files.take) return BuildReason::first;
-    // A request makes all takes that can be made.
+    // With the option `all`, every take that can be made is made.
     if (options_.all) return BuildReason::asked;
     if (recipe_of(one.manifest) != one.summary->recipe) return BuildReason::changed_parameters;
-    // The take was replaced or truncated, so its summary says nothing about it.
+    // If the size differs, the take was replaced or truncated, so its summary is not valid any
+    // more.
     if (size_of(path_of(folder_, one.name, TakeFile::take)) != one.summary->bytes) {
       return BuildReason::first;
     }
-    // Inputs that are older than the summary can't have changed since.
+    // Inputs that are older than the summary have not changed since the take was made.
     const auto made = version_of(path_of(folder_, one.name, TakeFile::summary));
     const bool same = KA_TRY(
         same_inputs(files_, one.inputs, *one.summary, made ? made->changed_ns : 0, progress_));
@@ -81,7 +82,7 @@ class Planner {
   }
 
  private:
-  // A file that can't be found has size 0.
+  // The size of a file, bytes; 0 if it can't be found.
   static std::uint64_t size_of(const std::string& path) {
     const auto version = version_of(path);
     return version ? version->size : 0;
@@ -110,7 +111,7 @@ class BuildProgress {
   /// The progress of job i: reading is the first half, aligning the second.
   Progress part(std::size_t i, std::uint64_t bytes) {
     return [this, i, bytes](std::string_view what, std::uint64_t done, std::uint64_t total) {
-      // A pass of unknown length counts as not begun.
+      // If the length of a pass is not known, the pass counts as not begun.
       const double share =
           total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
       const double half = what == "aligning" ? 0.5 + 0.5 * share : 0.5 * share;
@@ -118,14 +119,14 @@ class BuildProgress {
     };
   }
 
-  /// False: the user stops the build.
+  /// Adds the progress of job i. Returns false if the user stops the build.
   bool reach(std::size_t i, std::uint64_t bytes) {
-    // Jobs call from several threads; the sum and the user's callback are shared.
+    // Several threads call this function, and they share the sum and the user's callback.
     const std::lock_guard lock(mutex_);
-    // A job's progress never steps back, though reading starts anew for each file.
+    // Reading starts at 0 for each file, but the progress of a job must never decrease.
     sum_ += bytes - std::min(bytes, done_[i]);
     done_[i] = std::max(bytes, done_[i]);
-    // Once stopped, all threads learn it at their next call.
+    // When the user stops the build, each thread learns it at its next call.
     stopped_ = stopped_ || !go_on(progress_, "building", sum_, all_);
     return !stopped_;
   }
@@ -139,8 +140,8 @@ class BuildProgress {
   bool stopped_ = false;
 };
 
-/// The summary of a take that was added as a take. A child process reads it, so this must run
-/// before other threads begin.
+/// The summary of a take that was added without raw files. A child process reads the take, so no
+/// other thread may run yet.
 Result<TakeSummary> summarised(FileSystem& files, const std::string& folder, const TakeName& name) {
   return keep_summary(files, folder, name, KA_TRY(summarise_takes(files, folder, {name}).front()));
 }
@@ -149,14 +150,14 @@ Result<TakeSummary> summarised(FileSystem& files, const std::string& folder, con
 
 Result<TakeSummary> TakeMaker::make(const TakeName& name, const Manifest& manifest,
                                     const std::string& base, const Progress& progress) {
-  // One thread for each take: several takes are made at once.
+  // Each take is made in one thread, because several takes are made at once.
   const Recording recording =
       KA_TRY(open_recording(files_, manifest, base, {progress, 1, nullptr}));
   const std::string path = path_of(folder_, name, TakeFile::take);
   std::optional<TakeWriter> writer;
   TakeHeader header;
   TakeSink sink;
-  // The writer needs the header, which the aligner knows only after its plan.
+  // The writer needs the take's header, which the aligner knows only after planning.
   sink.begin = [&](const TakeHeader& of_take) -> Result<void> {
     header = of_take;
     const std::lock_guard lock(hdf5_);
@@ -167,7 +168,7 @@ Result<TakeSummary> TakeMaker::make(const TakeName& name, const Manifest& manife
   const AlignmentReport report = KA_TRY(align(recording, manifest, sink, progress, 1));
   {
     const std::lock_guard lock(hdf5_);
-    // The file gets its name only here, so an interrupted take leaves no file.
+    // The file gets its final name only here, so an interrupted run leaves no incomplete take.
     KA_TRY(writer->finish(report));
   }
   TakeSummary summary = KA_TRY(summary_of(header, report_json(report)));
@@ -181,7 +182,7 @@ Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
   const std::string path = path_of(folder, name, TakeFile::manifest);
   Manifest manifest = KA_TRY(read_manifest(KA_TRY(read_whole(files, path, longest_manifest)),
                                            path_of(name, TakeFile::manifest), catalogue.align));
-  // The name decides, whatever the manifest's text says.
+  // Subject and action come from the take's name, even if the manifest states others.
   manifest.subject = name.subject;
   manifest.action = name.action;
   return manifest;
@@ -197,19 +198,20 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
     // A faulty manifest is reported when its take is made, so that other takes are still made.
     takes.push_back(looked ? *std::move(looked) : Candidate{name, there, {}, {}, {}, 0});
   }
-  // The longest take first: short ones fill the gaps at the end.
+  // The longest takes are made first. Short takes at the end keep all threads busy.
   std::stable_sort(takes.begin(), takes.end(),
                    [](const Candidate& a, const Candidate& b) { return a.bytes > b.bytes; });
   std::vector<std::uint64_t> loads(options.share.size, 0);
   BuildPlan plan;
   plan.at_once = options.jobs;
-  // The progress of comparing, in takes.
+  // The number of takes compared so far, for the progress.
   std::uint64_t seen = 0;
   for (const Candidate& one : takes) {
     const auto least = std::min_element(loads.begin(), loads.end());
-    // One more than the size, so that takes of unknown size are shared evenly, too.
+    // Each take counts one byte more than its size, so that takes of unknown size are shared
+    // evenly, too.
     *least += one.bytes + 1;
-    // Only the own share is compared, since comparing may mean hashing.
+    // Only this process's share is compared, because comparing may mean hashing large files.
     if (static_cast<std::size_t>(least - loads.begin()) != options.share.rank) continue;
     const BuildReason reason = KA_TRY(planner.judge(one));
     if (!go_on(progress, "comparing", ++seen, takes.size())) return Failure(interruption());
@@ -232,7 +234,7 @@ Result<void> build(FileSystem& files, const std::string& folder, const Catalogue
   };
   BuildProgress all(watch.progress, jobs);
   for (std::size_t i = 0; i < jobs.size() && !all.stopped(); ++i) {
-    // Takes that only lack a summary come first, while this is the only thread.
+    // Takes that only lack a summary come first, while no other thread runs.
     if (jobs[i].reason != BuildReason::no_summary) continue;
     watch.done({jobs[i].name, summarised(files, folder, jobs[i].name)});
     all.reach(i, jobs[i].input_bytes);
@@ -243,7 +245,7 @@ Result<void> build(FileSystem& files, const std::string& folder, const Catalogue
     if (all.stopped() || jobs[i].reason == BuildReason::no_summary) return;
     Built built{jobs[i].name, make(jobs[i], all.part(i, jobs[i].input_bytes))};
     all.reach(i, jobs[i].input_bytes);
-    // A take that was interrupted did not fail.
+    // A take that was interrupted counts as neither made nor failed.
     if (!built.summary && is_interruption(built.summary.error())) return;
     const std::lock_guard lock(telling);
     watch.done(built);

@@ -13,21 +13,21 @@ namespace kinalign {
 
 namespace {
 
-// The ranges of people's measures refuse another unit, such as metres in place of centimetres.
+// Limits of people's measures, so that a value in a wrong unit (metres for centimetres) is refused.
 constexpr double least_m = 1e-6, most_m = 3.0, most_cm = 300.0, most_kg = 500.0;
 
-/// Ids become parts of file names.
+/// Ids become parts of file names, so only letters and digits are allowed.
 Result<void> check_id(const Value& entry) {
   if (is_label(entry.key)) return {};
   return at(entry, Error{"", 0, "an id of letters and digits, for file names", shown(entry.key)});
 }
 
-/// Reads the tables [subject.ID], or those of classes or actions.
+/// Reads the tables of one kind, [subject.ID], [class.ID] or [action.ID], into a list.
 template <class One>
 Result<void> read_each(const Value& tables, std::vector<One>& out) {
   for (const Value& one : KA_TRY(entries_of(tables))) {
     KA_TRY(check_id(one));
-    // The entry is made first, because its options are read into it.
+    // The entry is added first, because its options are read into it.
     One& made = out.emplace_back();
     made.id = one.key;
     KA_TRY(read_options(one, describe(made)));
@@ -45,7 +45,8 @@ Result<void> read_each(const Value& tables, std::vector<Described>& out) {
   return {};
 }
 
-/// Classes are checked at the end, since they may be defined after the actions that name them.
+/// Fails if an action names a class that is not defined. It is called at the end, because a class
+/// may be defined after the actions that name it.
 Result<void> check_classes(const Value& top, const Catalogue& catalogue) {
   // Class ids may be defined anywhere in the file.
   std::vector<std::string> known;
@@ -61,7 +62,7 @@ Result<void> check_classes(const Value& top, const Catalogue& catalogue) {
   return {};
 }
 
-/// "07" for 7, as in the ids of the templates.
+/// A number as in the ids of the templates: "07" for 7.
 std::string two_digits(int number) { return (number < 10 ? "0" : "") + std::to_string(number); }
 
 constexpr std::string_view head_of_template =
@@ -93,22 +94,22 @@ constexpr std::string_view empty_template = R"(
 # name = "a straight walk"
 )";
 
-/// A row of the paper's table 6, person by person.
+/// A row of table 6 in the HFUT-MMD paper (README.md), as single people.
 struct Person {
   std::string_view id, sex;
   int height_cm;
 };
-/// From table 6 of the paper.
+/// From table 6 of the HFUT-MMD paper.
 constexpr Person people[] = {{"00", "m", 175}, {"01", "m", 180}, {"02", "m", 180},
                              {"03", "m", 175}, {"04", "m", 170}, {"05", "f", 165},
                              {"06", "m", 175}, {"07", "f", 170}, {"08", "m", 180},
                              {"09", "f", 155}, {"10", "f", 160}, {"11", "m", 175}};
-/// A class of the paper, with our number of actions.
+/// A class of the HFUT-MMD paper, with our number of actions.
 struct ClassShare {
   std::string_view id, name;
-  int actions;  // ours: Baduanjin has eight pieces, Wuqinxi five animals
+  int actions;  // our numbers: Baduanjin has eight pieces, Wuqinxi five animals
 };
-/// From table 7 of the paper.
+/// From table 7 of the HFUT-MMD paper.
 constexpr ClassShare classes[] = {{"S1", "radio calisthenics", 8},
                                   {"S2", "Baduanjin", 8},
                                   {"S3", "sports", 5},
@@ -116,7 +117,7 @@ constexpr ClassShare classes[] = {{"S1", "radio calisthenics", 8},
                                   {"S5", "daily activities", 6},
                                   {"S6", "dance", 2}};
 
-/// The paper's people, classes and actions as TOML. The actions have no names in the paper.
+/// The people, classes and actions of the HFUT-MMD paper as TOML. The paper does not name actions.
 std::string hfut_template() {
   std::string text;
   for (const Person& person : people) {
@@ -169,7 +170,7 @@ const Action* find_action(const Catalogue& catalogue, std::string_view id) {
 
 Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name) {
   Catalogue out;
-  // The tables [subject.ID] and the like: each reader fills its list.
+  // For each table, a function reads its entries into one list.
   const auto each = [](auto& all) {
     return [&all](const Value& tables) { return read_each(tables, all); };
   };
@@ -190,13 +191,13 @@ Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name) {
 
 std::string catalogue_toml(const Catalogue& catalogue) {
   std::string text = toml_options(catalogue);
-  // Options that have their defaults are not written.
+  // Options with default values are not written.
   const std::string align = toml_options(catalogue.align);
   if (!align.empty()) text += "\n[align]\n" + align;
   const auto put = [&](const std::string& kind, const auto& all) {
     for (const auto& one : all) text += toml_head(kind, one.id) + toml_options(one);
   };
-  // Devices and rigs have keys of the lab's own choice.
+  // The lab may choose any keys for devices and rigs.
   const auto put_texts = [&](const std::string& kind, const std::vector<Described>& all) {
     for (const Described& one : all) {
       text += toml_head(kind, one.id);
@@ -219,7 +220,7 @@ Result<std::string> catalogue_template(std::string_view template_name, const std
   if (template_name != "empty" && template_name != "hfut-mmd") {
     return Failure(unknown_name(template_name, "a template", catalogue_template_names()));
   }
-  // Both templates begin with the same texts.
+  // Both templates begin with the same lines.
   const std::string head = catalogue_head(name, "", "");
   return head + (template_name == "empty" ? std::string(empty_template) : hfut_template());
 }

@@ -21,12 +21,12 @@ struct Subject {
   std::string id;          // letters and digits: "07"
   std::string sex;         // "f", "m" or "x"; empty: not stated
   std::string handedness;  // "right", "left" or "both"; empty: not stated
-  std::string consent;     // its extent, and the place of the form: "released, form 12"
+  std::string consent;     // extent of the consent, and the place of the form: "released, form 12"
   std::optional<double> height_cm, weight_kg;
   std::map<std::string, double> segments_m;  // lengths: "upper_arm_left" -> 0.31
 };
 
-/// Actions of one kind (table 7 of the paper): "S2", Baduanjin.
+/// Actions of one kind, as in table 7 of the HFUT-MMD paper: "S2", Baduanjin.
 struct ActionClass {
   std::string id, name;
 };
@@ -55,8 +55,8 @@ struct Catalogue {
   AlignOptions align;  // defaults for the manifests of takes
 };
 
-/// Names, meanings and ranges of the keys, for reading and writing dataset.toml.
-Fields describe(Catalogue& catalogue);  // its texts
+/// Names, meanings and ranges of the keys of each structure, for reading and writing dataset.toml.
+Fields describe(Catalogue& catalogue);  // the texts at the top
 Fields describe(Subject& subject);
 Fields describe(ActionClass& one);
 Fields describe(Action& action);
@@ -71,20 +71,22 @@ const One* find_id(const std::vector<One>& all, std::string_view id) {
 const Subject* find_subject(const Catalogue& catalogue, std::string_view id);
 const Action* find_action(const Catalogue& catalogue, std::string_view id);
 
-/// Reads dataset.toml. `name` appears in messages. Refused with their line: an unknown key, a value
+/// Reads dataset.toml. `name` appears in messages. Fails, with the line, at an unknown key, a value
 /// out of range, an id that a file name can't contain, and an action of an unknown class.
 Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name);
 
-/// The text that reads back as `catalogue`, with all values that differ from the defaults.
+/// The TOML text of `catalogue`, with all values that differ from the defaults.
 std::string catalogue_toml(const Catalogue& catalogue);
 
-/// The text of a new dataset.toml. `template_name`: "empty", or "hfut-mmd" with the paper's 12
-/// people, 6 classes and 34 actions. The paper neither names the actions nor states their number in
-/// each class, so ids are neutral and the numbers are ours (8, 8, 5, 5, 6, 2).
+/// The text of a new dataset.toml. `template_name`: "empty", or "hfut-mmd" with the 12 people, 6
+/// classes and 34 actions of the HFUT-MMD paper (README.md). The paper does not name the actions
+/// and does not state their number in each class. Names are therefore ids, and the numbers are ours
+/// (8, 8, 5, 5, 6, 2).
 Result<std::string> catalogue_template(std::string_view template_name, const std::string& name);
 /// The names that catalogue_template() knows.
 std::vector<std::string> catalogue_template_names();
-/// The first part of both templates: the texts, without people, classes and actions.
+/// The first lines of both templates: name, licence and other texts, without people, classes and
+/// actions.
 std::string catalogue_head(const std::string& name, const std::string& licence,
                            const std::string& citation);
 

@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-// The limits, as the header describes them.
+// These limits are described in contents.h.
 constexpr double unit_slack = 1e-3;
 constexpr double bone_slack_m = 0.02, bone_slack = 0.05;
 constexpr double farthest_m = 100.0, fastest_m_s2 = 1000.0, fastest_rad_s = 100.0;
@@ -33,7 +33,7 @@ bool finite(std::span<const double> numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
-/// A finding without advice: the take has to be made again, whatever is wrong.
+/// A finding without advice, because in all cases the take has to be made again.
 Finding finding(Severity severity, const std::string& file, std::string expected,
                 std::string found) {
   return {severity, Error{file, 0, std::move(expected), std::move(found)}, "", ""};
@@ -41,7 +41,7 @@ Finding finding(Severity severity, const std::string& file, std::string expected
 
 }  // namespace
 
-/// Prepares the groups; only bones of skeletons have limits of length.
+/// Prepares the counts of each group. Only bones of skeletons have limits of length.
 ContentCheck::ContentCheck(const TakeHeader& header, double rate_hz)
     : step_ns_(rate_hz > 0.0 ? 1e9 / rate_hz : 0.0) {
   for (const TakeGroup& of_take : header.groups) {
@@ -58,7 +58,7 @@ ContentCheck::ContentCheck(const TakeHeader& header, double rate_hz)
   }
 }
 
-/// Counts stamps that do not rise, and steps that differ from the rate's.
+/// Counts stamps that do not rise, and steps that differ from the step of the rate.
 void ContentCheck::add_stamps(const std::vector<Time>& stamps) {
   for (const Time stamp : stamps) {
     const std::int64_t t = to_ns(stamp);
@@ -74,7 +74,8 @@ void ContentCheck::add_stamps(const std::vector<Time>& stamps) {
 
 void ContentCheck::add_bone(const ClipRows& rows, std::size_t cell, std::size_t parent_cell,
                             std::size_t joint, Group& group) {
-  // The length is measured twice, since local and global positions may disagree in a foreign take.
+  // The length is measured twice, because in a take of another program the local and the global
+  // positions may disagree.
   const double bone = length_of(&rows.local_positions[3 * cell]);
   group.least[joint] = std::min(group.least[joint], bone);
   group.most[joint] = std::max(group.most[joint], bone);
@@ -87,7 +88,7 @@ void ContentCheck::add_bone(const ClipRows& rows, std::size_t cell, std::size_t 
 void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& group) const {
   const std::size_t joints = group.parents.size();
   for (std::size_t r = 0; r < count; ++r) {
-    // Invalid rows need not keep any rule.
+    // Invalid rows may have any values.
     if (!rows.valid.empty() && rows.valid[r] == 0) continue;
     for (std::size_t j = 0; j < joints; ++j) {
       const std::size_t cell = r * joints + j;
@@ -144,7 +145,7 @@ void ContentCheck::add_rows(const ImuRows& rows, std::size_t, Group& group) cons
   }
 }
 
-/// Slabs must come in order: stamps are compared across their borders.
+/// Slabs must be added in order, because stamps are compared across their borders.
 void ContentCheck::add(const TakeSlab& slab) {
   add_stamps(slab.stamps);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -162,7 +163,7 @@ Findings ContentCheck::findings(const std::string& file) const {
       out.push_back(finding(severity, file, expected, fmt::format("{} {}", count, found)));
   };
   report(Severity::error, not_rising_, "rising stamps", "that do not rise");
-  // Single uneven steps are usual after a lost frame.
+  // Single uneven steps are usual, for example after a lost frame.
   if (uneven_ * steps_share > steps_) {
     report(Severity::warning, uneven_, fmt::format("steps of {:.3f} ms", 1e-6 * step_ns_),
            fmt::format("of {} have another length", steps_));
@@ -181,7 +182,7 @@ Findings ContentCheck::findings(const std::string& file) const {
     std::uint64_t stretched = 0;
     double worst = 0.0;
     for (std::size_t j = 0; j < group.least.size(); ++j) {
-      // The larger of the two changes counts.
+      // The larger change of the two measured lengths counts.
       const double by =
           std::max(group.most[j] - group.least[j], group.global_most[j] - group.global_least[j]);
       if (!(by > std::max(bone_slack_m, bone_slack * group.most[j]))) continue;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules that the rows of every take must keep, whatever program made it. They are checked slab
-// by slab.
+// Rules for the rows of a take, whichever program made it. They are checked slab by slab.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -13,10 +12,11 @@
 namespace kinalign {
 
 /// Checks a take's rows in their order. Findings: stamps that do not rise; more than one step in a
-/// hundred that differs from the rate's; numbers of valid cells that are not finite, and rotations
-/// whose length is not 1; bones of a skeleton that change by more than 2 cm and 5 %; positions
-/// beyond 100 m, accelerations beyond 1000 m/s2, angular velocities beyond 100 rad/s. The limits
-/// are chosen: a suit that keeps the feet on the floor stretches its legs by a centimetre.
+/// hundred that differs from the step of the rate; numbers of valid cells that are not finite;
+/// rotations whose length is not 1; bones of a skeleton that change by more than 2 cm and 5 %;
+/// positions beyond 100 m; accelerations beyond 1000 m/s2; angular velocities beyond 100 rad/s. The
+/// limits are our choice: a suit that keeps the feet on the floor stretches its legs by a
+/// centimetre.
 class ContentCheck {
  public:
   ContentCheck(const TakeHeader& header, double rate_hz);
@@ -36,7 +36,7 @@ class ContentCheck {
   };
   static void add_bone(const ClipRows& rows, std::size_t cell, std::size_t parent_cell,
                        std::size_t joint, Group& group);
-  /// Checks one vector of an array that may be empty; the cell is valid.
+  /// Checks one vector of an array that may be empty. The vector's cell is valid.
   static void add_vector(const std::vector<double>& all, std::size_t cell, double most,
                          Group& group);
   void add_stamps(const std::vector<Time>& stamps);
@@ -44,7 +44,7 @@ class ContentCheck {
   void add_rows(const PointRows& rows, std::size_t count, Group& group) const;
   void add_rows(const ImuRows& rows, std::size_t count, Group& group) const;
 
-  // 0: the rate is not known, and steps are not judged.
+  // If this is 0, the rate is not known and steps are not checked.
   double step_ns_;
   std::vector<Group> groups_;
   std::uint64_t steps_ = 0, uneven_ = 0, not_rising_ = 0;

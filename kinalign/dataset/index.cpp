@@ -24,14 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_toml = std::size_t{16} << 20;
-/// A change within this time may leave a folder's date unchanged.
+/// If two changes of a folder are closer than this, the folder's date may be the same.
 constexpr std::int64_t racy_ns = 2'000'000'000;
 
-/// Incremented with every change of the tables: an index with another number is made anew.
+/// Incremented with every change of the tables. An index with another number is made again.
 constexpr std::int64_t layout = 2;
 
-/// In the view, columns of other tables are subqueries: SQLite runs a subquery only if a statement
-/// uses its column, while it would go through every join even for a sum.
+/// In the view, columns of other tables are subqueries. SQLite runs a subquery only if a statement
+/// uses its column, whereas it would execute every join even for a sum.
 constexpr const char* make_tables = R"(
 create table catalogue(version text not null);
 create table folder(path text primary key, changed_ns integer not null, not_built integer not null);
@@ -70,7 +70,7 @@ create view streams as select take.name as take, stream.name, modality, columns,
   stream.inferred, gaps, stream.gap_s, interval_ms, nodes from stream join take on take.id = stream.take;
 )";
 
-/// The time of day, ns UTC. It is compared with dates of files only.
+/// The time of day, ns UTC. It is only compared with the dates of files.
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -88,7 +88,7 @@ std::int64_t changed_ns(const std::string& folder) {
   return facts.st_mtim.tv_sec * 1'000'000'000 + facts.st_mtim.tv_nsec;
 }
 
-/// One value for all streams of a modality, for a column of `takes`.
+/// One value for all streams of one modality, for a column of the view `takes`.
 template <class Value, class Fold>
 std::optional<double> over(const TakeSummary& take, Modality modality, Value value, Fold fold) {
   std::optional<double> out;
@@ -100,14 +100,14 @@ std::optional<double> over(const TakeSummary& take, Modality modality, Value val
   return out;
 }
 
-/// The stream with the fewest valid samples stands for the modality.
+/// The least share of valid samples of all streams of the modality.
 std::optional<double> least_valid(const TakeSummary& take, Modality modality) {
   return over(
       take, modality, [](const StreamSummary& s) { return std::optional(s.valid); },
       [](double a, double b) { return std::min(a, b); });
 }
 
-/// The stream with the least certain stamps stands for the modality, ms.
+/// The widest uncertainty of stamps of all streams of the modality, ms.
 std::optional<double> widest_ms(const TakeSummary& take, Modality modality) {
   return over(
       take, modality,
@@ -125,7 +125,7 @@ std::vector<Cell> take_cells(std::int64_t id, const TakeName& name, const TakeSu
   const auto frames_of = [&](Modality modality) {
     return take.has(modality) ? whole(take.frames) : std::int64_t{0};
   };
-  // Gaps add up over streams; of inferred samples the worst stream counts.
+  // Lengths of gaps are added over all streams. For inferred samples the worst stream counts.
   double gap_s = 0.0, inferred = 0.0;
   for (const StreamSummary& stream : take.streams) {
     gap_s += stream.gap_s;
@@ -166,7 +166,7 @@ std::string places(std::size_t count) {
 // The columns of the table `take`, as take_cells() fills them.
 constexpr std::size_t take_columns = 24;
 
-/// The statements that add a take, prepared once for many.
+/// The statements that add a take. They are prepared once and used for many takes.
 struct TakeInserts {
   sqlite::Statement next_id, take, detail, stream;
 };
@@ -182,12 +182,12 @@ struct TakeDrops {
   }
 };
 
-/// The file of a summary as it was when the index read it.
+/// A summary's file as it was when the index read it: its date and its size.
 struct Known {
   std::int64_t id = 0, changed_ns = 0, size = 0;
 };
 
-/// The folders of people that have to be read again, and those to be forgotten.
+/// The folders of people that have to be read again, and those that were removed.
 struct FolderChanges {
   std::set<std::string> changed, gone;
 };
@@ -197,15 +197,15 @@ struct Found {
   std::int64_t changed_ns = 0, size = 0;
 };
 
-/// The file of a summary; absent if it was just removed. Fails if only the names in the folder can
-/// be read.
+/// The file of a summary; absent if it was just removed. Fails if the folder can be listed but not
+/// entered.
 Result<std::optional<Found>> found_in(const std::string& folder, const TakeName& name) {
   const std::string file(file_name(path_of(name, TakeFile::summary)));
   if (const auto version = version_of(folder + "/" + file)) {
     return Found{name, version->changed_ns, whole(version->size)};
   }
   std::error_code fault;
-  // The folder can be entered, so the file itself is gone.
+  // The folder can be entered, so the file was removed.
   if (fs::exists(folder + "/.", fault) || !fault) return std::nullopt;
   return Failure(Error{folder, 0, "a folder that can be read", fault.message()});
 }
@@ -215,7 +215,7 @@ Result<std::optional<Found>> found_in(const std::string& folder, const TakeName&
 Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder) {
   const std::string path = folder + "/" + std::string(catalogue_file);
   std::error_code fault;
-  // The reasons are distinguished, since each needs another repair.
+  // These cases have different errors, because the user must do something else in each.
   if (!fs::exists(folder, fault) || !fs::exists(path, fault)) {
     if (fault) return Failure(Error{folder, 0, "the folder of a data set", fault.message()});
     if (!is_there(folder))
@@ -226,15 +226,15 @@ Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder) {
   return read_catalogue(KA_TRY(read_whole(files, path, most_toml)), path);
 }
 
-/// The open database with the catalogue. The functions below change tables inside of the
-/// transaction that refresh() opens.
+/// The open database with the catalogue. The functions below change tables within the transaction
+/// that refresh() begins.
 struct DatasetIndex::State {
   FileSystem* files = nullptr;
   std::string folder;
   Catalogue catalogue;
   Findings findings;
   sqlite::Database database;
-  std::optional<Error> unreadable;  // a folder of takes; a new index would not help
+  std::optional<Error> unreadable;  // a folder of takes that a new index could not read either
 
   /// The result of reading a folder. A fault is also stored in `unreadable`.
   template <class Value>
@@ -263,17 +263,18 @@ struct DatasetIndex::State {
   Result<std::map<std::string, Known>> known_in(const std::string& name) const;
 };
 
-/// The layout's number stands in the database itself. A new file has 0.
+/// True if the index has tables of this layout. The layout's number is stored in the database; a
+/// new file has 0.
 Result<bool> DatasetIndex::State::has_tables() const {
   auto version = KA_TRY(database.prepare("pragma user_version"));
   return KA_TRY(version.step()) && std::get<std::int64_t>(version.at(0)) == layout;
 }
 
-/// Opens the index, and makes its tables anew if they are of another layout.
+/// Opens the index, and makes its tables again if they have another layout.
 Result<void> DatasetIndex::State::make(bool in_memory) {
   const std::string path = in_memory ? ":memory:" : folder + "/" + std::string(index_file);
   std::error_code fault;
-  // If the folder of the cache can't be made, opening fails, and open() goes on in memory.
+  // If the folder .kinalign can't be made, opening fails, and open() uses an index in memory.
   if (!in_memory) fs::create_directory(folder + "/" + std::string(cache_folder), fault);
   database = KA_TRY(sqlite::Database::open(
       path, in_memory ? sqlite::Access::in_memory : sqlite::Access::read_write));
@@ -284,11 +285,11 @@ Result<void> DatasetIndex::State::make(bool in_memory) {
   return KA_TRY(has_tables()) ? Result<void>{} : make_tables_of(path);
 }
 
-/// The lock is taken before the second look, so two processes never make the tables twice. An index
-/// of another layout is an error here; open() removes it then.
+/// The tables are looked at again after the lock is taken, so two processes never make them twice.
+/// If the index has another layout, this fails, and open() then removes the index.
 Result<void> DatasetIndex::State::make_tables_of(const std::string& path) {
   KA_TRY(database.run("begin immediate"));
-  if (!KA_TRY(has_tables())) {  // another process may have made them meanwhile
+  if (!KA_TRY(has_tables())) {  // another process may have made the tables meanwhile
     auto old = KA_TRY(database.prepare("select count(*) from sqlite_master"));
     const bool is_other = KA_TRY(old.step()) && std::get<std::int64_t>(old.at(0)) > 0;
     if (is_other)
@@ -299,7 +300,7 @@ Result<void> DatasetIndex::State::make_tables_of(const std::string& path) {
   return database.run("commit");
 }
 
-/// The takes of a folder that the index has.
+/// The takes of a folder that are in the index.
 Result<std::map<std::string, Known>> DatasetIndex::State::known_in(const std::string& name) const {
   auto rows =
       KA_TRY(database.prepare("select take.name, take.id, changed_ns, size from detail join take "
@@ -327,11 +328,10 @@ Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& tak
                                       TakeInserts& inserts) {
   KA_TRY(inserts.next_id.bind({}));
   KA_TRY(inserts.next_id.step());
-  // The same id joins the rows of all three tables.
+  // The rows in all three tables have this id.
   const auto id = std::get<std::int64_t>(inserts.next_id.at(0));
   KA_TRY(inserts.take.run(take_cells(id, found.name, take, catalogue)));
-  // Columns that are rarely asked for are in a table of their own, so that the table `take` stays
-  // small.
+  // Columns that are rarely queried are in a separate table, so that the table `take` stays small.
   KA_TRY(inserts.detail.run({id, "sub-" + found.name.subject, found.changed_ns, found.size,
                              take.worst, take.software, take.recipe, take.sha256}));
   for (const StreamSummary& stream : take.streams) {
@@ -345,7 +345,8 @@ Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& tak
   return {};
 }
 
-/// Streams and takes are found through `detail`, so its rows go after them.
+/// Removes all takes of a folder. Streams and takes are found through `detail`, so its rows are
+/// removed last.
 Result<void> DatasetIndex::State::forget_folder(const std::string& name) {
   for (const char* sql :
        {"delete from stream where take in (select id from detail where folder = ?)",
@@ -362,8 +363,8 @@ Result<TakeDrops> DatasetIndex::State::drops() const {
                    KA_TRY(database.prepare("delete from stream where take = ?"))};
 }
 
-/// Adds a take that is new or changed, and removes it from `known`. A summary that can't be read is
-/// a finding.
+/// Adds a take that is new or changed, and removes it from `known`. If its summary can't be read, a
+/// finding is added.
 Result<void> DatasetIndex::State::refresh_take(const Found& found,
                                                std::map<std::string, Known>& known, TakeDrops& drop,
                                                TakeInserts& add) {
@@ -371,7 +372,7 @@ Result<void> DatasetIndex::State::refresh_take(const Found& found,
   if (old != known.end()) {
     const Known before = old->second;
     known.erase(old);
-    // A summary with the same date and size is taken for unchanged.
+    // If the date and the size of a summary are the same, it counts as unchanged.
     if (before.changed_ns == found.changed_ns && before.size == found.size) return {};
     KA_TRY(drop.run(before.id));
   }
@@ -382,7 +383,7 @@ Result<void> DatasetIndex::State::refresh_take(const Found& found,
   return {};
 }
 
-/// Updates the takes of a folder; takes without a summary are removed.
+/// Updates the takes of a folder. Takes that have no summary any more are removed.
 Result<void> DatasetIndex::State::refresh_takes(const std::string& name,
                                                 const std::set<TakeName>& summarised) {
   const std::string place = folder + "/" + name;
@@ -393,16 +394,16 @@ Result<void> DatasetIndex::State::refresh_takes(const std::string& name,
     const auto found = KA_TRY(read(found_in(place, take)));
     if (found) KA_TRY(refresh_take(*found, known, drop, add));
   }
-  // Takes that are left in `known` have lost their summary.
+  // Takes that remain in `known` have no summary any more.
   for (const auto& [gone, one] : known) KA_TRY(drop.run(one.id));
   return {};
 }
 
-/// Updates a folder. Its date is stored only if it is old enough that a later change must alter it,
-/// see racy_ns.
+/// Updates the takes of a folder. The folder's date is stored only if it is old enough that a later
+/// change must alter it (racy_ns).
 Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   const std::string place = folder + "/" + name, below = name + "/";
-  // The date is taken before the names are read: a change in between shows next time.
+  // The date is taken before the names are read, so a change in between is noticed the next time.
   const std::int64_t began = now_ns();
   const std::int64_t changed = changed_ns(place);
   std::set<TakeName> all, summarised;
@@ -413,19 +414,21 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
     if (parsed->second == TakeFile::summary) summarised.insert(parsed->first);
   }
   KA_TRY(refresh_takes(name, summarised));
-  // With a finding the folder is read again next time, so that the finding is reported again.
+  // If there is a finding, the folder is read again next time, so that the finding is reported
+  // again.
   const bool settled = findings.empty() && changed < began - racy_ns;
   return remember_folder(name, settled ? changed : 0, whole(all.size() - summarised.size()));
 }
 
-/// `changed`: the date of the folder when it was read; 0: it is read again next time.
+/// Stores the state of a folder. `changed`: its date when it was read; 0: it is read again next
+/// time.
 Result<void> DatasetIndex::State::remember_folder(const std::string& name, std::int64_t changed,
                                                   std::int64_t not_built) {
   return KA_TRY(database.prepare("insert or replace into folder values(?,?,?)"))
       .run({name, changed, not_built});
 }
 
-/// The version of dataset.toml that the index was made from.
+/// The version (date and size) of dataset.toml that the index was made from.
 std::string DatasetIndex::State::catalogue_version() const {
   const auto version = version_of(folder + "/" + std::string(catalogue_file));
   if (!version) return "";
@@ -438,7 +441,7 @@ Result<bool> DatasetIndex::State::has_catalogue() const {
   return KA_TRY(known.step()) && std::get<std::string>(known.at(0)) == catalogue_version();
 }
 
-/// Replaces everything that comes from dataset.toml.
+/// Replaces all rows that come from dataset.toml.
 Result<void> DatasetIndex::State::refresh_catalogue() {
   KA_TRY(database.run(
       "delete from catalogue; delete from subject; delete from class; delete from action;"));
@@ -460,7 +463,7 @@ Result<void> DatasetIndex::State::refresh_catalogue() {
       put_all("insert into action values(?,?,?)", catalogue.actions, [](const Action& a) -> Cells {
         return {a.id, a.class_id, a.name};
       }));
-  // An action may have moved to another class, so the takes' copies are renewed.
+  // An action may now belong to another class, so the class in the rows of takes is updated.
   KA_TRY(database.run("update take set class = (select class from action where id = take.action)"));
   return KA_TRY(database.prepare("insert into catalogue values(?)")).run({catalogue_version()});
 }
@@ -476,7 +479,7 @@ Result<FolderChanges> DatasetIndex::State::folder_changes() {
   for (const std::string& name : KA_TRY(read(people_in(folder)))) {
     if (!is_label(name.substr(4))) continue;
     const auto old = known.find(name);
-    // A folder that was stored with the date 0 always differs.
+    // A folder that was stored with the date 0 counts as changed.
     const bool same = old != known.end() && old->second == changed_ns(folder + "/" + name);
     if (!same) out.changed.insert(name);
     if (old != known.end()) known.erase(old);
@@ -489,10 +492,10 @@ Result<FolderChanges> DatasetIndex::State::folder_changes() {
 Result<void> DatasetIndex::State::refresh() {
   const FolderChanges folders = KA_TRY(folder_changes());
   const bool same_catalogue = KA_TRY(has_catalogue());
-  // The usual case: nothing has changed, and no lock is needed.
+  // Usually nothing has changed, and no lock is needed.
   if (same_catalogue && folders.changed.empty() && folders.gone.empty()) return {};
   KA_TRY(database.run("begin immediate"));
-  // The catalogue comes first, since rows of takes use its classes.
+  // The catalogue comes first, because rows of takes contain its classes.
   if (!same_catalogue) KA_TRY(refresh_catalogue());
   for (const std::string& name : folders.gone) KA_TRY(forget_folder(name));
   for (const std::string& name : folders.changed) KA_TRY(refresh_folder(name));
@@ -508,20 +511,20 @@ Result<DatasetIndex> DatasetIndex::open(FileSystem& files, const std::string& fo
   Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
   const std::string path = folder + "/" + std::string(index_file);
   Result<void> done;
-  // The existing index is tried first. It is only a cache: if it fails it is made anew, and if it
-  // can't be written, in memory.
+  // The index is only a cache. The existing index is tried first. If it fails, it is made again; if
+  // it can't be written, it is made in memory.
   for (const int attempt : {0, 1, 2}) {
     auto state = std::make_unique<State>();
     state->files = &files;
     state->folder = folder;
     state->catalogue = catalogue;
     if (attempt == 1) {
-      // The second attempt removes the index with the files that SQLite keeps next to it.
+      // The second attempt removes the index and the two files that SQLite keeps beside it.
       for (const char* ending : {"", "-wal", "-shm"}) files.remove((path + ending).c_str());
     }
     done = state->make(attempt == 2);
     if (done) done = state->refresh();
-    // A folder that can't be read would fail in every attempt.
+    // A folder that can't be read would make every attempt fail.
     if (state->unreadable) return Failure(*state->unreadable);
     if (done) return DatasetIndex(std::move(state));
   }
@@ -573,7 +576,7 @@ Result<Table> DatasetIndex::select(const std::string& sql, const std::vector<Cel
   KA_TRY(rows.bind(values));
   Table out;
   for (std::size_t c = 0; c < rows.columns(); ++c) {
-    // Columns of `takes` have titles; columns of other expressions are shown by their names.
+    // Columns of the view `takes` have titles. Other columns are shown with their own names.
     const std::string name = rows.column_name(c);
     const auto known = std::find_if(columns().begin(), columns().end(),
                                     [&](const TableColumn& one) { return one.key == name; });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The index of a data set: an SQLite file that is only a cache. Opening it updates it from
-// dataset.toml and the takes' summaries (take_summary.h). A damaged index is made anew; if it can't
-// be written, it is made in memory.
+// The index of a data set: an SQLite file that is only a cache. When it is opened, it is updated
+// from dataset.toml and the takes' summaries (take_summary.h). A damaged index is made again. If it
+// can't be written, it is made in memory.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -18,8 +18,8 @@ namespace kinalign {
 /// Reads the dataset.toml of a folder. Fails if the folder is no data set.
 Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder);
 
-/// The takes of a data set as tables that can be queried in SQL. Everything in it can be made again
-/// from the files, so no error of the index loses data. Takes without a summary are not in it.
+/// The takes of a data set as tables that can be queried in SQL. All of its content comes from the
+/// files, so an error of the index loses no data. Takes without a summary are not in it.
 class DatasetIndex {
  public:
   /// Opens and updates the index. Unchanged folders are not read. `folder` does not end with '/'.
@@ -31,17 +31,17 @@ class DatasetIndex {
   ~DatasetIndex();
 
   const Catalogue& catalogue() const;
-  /// Summaries that can't be read.
+  /// A finding for each summary that can't be read.
   const Findings& findings() const;
 
-  /// Runs one SELECT on the views `takes` and `streams`, with values for its '?'. Writing is
-  /// refused; errors have SQLite's words.
+  /// Runs one SELECT on the views `takes` and `streams`, with values for its '?'. Statements that
+  /// write are refused. Errors contain SQLite's message.
   Result<Table> select(const std::string& sql, const std::vector<Cell>& values = {}) const;
 
-  /// The number of takes with a manifest or a take but without a summary; no list contains them.
+  /// The number of takes that have a manifest or a file but no summary. No list contains them.
   Result<std::uint64_t> not_built() const;
 
-  /// The columns of `takes`, in order.
+  /// The columns of the view `takes`, in order.
   static const std::vector<TableColumn>& columns();
 
  private:

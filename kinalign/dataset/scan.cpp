@@ -20,7 +20,7 @@ Failure unreadable(const std::string& folder, const std::error_code& fault) {
 
 }  // namespace
 
-/// Without an error code the standard library would throw.
+/// The variant with an error code is used, because the other one throws.
 bool is_there(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
@@ -45,7 +45,7 @@ UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
 }
 
 UnfinishedFolder::~UnfinishedFolder() {
-  // A failed import removes what it made, and no folder that existed before.
+  // If the import fails, all new folders are removed, and no folder that existed before.
   if (kept_) return;
   std::error_code ignored;
   fs::remove_all(path_, ignored);
@@ -74,7 +74,8 @@ Result<std::vector<std::string>> people_in(const std::string& folder) {
     std::error_code fault;
     // A link to a folder counts as a folder.
     const auto kind = fs::status(path, fault).type();
-    // A person that can't be read is an error: the takes would be missing without notice.
+    // If a person's folder can't be read, this is an error: the takes would be missing without
+    // notice.
     if (kind == fs::file_type::none) return unreadable(path, fault);
     if (kind == fs::file_type::directory) out.push_back(name);
   }
@@ -94,7 +95,7 @@ Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder,
   std::map<TakeName, TakeFiles> out;
   const std::string below = "sub-" + subject + "/", path = folder + "/sub-" + subject;
   for (const std::string& file : KA_TRY(names_in_folder(path))) {
-    // Other files in the folder are none of ours.
+    // Other files in the folder do not belong to the data set.
     const auto parsed = parse_take_path(below + file);
     if (!parsed) continue;
     TakeFiles& take = out[parsed->first];

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view split_schema = "kinalign.split/1";
 
-/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+/// SplitMix64 (Steele, Lea, Flood 2014). It gives the same numbers on every machine.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -26,7 +26,8 @@ class Random {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
     z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
     z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    // The remainder favours small numbers by a share that does not matter for so few units.
+    // The remainder makes small numbers slightly more likely, which does not matter for so few
+    // units.
     return (z ^ (z >> 31U)) % end;
   }
 
@@ -34,7 +35,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Takes that stay in one part: one take, or all of a person.
+/// Takes that must be in the same part: one take, or all takes of a person.
 struct Unit {
   std::vector<const SplitTake*> takes;
   std::uint64_t frames = 0;
@@ -50,21 +51,21 @@ Units units_of(const std::vector<const SplitTake*>& takes, bool by_subject) {
     unit.takes.push_back(take);
     unit.frames += take->summary.frames;
   }
-  // The map sorts the units by name, whatever the order of the takes.
+  // The map sorts the units by name, so the order of the takes does not matter.
   Units out;
   for (auto& [key, unit] : units) out.push_back(std::move(unit));
   return out;
 }
 
-/// Fisher and Yates: each order is equally likely.
+/// Shuffles the units (Fisher and Yates): each order is equally likely.
 void shuffle(Units& units, Random& random) {
   for (std::size_t i = units.size(); i > 1; --i) std::swap(units[i - 1], units[random.below(i)]);
 }
 
-/// Moves units from the end of `from` until `to` has about that number of frames.
+/// Moves units from the end of `from` to `to`, until they have about that number of frames.
 void move_share(Units& from, std::uint64_t frames, std::vector<TakeName>& to) {
   std::uint64_t moved = 0;
-  // A unit is moved if more than half of it fits, so that the error is at most half a unit.
+  // A unit is moved if more than half of it fits. The error is then at most half a unit.
   while (!from.empty() && moved + from.back().frames / 2 < frames) {
     moved += from.back().frames;
     for (const SplitTake* take : from.back().takes) to.push_back(take->name);
@@ -77,12 +78,12 @@ void divide(Units units, const SplitOptions& options, Random& random,
             std::vector<SplitPart>& parts) {
   std::uint64_t frames = 0;
   for (const Unit& unit : units) frames += unit.frames;
-  // Units come in the order of their names, so the seed alone decides.
+  // The units are in the order of their names, so the result depends only on the seed.
   shuffle(units, random);
   const auto share = [frames](double of) {
     return static_cast<std::uint64_t>(of * static_cast<double>(frames));
   };
-  // The test is drawn first: it stays the same if only the validation's share changes.
+  // The test part is drawn first, so it stays the same if only the share of the validation changes.
   move_share(units, share(options.test), parts[2].takes);
   move_share(units, share(options.validation), parts[1].takes);
   for (const Unit& unit : units) {
@@ -90,7 +91,7 @@ void divide(Units units, const SplitOptions& options, Random& random,
   }
 }
 
-/// Empty for an action that dataset.toml lacks.
+/// The class of a take's action; empty if dataset.toml lacks the action.
 std::string class_of(const SplitTake& take, const Catalogue& catalogue) {
   const Action* action = find_action(catalogue, take.name.action);
   return action == nullptr ? "" : action->class_id;
@@ -107,23 +108,23 @@ std::vector<const SplitTake*> chosen(const std::vector<SplitTake>& takes, const 
   return out;
 }
 
-/// Divides at random; if stratified, each class separately.
+/// Divides the takes at random. If `stratified`, each class is divided separately.
 std::vector<SplitPart> random_parts(const std::vector<const SplitTake*>& takes,
                                     const Catalogue& catalogue, const SplitOptions& options,
                                     bool by_subject) {
-  // The order in which divide() expects the parts.
+  // divide() expects the parts in this order.
   std::vector<SplitPart> parts{{"train", {}}, {"validation", {}}, {"test", {}}};
   Random random(static_cast<std::uint64_t>(options.seed));
   std::map<std::string, std::vector<const SplitTake*>> strata;
   for (const SplitTake* take : takes) {
-    // A person does many classes, so people are divided as a whole.
+    // A person does actions of many classes, so people are not divided by class.
     const bool apart = options.stratified && !by_subject;
     strata[apart ? class_of(*take, catalogue) : ""].push_back(take);
   }
   for (const auto& [key, of_class] : strata) {
     divide(units_of(of_class, by_subject), options, random, parts);
   }
-  // Without a share the part would be empty, which make_split() refuses.
+  // A share of 0 gives an empty part, which make_split() would refuse.
   if (options.validation == 0.0) parts.erase(parts.begin() + 1);
   return parts;
 }
@@ -142,10 +143,10 @@ std::vector<SplitPart> a_part_each(const std::vector<SplitTake>& takes) {
   return out;
 }
 
-/// The stated people are the test part, all others the training.
+/// The named people are the test part, all others the training part.
 Result<std::vector<SplitPart>> parts_of_people(const std::vector<SplitTake>& takes,
                                                const std::vector<std::string>& test_people) {
-  // An unknown person is an error: the test would be smaller than the user thinks.
+  // An unknown person is an error, because the test part would be smaller than the user thinks.
   const std::set<std::string> tested(test_people.begin(), test_people.end());
   std::vector<SplitPart> parts{{"train", {}}, {"test", {}}};
   std::set<std::string> known;
@@ -160,7 +161,7 @@ Result<std::vector<SplitPart>> parts_of_people(const std::vector<SplitTake>& tak
   return parts;
 }
 
-/// The classes of the paper's section 4.2. Takes without nodes are in no part.
+/// Divides by the classes of section 4.2 of the HFUT-MMD paper. Takes without nodes are in no part.
 std::vector<SplitPart> imu_parts(const std::vector<SplitTake>& takes, const Catalogue& catalogue) {
   std::vector<SplitPart> parts{{"train", {}}, {"test", {}}};
   for (const SplitTake& take : takes) {
@@ -171,7 +172,7 @@ std::vector<SplitPart> imu_parts(const std::vector<SplitTake>& takes, const Cata
   return parts;
 }
 
-/// The people of the paper's section 4.1.
+/// True for a take of the people in section 4.1 of the HFUT-MMD paper: men of 175 cm.
 bool is_man_of_175(const SplitTake& take, const Catalogue& catalogue) {
   const Subject* subject = find_subject(catalogue, take.name.subject);
   return subject != nullptr && subject->sex == "m" && subject->height_cm == 175.0;
@@ -179,7 +180,7 @@ bool is_man_of_175(const SplitTake& take, const Catalogue& catalogue) {
 
 using TakesByName = std::map<TakeName, const SplitTake*>;
 
-/// The pointers lead into `takes`.
+/// The takes by name. The pointers point into `takes`.
 TakesByName by_name(const std::vector<SplitTake>& takes) {
   TakesByName out;
   for (const SplitTake& take : takes) out.emplace(take.name, &take);
@@ -189,10 +190,10 @@ TakesByName by_name(const std::vector<SplitTake>& takes) {
 /// The parts in which a take, a person or a file occurs.
 using Places = std::map<std::string, std::set<std::string>>;
 
-/// All that check_split() needs to know of the parts, collected in one pass over them.
+/// The facts about the parts that check_split() needs, collected in one pass.
 struct Seen {
   Places names, subjects;
-  /// By SHA-256 of a take or a raw file: for each part, a take with that content.
+  /// By the SHA-256 of a take or of a raw file: for each part, a take with that content.
   std::map<std::string, std::map<std::string, std::string>> contents;
   std::set<std::string> unknown;  // takes that the data set lacks
   std::set<std::string> changed;  // takes with other bytes when the split was made
@@ -211,16 +212,17 @@ Seen seen_in(const Split& split, const TakesByName& known) {
       seen.names[to_string(name)].insert(part.name);
       seen.subjects[name.subject].insert(part.name);
       const TakeSummary& summary = found->second->summary;
-      // The same bytes under two names are a leak as well.
+      // The same bytes under two names in two parts are also an error.
       seen.contents[summary.sha256].emplace(part.name, to_string(name));
       for (const InputFacts& input : summary.inputs) {
-        // A layout or a list of channels may be the same for all takes.
+        // Files without samples, such as a layout or a list of channels, may be the same for all
+        // takes.
         if (!summary.sample_files.contains(input.name)) continue;
         seen.contents[input.sha256].emplace(part.name, to_string(name));
       }
-      // The hash from the time when the split was made.
+      // The hash of the take at the time when the split was made.
       const auto then = split.sha256.find(name);
-      // A split without hashes says nothing about changes.
+      // Without such a hash, a change of the take can't be noticed.
       if (then != split.sha256.end() && then->second != summary.sha256) {
         seen.changed.insert(to_string(name));
       }
@@ -229,7 +231,7 @@ Seen seen_in(const Split& split, const TakesByName& known) {
   return seen;
 }
 
-/// "test and train".
+/// The names of parts as text: "test and train".
 std::string listed(const std::set<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, " and "));
 }
@@ -257,7 +259,7 @@ Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& c
     out.parts = random_parts(chosen(takes, wanted), catalogue, options, options.by == "subject");
   }
   for (SplitPart& part : out.parts) {
-    // Sorted, so that the file of a split does not depend on the order of takes.
+    // The takes are sorted, so that the file of a split does not depend on their order.
     std::sort(part.takes.begin(), part.takes.end());
     if (!part.takes.empty()) continue;
     return Failure(Error{
@@ -283,14 +285,14 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
   }
   for (const auto& [hash, parts] : seen.contents) {
     if (parts.size() < 2) continue;
-    // Two parts are enough for an example.
+    // The message names two parts as an example.
     const auto& [one, take] = *parts.begin();
     const auto& [other, second] = *parts.rbegin();
     report(Severity::error, "the same bytes in one part only",
            fmt::format("{} in {} and {} in {} (SHA-256 {}...)", take, one, second, other,
                        hash.substr(0, 12)));
   }
-  // Other methods divide takes and may have a person in two parts.
+  // Only these methods divide people. With other methods a person may be in two parts.
   const bool apart = split.options.by == "subject" || split.options.by == "leave-one-out";
   for (const auto& [subject, parts] : seen.subjects) {
     if (parts.size() < 2) continue;
@@ -313,7 +315,7 @@ std::string split_json(const Split& split, const std::vector<SplitTake>& takes) 
   const SplitOptions& o = split.options;
   const TakesByName known = by_name(takes);
   Json out = {{"schema", split_schema}, {"by", o.by}};
-  // People take the place of the share of the test.
+  // If test people are named, the file has their names and no share of the test part.
   if (o.test_people.empty()) {
     out["test"] = o.test;
   } else {
@@ -335,7 +337,7 @@ std::string split_json(const Split& split, const std::vector<SplitTake>& takes) 
   return out.dump(1) + "\n";
 }
 
-/// Reads a split; "test_people" replaces the share of the test.
+/// Reads a split. It has either "test_people" or the share of the test part.
 Result<Split> parse_split_json(std::string_view json, const std::string& file) {
   const auto wrong = [&](const std::string& found) {
     return Failure(Error{file, 0, "a split (" + std::string(split_schema) + ")", shown(found)});
@@ -345,7 +347,7 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
     if (parsed.at("schema").get<std::string>() != split_schema)
       return wrong(parsed["schema"].get<std::string>());
     Split out;
-    // A split by people has no share of the test.
+    // A split by named people has no share of the test part.
     const bool has_people = parsed.contains("test_people");
     out.options = {parsed.at("by").get<std::string>(),
                    has_people ? 0.0 : parsed.at("test").get<double>(),
@@ -371,7 +373,7 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
 }
 
 Result<Split> read_split(FileSystem& files, const std::string& path) {
-  // A longer file is refused before it is read.
+  // The size is limited before the file is read.
   constexpr std::size_t longest = std::size_t{64} << 20;
   return parse_split_json(KA_TRY(read_whole(files, path, longest)), path);
 }
@@ -379,7 +381,7 @@ Result<Split> read_split(FileSystem& files, const std::string& path) {
 Result<Split> read_good_split(FileSystem& files, const std::string& path,
                               const std::vector<SplitTake>& takes) {
   Split split = KA_TRY(read_split(files, path));
-  // The most severe findings come first.
+  // check_split() returns the most severe findings first.
   for (const Finding& one : check_split(split, takes, path)) {
     if (one.severity == Severity::error) return Failure(one.what);
   }

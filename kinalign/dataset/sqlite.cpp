@@ -9,16 +9,16 @@ namespace kinalign::sqlite {
 
 namespace {
 
-// Another process may be writing; it holds its lock for one update only.
+// Another process may be writing. It locks the index for one update only.
 constexpr int longest_wait_ms = 10'000;
 
-/// SQLite's own words say best what is wrong with a statement.
+/// A failure with SQLite's own message, which says best what is wrong with a statement.
 Failure failure(sqlite3* database, const std::string& file, const std::string& expected) {
   return Failure(
       Error{file, 0, expected, database == nullptr ? "no memory" : sqlite3_errmsg(database)});
 }
 
-/// For sqlite3_set_authorizer: a statement may only read.
+/// A callback for sqlite3_set_authorizer: it allows a statement only to read.
 // NOLINTNEXTLINE(readability-function-size): SQLite asks with six arguments
 int allow_reading(void*, int action, const char*, const char*, const char*, const char*) {
   const bool reads = action == SQLITE_SELECT || action == SQLITE_READ ||
@@ -31,7 +31,8 @@ int allow_reading(void*, int action, const char*, const char*, const char*, cons
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
 
-/// A statement must be reset before it can be bound again, also after an error.
+/// Sets the values of a statement. The statement is reset first, because it can't be bound
+/// otherwise, also after an error.
 Result<void> Statement::bind(const std::vector<Cell>& values) {
   sqlite3_reset(statement_.get());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -79,7 +80,7 @@ std::string Statement::column_name(std::size_t column) const {
   return name == nullptr ? "" : name;
 }
 
-/// The value of a column, by SQLite's type of it.
+/// The value of a column, in the type that SQLite states for it.
 Cell Statement::at(std::size_t column) const {
   const int c = static_cast<int>(column);
   switch (sqlite3_column_type(statement_.get(), c)) {
@@ -104,7 +105,7 @@ Result<Database> Database::open(const std::string& path, Access access) {
   const int flags = access == Access::in_memory ? SQLITE_OPEN_MEMORY : 0;
   const int code = sqlite3_open_v2(path.c_str(), &opened,
                                    SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | flags, nullptr);
-  // Even a failed call may have made an object, which must be closed.
+  // Even if the call fails, it may have made an object, which must be closed.
   out.database_.reset(opened);
   if (code != SQLITE_OK) return failure(opened, path, "an index that can be opened");
   sqlite3_busy_timeout(opened, longest_wait_ms);
@@ -116,7 +117,7 @@ Result<void> Database::run(const std::string& sql) {
   return failure(database_.get(), path_, "an index that can be used");
 }
 
-/// Prepares exactly one statement; text after it is an error.
+/// Prepares exactly one statement. Further text after it is an error.
 Result<Statement> Database::prepare(const std::string& sql) const {
   sqlite3_stmt* made = nullptr;
   const char* behind = nullptr;
@@ -135,8 +136,8 @@ Result<Statement> Database::prepare(const std::string& sql) const {
 }
 
 Result<Statement> Database::prepare_reading(const std::string& sql) const {
-  // The question is put to allow_reading() while the statement is parsed. Afterwards the index may
-  // write again.
+  // SQLite calls allow_reading() while it parses the statement. Afterwards the index may write
+  // again.
   sqlite3_set_authorizer(database_.get(), &allow_reading, nullptr);
   auto made = prepare(sql);
   sqlite3_set_authorizer(database_.get(), nullptr, nullptr);

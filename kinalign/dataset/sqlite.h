@@ -19,11 +19,11 @@ class Database;
 /// One prepared statement, which can be run repeatedly.
 class Statement {
  public:
-  /// Sets the values for its '?', in order.
+  /// Sets the values for the statement's '?', in order.
   Result<void> bind(const std::vector<Cell>& values);
-  /// Goes to the next row. False after the last; then values can be bound again.
+  /// Goes to the next row. Returns false after the last row; then values can be bound again.
   Result<bool> step();
-  /// Runs a statement that gives no rows.
+  /// Runs a statement that returns no rows.
   Result<void> run(const std::vector<Cell>& values);
 
   std::size_t columns() const;
@@ -41,7 +41,7 @@ class Statement {
 
 enum class Access { read_write, in_memory };
 
-/// An open database. Statements must not outlive it. One thread uses it at a time.
+/// An open database. Statements must not outlive it. Only one thread may use it at a time.
 class Database {
  public:
   /// Opens a database. Waits at most ten seconds while another process writes.

@@ -20,17 +20,17 @@ void add_sums(Table& table, std::size_t first, const std::string& title) {
     sums[c] = sum;
   }
   table.rows.push_back(std::move(sums));
-  // Views set the last row apart.
+  // Programs that show the table separate this last row.
   table.has_sum = true;
 }
 
-/// A row of table 1 in the paper. -1: not stated.
+/// A row of table 1 in the HFUT-MMD paper. -1: the paper does not state the number.
 struct Published {
   const char* name;
   std::int64_t frames, clips, kinds, people;  // the paper states either frames or clips
   const char* modalities;
 };
-// The numbers are copied from the paper.
+// The numbers are copied from that table.
 constexpr Published published[] = {{"HDM05", 1'531'745, -1, 100, 5, "joints"},
                                    {"CMU-MMAC", -1, 6'650, 23, 5, "RGB, 3D joints, IMU, audio"},
                                    {"Human3.6M", 3'578'080, -1, 6, 11, "RGB, depth, 3D joints"},
@@ -43,7 +43,7 @@ constexpr Published published[] = {{"HDM05", 1'531'745, -1, 100, 5, "joints"},
                                    {"UMONS-TAICHI", -1, 2'200, 13, 12, "RGB, depth, 3D joints"},
                                    {"TotalCapture", 1'892'176, -1, 4, 5, "RGB, 3D joints, IMU"}};
 
-/// A number that the paper does not state is an empty cell.
+/// A number as a cell; empty if the paper does not state it.
 Cell count(std::int64_t value) { return value < 0 ? Cell() : Cell(value); }
 
 std::int64_t whole(const Cell& cell) {
@@ -62,7 +62,7 @@ Result<Table> table_of_data_sets(const DatasetIndex& index) {
     out.rows.push_back({std::string(one.name), count(one.frames), count(one.clips),
                         count(one.kinds), count(one.people), std::string(one.modalities)});
   }
-  // The row of this data set: its frames are added over modalities.
+  // The row of this data set. Its frames are summed over the modalities.
   const Table own = KA_TRY(index.select(
       "select coalesce(sum(mocap + kinect + imu), 0), count(*), count(distinct action), "
       "count(distinct subject), coalesce(sum(mocap), 0), coalesce(sum(kinect), 0), "
@@ -71,7 +71,7 @@ Result<Table> table_of_data_sets(const DatasetIndex& index) {
   std::string modalities;
   const char* const names[] = {"mocap joints", "Kinect joints", "IMU"};
   for (std::size_t m = 0; m < 3; ++m) {
-    // The last three sums are the frames of each modality.
+    // The last three sums are the numbers of frames of each modality.
     if (whole(sums[4 + m]) > 0)
       modalities += (modalities.empty() ? "" : ", ") + std::string(names[m]);
   }
@@ -81,8 +81,8 @@ Result<Table> table_of_data_sets(const DatasetIndex& index) {
   return out;
 }
 
-/// People are summed first, then groups of sex and height: otherwise a person would be listed once
-/// for each take.
+/// The frames are summed for each person first, then for each sex and height. Otherwise a person
+/// would be listed once for each take.
 Result<Table> table_by_subject(const DatasetIndex& index) {
   Table out = KA_TRY(index.select(
       "select group_concat(subject, ', ') as subjects, sex, height_cm, sum(mocap) as mocap, "
@@ -106,7 +106,7 @@ Result<Table> table_by_class(const DatasetIndex& index) {
   return out;
 }
 
-/// The names of the modalities are joined in SQL, so each combination is one group.
+/// The names of a take's modalities are joined in SQL, so each combination becomes one group.
 Result<Table> table_by_modalities(const DatasetIndex& index) {
   Table out = KA_TRY(
       index.select("select case when mocap > 0 then 'mocap' else '' end || "

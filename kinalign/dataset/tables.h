@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's tables for a data set, from its index.
+// The tables of the HFUT-MMD paper (README.md) for a data set, from its index.
 #pragma once
 
 #include "kinalign/dataset/index.h"
@@ -16,8 +16,7 @@ Result<Table> table_of_data_sets(const DatasetIndex& index);
 Result<Table> table_by_subject(const DatasetIndex& index);
 /// Table 7: frames of each modality by class.
 Result<Table> table_by_class(const DatasetIndex& index);
-/// The numbers of takes and frames by the modalities that were recorded together: pairs and
-/// triples.
+/// The numbers of takes and frames for each combination of modalities that were recorded together.
 Result<Table> table_by_modalities(const DatasetIndex& index);
 
 }  // namespace kinalign

@@ -24,14 +24,14 @@ std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions
   if (!opened) return {};
   const auto head = opened->next();
   if (!head) return {};
-  // A reader that is not found or refuses the file has no further files.
+  // If no reader is found, or if the reader refuses the file, there are no further files.
   const auto format = find_format(files, options, file, *head);
   return format ? format->further_files : std::vector<std::string>{};
 }
 
 namespace {
 
-/// Adds an input once: several streams may read one file.
+/// Adds an input only once, because several streams may read the same file.
 void add_input(const TakeInput& input, std::vector<TakeInput>& out) {
   if (find_named(out, input.name) == nullptr) out.push_back(input);
 }
@@ -45,15 +45,15 @@ void add_further(FileSystem& files, StreamOptions stream, const std::string& bas
   for (const StreamFile& file : stream.files) {
     const StreamFile placed{path_in(base, file.path), file.node};
     for (const std::string& one : further_files_of(files, stream, placed)) {
-      // The layout is among the named files already.
+      // The layout is already in the list.
       if (one == stream.layout) continue;
       add_input({remembered_sibling(names.at(file.path), placed.path, one), one}, out);
     }
   }
 }
 
-/// The files that a manifest names; also their further files if `expected` files are more than
-/// these.
+/// The files that a manifest names. If these are fewer than `expected`, the further files of their
+/// readers are added.
 std::vector<TakeInput> named_inputs(FileSystem& files, Manifest& manifest, const std::string& base,
                                     std::size_t expected) {
   std::vector<std::string> paths;
@@ -61,8 +61,8 @@ std::vector<TakeInput> named_inputs(FileSystem& files, Manifest& manifest, const
   const Names names = remembered_paths(paths);
   std::vector<TakeInput> out;
   for (const std::string& path : paths) add_input({names.at(path), path_in(base, path)}, out);
-  // Opening every file to ask its reader is slow, so it is done only if files are missing in the
-  // list.
+  // Every file must be opened to find its further files. This is slow, so it is done only if files
+  // are missing in the list.
   if (expected <= out.size()) return out;
   for (const StreamOptions& stream : manifest.streams) {
     add_further(files, stream, base, names, out);
@@ -79,7 +79,7 @@ std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known) {
   std::vector<TakeInput> out = named_inputs(files, manifest, base, known.size());
-  // Files that only the take names lie next to its first input.
+  // Files that only the take names are beside its first input.
   const std::string default_folder(out.empty() ? base : kinalign::folder(out.front().path));
   for (const InputFacts& input : known) {
     add_input({input.name, default_folder + std::string(file_name(input.name))}, out);
@@ -90,13 +90,13 @@ std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std
 Result<bool> same_inputs(FileSystem& files, const std::vector<TakeInput>& inputs,
                          const TakeSummary& summary, std::int64_t made_ns,
                          const Progress& progress) {
-  // A file more or less makes another take.
+  // With more or fewer files another take would be made.
   if (inputs.size() != summary.inputs.size()) return false;
   for (const TakeInput& input : inputs) {
     const InputFacts* const known = find_named(summary.inputs, input.name);
     const auto version = version_of(input.path);
     if (known == nullptr || !version || version->size != known->bytes) return false;
-    // The file is older than the take's summary and has the same length.
+    // A file that is older than the summary and has the same length counts as unchanged.
     if (version->changed_ns < made_ns) continue;
     if (KA_TRY(facts_of(files, input.path, "hashing", progress)).sha256 != known->sha256)
       return false;
@@ -109,17 +109,18 @@ std::optional<std::string> place_in_sourcedata(const std::string& folder, const 
   const fs::path root = fs::canonical(folder, fault);
   if (fault) return std::nullopt;
   const fs::path whole = fs::absolute(path, fault);
-  // Only links above the file are followed: the file itself may be a link that is to be removed.
+  // Only links in the path above the file are followed, because the file itself may be a link that
+  // is to be removed.
   const fs::path above = fs::canonical(whole.parent_path(), fault);
   if (fault) return std::nullopt;
-  // The name itself is kept, so a link stays a link.
+  // The file's own name is kept, so a link stays a link.
   std::string place = (above / whole.filename()).lexically_relative(root).string();
   if (!place.starts_with(std::string(raw_files_folder) + "/")) return std::nullopt;
   return place;
 }
 
 bool is_unpacked(const std::string& place) {
-  // The form of the names that filled_folder() gives (import/new_folder.cpp).
+  // This is the form of the folder names of filled_folder() (import/new_folder.cpp).
   constexpr std::size_t hash_digits = 8;
   const std::size_t begin = raw_files_folder.size() + 1, end = place.find('/', begin);
   if (end == std::string::npos || end - begin < hash_digits + 2) return false;
@@ -134,11 +135,11 @@ Result<std::vector<TakeInput>> raw_files_of(FileSystem& files, const std::string
   if (!fs::exists(path_of(folder, name, TakeFile::manifest), fault)) {
     return std::vector<TakeInput>{};
   }
-  // Defaults of dataset.toml do not change which files are named.
+  // The defaults in dataset.toml have no influence on the files that a manifest names.
   const Manifest manifest = KA_TRY(take_manifest(files, folder, Catalogue{}, name));
   const std::string base = folder_of(folder, name);
   const auto summary = read_summary(files, folder, name);
-  // A take that was built states its further files; otherwise readers are asked.
+  // The summary of a built take lists its further files. Without a summary the readers are asked.
   return summary ? inputs_of(files, manifest, base, summary->inputs)
                  : inputs_of(files, manifest, base);
 }
@@ -147,9 +148,9 @@ Result<std::vector<std::string>> files_in_sourcedata(const std::string& folder) 
   const std::string top = folder + "/" + std::string(raw_files_folder);
   std::vector<std::string> out;
   std::error_code fault;
-  // A link in place of the folder leads out of the data set.
+  // If the folder is a link, its files are not in the data set.
   if (!fs::is_directory(fs::symlink_status(top, fault))) return out;
-  // Advanced by hand: a range-based `for` would throw at a folder that can't be read.
+  // The loop is written by hand, because a range-based `for` throws at a folder that can't be read.
   fs::recursive_directory_iterator entry(top, fault);
   while (!fault && entry != fs::recursive_directory_iterator{}) {
     if (!fs::is_directory(entry->symlink_status(fault))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the raw files of a take, and checks whether they are still those that it was made from.
+// Finds the raw files of a take, and checks whether they have changed since the take was made.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,40 +16,41 @@
 
 namespace kinalign {
 
-/// The path of a raw file, and its name in the take.
+/// The path of a raw file, and the name by which the take refers to it.
 struct TakeInput {
   std::string name, path;
 };
 
-/// The further files that the reader of a raw file opens: angles for positions, channels for
-/// samples. Empty if no reader is found; the build reports that.
+/// The further files that the reader of a raw file opens, for example a file of angles for a file
+/// of positions. Empty if no reader is found; the build reports that.
 std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions& options,
                                           const StreamFile& file);
 
-/// The files that a manifest in `base` (ending in '/') names, and those files of `known` that only
-/// the take names: further files of readers, and further files of a recording in the same folder.
+/// The raw files of a take: the files that a manifest in the folder `base` (ending in '/') names,
+/// and files of `known` that only the take names. The latter are further files of readers, and
+/// further files of a recording in the same folder.
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known);
-/// The same for a take that was never built: every file is opened to find its further files.
+/// The same for a take that was never built. Every file is opened to find its further files.
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base);
 
-/// True if each input still has the bytes that the take was made from. An input is not read if it
-/// is older than the summary, made at `made_ns`, and has the same length.
+/// True if each input still has the bytes from which the take was made. If an input has the same
+/// length and is older than the summary, which was made at `made_ns`, the input is not read.
 Result<bool> same_inputs(FileSystem& files, const std::vector<TakeInput>& inputs,
                          const TakeSummary& summary, std::int64_t made_ns,
                          const Progress& progress);
 
 inline constexpr std::string_view raw_files_folder = "sourcedata";
 
-/// The place of a file below the data set's folder, "sourcedata/s05/walk.txt", with all links above
-/// the file followed. Absent if the file is not below sourcedata/ then.
+/// The path of a file below the data set's folder, for example "sourcedata/s05/walk.txt", after all
+/// links above the file are followed. Absent if this path is not below sourcedata/.
 std::optional<std::string> place_in_sourcedata(const std::string& folder, const std::string& path);
 
 /// True if the place is in a folder that an import unpacked: sourcedata/LABEL-HASH/.
 bool is_unpacked(const std::string& place);
 
-/// The inputs of a take, even if it was never built. Empty without a manifest. Fails if the
-/// manifest can't be read.
+/// The inputs of a take, also of one that was never built. Empty if the take has no manifest. Fails
+/// if the manifest can't be read.
 Result<std::vector<TakeInput>> raw_files_of(FileSystem& files, const std::string& folder,
                                             const TakeName& name);
 

@@ -20,7 +20,7 @@ constexpr std::array<std::pair<TakeFile, std::string_view>, 3> endings{
      {TakeFile::take, "_take.h5"},
      {TakeFile::summary, "_take.json"}}};
 
-/// Takes `lead` and the label after it off the front of `text`.
+/// Removes `lead` and the label after it from the front of `text`, and returns the label.
 std::optional<std::string> take_label(std::string_view& text, std::string_view lead) {
   if (!text.starts_with(lead)) return std::nullopt;
   text.remove_prefix(lead.size());
@@ -43,7 +43,7 @@ std::string to_string(const TakeName& name) {
 }
 
 std::optional<TakeName> parse_take_name(std::string_view text) {
-  // Each step takes its part off the front; nothing may be left at the end.
+  // Each step removes its part from the front. In the end no text may be left.
   const auto subject = take_label(text, "sub-");
   const auto action = take_label(text, "_task-");
   const auto run = take_label(text, "_run-");
@@ -74,8 +74,8 @@ std::optional<std::pair<TakeName, TakeFile>> parse_take_path(std::string_view pa
   for (const auto& [kind, ending] : endings) {
     if (!file.ends_with(ending)) continue;
     const auto name = parse_take_name(file.substr(0, file.size() - ending.size()));
-    // The path must be exactly the one that the name gives: another folder or another number of
-    // digits is no file of the take.
+    // The path must be exactly the path of that take. A path with another folder or another number
+    // of digits is not accepted.
     if (name && path_of(*name, kind) == path) return std::pair(*name, kind);
   }
   return std::nullopt;

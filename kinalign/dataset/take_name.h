@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The name of a take in a data set, and the places of its files, similar to BIDS:
 //
-//   sub-03/sub-03_task-S2A03_run-01_recording.toml   a manifest of raw files: how it is made
-//   sub-03/sub-03_task-S2A03_run-01_take.h5          the take
-//   sub-03/sub-03_task-S2A03_run-01_take.json        its summary, with its SHA-256
+// sub-03/sub-03_task-S2A03_run-01_recording.toml   the manifest: raw files and parameters
+// sub-03/sub-03_task-S2A03_run-01_take.h5          the take
+// sub-03/sub-03_task-S2A03_run-01_take.json        its summary, with the take's SHA-256
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,7 +16,7 @@
 
 namespace kinalign {
 
-/// Letters and digits, from one to 64: BIDS allows these in a label.
+/// True for 1 to 64 letters and digits. BIDS allows only these in a label.
 bool is_label(std::string_view text);
 
 /// The identity of a take. Names sort by person, action and run.
@@ -30,7 +30,7 @@ struct TakeName {
 /// The files that a take may have.
 enum class TakeFile { manifest, take, summary };
 
-/// "sub-03_task-S2A03_run-01".
+/// The name as text: "sub-03_task-S2A03_run-01".
 std::string to_string(const TakeName& name);
 /// Absent if `text` is no take's name. The run may have any number of digits.
 std::optional<TakeName> parse_take_name(std::string_view text);
@@ -43,14 +43,14 @@ std::string path_of(const std::string& folder, const TakeName& name, TakeFile fi
 std::string folder_of(const std::string& folder, const TakeName& name);
 /// The folder of raw files that were copied with their take: "sourcedata/sub-03/NAME/".
 std::string raw_folder(const TakeName& name);
-/// The take and kind of a file at a path of path_of(); absent for any other path.
+/// The inverse of path_of(): the take and the kind of a file. Absent for any other path.
 std::optional<std::pair<TakeName, TakeFile>> parse_take_path(std::string_view path);
 
 /// The places of dataset.toml and the index below the data set's folder.
 inline constexpr std::string_view catalogue_file = "dataset.toml";
 inline constexpr std::string_view cache_folder = ".kinalign";
 inline constexpr std::string_view index_file = ".kinalign/index.sqlite";
-/// Exists while takes are renamed (changes/rename.h).
+/// The journal of a rename. It exists while takes are renamed (changes/rename.h).
 inline constexpr std::string_view unfinished_rename_file = "unfinished_rename.json";
 
 }  // namespace kinalign

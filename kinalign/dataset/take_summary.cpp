@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view schema = "kinalign.take_summary/1";
 
-/// The summary of a group by its kind, before its samples are counted.
+/// The summary of a group without the counts of its samples.
 struct StreamOf {
   StreamSummary operator()(const ClipGroup& group) const {
     return stream(Modality::mocap, group.skeleton.joints());
@@ -40,7 +40,7 @@ struct StreamOf {
   }
 };
 
-/// Sums over the reports of a group: each node's stream has a report.
+/// Sums over the reports of a group. In a group of nodes each node has its own report.
 struct Sums {
   std::uint64_t samples = 0, invalid = 0, inferred = 0;
 };
@@ -57,7 +57,7 @@ void add_report(const StreamReport& report, StreamSummary& stream, Sums& sums) {
   }
 }
 
-/// Adds the reports of all streams to their groups, then turns counts into shares.
+/// Adds the reports of all streams to their groups, then converts counts to shares.
 void add_streams(const AlignmentReport& report, TakeSummary& out) {
   std::map<std::string, Sums> sums;
   for (const StreamReport& one : report.streams) {
@@ -66,7 +66,7 @@ void add_streams(const AlignmentReport& report, TakeSummary& out) {
   }
   for (StreamSummary& stream : out.streams) {
     const Sums& of = sums[stream.name];
-    // The defaults stay: all samples are valid, none is inferred.
+    // Without samples the defaults stay: all samples are valid, none is inferred.
     if (of.samples == 0) continue;  // the reference, which is not resampled
     const auto all = static_cast<double>(of.samples);
     stream.valid = 1.0 - static_cast<double>(of.invalid) / all;
@@ -74,13 +74,13 @@ void add_streams(const AlignmentReport& report, TakeSummary& out) {
   }
 }
 
-/// Counts findings, also those about no stream.
+/// Counts findings, also those that do not concern a stream.
 void add_findings(const AlignmentReport& report, TakeSummary& out) {
   for (const Finding& finding : report.findings) {
     if (finding.severity == Severity::note) continue;
     const bool error = finding.severity == Severity::error;
     (error ? out.errors : out.warnings) += 1;
-    // A finding about no stream has no verdict of its own, so it counts here.
+    // A finding that does not concern a stream is in no stream's verdict, so it counts here.
     const Quality least = error ? Quality::bad : Quality::usable;
     if (out.quality >= least) continue;
     out.quality = least;
@@ -118,7 +118,7 @@ StreamSummary stream_from(const Json& json) {
   out.name = json.at("name").get<std::string>();
   const auto modality = json.at("modality").get<std::string>();
   const auto* const found = std::find(modality_names.begin(), modality_names.end(), modality);
-  // An unknown modality counts as mocap.
+  // A modality with an unknown name counts as mocap.
   out.modality =
       static_cast<Modality>(found == modality_names.end() ? 0 : found - modality_names.begin());
   out.columns = json.at("columns").get<std::uint64_t>();
@@ -142,7 +142,7 @@ TakeSummary summary_from(const Json& json) {
   out.end_ns = json.at("end_ns").get<std::int64_t>();
   if (json.contains("residual_m")) out.residual_m = json["residual_m"].get<double>();
   const auto verdict = json.at("verdict").get<std::string>();
-  // Other words leave the quality good.
+  // If the word is unknown, the quality stays good.
   for (const Quality quality : {Quality::usable, Quality::bad}) {
     if (verdict == to_string(quality)) out.quality = quality;
   }
@@ -158,7 +158,8 @@ TakeSummary summary_from(const Json& json) {
     out.inputs.push_back({input.at("name").get<std::string>(),
                           input.at("sha256").get<std::string>(),
                           input.at("bytes").get<std::uint64_t>()});
-    // Older summaries do not say which inputs have samples; all of them count then.
+    // Older summaries do not state which inputs have samples, so all inputs count as having
+    // samples.
     if (input.value("samples", true)) out.sample_files.insert(out.inputs.back().name);
   }
   return out;
@@ -173,7 +174,7 @@ bool TakeSummary::has(Modality modality) const {
 
 std::string recipe_of(const Manifest& manifest) {
   Sha256 hash;
-  // The place of the data set must not change the recipe.
+  // The folder of the data set is removed from the paths, because it must not change the recipe.
   hash.update(parameters_json(without_folders(manifest)));
   return hash.hex();
 }
@@ -185,7 +186,7 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
   out.frames = header.frames;
   out.recipe = recipe_of(header.parameters);
   const AlignmentReport report = KA_TRY(parse_report_json(report_json, ""));
-  // A report of another take would make all figures wrong.
+  // If the report belongs to another take, all of its figures would be wrong.
   if (report.frames != header.frames) {
     return Failure(Error{"", 0, std::to_string(header.frames) + " frames in the take's report",
                          std::to_string(report.frames)});
@@ -200,23 +201,23 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
     if (group.name == report.reference) stream.modality = Modality::mocap;
     out.streams.push_back(std::move(stream));
     for (const InputFacts& input : group.files) {
-      // Groups of one recording have the same files.
+      // The groups of one recording have the same input files, which are listed once.
       if (std::find(out.inputs.begin(), out.inputs.end(), input) == out.inputs.end()) {
         out.inputs.push_back(input);
       }
     }
   }
-  // Inputs have the names in the take, even if it is built from paths elsewhere.
+  // Inputs get the names that they have in the take, even if it was built from other paths.
   const Manifest remembered = without_folders(header.parameters);
   for (const StreamOptions& stream : remembered.streams) {
     for (const StreamFile& file : stream.files) out.sample_files.insert(file.path);
   }
-  // The verdicts come before the findings, which can only make the quality worse.
+  // The verdicts come before the findings, because findings can only make the quality worse.
   add_streams(report, out);
   add_verdicts(header, report, out);
   add_findings(report, out);
   for (const SpaceReport& space : report.spaces) {
-    // The worst of the moved streams.
+    // The worst of all moved streams counts.
     out.residual_m = std::max(out.residual_m.value_or(0.0), space.after_m);
   }
   return out;
@@ -243,7 +244,7 @@ std::string summary_json(const TakeSummary& s) {
 
 Result<TakeSummary> parse_summary_json(std::string_view json, const std::string& file) {
   try {
-    // The JSON library throws; its faults become errors here.
+    // The JSON library throws exceptions, which are converted to errors here.
     const Json parsed = Json::parse(json);
     if (parsed.at("schema").get<std::string>() != schema) {
       return Failure(Error{file, 0, "the schema " + std::string(schema),

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that may exist in the folder besides the takes.
+/// Names that may exist in the data set's folder in addition to the takes.
 constexpr std::array<std::string_view, 11> known_names{
     "dataset.toml", "README.md", "LICENSE",     "LICENCE", "CHANGES", "sourcedata",
     "splits",       "windows",   "report.html", "report",  "truth"};
@@ -35,9 +35,8 @@ struct ToHash {
   std::uint64_t bytes = 0;
 };
 
-/// One check of a data set. The steps follow each other in run(). Takes are opened by a child
-/// process first, while there is only one thread; hashes are computed by several threads at the
-/// end.
+/// One check of a data set; run() calls the steps in order. A child process first opens the takes,
+/// while there is only one thread. At the end several threads compute the hashes.
 class Verifier {
  public:
   Verifier(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
@@ -51,7 +50,7 @@ class Verifier {
   Result<Verified> run() {
     takes_ = KA_TRY(scan_takes(folder_));
     check_catalogue();
-    // Summaries first: the later steps compare manifests and hashes with them.
+    // The summaries come first, because the later steps compare manifests and hashes with them.
     KA_TRY(check_summaries());
     for (const auto& [name, there] : takes_) check_take(name, there);
     KA_TRY(check_names());
@@ -69,7 +68,7 @@ class Verifier {
         {severity, Error{file, 0, std::move(expected), std::move(found)}, "", std::move(repair)});
   }
 
-  /// Notes about texts that dataset.toml does not state.
+  /// Adds notes about texts that dataset.toml does not state.
   void check_catalogue() {
     const std::string file(catalogue_file);
     const std::array<std::pair<const char*, const std::string*>, 3> texts{
@@ -86,7 +85,7 @@ class Verifier {
     }
   }
 
-  /// Each summary must agree with its take.
+  /// Checks that each summary agrees with its take.
   Result<void> check_summaries() {
     std::vector<TakeName> names;
     for (const auto& [name, there] : takes_) {
@@ -96,20 +95,21 @@ class Verifier {
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (!made[i]) {
         Error error = made[i].error();
-        // Messages name files below the data set's folder.
+        // Messages have paths below the data set's folder.
         error.file = path_of(names[i], TakeFile::take);
         out_.findings.push_back({Severity::error, std::move(error), "", ""});
       } else {
         compare_summary(names[i], *made[i]);
       }
-      // The rows are read in a child process, too, one take after the other.
+      // The rows of each take are also read in a child process, one take after the other.
       if (options_.deep && made[i]) KA_TRY(check_contents(names[i], made[i]->rate_hz));
       if (!go_on(progress_, "comparing", i + 1, names.size())) return Failure(interruption());
     }
     return {};
   }
 
-  // A take whose rows can't be read is an error of that take, unless the user stopped the check.
+  // Checks the rows of a take. If they can't be read, this is an error of the take, unless the user
+  // stopped the check.
   Result<void> check_contents(const TakeName& name, double rate_hz) {
     const auto found = check_rows(files_, folder_, name, rate_hz);
     if (found) {
@@ -122,7 +122,7 @@ class Verifier {
     return {};
   }
 
-  // Compares the stored summary with the one that was just made of the take.
+  // Compares the stored summary with `made`, which was just made from the take.
   void compare_summary(const TakeName& name, TakeSummary made) {
     const std::string file = path_of(name, TakeFile::summary);
     const std::string again = "remove this file; kinalign dataset build makes it again";
@@ -138,11 +138,11 @@ class Verifier {
              stored.error().found, again);
       return;
     }
-    // The hash is checked later, with all others; here it must not differ.
+    // The hash is checked later, with the hashes of all other files. Here it must not differ.
     made.sha256 = stored->sha256;
     std::error_code fault;
     made.bytes = std::filesystem::file_size(path_of(folder_, name, TakeFile::take), fault);
-    // Everything in a summary follows from the take's bytes, so the texts must be equal.
+    // All values in a summary follow from the take's bytes, so the texts must be equal.
     if (summary_json(made) != *text) {
       report(Severity::error, file, "the contents of the take", "other values", again);
     }
@@ -152,11 +152,11 @@ class Verifier {
     }
     hashes_.push_back({path_of(folder_, name, TakeFile::take), stored->sha256,
                        path_of(name, TakeFile::take), stored->bytes});
-    // Only takes with a good summary are compared with their manifests.
+    // Manifests are compared only with good summaries.
     summaries_.emplace(name, *stored);
   }
 
-  // The take must exist, and dataset.toml must know its person and action.
+  // Checks that the take exists, and that dataset.toml has its person and action.
   void check_take(const TakeName& name, const TakeFiles& there) {
     if (!there.take) {
       report(Severity::error,
@@ -175,7 +175,7 @@ class Verifier {
     if (there.manifest && summary != summaries_.end()) check_manifest(name, summary->second);
   }
 
-  // The manifest must still make the same take: with the same parameters, from the same files.
+  // Checks that the manifest would make the same take again: same parameters, same files.
   void check_manifest(const TakeName& name, const TakeSummary& summary) {
     const std::string file = path_of(name, TakeFile::manifest), build = "kinalign dataset build";
     const auto manifest = take_manifest(files_, folder_, catalogue_, name);
@@ -192,7 +192,8 @@ class Verifier {
     }
   }
 
-  // Sizes are always compared. Raw files are hashed only in a deep check, since they may be large.
+  // Sizes are always compared. Raw files are hashed only in a deep check, because they may be
+  // large.
   void check_input(const std::string& manifest, const TakeInput& input,
                    const TakeSummary& summary) {
     const InputFacts* const known = find_named(summary.inputs, input.name);
@@ -210,7 +211,7 @@ class Verifier {
     }
   }
 
-  /// Notes about files that belong to nothing.
+  /// Adds notes about files that do not belong to the data set.
   Result<void> check_names() {
     const std::string root = folder_ + "/";
     for (const std::string& name : KA_TRY(names_in_folder(folder_))) {
@@ -225,7 +226,7 @@ class Verifier {
       }
       const std::string place = root + name, below = name + "/";
       std::error_code ignored;
-      // Only a folder with a valid id can hold takes.
+      // Only a folder with a valid id can contain takes.
       const bool is_person =
           name.starts_with("sub-") && is_label(name.substr(4)) && fs::is_directory(place, ignored);
       if (!is_person) {
@@ -242,7 +243,7 @@ class Verifier {
     return {};
   }
 
-  /// Reports raw files that no take is made from, if every manifest can be read.
+  /// Reports raw files from which no take is made. This needs all manifests.
   void check_sourcedata() {
     const auto there = files_in_sourcedata(folder_);
     if (!there) {
@@ -251,11 +252,11 @@ class Verifier {
       return;
     }
     if (there->empty()) return;
-    // The raw files that some manifest names.
+    // The raw files that a manifest names.
     std::set<std::string> named;
     for (const auto& [name, files] : takes_) {
       const auto inputs = raw_files_of(files_, folder_, name);
-      // Without this manifest it is not known which files it names.
+      // If a manifest can't be read, the files that it names are not known, so nothing is reported.
       if (!inputs) return;
       for (const TakeInput& input : *inputs) {
         if (const auto place = place_in_sourcedata(folder_, input.path)) named.insert(*place);
@@ -267,14 +268,15 @@ class Verifier {
     }
     if (others.empty()) return;
     std::vector<std::string> first(others.begin(), others.end());
-    // A few names are enough to find the others.
+    // The message names only a few files, from which the user can find the others.
     first.resize(std::min<std::size_t>(first.size(), 3));
     report(Severity::note, std::string(raw_files_folder), "only files that a manifest names",
            fmt::format("{} other files: {}{}", others.size(), fmt::join(first, ", "),
                        others.size() > first.size() ? ", ..." : ""));
   }
 
-  // Reads all files that were noted, in parallel. The lock covers progress and findings.
+  // Reads all files that the steps before have noted, in parallel. The lock protects progress and
+  // findings.
   Result<void> check_hashes() {
     std::uint64_t all = 0;
     for (const ToHash& one : hashes_) all += one.bytes;
@@ -286,7 +288,7 @@ class Verifier {
       std::uint64_t before = 0;
       const Progress part = [&](std::string_view, std::uint64_t so_far, std::uint64_t) {
         const std::lock_guard lock(mutex);
-        // Files progress at the same time, so each adds its own advance.
+        // Several files are read at the same time, so each adds its own progress.
         done += so_far - before;
         before = so_far;
         is_stopped = is_stopped || !go_on(progress_, "hashing", done, all);
@@ -302,7 +304,7 @@ class Verifier {
                                          : "bytes with SHA-256 " + one.sha256.substr(0, 12) + "...",
              facts ? "SHA-256 " + facts->sha256.substr(0, 12) + "..." : facts.error().found);
     });
-    // Takes are counted, whatever was found in them.
+    // All takes count, also those with findings.
     out_.takes = takes_.size();
     return is_stopped ? Failure(interruption()) : Result<void>{};
   }

@@ -11,19 +11,19 @@
 
 namespace kinalign {
 
-/// How thorough the check is. `jobs` changes only the time.
+/// How thorough the check is. The option `jobs` has no influence on the result.
 struct VerifyOptions {
   std::size_t jobs = 1;
-  bool deep = false;  // also every row of the takes (contents.h) and every byte of raw files
+  bool deep = false;  // also check every row of the takes (contents.h) and every byte of raw files
 };
 
 /// The outcome of a check that was not stopped.
 struct Verified {
-  std::uint64_t takes = 0, bytes = 0;  // bytes of takes and, if deep, of raw files
-  Findings findings;                   // by severity, then by place; paths below the folder
+  std::uint64_t takes = 0, bytes = 0;  // bytes of takes and, if `deep`, of raw files
+  Findings findings;  // sorted by severity, then by path; paths are below the data set's folder
 };
 
-/// Sorts by severity, then by place.
+/// Sorts by severity, then by path.
 void sort_findings(Findings& findings);
 
 /// Reads every byte of the takes. Errors: a take that can't be read, has another hash, or does not

@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Collects the files of the wanted takes in the order in which they must go. It only reads;
-/// remove_takes() does the work. A take that a stopped run has removed in part is still found by
-/// its manifest or its raw files.
+/// Collects the files of the takes to remove, in the order of their removal. This class only reads;
+/// remove_takes() removes the files. If a stopped run has removed a part of a take, the take is
+/// still found by its manifest or its raw files.
 class RemovalPlanner {
  public:
   RemovalPlanner(FileSystem& files, const std::string& folder, bool with_raw,
@@ -36,7 +36,7 @@ class RemovalPlanner {
     }
     if (wanted.empty()) return unknown(words.front());
     plan_.takes.assign(wanted.begin(), wanted.end());
-    // Other takes need a look only if raw files are removed.
+    // Other takes need to be checked only if raw files are removed.
     if (with_raw_) KA_TRY(check_others(wanted));
     // Each person's folders are listed once, after all of its takes.
     std::set<std::string> people;
@@ -46,23 +46,24 @@ class RemovalPlanner {
     }
     for (const std::string& subject : people) {
       if (with_raw_) plan_.folders.push_back("sourcedata/sub-" + subject);
-      // Folders of people are tried last; those that still have files stay.
+      // Folders of people come last. If such a folder still has files, it stays.
       plan_.folders.push_back("sub-" + subject);
     }
-    // A folder's path begins with the path of the one above it, so inner ones come first.
+    // The list is sorted, and a folder's path begins with that of its parent. In reverse order
+    // inner folders come first.
     plan_.folders.insert(plan_.folders.end(), folders_above_.rbegin(), folders_above_.rend());
     return std::move(plan_);
   }
 
  private:
-  /// Also true if the check fails and raw files are to be removed: reading them then reports the
-  /// fault.
+  /// True if the take has copied raw files. If the check fails and raw files are to be removed, it
+  /// also returns true: reading the files then reports the fault.
   bool has_raw(const TakeName& name) const {
     std::error_code fault;
     return fs::exists(folder_ + "/" + raw_folder(name), fault) || (with_raw_ && fault);
   }
 
-  // The takes that a word of the user means: one take, or all takes of a person.
+  // The takes that the user's word names: one take, or all takes of a person.
   std::set<TakeName> takes_named(const std::string& word) const {
     std::set<TakeName> out;
     const auto name = parse_take_name(word);
@@ -78,13 +79,13 @@ class RemovalPlanner {
 
   Failure unknown(const std::string& word) const {
     std::vector<std::string> known;
-    // The names serve for the suggestion of a similar one.
+    // The error suggests the most similar of these names.
     for (const auto& [take, there] : takes_) known.push_back(to_string(take));
     return Failure(
         unknown_name(word, "a take of " + folder_ + ", or a person such as sub-03", known));
   }
 
-  // The takes of a person of which only the copied raw files are left.
+  // The takes of a person that have only copied raw files left.
   std::set<TakeName> takes_with_raw(const std::string& person) const {
     std::set<TakeName> out;
     const std::string folder = folder_ + "/sourcedata/" + person;
@@ -95,13 +96,13 @@ class RemovalPlanner {
     return out;
   }
 
-  /// Collects the inputs of the takes that stay: another take may have been made by hand from the
+  /// Collects the inputs of the takes that stay. A user may have made another take by hand from the
   /// raw files of a removed one.
   Result<void> check_others(const std::set<TakeName>& wanted) {
     for (const auto& [name, there] : takes_) {
       if (!there.manifest || wanted.contains(name)) continue;
       for (const std::string& place : KA_TRY(raw_places(name))) {
-        // The input itself stays, whichever take goes.
+        // An input of a take that stays is never removed.
         needed_.insert(place);
         for (const TakeName& going : wanted) {
           if (!place.starts_with(raw_folder(going))) continue;
@@ -114,12 +115,13 @@ class RemovalPlanner {
     return {};
   }
 
-  /// The inputs of a take below sourcedata/; for links also the files that they lead to.
+  /// The inputs of a take below sourcedata/. If an input is a link, also the file that the link
+  /// leads to.
   Result<std::vector<std::string>> raw_places(const TakeName& name) const {
     std::vector<std::string> out;
     for (const TakeInput& input : KA_TRY(raw_files_of(files_, folder_, name))) {
       const auto place = place_in_sourcedata(folder_, input.path);
-      // Both the link and its target are needed by the take that stays.
+      // The take that stays needs both the link and its target.
       if (place) out.push_back(*place);
       std::error_code fault;
       if (!fs::is_symlink(input.path, fault)) continue;
@@ -129,7 +131,8 @@ class RemovalPlanner {
     return out;
   }
 
-  /// The manifest is removed last: until then a stopped removal can be run again.
+  /// Adds the files of one take. The manifest comes last, so that a stopped removal can be run
+  /// again.
   Result<void> add_take(const TakeName& name) {
     // The page of a take is useless without the take.
     add_file("report/" + to_string(name) + ".html");
@@ -147,9 +150,9 @@ class RemovalPlanner {
     return {};
   }
 
-  /// Adds inputs outside the take's own folder of raw files: those of an unpacked corpus go, the
-  /// user's own stay. Further files are removed first, since they are found through the file that
-  /// they belong to.
+  /// Adds inputs outside the take's own folder of raw files. Files that an import unpacked are
+  /// removed; the user's own files stay. Further files of a reader come first, because they are
+  /// found through the file that they belong to.
   Result<void> add_inputs(const TakeName& name) {
     auto inputs = raw_files_of(files_, folder_, name);
     if (!inputs && with_raw_) {
@@ -165,7 +168,7 @@ class RemovalPlanner {
       std::error_code fault;
       const bool is_own = place && place->starts_with(raw_folder(name));
       if (!place || is_own || !fs::exists(fs::symlink_status(input.path, fault))) continue;
-      // Several takes may share an input; it is judged once.
+      // Several takes may share an input, which is looked at only once.
       if (!seen_.insert(*place).second) continue;
       // Only files that an import unpacked can be made again, so only these are removed.
       if (!is_unpacked(*place)) {
@@ -182,8 +185,8 @@ class RemovalPlanner {
     return {};
   }
 
-  // The folders that may become empty when the file is gone. If one is known, all above it are
-  // known, too.
+  // Notes the folders that may become empty when the file is removed. If one of them is noted
+  // already, so are all folders above it.
   void add_folders_above(const std::string& place) {
     for (fs::path above = fs::path(place).parent_path(); !above.empty();
          above = above.parent_path()) {
@@ -191,8 +194,8 @@ class RemovalPlanner {
     }
   }
 
-  // Adds a file or a link, if it exists. The size of a link's target does not count, since it
-  // stays.
+  // Adds a file or a link, if it exists. For a link, the size of the target does not count, because
+  // the target stays.
   void add_file(const std::string& path) {
     std::error_code fault;
     const fs::path whole = folder_ + "/" + path;
@@ -202,7 +205,8 @@ class RemovalPlanner {
     if (kind == fs::file_type::regular) plan_.bytes += fs::file_size(whole, fault);
   }
 
-  /// Links are not followed: they lead to files elsewhere.
+  /// Adds the take's copied raw files. Links are not followed, because they lead to files
+  /// elsewhere.
   Result<void> add_raw(const TakeName& name) {
     std::string folder = raw_folder(name);
     folder.pop_back();
@@ -227,7 +231,7 @@ class RemovalPlanner {
     if (fault)
       return Failure(
           Error{folder_ + "/" + folder, 0, "a folder that can be read", fault.message()});
-    // Folders were found from the outside in, and are removed in the reverse order.
+    // Folders were listed from the outside in, so they are removed in reverse order.
     plan_.folders.insert(plan_.folders.end(), inner.rbegin(), inner.rend());
     plan_.folders.push_back(folder);
     return {};
@@ -253,7 +257,7 @@ Result<RemovalPlan> plan_removal(FileSystem& files, const std::string& folder,
 Result<void> remove_takes(FileSystem& files, const std::string& folder, const RemovalPlan& plan) {
   const std::string root = folder + "/";
   for (const std::string& file : plan.files) {
-    // A file that is already gone is no fault: the run may continue a stopped one.
+    // A missing file is no error, because this run may continue a stopped one.
     KA_TRY(remove_file(files, path_in(root, file)));
   }
   for (const std::string& inner : plan.folders) remove_if_empty(path_in(root, inner));

@@ -11,14 +11,14 @@
 
 namespace kinalign {
 
-/// The whole removal, planned before any file is touched, so that the user can be shown it and
-/// asked. Each list has paths below the data set's folder.
+/// The whole removal, planned before any file is touched, so that the user can be asked first. All
+/// paths are below the data set's folder.
 struct RemovalPlan {
   std::vector<TakeName> takes;
-  std::vector<std::string> files;     // below the data set's folder, in the order of removal
+  std::vector<std::string> files;     // in the order of removal
   std::vector<std::string> folders;   // empty after the removal, inner ones first
   std::vector<std::string> raw_left;  // files and folders below sourcedata/ that --raw would remove
-  std::vector<std::string> raw_kept;  // raw files that stay: not copied or unpacked there
+  std::vector<std::string> raw_kept;  // raw files that stay: they were not copied or unpacked there
   std::vector<std::string> raw_shared;  // raw files that stay: another take is made from them
   std::vector<std::string> unknown;     // names without any file
   std::uint64_t bytes = 0;
@@ -32,7 +32,7 @@ struct RemovalPlan {
 Result<RemovalPlan> plan_removal(FileSystem& files, const std::string& folder,
                                  const std::vector<std::string>& names, bool with_raw);
 
-/// Removes what still exists of the plan. After a run that was stopped, a new plan continues it.
+/// Removes those files of the plan that still exist. If a run was stopped, a new plan continues it.
 Result<void> remove_takes(FileSystem& files, const std::string& folder, const RemovalPlan& plan);
 
 }  // namespace kinalign

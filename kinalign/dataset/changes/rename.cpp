@@ -41,7 +41,8 @@ std::string journal_path(const std::string& folder) {
 std::string journal_json(const RenamePlan& plan) {
   Json takes = Json::array();
   for (const auto& [from, to] : plan.takes) takes.push_back({to_string(from), to_string(to)});
-  // The takes are listed, too: a later run can't find those that have moved by their old names.
+  // The journal also lists the takes, because a later run can't find moved takes by their old
+  // names.
   return Json{{"schema", schema},
               {"kind", kind_names[static_cast<std::size_t>(plan.kind)]},
               {"from", plan.from},
@@ -64,7 +65,7 @@ Result<RenamePlan> read_journal(FileSystem& files, const std::string& path) {
     plan.kind = static_cast<RenameKind>(kind - kind_names.begin());
     plan.from = json.at("from").get<std::string>();
     plan.to = json.at("to").get<std::string>();
-    // A plan from the journal was begun, so its journal must not be written again.
+    // A plan from the journal was begun before, so its journal must not be written again.
     plan.was_begun = true;
     for (const Json& pair : json.at("takes")) {
       const auto from = parse_take_name(pair.at(0).get<std::string>());
@@ -97,8 +98,8 @@ std::string without(std::string_view lead, const std::string& word) {
   return word.starts_with(lead) ? word.substr(lead.size()) : word;
 }
 
-/// Checks a rename and lists the takes concerned. Nothing is changed. All reasons to refuse are
-/// found here, so that a rename that was begun can also be finished.
+/// Checks a rename and lists the takes that it changes. Nothing is renamed here. All reasons to
+/// refuse a rename are found here, so that a rename that was begun can also be finished.
 class RenamePlanner {
  public:
   RenamePlanner(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
@@ -118,7 +119,7 @@ class RenamePlanner {
   }
 
  private:
-  // A single take may get any known subject and action, and any free run.
+  // A single take may get any subject and action of dataset.toml, and any free run.
   Result<RenamePlan> plan_take(const TakeName& from, const std::string& to_text) const {
     const auto to = parse_take_name(to_text);
     if (!to)
@@ -137,7 +138,7 @@ class RenamePlanner {
     return RenamePlan{RenameKind::take, to_string(from), to_string(*to), {{from, *to}}, false};
   }
 
-  /// Plans for a subject or an action, whichever has that id.
+  /// Plans the rename of a subject or an action, whichever has the id `from`.
   Result<RenamePlan> plan_id(const std::string& from, const std::string& to) const {
     const std::string subject = without("sub-", from), action = without("task-", from);
     const bool is_subject = has(subjects, subject) || is_described(catalogue_, subjects, subject);
@@ -151,8 +152,8 @@ class RenamePlanner {
     return fault(from, "a take, a subject (sub-03) or an action of " + folder_, shown(from));
   }
 
-  // An id that only takes have may become one of dataset.toml. Two ids of dataset.toml can't become
-  // one.
+  // An id that only takes have may be renamed to an id of dataset.toml. Two ids of dataset.toml
+  // can't be merged.
   Result<RenamePlan> plan_ids(const IdKind& kind, const std::string& from,
                               const std::string& to) const {
     const bool both = is_described(catalogue_, kind, from) && is_described(catalogue_, kind, to);
@@ -167,7 +168,7 @@ class RenamePlanner {
     return out;
   }
 
-  // `word`: the id with its prefix, for messages.
+  // `word` is the id with its prefix, for messages.
   static Result<void> check_new_id(const std::string& word, const std::string& id, bool is_taken) {
     if (!is_label(id)) return fault(word, "an id of letters and digits", shown(id));
     if (is_taken) return fault(word, "an id that the data set does not have", "an id that it has");
@@ -180,8 +181,8 @@ class RenamePlanner {
                        [&](const auto& take) { return take.first.*kind.part == id; });
   }
 
-  // The new name must be free, with its raw files. If subject or action changes, the take is made
-  // again, so everything that it is made from must exist.
+  // Checks that the new name and its folder of raw files are free. If subject or action changes,
+  // the take is made again, so its manifest and raw files must exist.
   Result<void> check(const TakeName& from, const TakeName& to) const {
     if (takes_.contains(to)) {
       return fault(path_of(folder_, to, TakeFile::take), "no take of the new name",
@@ -199,13 +200,13 @@ class RenamePlanner {
     const std::string take = path_of(folder_, name, TakeFile::take);
     const std::string why =
         " (a take's file contains subject and action, so the take has to be made again)";
-    // A take that was added as a take has no manifest to make it from.
+    // A take that was added without raw files has no manifest and can't be made again.
     if (!takes_.at(name).manifest) {
       return fault(take, "a take with a manifest" + why, "a take that was added as a take");
     }
     const Manifest manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
     for (const TakeInput& input : inputs_of(files_, manifest, folder_of(folder_, name), {})) {
-      // One missing raw file is enough: the take could not be made again.
+      // One missing raw file is enough: the take can't be made again.
       std::error_code missing;
       if (fs::exists(input.path, missing)) continue;
       return fault(input.path, "the raw file of " + to_string(name) + why, "no such file");
@@ -226,14 +227,14 @@ class RenamePlanner {
 
 // ---- renaming
 
-/// Each step checks what exists and does the rest. A run that was stopped at any step is continued
-/// by the same calls. Therefore the new file is always written before the old one is removed.
+/// Does the renaming. Each step checks what exists and does the rest, so the same calls continue a
+/// run that was stopped at any step. The new file is always written before the old file is removed.
 class Renamer {
  public:
   Renamer(FileSystem& files, const std::string& folder) : files_(files), folder_(folder) {}
 
-  // The order matters: manifest, raw files, then take and summary. The old manifest is removed
-  // last, because it shows a later run that the take has not moved completely.
+  // The order is: manifest, raw files, take and summary. The old manifest is removed last, because
+  // it shows a later run that the take has not moved completely.
   Result<void> move(const TakeName& from, const TakeName& to, Renamed& out) {
     KA_TRY(make_folders(folder_ + "/sub-" + to.subject));
     const bool same_name = from.subject == to.subject && from.action == to.action;
@@ -243,7 +244,7 @@ class Renamer {
     }
     KA_TRY(move_raw_files(from, to));
     const bool had_take = is_there(path_of(folder_, from, TakeFile::take));
-    // A take whose bytes would state another name or recipe is dropped; build makes it again.
+    // A take whose bytes state the old name or recipe is removed; `dataset build` makes it again.
     for (const TakeFile file : {TakeFile::summary, TakeFile::take}) {
       KA_TRY(move_or_drop(path_of(folder_, from, file), path_of(folder_, to, file),
                           same_name && same_recipe));
@@ -256,31 +257,32 @@ class Renamer {
   }
 
   Result<void> edit_catalogue(const RenamePlan& plan) {
-    // A take's name is not in dataset.toml.
+    // The name of a single take does not occur in dataset.toml.
     if (plan.kind == RenameKind::take) return {};
     const std::string path = folder_ + "/" + std::string(catalogue_file);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_catalogue));
     const Catalogue now = KA_TRY(read_catalogue(toml, path));
     const IdKind& kind = plan.kind == RenameKind::subject ? subjects : actions;
-    // The edit was done by the run that was stopped.
+    // If the old id is missing, the stopped run has edited dataset.toml already.
     if (!is_described(now, kind, plan.from)) return {};
     const std::string text = KA_TRY(with_id_renamed(toml, kind.table, plan.from, plan.to, path));
     return write_whole(files_, path, text, Overwrite::yes);
   }
 
  private:
-  /// Writes the manifest under its new name. True: the take's parameters are unchanged.
+  /// Writes the manifest under its new name. Returns true if the parameters of the take are
+  /// unchanged.
   Result<bool> write_manifest(const TakeName& from, const TakeName& to) {
     const std::string path = path_of(folder_, from, TakeFile::manifest);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_manifest));
     const std::string text = KA_TRY(manifest_of_renamed(toml, from, to, path));
     KA_TRY(write_whole(files_, path_of(folder_, to, TakeFile::manifest), text, Overwrite::yes));
-    // The recipes show whether the edit changed a parameter of the take.
+    // Equal recipes show that the edit changed no parameter of the take.
     return recipe_of(KA_TRY(read_manifest(toml, path))) ==
            recipe_of(KA_TRY(read_manifest(text, path)));
   }
 
-  // Raw files move as a folder, in one step of the file system.
+  // The folder of raw files is renamed in one step of the file system.
   Result<void> move_raw_files(const TakeName& from, const TakeName& to) {
     const std::string old = folder_ + "/" + raw_folder(from),
                       renamed = folder_ + "/" + raw_folder(to);
@@ -290,7 +292,7 @@ class Renamer {
     return move_path(old.substr(0, old.size() - 1), renamed.substr(0, renamed.size() - 1));
   }
 
-  // A file that is not there was moved or removed before.
+  // Moves a file, or removes it unless `keeps_bytes`. A missing file was moved or removed before.
   Result<void> move_or_drop(const std::string& from, const std::string& to, bool keeps_bytes) {
     if (!is_there(from)) return {};
     return keeps_bytes ? move_path(from, to) : remove_file(files_, from);
@@ -331,7 +333,7 @@ Result<Renamed> rename_takes(FileSystem& files, const std::string& folder, const
   if (!plan.was_begun) {
     KA_TRY(write_whole(files, journal_path(folder), journal_json(plan), Overwrite::no));
   }
-  // The catalogue is edited first, so that no moved take has an id that dataset.toml lacks.
+  // dataset.toml is edited first, so that no moved take has an id that dataset.toml lacks.
   KA_TRY(renamer.edit_catalogue(plan));
   Renamed out;
   for (const auto& [from, to] : plan.takes) KA_TRY(renamer.move(from, to, out));
@@ -339,7 +341,7 @@ Result<Renamed> rename_takes(FileSystem& files, const std::string& folder, const
     remove_if_empty(folder + "/sub-" + from.subject);
     remove_if_empty(folder + "/sourcedata/sub-" + from.subject);
   }
-  // The journal goes last. Until then every step can be repeated.
+  // The journal is removed last. Until then every step can be repeated.
   KA_TRY(remove_file(files, journal_path(folder)));
   return out;
 }

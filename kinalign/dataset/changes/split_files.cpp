@@ -14,7 +14,7 @@ std::map<std::string, Split> splits_in(FileSystem& files, const std::string& fol
     if (!names) continue;
     for (const std::string& name : *names) {
       if (!name.ends_with(".json")) continue;
-      // Other programs may keep JSON files here, too. A file that is no split is no error.
+      // Other programs may also keep JSON files here, so a file that is no split is ignored.
       auto split = read_split(files, place + name);
       if (split) out.emplace(below + name, *std::move(split));
     }

@@ -17,11 +17,11 @@ namespace kinalign {
 /// ignored.
 std::map<std::string, Split> splits_in(FileSystem& files, const std::string& folder);
 
-/// A file of a split that a rename or a removal makes wrong. It is reported and not changed: a
+/// A file of a split that names renamed or removed takes. It is reported and not changed, because a
 /// split is a decision of the user.
 struct SplitFile {
   std::string path;         // below the data set's folder
-  std::uint64_t takes = 0;  // how many of the given takes it names
+  std::uint64_t takes = 0;  // number of the given takes that the split names
 };
 
 /// The splits of splits_in() that name any of `takes`.

@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-/// The text with `edit` applied to each line; line ends stay.
+/// The text with `edit` applied to each line; line ends are kept.
 std::string each_line(std::string_view text,
                       const std::function<std::string(std::string_view)>& edit) {
   std::string out;
@@ -24,19 +24,20 @@ std::string each_line(std::string_view text,
   return out;
 }
 
-/// The functions below step through a line; `at` is the place reached.
+/// Skips blanks. In this and the next functions `at` is the position that was reached in a line.
 void skip_blanks(std::string_view line, std::size_t& at) {
   while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
 }
 
-/// Steps over `word` if it is next.
+/// Moves past `word` and returns true if it is next.
 bool skip(std::string_view line, std::size_t& at, std::string_view word) {
   if (!line.substr(at).starts_with(word)) return false;
   at += word.size();
   return true;
 }
 
-/// The position of the id in a line such as "[subject.03", bare or quoted; npos if it is not there.
+/// The position of the id in a line such as "[subject.03", bare or quoted; npos if the id is not
+/// there.
 std::size_t id_in_head(std::string_view line, std::string_view table, std::string_view id) {
   std::size_t at = 0;
   skip_blanks(line, at);
@@ -52,8 +53,8 @@ std::size_t id_in_head(std::string_view line, std::string_view table, std::strin
   const std::size_t place = at;
   if (!skip(line, at, id) || !skip(line, at, quote)) return std::string_view::npos;
   skip_blanks(line, at);
-  // The id must end here, so that "03" is not found in "031". After a dot a table of the same id
-  // follows.
+  // The id must end here, so that "03" is not found in "031". After a dot comes a table within that
+  // of the id.
   const bool ends = line.substr(at, 1) == "]" || line.substr(at, 1) == ".";
   return ends ? place : std::string_view::npos;
 }
@@ -85,7 +86,7 @@ std::string with_value(const std::string& toml, std::string_view key, const std:
     skip_blanks(line, at);
     if (!skip(line, at, "=")) return std::string(line);
     skip_blanks(line, at);
-    // Only a plain string on one line is replaced; the proof refuses other forms.
+    // Only a plain string on one line is replaced. For other forms the check of the result fails.
     const char quote = at < line.size() ? line[at] : ' ';
     const std::size_t end = line.find(quote, at + 1);
     if ((quote != '"' && quote != '\'') || end == std::string_view::npos) return std::string(line);
@@ -99,8 +100,8 @@ std::string with_value(const std::string& toml, std::string_view key, const std:
 Result<std::string> with_id_renamed(const std::string& toml, const std::string& table,
                                     const std::string& from, const std::string& to,
                                     const std::string& file) {
-  // The wanted result is known as values. The edited text is accepted only if it reads back as
-  // these values, so the simple search above can't do harm.
+  // The wanted result is known as values. The edited text is accepted only if parsing it gives
+  // these values, so a mistake of the simple search above does no harm.
   Catalogue wanted = KA_TRY(read_catalogue(toml, file));
   if (table == "subject") {
     rename_id(wanted.subjects, from, to);
@@ -123,7 +124,7 @@ Result<std::string> with_id_renamed(const std::string& toml, const std::string& 
 
 Result<std::string> manifest_of_renamed(const std::string& toml, const TakeName& from,
                                         const TakeName& to, const std::string& file) {
-  // The same proof as for dataset.toml. If the edit fails it, the text is written anew from the
+  // The result is checked in the same way. If the check fails, the whole text is written from the
   // values.
   Manifest wanted = KA_TRY(read_manifest(toml, file));
   for (std::string* path : paths_in(wanted)) replace_all(*path, raw_folder(from), raw_folder(to));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits TOML texts that a user wrote: all but the edited words stays, also comments. Each edit is
-// checked by parsing the result.
+// Edits TOML texts that a user wrote. Everything except the edited words is kept, also comments.
+// Each edit is checked by parsing the result.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,9 +11,9 @@
 
 namespace kinalign {
 
-/// dataset.toml with a changed id of a table: "subject" or "action", as in [subject.03] and
-/// [subject.03.segments_m]. Fails if the id is written in another form, with the advice to change
-/// it by hand. `file`: for messages. The order of the tables and all comments stay.
+/// The text of dataset.toml with another id of one table: "subject" or "action", as in [subject.03]
+/// and [subject.03.segments_m]. If the id is written in another form, this fails with the advice to
+/// change it by hand. `file` is for messages. The order of the tables and all comments are kept.
 Result<std::string> with_id_renamed(const std::string& toml, const std::string& table,
                                     const std::string& from, const std::string& to,
                                     const std::string& file);

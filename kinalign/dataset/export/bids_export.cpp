@@ -19,7 +19,7 @@ namespace kinalign {
 
 namespace {
 
-/// 1990-01-01T00:00:00Z. Files without a date count their stamps from about 0, which is 1970.
+/// 1990-01-01T00:00:00Z. Files without a date count their stamps from about 0, which would be 1970.
 constexpr Time first_date = utc_time(631'152'000'000'000'000);
 
 /// A stream's name without characters that a label can't have: "kinect_2" gives kinect2.
@@ -31,7 +31,7 @@ std::string label_of(const std::string& stream) {
   return out.empty() ? "stream" : out;
 }
 
-/// The stream's kind decides which columns its tracking system has.
+/// The kind of a stream decides which columns its BIDS tracking system has.
 BidsSource source_of(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton;
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
@@ -41,7 +41,7 @@ BidsSource source_of(const TakeGroup& group) {
   return ImuHeader{nodes.node_names, nodes.content};
 }
 
-/// Empty if dataset.toml does not describe the device, or lacks this text.
+/// A text about a device in dataset.toml; empty if the device or the text is missing.
 std::string text_of(const Described* device, const char* key) {
   if (device == nullptr) return "";
   const auto found = device->texts.find(key);
@@ -56,7 +56,8 @@ BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
   BidsSystemFacts facts;
   facts.task_name = take.name().action;
   facts.task_description = action == nullptr ? "" : action->name;
-  // The stream's own name is kept here, since a label can't have all of its characters.
+  // The full name of the stream is kept here, because a BIDS label can't have all of its
+  // characters.
   facts.system_name = group.name;
   facts.rate_hz = take.rate_hz();
   facts.manufacturer = text_of(known, "make");
@@ -72,7 +73,7 @@ std::string number_text(const std::optional<double>& value) {
 
 }  // namespace
 
-/// Overwrite::no: the folder is new, so an existing file would be written twice by mistake.
+/// Writes one file. The folder is new, so an existing file would be a mistake and is not replaced.
 Result<void> BidsExport::write(const std::string& path, std::string_view text) {
   const std::string whole = folder_ + "/" + path;
   KA_TRY(make_folders(std::string(kinalign::folder(whole))));
@@ -87,7 +88,7 @@ Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t gr
   TextOut out = KA_TRY(TextOut::create(files_, path, Overwrite::no));
   BidsMotionWriter writer(source_of(of), out);
   const auto append = [&](const auto& rows) { return writer.append(rows); };
-  // Exactly one of the three kinds fits; rows are passed on slab by slab.
+  // Exactly one of the three lines applies to the stream. Its rows are passed on slab by slab.
   if (std::holds_alternative<ClipGroup>(of.kind)) KA_TRY(take.clip_frames(group, append));
   if (std::holds_alternative<PointGroup>(of.kind)) KA_TRY(take.point_frames(group, append));
   if (std::holds_alternative<ImuGroup>(of.kind)) KA_TRY(take.node_samples(group, append));
@@ -111,7 +112,7 @@ Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, Files
   const bool is_dated = !released_ && sidecars.onset >= first_date;
   scans_[entities.subject].emplace_back(motion.substr(below.size()),
                                         is_dated ? std::optional(sidecars.onset) : std::nullopt);
-  // Sidecar files are not counted: the result lists a file for each stream.
+  // Sidecar files are not counted, because the result lists one file for each stream.
   made.paths.push_back(folder_ + "/" + motion);
   return {};
 }
@@ -120,7 +121,7 @@ Result<FilesMade> BidsExport::add(ExportedTake& take) {
   FilesMade made;
   for (std::size_t g = 0; g < take.header().groups.size(); ++g) {
     const auto done = add_system(take, g, made);
-    // A stream that fails does not stop the others, but the user can stop all.
+    // A stream that fails does not stop the others. A stop by the user stops all.
     if (!done && is_interruption(done.error())) return Failure(done.error());
     if (!done) made.failed.push_back(done.error());
   }
@@ -140,10 +141,10 @@ BidsParticipants BidsExport::participants() const {
          "",
          {{"left", "left"}, {"right", "right"}, {"both", "ambidextrous"}}}};
   }
-  // Only people with an exported take are participants.
+  // Only people with an exported take are listed.
   for (const auto& [id, scans] : scans_) {
     std::vector<std::string> cells;
-    // A released set has no columns about the body.
+    // If the set is released, it has no columns about the body.
     if (!released_) {
       const Subject* person = find_subject(catalogue_, id);
       const Subject known = person == nullptr ? Subject{} : *person;
@@ -159,14 +160,14 @@ BidsParticipants BidsExport::participants() const {
 }
 
 Result<Findings> BidsExport::finish() {
-  // The description names our program as the one that made the data set.
+  // The description states kinalign as the program that made the data set.
   BidsDataset description;
   description.name = catalogue_.name;
   description.license = catalogue_.licence;
   description.how_to_acknowledge = catalogue_.citation;
-  // The software's text is its name and its version.
+  // This text contains the program's name and its version.
   const std::string software = take_software();
-  // BIDS wants name and version of the program apart.
+  // BIDS wants the name and the version separately.
   description.generated_by = software.substr(0, software.find(' '));
   description.generated_by_version = software.substr(software.find(' ') + 1);
   KA_TRY(write("dataset_description.json", dataset_description_json(description)));
@@ -176,7 +177,7 @@ Result<Findings> BidsExport::finish() {
   KA_TRY(write("participants.tsv", participants_tsv(people)));
   KA_TRY(write("participants.json", participants_json(people)));
   for (auto& [subject, scans] : scans_) {
-    // Takes come in the order of the job; the file is sorted.
+    // Takes are added in the order of the job, and the file is sorted.
     std::sort(scans.begin(), scans.end());
     KA_TRY(write(bids_scans_path({subject, "", "", ""}), scans_tsv(scans)));
   }

@@ -17,8 +17,8 @@ namespace kinalign {
 /// and written by finish(). `catalogue` must outlive the object.
 class BidsExport {
  public:
-  /// `folder`: of the new data set. `released`: participants.tsv has no height, weight and the
-  /// like, and scans.tsv no dates.
+  /// `folder`: the folder of the new data set. If `released`, participants.tsv has no height,
+  /// weight and similar columns, and scans.tsv has no dates.
   BidsExport(FileSystem& files, std::string folder, const Catalogue& catalogue, bool released)
       : files_(files), folder_(std::move(folder)), catalogue_(catalogue), released_(released) {}
 

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// RFC 4180: text with a comma, a quote or a line end is put in quotes.
+/// A text as a CSV cell (RFC 4180). If it contains a comma, a quote or a line end, it is quoted.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -21,8 +21,8 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// One name for each number of a row. A column with a single number per row has no part after its
-/// name.
+/// The head line of the CSV, with one name for each number of a row. A column with a single number
+/// per row has only its own name.
 std::string head_of(const TakeGroup& group, Precision precision) {
   std::string out = "time_ns";
   for (const TakeColumn& column : columns_of(group, precision)) {
@@ -37,7 +37,7 @@ std::string head_of(const TakeGroup& group, Precision precision) {
 template <class Value>
 void put_row(const std::vector<Value>& values, std::size_t row, std::size_t rows,
              Precision precision, std::string& text) {
-  // An array that the stream leaves empty has width 0 and adds nothing.
+  // If the stream has no values for an array, its width is 0 and nothing is added.
   const std::size_t width = values.size() / rows;
   for (std::size_t k = row * width; k < (row + 1) * width; ++k) {
     text += ',';
@@ -72,10 +72,10 @@ Result<void> put_slab(const TakeSlab& slab, std::size_t group, Precision precisi
 
 }  // namespace
 
-/// The rows pass through one slab at a time. The file gets its name when it is complete.
+/// Only one slab is in memory at a time. The file gets its final name when it is complete.
 Result<void> write_stream_csv(ExportedTake& take, std::size_t group, FileSystem& files,
                               const std::string& path) {
-  // Floats are printed with the digits of floats: more digits would be noise.
+  // Numbers that the take stores as floats have no more digits than a float.
   const Precision precision = precision_of(take.header());
   TextOut out = KA_TRY(TextOut::create(files, path, Overwrite::no));
   out.text(head_of(take.header().groups[group], precision));

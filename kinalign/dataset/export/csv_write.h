@@ -6,9 +6,9 @@
 
 namespace kinalign {
 
-/// Writes a line of names, then a line for each row: time_ns, and a column for each number, named
-/// ARRAY.JOINT.AXIS with the array's name in docs/formats/take.md. Numbers have the digits needed
-/// to read them back exactly.
+/// Writes a line of names, then a line for each row: the column time_ns, and one column for each
+/// number. A column is named ARRAY.JOINT.AXIS, with the array's name in docs/formats/take.md.
+/// Numbers have the digits needed to read them back exactly.
 Result<void> write_stream_csv(ExportedTake& take, std::size_t group, FileSystem& files,
                               const std::string& path);
 

@@ -23,17 +23,18 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Collects the results of an export, which then go to the parent process as text.
+/// Collects the results of an export. The child process then sends them to the parent process as
+/// text.
 struct Made {
   std::uint64_t files = 0;
   Json left_out = Json::array();
   Findings findings;
 
-  /// Fails if no file was written: an empty folder must not look like an export. `needs`: what a
-  /// take must have for this format.
+  /// Fails if no file was written, because an empty folder must not look like an export. `needs`:
+  /// the content that a take must have for this format.
   Result<void> holds_something(const ExportJob& job, std::string_view needs) const {
     if (files > 0) return {};
-    // The first fault explains the empty result best.
+    // The first fault is reported, because it explains the empty result best.
     if (!findings.empty()) return Failure(findings.front().what);
     return Failure(Error{job.folder, 0,
                          fmt::format("{} in at least one take, for {}", needs, job.format),
@@ -49,13 +50,13 @@ struct Made {
   }
 };
 
-/// A take is copied byte for byte if nothing has to be hidden, so its hash stays the same.
+/// Copies a take byte for byte, if nothing has to be hidden. Its hash stays the same.
 Result<FilesMade> copy_take(FileSystem& files, const std::string& from, const std::string& to) {
   KA_TRY(copy_file(files, from, to));
   return FilesMade{{to}, {}, {}};
 }
 
-/// The take rewritten without names and dates.
+/// Writes the take again without names and dates.
 Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std::string& to) {
   TakeHeader header = take.header();
   // The report is read back as data, because names and dates in it must change, too.
@@ -68,7 +69,7 @@ Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std:
   return FilesMade{{to}, {"marks, and the names of raw files"}, {}};
 }
 
-/// Adds the summary of a written take: a data set does not list takes without one.
+/// Adds the summary of a written take. Without a summary, a data set does not list the take.
 Result<FilesMade> with_summary(FilesMade made, FileSystem& files, const std::string& folder,
                                const TakeName& name) {
   TakeReader reader = KA_TRY(TakeReader::open(files, made.paths.front()));
@@ -78,7 +79,7 @@ Result<FilesMade> with_summary(FilesMade made, FileSystem& files, const std::str
 }
 
 /// One export in the child process. `folder` is the unfinished folder. The writers for whole data
-/// sets exist in every export, but only that of the job's format is used.
+/// sets exist in every export, but only the writer of the job's format is used.
 class Exporting {
  public:
   Exporting(FileSystem& files, const Catalogue& catalogue, const ExportJob& job, std::string folder)
@@ -127,7 +128,7 @@ Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
 
 Result<void> Exporting::finish() {
   if (job_.format == "bids") {
-    // Files of a whole set can be written only when all takes are known.
+    // The files about the whole data set are written when all takes are known.
     for (Finding& finding : KA_TRY(bids_.finish())) made.findings.push_back(std::move(finding));
   }
   if (job_.format == "webdataset") made.add({}, KA_TRY(shards_.finish()));
@@ -147,13 +148,13 @@ Result<void> Exporting::finish() {
 
 Result<void> Exporting::run(const Progress& progress) {
   std::uint64_t done = 0, total = 0;
-  // Progress counts frames, since takes differ in length.
+  // Progress counts frames, because takes have different lengths.
   for (const ExportTake& take : job_.takes) total += take.summary.frames;
   for (const ExportTake& of : job_.takes) {
     const std::string path = path_of(job_.folder, of.name, TakeFile::take);
     ExportedTake take =
         KA_TRY(ExportedTake::open(files_, path, of.name, of.summary.rate_hz, job_.release));
-    // Results are added take by take; the first error of a take ends the export.
+    // The first take that can't be written ends the export.
     made.add(of.name, KA_TRY(write(take, of, path)));
     done += of.summary.frames;
     if (!go_on(progress, "exporting", done, total)) return Failure(interruption());
@@ -174,7 +175,7 @@ ExportMade made_from(const std::string& text) {
   ExportMade made;
   made.files = json.at("files").get<std::uint64_t>();
   for (const Json& one : json.at("left_out")) {
-    // Results of the set as a whole have no take's name.
+    // A result about the whole data set has no take's name.
     made.left_out.push_back(
         {parse_take_name(one.at(0).get<std::string>()).value_or(TakeName{}), one.at(1)});
   }
@@ -182,7 +183,7 @@ ExportMade made_from(const std::string& text) {
   return made;
 }
 
-/// The words for the content that a format needs, for the error of an empty export.
+/// The content that a format needs, in words, for the error of an empty export.
 std::string_view needs_of(const std::string& name) {
   const TakeFormat* const format = find_take_format(name);
   return format == nullptr ? "a stream" : format->needs;
@@ -199,7 +200,7 @@ Result<std::string> make_part_folder(const std::string& target) {
   const auto above = fs::path(target).parent_path();
   if (!above.empty()) fs::create_directories(above, failed);
   std::string path = target + ".part";
-  // Another export may be writing there, so the folder is never taken over.
+  // An existing folder is never used, because another export may be writing into it.
   if (fs::exists(fs::symlink_status(path, failed))) {
     return Failure(Error{path, 0, "no unfinished export (if no export is running, remove it)",
                          "an existing folder"});
@@ -232,14 +233,15 @@ Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, c
   const std::string path = KA_TRY(make_part_folder(job.target));
   UnfinishedFolder part(path);
   GuardLimits limits;
-  // The limits grow with the work: ten minutes of computing and an hour of waiting for each take.
+  // The limits of the child process grow with the work: ten minutes of computing and an hour of
+  // waiting for each take.
   limits.cpu_seconds += 600 * job.takes.size();
   limits.wall_seconds += 3600.0 * static_cast<double>(job.takes.size());
   // The error if the child process crashes.
   const Error blame{job.folder, 0, "takes that HDF5 can read", ""};
   const std::string text = KA_TRY(run_guarded(
       limits, blame, progress, [&](const Progress& child_progress) -> Result<std::string> {
-        // Everything that opens a take happens in the child process.
+        // Takes are opened only in the child process.
         Exporting exporting(files, catalogue, job, path);
         KA_TRY(exporting.run(child_progress));
         KA_TRY(exporting.made.holds_something(job, needs_of(job.format)));

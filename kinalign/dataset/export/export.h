@@ -12,14 +12,14 @@
 
 namespace kinalign {
 
-/// A take to export, with the facts that the index knows of it.
+/// A take to export, with its facts from the index.
 struct ExportTake {
   TakeName name;
   TakeSummary summary;
-  std::string part;  // the part of a split; names of shards begin with it
+  std::string part;  // the part of a split; names of WebDataset shards begin with it
 };
 
-/// The whole order of an export: from where, to where, how, and which takes.
+/// Everything that the user wants of an export: from where, to where, how, and which takes.
 struct ExportJob {
   std::string folder;    // the data set's
   std::string target;    // a new folder
@@ -31,11 +31,11 @@ struct ExportJob {
 /// A format as the user sees it in lists and messages.
 struct ExportFormat {
   std::string name, title;
-  std::string lost;  // the content that the format can't hold
+  std::string lost;  // content that the format can't store
 };
 std::vector<ExportFormat> export_formats();
 
-/// A stream that the format can't hold; this is no fault.
+/// A stream that the format can't store. This is not an error.
 struct LeftOutStream {
   TakeName name;
   std::string why;
@@ -45,12 +45,12 @@ struct LeftOutStream {
 struct ExportMade {
   std::uint64_t files = 0;
   std::vector<LeftOutStream> left_out;
-  Findings findings;  // streams that could not be written; for BIDS also our check's findings
+  Findings findings;  // streams that could not be written; for BIDS also the findings of our check
 };
 
-/// Writes into `target` + ".part", which becomes `target` at the end. `target` must not exist
-/// before; after a failure nothing is left. Runs in a child process, since HDF5 can crash on a
-/// hostile file.
+/// Writes into the folder `target` + ".part", which is renamed to `target` at the end. `target`
+/// must not exist before. After a failure the unfinished folder is removed. Runs in a child
+/// process, because HDF5 can crash on a hostile file.
 Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, const ExportJob& job,
                                 const Progress& progress);
 

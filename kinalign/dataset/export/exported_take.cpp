@@ -38,7 +38,7 @@ Result<ExportedTake> ExportedTake::open(FileSystem& files, const std::string& pa
   ExportedTake out(KA_TRY(TakeReader::open(files, path)), std::move(name), rate_hz);
   // A take without rows has no first stamp to move.
   if (out.header().frames == 0) return out;
-  // The first row alone tells by how much all stamps move.
+  // The first stamp decides by how much all stamps are moved.
   KA_TRY(out.reader_.read(0, 1, out.slab_));
   if (without_date) out.moved_ = no_date - out.slab_.stamps.front();
   out.first_ = out.slab_.stamps.front() + out.moved_;
@@ -49,7 +49,7 @@ Result<void> ExportedTake::rows(const std::function<Result<void>(const TakeSlab&
   const std::uint64_t frames = header().frames;
   for (std::uint64_t first = 0; first < frames; first += slab_rows) {
     KA_TRY(reader_.read(first, std::min(slab_rows, frames - first), slab_));
-    // All stamps move by the same time, so intervals between them stay.
+    // All stamps are moved by the same time, so the intervals between them stay.
     for (Time& stamp : slab_.stamps) stamp += moved_;
     KA_TRY(use(slab_));
   }
@@ -67,7 +67,7 @@ Result<void> ExportedTake::clip_frames(std::size_t group,
 Result<void> ExportedTake::point_frames(
     std::size_t group, const std::function<Result<void>(const PointFrames&)>& use) {
   return rows([&](const TakeSlab& slab) {
-    // A skeleton's joints are points, too, for formats without skeletons.
+    // For formats without skeletons, a skeleton's joints are points.
     const auto* clip = std::get_if<ClipRows>(&slab.rows[group]);
     return use(clip != nullptr ? frames_of(slab.stamps, *clip)
                                : frames_of(slab.stamps, std::get<PointRows>(slab.rows[group])));

@@ -12,8 +12,9 @@
 
 namespace kinalign {
 
-/// An open take. Its rows can be read several times, as formats need them; only one slab is in
-/// memory. Stamps may be moved, so writers use the rows and never the file's own stamps.
+/// An open take. Its rows can be read several times, because some formats need this; only one slab
+/// is in memory. Stamps may be moved, so writers must take them from the rows and not from the
+/// file.
 class ExportedTake {
  public:
   /// `without_date`: stamps are moved so that the first one is 2000-01-01T00:00:00Z.
@@ -25,15 +26,15 @@ class ExportedTake {
   // The rate comes from the index, since a take's rows only have stamps.
   double rate_hz() const { return rate_hz_; }
   Time first() const { return first_; }      // stamp of the first row, after moving
-  Duration moved() const { return moved_; }  // by which stamps were moved
+  Duration moved() const { return moved_; }  // the time by which stamps were moved
   Result<std::string> report_json() const { return reader_.report_json(); }
 
-  /// Reads all rows from the beginning, slab by slab; may be called again.
+  /// Reads all rows from the beginning, slab by slab. It may be called again.
   Result<void> rows(const std::function<Result<void>(const TakeSlab&)>& use);
 
-  /// The same for one group of that kind. Points are missing if they are not valid; so are a
-  /// skeleton's joints, read as points, in rows that are not valid. Frames of a skeleton have no
-  /// validity and are passed on unchanged.
+  /// Reads the rows of one group of that kind. A point is missing if it is not valid. If a skeleton
+  /// is read as points, its joints are missing in rows that are not valid. Frames of a skeleton
+  /// have no validity and are passed on unchanged.
   Result<void> clip_frames(std::size_t group,
                            const std::function<Result<void>(const ClipFrames&)>& use);
   Result<void> point_frames(std::size_t group,

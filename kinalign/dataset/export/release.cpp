@@ -16,15 +16,16 @@ namespace kinalign {
 
 namespace {
 
-/// A regular expression with the words for what it finds.
+/// A regular expression, and a description of the text that it finds.
 struct Pattern {
   const char* what;
   std::regex text;
 };
 
-constexpr std::size_t address_patterns = 2;  // the first ones
+constexpr std::size_t address_patterns =
+    2;  // the number of patterns for addresses, which come first
 
-/// Patterns of texts that could identify a person. Addresses come first, see address_patterns.
+/// Patterns of texts that could identify a person. Addresses come first (address_patterns).
 const std::array<Pattern, 4>& patterns() {
   static const std::array<Pattern, 4> all{{
       {"an e-mail address", std::regex("[^\\s@]+@[^\\s@]+\\.[a-zA-Z]{2,}")},
@@ -45,8 +46,9 @@ bool reads_like_a_name(const std::string& id) {
          std::none_of(id.begin(), id.end(), is(std::isdigit));
 }
 
-/// True for a key whose value names one device or its owner. Words are searched in lower case
-/// anywhere in the key; "sn" and "ip" only as the whole key, since they occur in other words.
+/// True for a key whose value identifies one device or its owner. Most words are searched anywhere
+/// in the key, in lower case. "sn" and "ip" must be the whole key, because they occur in other
+/// words.
 bool names_a_device(std::string key) {
   std::transform(key.begin(), key.end(), key.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -57,8 +59,8 @@ bool names_a_device(std::string key) {
                      [&](std::string_view word) { return key.find(word) != std::string::npos; });
 }
 
-/// Collects findings about texts. `where` names the place in dataset.toml; the found text itself is
-/// part of the message, so that the user can find it.
+/// Collects findings about texts. `where` names the place in dataset.toml. The message quotes the
+/// found text, so that the user can find it.
 class Look {
  public:
   explicit Look(const std::string& file) : file_(file) {}
@@ -80,8 +82,8 @@ class Look {
     find_first_of(where, value, std::span(patterns()).first(address_patterns));
   }
 
-  /// Checks the id of an action, a class, a device or a rig. "kinect" and "walk" are ids, "Maria"
-  /// may be a name.
+  /// Checks the id of an action, a class, a device or a rig. For example, "kinect" and "walk" are
+  /// accepted, while "Maria" may be a name.
   void id(const char* table, const std::string& value) {
     text(fmt::format("the id of a {}", table), value);
     const auto letter = [&](std::size_t i) { return static_cast<unsigned char>(value[i]); };
@@ -95,12 +97,12 @@ class Look {
   Findings findings;
 
  private:
-  // One finding for each text: the user must read the whole text anyway.
+  // A text gets one finding at most, because the user must read the whole text anyway.
   void find_first_of(const std::string& where, const std::string& value,
                      std::span<const Pattern> kinds) {
     for (const Pattern& pattern : kinds) {
       std::smatch match;
-      // The patterns are tried in their order, so an address wins over a number in it.
+      // The patterns are tried in order, so an address is found before a number in it.
       if (!std::regex_search(value, match, pattern.text)) continue;
       add(Severity::error, where, fmt::format("{}: \"{}\"", pattern.what, shown(match.str())),
           "remove it from dataset.toml");
@@ -111,7 +113,7 @@ class Look {
   const std::string& file_;
 };
 
-/// A serial number is an error: it leads to a lab and a day.
+/// Checks the devices. A serial number is an error, because it can be traced to a lab.
 void look_at_devices(const std::vector<Described>& all, const char* table, Look& look) {
   for (const Described& one : all) {
     look.id(table, one.id);
@@ -131,12 +133,12 @@ void look_at_devices(const std::vector<Described>& all, const char* table, Look&
 void look_at_measures(const std::vector<Subject>& people, const char* what,
                       std::optional<double> Subject::*measure, Look& look) {
   for (const Subject& person : people) {
-    // A measure that is not stated identifies nobody.
+    // A measure that is not stated identifies no one.
     if (!(person.*measure)) continue;
     const auto same = std::count_if(people.begin(), people.end(), [&](const Subject& other) {
       return other.*measure == person.*measure;
     });
-    // A value that two people share singles out neither of them.
+    // A value that two people share identifies neither of them.
     if (same > 1) continue;
     look.add(Severity::note, fmt::format("subject.{}.{}", person.id, what),
              fmt::format("{:g}, which no other person in this data set has", *(person.*measure)),
@@ -144,8 +146,8 @@ void look_at_measures(const std::vector<Subject>& people, const char* what,
   }
 }
 
-/// The new names of raw files, by their old names. The same old name always gets the same new one,
-/// so that inputs, parameters and findings still agree. The ending stays, because it states the
+/// The new names of raw files, by their old names. The same old name always gets the same new name,
+/// so that inputs, parameters and findings still agree. The ending is kept, because it states the
 /// format.
 class HiddenNames {
  public:
@@ -160,8 +162,8 @@ class HiddenNames {
     return to;
   }
 
-  // Findings quote file names in their texts. At each place the longest name wins, so that of
-  // "data/a.csv" no folder stays because of another file "a.csv".
+  // Replaces file names that findings quote. At each position the longest name is tried first.
+  // Otherwise a name "a.csv" would be replaced within "data/a.csv", and the folder would stay.
   void put_into(std::string& text) const {
     std::string out;
     for (std::size_t at = 0; at < text.size();) {
@@ -186,12 +188,12 @@ class HiddenNames {
 
 }  // namespace
 
-/// The search is a help and no proof: it finds what looks like a name, a date or an address.
-/// Warnings and notes are left to the user's judgement.
+/// The search helps but proves nothing: it finds texts that look like a name, a date or an address.
+/// The user must decide about warnings and notes.
 Findings look_for_people(const Catalogue& catalogue, const std::string& file,
                          const std::set<std::string>& names) {
   Look look(file);
-  // People come first, because their texts are the most likely to name somebody.
+  // People come first, because their texts are the most likely to contain a name.
   for (const Subject& person : catalogue.subjects) {
     if (reads_like_a_name(person.id)) {
       look.add(Severity::error, "a subject's id", fmt::format("\"{}\"", shown(person.id)),
@@ -219,7 +221,7 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file,
   }
   for (const std::string& name : names) look.text("a stream or node", name);
   look.text("name", catalogue.name);
-  // Licences and citations have years, pages and numbers that identify nobody.
+  // Years, pages and numbers in licences and citations do not identify a person.
   look.published_text("licence", catalogue.licence);
   look.published_text("citation", catalogue.citation);
   look.text("description", catalogue.description);
@@ -232,12 +234,13 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file,
   return look.findings;
 }
 
-/// Every place of a take that can hold a file's name is treated: inputs, parameters and findings.
+/// Replaces file names in every place of a take that can have them: inputs, parameters and
+/// findings.
 void hide_names(TakeHeader& header, AlignmentReport& report) {
   HiddenNames names;
   for (TakeGroup& group : header.groups) {
     for (std::size_t i = 0; i < group.files.size(); ++i) {
-      // The names are learnt from the inputs first; the texts below are then replaced by them.
+      // All names are collected from the inputs first. They are then replaced in the texts below.
       group.files[i].name = names.of(group.files[i].name, group.name, i);
     }
   }
@@ -250,11 +253,11 @@ void hide_names(TakeHeader& header, AlignmentReport& report) {
       stream.skeleton = names.of(stream.skeleton, stream.name + "_skeleton", 0);
     }
     for (auto& [column, value] : stream.select) {
-      // A number selects a row without naming anybody; other texts might.
+      // A number selects a row and identifies no one. Other texts might identify a person.
       if (value.find_first_not_of("0123456789") != std::string::npos) value.clear();
     }
   }
-  // Marks are free text with times of day.
+  // Marks are removed, because they are free text with times of day.
   report.marks.clear();
   for (Finding& finding : report.findings) {
     for (std::string* text : {&finding.what.file, &finding.what.expected, &finding.what.found,
@@ -264,17 +267,17 @@ void hide_names(TakeHeader& header, AlignmentReport& report) {
   }
 }
 
-/// The rows are moved by ExportedTake; this moves the rest by the same time.
+/// Moves the dates outside of the rows. ExportedTake moves the rows by the same time.
 void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report) {
   report.begin += moved;
   report.end += moved;
   for (StreamReport& stream : report.streams) {
-    // The length stays, since it is part of the quality.
+    // The length of the stream is kept, because it is part of the quality.
     stream.survey.last = Time{stream.survey.last - stream.survey.first};
     stream.survey.first = Time{};
   }
   for (StreamOptions& stream : header.parameters.streams) {
-    // Clicks keep their distance from each other and lose their date.
+    // The distance between clicks is kept, but their date is removed.
     const std::int64_t first = stream.start_ns.value_or(stream.end_ns.value_or(0));
     for (std::optional<std::int64_t>* stamp : {&stream.start_ns, &stream.end_ns}) {
       if (*stamp) **stamp -= first;
@@ -284,7 +287,7 @@ void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report) {
 
 std::string released_catalogue(Catalogue catalogue, const std::set<std::string>& used) {
   std::erase_if(catalogue.subjects, [&](const Subject& one) { return !used.contains(one.id); });
-  // Defaults for manifests have no use in a data set without manifests.
+  // Defaults for manifests are removed, because a released data set has no manifests.
   catalogue.align = {};
   return catalogue_toml(catalogue);
 }

@@ -12,12 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A member of a sample, in memory.
+/// A member of a sample: the end of its name, and its bytes.
 struct Npy {
   std::string ending, bytes;
 };
 
-/// The members' headers, without values.
+/// The members of a sample with their headers, but without values.
 std::vector<Npy> heads_of(const TakeHeader& header) {
   std::vector<Npy> out;
   const auto add = [&](const std::string& name, Stored stored, std::vector<std::uint64_t> shape) {
@@ -34,7 +34,7 @@ std::vector<Npy> heads_of(const TakeHeader& header) {
   return out;
 }
 
-/// Appends the values; arrays that a stream leaves empty have no member.
+/// Appends the values of a slab. Arrays that the stream does not have have no member.
 Result<void> add_values(const TakeHeader& header, const TakeSlab& slab, NumberStore& numbers,
                         std::vector<Npy>& members) {
   members.front().bytes += bytes_of(std::span<const Time>(slab.stamps));
@@ -44,7 +44,7 @@ Result<void> add_values(const TakeHeader& header, const TakeSlab& slab, NumberSt
     const auto columns = columns_of(header.groups[g], precision_of(header));
     auto column = columns.begin();
     const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
-      // Both lists have the same order; arrays without a column are passed over.
+      // Arrays and members are in the same order; an array without a member is skipped.
       if (column == columns.end() || column->name != name) return {};
       // The values follow the header of their member; slabs are appended in order.
       std::string& bytes = (member++)->bytes;
@@ -66,14 +66,14 @@ Result<void> add_values(const TakeHeader& header, const TakeSlab& slab, NumberSt
   return {};
 }
 
-/// The JSON of a sample.
+/// The JSON member of a sample.
 std::string sample_json(const ExportedTake& take, const SampleFacts& facts) {
   Json out{{"name", to_string(take.name())},
            {"class", facts.class_id},
            {"part", facts.part},
            {"rate_hz", take.rate_hz()}};
   out.update(Json::parse(streams_json(take.header())));
-  // The name's ids replace the take's own texts, so that samples can be grouped by them.
+  // Subject and action are the ids in the take's name, so that samples can be grouped by them.
   out["subject"] = take.name().subject;
   out["action"] = take.name().action;
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -81,8 +81,7 @@ std::string sample_json(const ExportedTake& take, const SampleFacts& facts) {
 
 }  // namespace
 
-/// An open shard. The writer counts the bytes as it writes them, and refers to this object. It must
-/// therefore not move.
+/// An open shard. The writer refers to this object to count the bytes, so the object must not move.
 struct ShardExport::Shard {
   explicit Shard(OutputFile file) : out(std::move(file)) {}
 
@@ -94,7 +93,7 @@ struct ShardExport::Shard {
   }};
 };
 
-/// The open shard of a part; a new one with the next number if none is open.
+/// The open shard of a part. If none is open, a new shard with the next number is begun.
 Result<ShardExport::Shard*> ShardExport::shard_of(const std::string& part) {
   auto& shard = open_[part];
   if (!shard) {
@@ -104,7 +103,7 @@ Result<ShardExport::Shard*> ShardExport::shard_of(const std::string& part) {
   return shard.get();
 }
 
-/// The shard's file gets its name only here, when its last block is written.
+/// Writes the last block of the shard. The file gets its final name only here.
 Result<void> ShardExport::end(Shard& shard, FilesMade& made) {
   KA_TRY(shard.writer.finish());
   KA_TRY(shard.out.commit());

@@ -11,22 +11,23 @@
 
 namespace kinalign {
 
-/// Members of a sample's JSON besides the take's streams.
+/// Further facts for the JSON of a sample, in addition to those of the take.
 struct SampleFacts {
   std::string class_id, part;
 };
 
 /// One export to shards. Each part of a split has its own open shard, so samples of two parts are
-/// never in one file. Without finish() the open shards stay incomplete.
+/// never in one file. If finish() is not called, the open shards stay incomplete.
 class ShardExport {
  public:
-  /// A shard ends after the sample with which it reaches `shard_bytes`.
+  /// A shard ends after the sample with which it has at least `shard_bytes` bytes.
   ShardExport(FileSystem& files, std::string folder,
               std::uint64_t shard_bytes = std::uint64_t{256} << 20)
       : files_(files), folder_(std::move(folder)), shard_bytes_(shard_bytes) {}
 
-  /// Adds a sample: each array as STREAM_ARRAY.npy, time_ns.npy, and a JSON. Names of shards begin
-  /// with the take's part: train-000000.tar. One take is held in memory.
+  /// Adds a take as one sample: each array as STREAM_ARRAY.npy, the stamps as time_ns.npy, and a
+  /// JSON. Names of shards begin with the take's part: train-000000.tar. One whole take is in
+  /// memory.
   Result<FilesMade> add(ExportedTake& take, const SampleFacts& facts);
   Result<FilesMade> finish();
 

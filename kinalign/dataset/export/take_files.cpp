@@ -53,7 +53,7 @@ Result<void> write_mot(ExportedTake& take, std::size_t group, FileSystem& files,
                        const std::string& path) {
   const TakeHeader& header = take.header();
   TextOut out = KA_TRY(TextOut::create(files, path, Overwrite::no));
-  // MOT has angles of joints; the skeleton of the group gives their names.
+  // MOT stores joint angles; the group's skeleton gives their names.
   auto writer = KA_TRY(MotWriter::begin(
       {std::get<ClipGroup>(header.groups[group].kind).skeleton, header.frames, take.first()}, out));
   KA_TRY(take.clip_frames(group, [&](const ClipFrames& frames) { return writer.append(frames); }));
@@ -73,7 +73,7 @@ Result<void> write_sto(ExportedTake& take, std::size_t group, FileSystem& files,
   return out.commit();
 }
 
-/// The following functions say why a format can't hold a stream; an empty text means that it can.
+/// The next functions return why a format can't store a stream; an empty text means that it can.
 std::string_view no_points(const TakeGroup& group) {
   return std::holds_alternative<ImuGroup>(group.kind) ? "the format holds points" : "";
 }
@@ -90,18 +90,18 @@ std::string_view nothing(const TakeGroup&) { return ""; }
 /// A format with a file for each stream.
 struct StreamFormat {
   std::string_view ending;
-  // The reason why it can't hold a stream; empty: it can.
+  // Returns why the format can't store a stream; empty if it can.
   std::string_view (*refused)(const TakeGroup&);
   WriteStream write;
 };
 
-/// Writes each stream that the format can hold. A stream that fails does not stop others.
+/// Writes each stream that the format can store. A stream that fails does not stop others.
 Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::string& stem,
                               const StreamFormat& format) {
   FilesMade made;
   const auto& groups = take.header().groups;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    // The reason is asked for before a file is created, so no empty file is left.
+    // This check comes before a file is created, so that no empty file is left.
     const std::string_view why = format.refused(groups[g]);
     if (!why.empty()) {
       made.left_out.push_back(fmt::format("{}: {}", groups[g].name, why));
@@ -116,8 +116,8 @@ Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::
   return made;
 }
 
-/// One function for each format. Their signature is that of the table, so some arguments are not
-/// used.
+/// One function for each format. All have the signature of TakeFormat::write, so some arguments are
+/// not used.
 template <const StreamFormat& format>
 Result<FilesMade> as_streams(ExportedTake& take, FileSystem& files, const std::string&,
                              const std::string& stem) {
@@ -130,7 +130,7 @@ constexpr StreamFormat trc{"trc", no_points, write_trc}, c3d{"c3d", no_points, w
 Result<FilesMade> as_csv(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
   FilesMade made = KA_TRY(each_stream(take, files, stem, {"csv", nothing, write_stream_csv}));
-  // A table can't state skeletons and units, so a JSON file stands next to the tables.
+  // A table can't state skeletons and units, so these are written to a JSON file beside the tables.
   made.paths.push_back(stem + ".json");
   KA_TRY(write_streams_json(take, files, made.paths.back()));
   return made;
@@ -146,7 +146,7 @@ Result<FilesMade> as_npz(ExportedTake& take, FileSystem& files, const std::strin
   return FilesMade{{path}, {}, {}};
 }
 
-/// Writes the first skeleton; BVH holds only one.
+/// Writes the first skeleton, because a BVH can have only one.
 Result<FilesMade> as_bvh(ExportedTake& take, FileSystem& files, const std::string& take_path,
                          const std::string& stem) {
   FilesMade made;
@@ -172,7 +172,7 @@ Result<FilesMade> as_bvh(ExportedTake& take, FileSystem& files, const std::strin
 
 }  // namespace
 
-/// Each format with the content that it loses.
+/// All formats of single takes, with the content that each can't store.
 const std::vector<TakeFormat>& take_formats() {
   static const std::vector<TakeFormat> all{
       {"npz", "NumPy, all streams of a take in a file", "the report and the parameters", "a stream",

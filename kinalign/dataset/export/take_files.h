@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formats that hold one take, or one stream of it, in a file.
+// The formats that store one take, or one of its streams, in a file.
 #pragma once
 
 #include "kinalign/dataset/export/exported_take.h"
@@ -23,17 +23,17 @@ struct FilesMade {
 using WriteTake = Result<FilesMade> (*)(ExportedTake& take, FileSystem& files,
                                         const std::string& take_path, const std::string& stem);
 
-/// A row of the table of formats: its words for users, and its writer.
+/// A row of the table of formats: its texts for users, and its writer.
 struct TakeFormat {
   std::string_view name;   // "trc"
   std::string_view title;  // for people
-  std::string_view lost;   // content that no file of this format holds; empty: none
+  std::string_view lost;   // content that no file of this format can store; empty: none
   std::string_view needs;  // required content of a take: "a skeleton"
   WriteTake write;
 };
 
 const std::vector<TakeFormat>& take_formats();
-/// nullptr if the format is none of a single take.
+/// The row of that format; nullptr if no format of single takes has the name.
 const TakeFormat* find_take_format(std::string_view name);
 
 }  // namespace kinalign

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports BIDS-Motion: subject, task and run become the take's, tracking systems its streams.
+// Imports BIDS-Motion. Subject, task and run become those of the take, tracking systems its
+// streams.
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/formats/bids/names.h"
 #include "kinalign/formats/bids/system.h"
@@ -13,10 +14,10 @@ namespace kinalign {
 
 namespace {
 
-/// Only the names of files are needed to recognise the corpus.
+/// True for a file of BIDS-Motion. Only the file's name is needed to recognise this corpus.
 bool is_motion(FileSystem&, const SourceFile& file) { return named_as_bids_motion(file.name); }
 
-/// One recording, by the entities that the names of its tracking systems share.
+/// One recording: the parts that the names of its tracking systems have in common.
 struct Recorded {
   std::string subject, session, task, acquisition, run;
 
@@ -25,7 +26,7 @@ struct Recorded {
     std::string out = "sub-" + subject;
     for (const auto& [key, label] : {std::pair("_ses-", session), std::pair("_task-", task),
                                      std::pair("_acq-", acquisition), std::pair("_run-", run)}) {
-      // Entities that the name lacks are left out.
+      // Parts that the name lacks are left out.
       if (!label.empty()) out += key + label;
     }
     return out;
@@ -38,14 +39,15 @@ struct System {
   bool has_points = false;
 };
 
-/// The number of a run; 0 for a label that does not begin with a number.
+/// The run's number; 0 for a label that does not begin with a number.
 std::uint32_t run_number(const std::string& run) {
   std::uint32_t value = 0;
   std::from_chars(run.data(), run.data() + run.size(), value);
   return value;
 }
 
-/// Systems with positions come first: the reference must have positions.
+/// The manifest of a take. Systems with positions come first, because the first stream is the
+/// reference and needs positions.
 Manifest systems_manifest(std::vector<System> systems) {
   std::stable_partition(systems.begin(), systems.end(),
                         [](const System& one) { return one.has_points; });
@@ -58,22 +60,22 @@ Manifest systems_manifest(std::vector<System> systems) {
   return out;
 }
 
-/// Every recording with a position is a take; its tracking systems are the streams.
+/// Lists a take for every recording with positions; its tracking systems are the streams.
 Result<Corpus> list_bids(const ImportInput& input) {
   Corpus out{.name = "BIDS-Motion", .classes = {{"bids", "tasks"}}, .class_id = "bids"};
-  // Sorted by the entities, so takes have the same order in every import.
+  // The recordings are sorted, so takes have the same order in every import.
   std::map<Recorded, std::vector<System>> recorded;
   for (const SourceFile& file : input.sources) {
     const auto name = parse_bids_name(file_name(file.name));
     if (!is_motion(input.files, file) || !name) continue;
     const auto label = [&](std::string_view key) { return std::string(name->label(key)); };
-    // A system whose sidecar files can't be read is left out; others of its recording stay.
+    // A system whose sidecar files can't be read is left out. Other systems of the recording stay.
     const auto system = read_bids_system(input.files, file.path);
     if (!system) {
       out.left_out.push_back({std::string(stem_of(file.name)), to_string(system.error())});
       continue;
     }
-    // Systems with the same entities were recorded together.
+    // Systems whose names share these parts were recorded together.
     recorded[{label("sub"), label("ses"), label("task"), label("acq"), label("run")}].push_back(
         {label("tracksys"), file.path, has_positions(*system)});
   }
@@ -85,7 +87,7 @@ Result<Corpus> list_bids(const ImportInput& input) {
       out.left_out.push_back({key.text(), "no tracking system with positions"});
       continue;
     }
-    // Each session counts runs anew, so the run of a later session may be taken already.
+    // Runs are numbered anew in each session, so the run of a later session may be taken already.
     out.takes.push_back(
         {key.subject, key.task, run_number(key.run), systems_manifest(systems), key.text()});
   }
@@ -95,7 +97,7 @@ Result<Corpus> list_bids(const ImportInput& input) {
 }  // namespace
 
 CorpusKind bids_corpus() {
-  // A BIDS data set is a corpus of its own kind and no mere folder of motion files.
+  // A BIDS data set is a separate kind of corpus and not just a folder of motion files.
   return {"bids", "sub-*_tracksys-*_motion.tsv", false, is_motion, list_bids};
 }
 

@@ -24,13 +24,14 @@ Result<std::string> grown_catalogue(const std::string& toml, const std::string& 
                "\nname = " + toml_string(action.name) + "\n";
   }
   for (const ActionClass& one : needs.classes) {
-    // A class that the user has described keeps that description.
+    // If the user has described a class, that description is kept.
     if (!classes.contains(one.id) || find_id(has.classes, one.id) != nullptr) continue;
     more += toml_head("class", one.id) + "name = " + toml_string(one.name) + "\n";
   }
   more += actions;
   if (more.empty()) return toml;
-  // The result is parsed before anything is written: appended tables can break an inline table.
+  // The result is parsed before it is written, because tables at the end can conflict with an
+  // inline table.
   const std::string grown = toml + (toml.empty() || toml.ends_with('\n') ? "" : "\n") + more;
   const auto read = read_catalogue(grown, name);
   if (read) return grown;

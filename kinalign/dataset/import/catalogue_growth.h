@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds people, classes and actions to dataset.toml as text, so that the user's own text, with
-// comments and order, stays.
+// Adds people, classes and actions to dataset.toml as text, so that the user's own text stays, with
+// its comments and its order.
 #pragma once
 
 #include "kinalign/core/error.h"

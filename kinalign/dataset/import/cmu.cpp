@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports CMU's motion capture database in packed form: asf_00.npz on each person's own skeleton,
-// daz_05.npz on one body for all. Each clip becomes a BVH.
+// Imports CMU's motion capture database in packed form: asf_00.npz has clips on each person's own
+// skeleton, daz_05.npz clips on one body for all people. Each clip becomes a BVH.
 #include "kinalign/dataset/import/cmu_clips.h"
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/file_names.h"
@@ -15,7 +15,7 @@ namespace kinalign {
 
 namespace {
 
-/// The packs are known by their names; other NPZ files are not read.
+/// True for a pack, which is recognised by its name. Other NPZ files are not read.
 bool is_clip_pack(FileSystem&, const SourceFile& file) {
   const std::string_view stem = stem_of(file.name);
   return has_ending(file.name, ".npz") && (stem.starts_with("asf_") || stem.starts_with("daz_"));
@@ -24,26 +24,27 @@ bool is_clip_pack(FileSystem&, const SourceFile& file) {
 /// CMU's number of the trial: 29 for "13_29"; 0 if the take has another name.
 std::uint32_t trial_of(const PackedClip& clip) {
   const std::string lead = clip.person + "_";
-  // Other collections have names of their own; their clips get the next free run.
+  // Clips of other collections have other names; they get the next free run.
   if (!clip.take.starts_with(lead)) return 0;
   return whole_number(std::string_view(clip.take).substr(lead.size())).value_or(0);
 }
 
-/// The names of the clips' files: "13__13_29.bvh". Characters that a name can't have are replaced.
+/// The names of the clips' files: "13__13_29.bvh". Characters that a file name can't have are
+/// replaced.
 std::vector<std::string> file_names_of(const std::vector<PackedClip>& clips) {
   std::vector<std::string> out;
   std::set<std::string> given;
   for (const PackedClip& clip : clips) {
     const auto safe = [](std::string text) {
       for (char& c : text) {
-        // label_of() keeps letters and digits; of the rest only the dash is harmless in a name.
+        // label_of() keeps letters and digits. Of all other characters only the dash is kept here.
         if (label_of({&c, 1}) == "x" && c != 'x' && c != '-') c = '_';
       }
       return text;
     };
     const std::string name = safe(clip.person) + "__" + safe(clip.take);
     std::string own = name + ".bvh";
-    // Two clips of one name get different files.
+    // If two clips have the same name, their files get different names.
     for (int number = 2; !given.insert(own).second; ++number) {
       own = name + "__" + std::to_string(number) + ".bvh";
     }
@@ -68,15 +69,15 @@ Result<void> write_clips(const PackedClips& packed, const std::vector<std::strin
   return {};
 }
 
-/// A clip is a take of one stream. The action is CMU's label, not its description.
+/// The take of one clip, with one stream. The action is CMU's short label, not its description.
 CorpusTake take_of(const PackedClip& clip, const std::string& path) {
   CorpusTake out{clip.person, clip.label, trial_of(clip), {}, clip.take};
   out.manifest.streams.push_back(stream_of("mocap", path));
   return out;
 }
 
-/// Leaves out clips that another pack has on the person's own skeleton: both could end up in
-/// different parts of a split.
+/// Leaves out clips that another pack has on the person's own skeleton. Otherwise both copies could
+/// be in different parts of a split.
 void leave_out_doubles(std::map<std::string, CorpusTake>& takes,
                        const std::set<std::string>& doubles, Corpus& corpus) {
   for (auto& [key, take] : takes) {
@@ -98,13 +99,13 @@ Result<Corpus> list_cmu(const ImportInput& input) {
              .classes = {{"cmu", "CMU's database, sorted by its descriptions"}},
              .class_id = "cmu"};
   std::map<std::string, CorpusTake> takes;  // by names as in clip_same: "asf_06:06_01"
-  // The clips that another pack has as well.
+  // The names of clips that another pack also has.
   std::set<std::string> doubles;
   for (const SourceFile& file : input.sources) {
     if (!is_clip_pack(input.files, file)) continue;
     const auto packed = KA_TRY(PackedClips::read(KA_TRY(archive_bytes(input.files, file.path))));
     const auto names = file_names_of(packed.clips());
-    // The BVHs are written once; a later import finds the same folder.
+    // The BVHs are written once; a later import uses the same folder.
     const std::string folder =
         KA_TRY(unpacked_folder(input.files, input.raw_folder, file.path, [&](const PutFile& put) {
           return write_clips(packed, names, put, input, file.path);
@@ -112,13 +113,13 @@ Result<Corpus> list_cmu(const ImportInput& input) {
     for (std::size_t k = 0; k < names.size(); ++k) {
       const PackedClip& clip = packed.clips()[k];
       std::string key = std::string(stem_of(file.name)) + ":" + clip.take;
-      // A second clip of one name is no double of the first.
+      // A second clip with the same name is another clip, not a copy of the first.
       if (takes.contains(key)) key += " of clip " + std::to_string(k);
       takes.emplace(std::move(key), take_of(clip, folder + "/" + names[k]));
       if (!clip.same.empty()) doubles.insert(clip.same);
     }
   }
-  // Doubles are known only when all packs were read.
+  // Copies in other packs are known only after all packs were read.
   leave_out_doubles(takes, doubles, out);
   return out;
 }

@@ -12,9 +12,9 @@ namespace kinalign {
 
 namespace {
 
-// The steps of the pack's whole numbers.
+// The units of the pack's whole numbers.
 constexpr double metres_per_step = 0.0005, degrees_per_step = 0.015;
-// Limits against archives that unpack to far more than they should.
+// Limits for archives, because a hostile one may unpack to far more bytes than it has.
 constexpr ArchiveLimits largest_pack{
     .entries = 100, .bytes = std::uint64_t{512} << 20, .ratio = 1000};
 
@@ -26,18 +26,18 @@ Quat turned(double x_deg, double y_deg, double z_deg) {
               Eigen::AngleAxisd(x_deg * radians, Vec3::UnitX()));
 }
 
-/// Turns the low and high bytes [2,C,F] of zigzag-coded second differences into values [C,F]. Sums
-/// wrap around, as they did in the packer.
+/// Converts second differences to values [C,F]. The differences are zigzag-coded, with low and high
+/// bytes in [2,C,F]. Sums wrap around, as in the program that wrote the pack.
 std::vector<std::int16_t> unpacked(const std::vector<std::int64_t>& planes, std::size_t channels,
                                    std::size_t frames) {
   std::vector<std::int16_t> out(channels * frames);
   for (std::size_t c = 0; c < channels; ++c) {
-    // Two running sums: of second differences to steps, and of steps to values.
+    // There are two running sums: differences give steps, and steps give values.
     std::uint16_t step = 0, value = 0;
     for (std::size_t f = 0; f < frames; ++f) {
       const std::size_t at = c * frames + f;
-      // The high byte and the low byte are in two planes; zigzag makes small differences small
-      // numbers.
+      // The low byte and the high byte are in two planes. The zigzag code makes small differences,
+      // also negative ones, small numbers.
       const auto coded =
           static_cast<std::uint32_t>(planes[at] | planes[channels * frames + at] << 8);
       step = static_cast<std::uint16_t>(step + ((coded >> 1) ^ (0U - (coded & 1U))));
@@ -56,10 +56,10 @@ std::vector<Vec3> vectors(const std::vector<double>& numbers, std::size_t first,
   return out;
 }
 
-/// The people's skeletons, which share joints and end sites.
+/// The skeletons of all people. They have the same joints and end sites.
 Result<std::vector<Skeleton>> read_skeletons(const Npz& npz, const std::string& name,
                                              std::size_t people) {
-  // Names and parents are the same for all people; lengths are each person's own.
+  // Names and parents are the same for all people; bone lengths differ.
   Skeleton body;
   body.joint_names = KA_TRY(npz.texts("joints", {0}));
   const std::size_t joints = body.joint_names.size();
@@ -79,7 +79,7 @@ Result<std::vector<Skeleton>> read_skeletons(const Npz& npz, const std::string& 
       }
       own.end_sites.push_back({static_cast<int>(ends[e]), vec3(tips, p * ends.size() + e)});
     }
-    // A pack may be damaged, so the skeletons are checked like those of any file.
+    // A pack may be damaged, so its skeletons are checked.
     if (auto sound = validate(own); !sound) {
       sound.error().file = name;
       return Failure(sound.error());
@@ -88,7 +88,7 @@ Result<std::vector<Skeleton>> read_skeletons(const Npz& npz, const std::string& 
   return out;
 }
 
-/// The clips; each must name a person and a range of frames that exist.
+/// Reads the list of clips. Each clip must name a person and a range of frames that exist.
 Result<std::vector<PackedClip>> read_clips(const Npz& npz, const std::string& name,
                                            const std::vector<std::string>& people,
                                            std::size_t frames) {
@@ -99,7 +99,7 @@ Result<std::vector<PackedClip>> read_clips(const Npz& npz, const std::string& na
   const auto length = KA_TRY(npz.integers("clip_len", {count}));
   const auto label = KA_TRY(npz.texts("clip_class", {count}));
   const auto text = KA_TRY(npz.texts("clip_text", {count}));
-  // Packs without this array have no doubles.
+  // If a pack lacks this array, none of its clips is in another pack.
   const auto same = npz.has("clip_same") ? KA_TRY(npz.texts("clip_same", {count}))
                                          : std::vector<std::string>(count);
   std::vector<PackedClip> out;
@@ -134,7 +134,7 @@ Result<std::vector<std::vector<Quat>>> read_axes(const Npz& npz, std::size_t peo
   return out;
 }
 
-/// The limits refuse a damaged rate, by which all stamps would be wrong.
+/// Reads the rate. A rate beyond the limits is refused, because all stamps would be wrong.
 Result<double> read_rate(const Npz& npz, const std::string& name) {
   const double rate_hz = KA_TRY(npz.numbers("rate", {})).front();
   if (rate_hz >= 1.0 && rate_hz <= 1e4) return rate_hz;
@@ -154,13 +154,13 @@ Result<PackedClips> PackedClips::read(const ArchiveBytes& bytes) {
   out.axes_ = KA_TRY(read_axes(npz, people.size(), joints));
   const std::size_t channels = 3 + 3 * joints;
   {
-    // The planes are larger than the values, so they are freed at once.
+    // The planes need more memory than the values, so they are freed as soon as possible.
     const auto planes = KA_TRY(npz.integers("planes", {2, channels, 0}));
     out.frames_ = planes.size() / (2 * channels);
     out.values_ = unpacked(planes, channels, out.frames_);
   }
   out.clips_ = KA_TRY(read_clips(npz, bytes.name, people, out.frames_));
-  // A pack without a rate has 60 Hz.
+  // If a pack states no rate, it has 60 Hz.
   if (npz.has("rate")) out.frame_seconds_ = 1.0 / KA_TRY(read_rate(npz, bytes.name));
   return out;
 }

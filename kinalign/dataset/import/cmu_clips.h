@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clips of CMU's motion capture database packed into an NPZ: angles as second differences, one
-// skeleton for each person. Layout: docs/dataset_import.md.
+// Clips of CMU's motion capture database, packed into an NPZ. The pack has angles as second
+// differences, and one skeleton for each person. Layout: docs/dataset_import.md.
 #pragma once
 
 #include "kinalign/formats/archive/archive.h"
@@ -20,8 +20,7 @@ struct PackedClip {
   std::size_t begin = 0, frames = 0;
 };
 
-/// A pack in memory, unpacked but still as whole numbers. clip() makes the values of one clip when
-/// they are needed.
+/// A pack in memory, as whole numbers. clip() computes the values of one clip.
 class PackedClips {
  public:
   /// Fails if an array is missing, has another shape, or has impossible values.

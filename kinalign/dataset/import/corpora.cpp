@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-/// The kinds with the names of files by which they are known, for an error.
+/// The names of all kinds, with the file names by which they are recognised, for an error.
 std::string words_of_kinds(const std::vector<CorpusKind>& kinds) {
   std::string text;
   for (const CorpusKind& kind : kinds) {
@@ -42,11 +42,12 @@ Result<CorpusKind> find_corpus(FileSystem& files, const std::vector<SourceFile>&
     if (!wanted.empty() && kind.name == wanted) return kind;
     const auto is_own = [&](const SourceFile& file) { return kind.is_own(files, file); };
     if (!wanted.empty() || std::none_of(sources.begin(), sources.end(), is_own)) continue;
-    // A BVH may also belong to a corpus with more to say of it, so general kinds count last.
+    // A BVH may also belong to a corpus about which more is known, so general kinds have the lowest
+    // priority.
     (kind.general ? general : own).push_back(kind);
   }
   if (!wanted.empty()) return Failure(unknown_name(wanted, "a corpus", corpus_kind_names()));
-  // Files of two kinds are refused: the user must choose with --from.
+  // If the files belong to several kinds, this is an error: the user must choose with --from.
   const std::vector<CorpusKind>& found = own.empty() ? general : own;
   if (found.size() == 1) return found.front();
   if (found.empty()) {

@@ -22,8 +22,8 @@ std::vector<CorpusKind> motion_file_corpora();  // bvh, c3d, mvnx, trc
 std::vector<CorpusKind> corpus_kinds();
 std::vector<std::string> corpus_kind_names();
 
-/// The kind with that name; if the name is empty, the kind that the files belong to. Fails if there
-/// is none, or several; the error lists the known kinds.
+/// The kind with that name. If the name is empty, the kind to which the files belong. Fails if
+/// there is none, or several; the error lists the known kinds.
 Result<CorpusKind> find_corpus(FileSystem& files, const std::vector<SourceFile>& sources,
                                const std::string& wanted, const std::string& source);
 

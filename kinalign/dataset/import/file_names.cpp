@@ -18,12 +18,12 @@ std::string_view without_character(std::string_view stem) {
   return at != stem.npos && at > 0 && whole_number(stem.substr(at + 4)) ? stem.substr(0, at) : stem;
 }
 
-/// A number at the end of the name is the run, the rest the action.
+/// Reads a name: a number at its end is the run, the text before it the action.
 void read_action(std::string_view stem, FileSays& out) {
   stem = without_character(stem);
   std::size_t end = stem.size();
   while (end > 0 && is_digit(stem[end - 1])) --end;
-  // The separator before the run belongs to neither part.
+  // The separator before the run belongs neither to the run nor to the action.
   if (const auto run = whole_number(stem.substr(end))) {
     out.run = *run;
     stem = stem.substr(0, end);
@@ -34,7 +34,7 @@ void read_action(std::string_view stem, FileSays& out) {
   out.action = stem;
 }
 
-/// CMU's form has two numbers: the subject and the trial. False for other names.
+/// Reads a name of CMU's form, two numbers for subject and trial. False for other names.
 bool read_cmu(std::string_view stem, FileSays& out) {
   const auto line = stem.find('_');
   if (line == stem.npos) return false;
@@ -56,7 +56,7 @@ std::vector<std::string_view> folders_of(std::string_view name) {
   return out;
 }
 
-/// The number of folders with which all names begin.
+/// The number of folders at the beginning that all names have in common.
 std::size_t shared_folders(const std::vector<std::string>& names) {
   if (names.empty()) return 0;
   const auto first = folders_of(names.front());
@@ -71,7 +71,7 @@ std::size_t shared_folders(const std::vector<std::string>& names) {
 
 }  // namespace
 
-// A number longer than six digits is not taken for a run.
+// A number with more than six digits does not count as a run.
 std::optional<std::uint32_t> whole_number(std::string_view text) {
   if (text.empty() || text.size() > 6 || !std::all_of(text.begin(), text.end(), is_digit)) {
     return std::nullopt;
@@ -94,21 +94,21 @@ bool take_digits(std::string_view& text, std::string_view lead, std::size_t digi
 
 std::vector<FileSays> read_file_names(const std::vector<std::string>& names) {
   const std::size_t shared = shared_folders(names);
-  // People's folders lie below the shared ones. If one file lies outside, folders say nothing.
+  // The folders below the common ones are people's, unless a file lies outside of them.
   const bool has_people = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return folders_of(name).size() > shared;
   });
   std::vector<FileSays> out;
   for (const std::string& name : names) {
     FileSays& says = out.emplace_back();
-    // CMU's form is tried first, since its numbers would look like an action and a run.
+    // CMU's form is tried first, because its two numbers look like an action and a run.
     if (read_cmu(stem_of(name), says)) continue;
     read_action(stem_of(name), says);
     const auto folders = folders_of(name);
     if (has_people) {
       says.subject = folders[shared];
     } else if (shared > 0) {
-      // All files lie in one folder: it is the person's.
+      // If all files lie in one folder, the folder's name is the person.
       says.subject = folders[shared - 1];
     }
   }

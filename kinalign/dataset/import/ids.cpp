@@ -7,9 +7,10 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t longest = 60;  // leaves room for a number
+constexpr std::size_t longest = 60;  // leaves room for a number at the end
 
-/// Letters of ASCII only: BIDS allows no others in a label, and the locale must not matter.
+/// Only ASCII letters count, because BIDS allows no others in a label and the locale must not
+/// matter.
 bool is_small(char c) { return c >= 'a' && c <= 'z'; }
 bool is_latin(char c) { return is_small(c) || (c >= 'A' && c <= 'Z'); }
 bool is_figure(char c) { return c >= '0' && c <= '9'; }
@@ -27,11 +28,11 @@ std::string label_of(std::string_view word) {
   bool is_behind_gap = false;
   for (const char c : word) {
     if (!is_latin(c) && !is_figure(c)) {
-      // Characters that are dropped at the beginning leave no gap.
+      // Characters that are dropped at the beginning do not count as a gap.
       is_behind_gap = !out.empty();
       continue;
     }
-    // Words that were apart stay readable: the next one begins with a capital.
+    // The first letter after a gap becomes a capital, so that words stay readable.
     out += is_behind_gap && is_small(c) ? static_cast<char>(c - 32) : c;
     is_behind_gap = false;
     if (out.size() == longest) break;
@@ -46,15 +47,15 @@ Ids::Ids(const std::vector<std::pair<std::string, std::string>>& known) {
   }
 }
 
-/// True if the id may stand for the word: it is not taken, or was made from this word, or equals it
-/// and has no name.
+/// True if the id can be used for the word: it is free, or an earlier import made it from this
+/// word. A known id can also be used if it equals the word and was not made from its name.
 bool Ids::is_free(const std::string& id, const std::string& word) const {
   if (!taken_.contains(in_small(id))) return true;
   const auto known = names_.find(id);
   // The id differs from a known one only in case, or was given to another word.
   if (known == names_.end()) return false;
   for (const auto& [other, given] : given_) {
-    // One import never gives an id to two words.
+    // Two words never get the same id in one import.
     if (given == id) return false;
   }
   return known->second == word || (id == word && label_of(known->second) != id);
@@ -64,9 +65,9 @@ std::string Ids::of(const std::string& word) {
   if (const auto known = given_.find(word); known != given_.end()) return known->second;
   const std::string label = label_of(word);
   std::string id = label;
-  // A taken id gets a number: walk, walkx2, walkx3.
+  // If the id is taken, a number is appended: walk, walkx2, walkx3.
   for (int number = 2; !is_free(id, word); ++number) id = label + "x" + std::to_string(number);
-  // The id is taken for all other words from now on.
+  // From now on no other word can get this id.
   taken_.insert(in_small(id));
   given_[word] = id;
   return id;

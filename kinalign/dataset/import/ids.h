@@ -13,15 +13,15 @@
 namespace kinalign {
 
 /// The word's letters and digits, at most 60. A letter after a dropped character becomes a capital:
-/// "slow walk" gives slowWalk. "x" if nothing is left.
+/// "slow walk" gives slowWalk. The result is "x" if no letter or digit remains.
 std::string label_of(std::string_view word);
 
 /// Gives ids to words. Ids that differ only in case count as one, since some file systems ignore
 /// case.
 class Ids {
  public:
-  /// `known`: existing ids with their names; a name is the word that the id was made from, or
-  /// another text.
+  /// `known`: existing ids with their names. A name is the word from which an earlier import made
+  /// the id, or another text.
   explicit Ids(const std::vector<std::pair<std::string, std::string>>& known);
 
   /// The same word always gets the same id.

@@ -30,7 +30,8 @@ Result<std::optional<std::string>> read_catalogue_text(FileSystem& files,
   return KA_TRY(read_whole(files, path, longest_catalogue));
 }
 
-/// Known actions with their names, from which Ids recognises the words of an earlier import.
+/// The ids of known actions with their names. Ids uses them to recognise words of an earlier
+/// import.
 std::vector<std::pair<std::string, std::string>> named(const std::vector<Action>& actions) {
   std::vector<std::pair<std::string, std::string>> out;
   out.reserve(actions.size());
@@ -44,9 +45,9 @@ struct Named {
   CatalogueNeeds needs;
 };
 
-/// Replaces the words of the takes by ids, and collects the entries that these ids need.
+/// Replaces the words of the takes by ids, and collects the entries for dataset.toml.
 Named name_takes(Corpus& corpus, const Catalogue& has) {
-  // Names of people are not stored, so the same word means the same person in every import.
+  // Names of people are not stored. The same word therefore means the same person in every import.
   Named out{Ids({}), Ids(named(has.actions)), {}};
   std::set<std::string> subjects, actions;
   for (CorpusTake& take : corpus.takes) {
@@ -54,28 +55,28 @@ Named name_takes(Corpus& corpus, const Catalogue& has) {
     if (subjects.insert(subject).second) out.needs.subjects.push_back(subject);
     take.subject = subject;
     take.action = out.actions.of(word);
-    // Each action is described once, by the first take that has it.
+    // Each action is described once, from the first take that has it.
     if (!actions.insert(take.action).second) continue;
     const Action* const known = find_id(corpus.actions, word);
     out.needs.actions.push_back(
         {take.action, known ? known->class_id : corpus.class_id, known ? known->name : word});
   }
   out.needs.classes = corpus.classes;
-  // Sorted, so that dataset.toml does not depend on the order of files.
+  // The entries are sorted, so that dataset.toml does not depend on the order of files.
   std::sort(out.needs.subjects.begin(), out.needs.subjects.end());
   std::sort(out.needs.actions.begin(), out.needs.actions.end(),
             [](const Action& a, const Action& b) { return a.id < b.id; });
   return out;
 }
 
-/// The folder may be new; importing makes it a data set.
+/// Writes dataset.toml. If the folder is new, it becomes a data set.
 Result<void> write_catalogue(FileSystem& files, const std::string& folder,
                              const std::string& text) {
   KA_TRY(make_folders(folder));
   return write_whole(files, catalogue_path(folder), text, Overwrite::yes);
 }
 
-/// Refuses a unit for files that state theirs: their reader would ignore it.
+/// Fails if the user states a unit or an axis, but the files state their own: it would be ignored.
 Result<void> check_units(const CorpusKind& kind, const ImportRequest& request) {
   if (kind.unit_is_open || (request.metres_per_unit == 0.0 && request.up.empty())) return {};
   const char* flag = request.metres_per_unit == 0.0 ? "--up" : "--metres-per-unit";
@@ -92,14 +93,14 @@ void put_units(const ImportRequest& request, Corpus& corpus) {
   }
 }
 
-/// Finds the files, recognises the corpus and lists its takes. Archives and packs are unpacked on
-/// the way. If nothing comes of it, unpacked files are removed.
+/// Finds the files, recognises the corpus and lists its takes. Archives and packs are unpacked
+/// first. If no take is found, unpacked files are removed.
 Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                            const ImportRequest& request, const Progress& progress,
                            std::string& kind_name) {
-  // Unpacked files are raw files of the data set.
+  // Unpacked files become raw files of the data set.
   const std::string raw_folder = folder + "/sourcedata";
-  std::optional<UnfinishedFolder> unfinished;  // unpacked files, removed unless the import succeeds
+  std::optional<UnfinishedFolder> unfinished;  // removes the unpacked files if the import fails
   if (!is_there(raw_folder)) unfinished.emplace(raw_folder);
   const auto sources = KA_TRY(list_sources(files, request.sources, raw_folder, progress));
   const CorpusKind kind =
@@ -110,11 +111,11 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
       {files, sources, raw_folder, request.subject, request.action, progress, request.jobs}));
   if (kind.unit_is_open) put_units(request, corpus);
   if (!corpus.takes.empty()) {
-    // From here on the takes need the unpacked files.
+    // The takes need the unpacked files, so these are kept.
     if (unfinished) unfinished->keep();
     return corpus;
   }
-  // The first part that was left out explains the empty result.
+  // The first part that was left out shows why there is no take.
   const std::string why = corpus.left_out.empty()
                               ? "none"
                               : corpus.left_out.front().what + ": " + corpus.left_out.front().why;
@@ -122,11 +123,11 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                        "takes of " + kind_name + " (" + std::string(kind.known_by) + ")", why});
 }
 
-/// dataset.toml with the corpus's licence and citation if it states none.
+/// The text of dataset.toml. If it states no licence or citation, those of the corpus are added.
 std::string with_terms(std::string text, const Corpus& corpus) {
   for (const auto& [key, value] :
        {std::pair("licence", &corpus.licence), {"citation", &corpus.citation}}) {
-    // Only an empty text is replaced: the user's own terms stay.
+    // Only an empty text is replaced, so the user's own licence and citation stay.
     const std::string empty = std::string("\n") + key + " = \"\"";
     if (const auto at = text.find(empty); at != std::string::npos) {
       text.replace(at, empty.size(), std::string("\n") + key + " = " + toml_string(*value));
@@ -135,15 +136,15 @@ std::string with_terms(std::string text, const Corpus& corpus) {
   return text;
 }
 
-/// The data set's catalogue with all entries that the takes need; written if it grew. A catalogue
-/// without people gets the corpus's terms.
+/// The data set's catalogue with all entries that the takes need. It is written if entries were
+/// added. A catalogue without people also gets the corpus's licence and citation.
 Result<Catalogue> grow_catalogue(FileSystem& files, const std::string& folder,
                                  const std::optional<std::string>& text, const Corpus& corpus,
                                  const CatalogueNeeds& needs) {
   const std::string path = catalogue_path(folder);
-  // A new data set gets the corpus's name and terms.
+  // A new data set gets the name, licence and citation of the corpus.
   std::string before = text.value_or(catalogue_head(corpus.name, corpus.licence, corpus.citation));
-  // Once there are people, the terms are those of several sources and the user's to state.
+  // If the data set already has people, it has several sources, and the user must state the terms.
   if (KA_TRY(read_catalogue(before, path)).subjects.empty()) {
     before = with_terms(std::move(before), corpus);
   }
@@ -158,7 +159,7 @@ Result<std::uint64_t> add_takes(const Corpus& corpus, const ImportRequest& reque
                                 const ImportStep& step) {
   std::uint64_t done = 0, were_there = 0;
   for (const CorpusTake& take : corpus.takes) {
-    // Takes that exist already are found again by their manifests.
+    // If a take exists already, its manifest is recognised.
     const AddRequest add{take.from, take.subject, take.action, request.copy, take.run};
     if (KA_TRY(adder.add(take.manifest, "", add)).was_there) ++were_there;
     step(++done, corpus.takes.size());
@@ -178,7 +179,7 @@ Result<Imported> import_corpus(FileSystem& files, const std::string& folder,
   out.is_new = !text;
   Corpus corpus = KA_TRY(list_corpus(files, folder, request, progress, out.kind));
   const Named names = name_takes(corpus, catalogue);
-  // The catalogue must be complete before takes are added, since TakeAdder refuses unknown ids.
+  // The catalogue must be complete before takes are added, because TakeAdder refuses unknown ids.
   catalogue = KA_TRY(grow_catalogue(files, folder, text, corpus, names.needs));
   TakeAdder adder(files, folder, catalogue);
   out.were_there = KA_TRY(add_takes(corpus, request, adder, progress, step));

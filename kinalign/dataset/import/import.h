@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports a published corpus into a data set: dataset.toml gets its people and actions, and each
-// take a manifest. Importing it again adds nothing twice.
+// Imports a published corpus into a data set: its people and actions are added to dataset.toml, and
+// each of its takes gets a manifest. A second import of the same corpus adds nothing.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,22 +16,22 @@
 
 namespace kinalign {
 
-/// The order of the user. Subject and action serve files that state none themselves.
+/// The choices of the user. Subject and action are used only for files that state none.
 struct ImportRequest {
   std::vector<std::string> sources;  // folders, files and archives
-  std::string from;                  // a kind of corpus; empty: by the files
+  std::string from;                  // a kind of corpus; empty: recognised by the files
   std::string subject, action;       // for files that state none
-  double metres_per_unit = 0.0;      // the files' unit; 0: the format's own
-  std::string up;                    // up axis of the files, "y" or "z"; empty: the format's own
-  bool copy = false;                 // copy raw files from outside the data set
-  std::size_t jobs = 1;              // threads to use
+  double metres_per_unit = 0.0;      // the files' unit; 0: the usual unit of the format
+  std::string up;        // up axis of the files, "y" or "z"; empty: the usual axis of the format
+  bool copy = false;     // copy raw files from outside the data set
+  std::size_t jobs = 1;  // threads to use
 };
 
 /// The outcome for the user: what was found, what is new, and what was left out.
 struct Imported {
   std::string kind;
   std::uint64_t takes = 0, were_there = 0;  // takes of the corpus, and those that existed before
-  std::uint64_t subjects = 0, actions = 0;  // counts over these takes
+  std::uint64_t subjects = 0, actions = 0;  // number of people and of actions in these takes
   bool is_new = false;                      // the folder was no data set before
   std::vector<LeftOut> left_out;
   /// Words of the corpus that can't be ids, with the ids made from them.
@@ -42,7 +42,7 @@ struct Imported {
 using ImportStep = std::function<void(std::uint64_t done, std::uint64_t takes)>;
 
 /// Fails if the corpus is unknown or has no take, if a unit or an up axis is given for files that
-/// state theirs, or if a file can't be read or written. Takes added before a failure stay.
+/// state their own, or if a file can't be read or written. Takes added before a failure stay.
 Result<Imported> import_corpus(FileSystem& files, const std::string& folder,
                                const ImportRequest& request, const Progress& progress,
                                const ImportStep& step);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports Keraal: exercises of the back with a Kinect v2 and 17 optical targets. The texts of a
-// recording differ in their names only by the device: G3-Kinect-CTK-P1T1-Unknown-C-0.txt.
+// Imports Keraal: exercises of the back, recorded with a Kinect v2 and 17 optical targets. The
+// files of one recording have the same names except for the device:
+// G3-Kinect-CTK-P1T1-Unknown-C-0.txt.
 #include "kinalign/dataset/import/corpora.h"
 
 #include <map>
@@ -17,7 +18,7 @@ struct RecordingName {
   std::string key;                      // the name without the device
 };
 
-/// "G3-Kinect-CTK" gives three words.
+/// The words of a name: "G3-Kinect-CTK" gives three words.
 std::vector<std::string> words_between_dashes(std::string_view stem) {
   std::vector<std::string> out;
   for (;;) {
@@ -28,7 +29,7 @@ std::vector<std::string> words_between_dashes(std::string_view stem) {
   }
 }
 
-/// Splits a file's name; absent for other files.
+/// Splits a file's name; absent if the name has another form.
 std::optional<RecordingName> recording_of(std::string_view name) {
   const auto parts = words_between_dashes(stem_of(name));
   if (!has_ending(name, ".txt") || parts.size() < 4 || !parts[0].starts_with('G') ||
@@ -42,12 +43,12 @@ std::optional<RecordingName> recording_of(std::string_view name) {
   return out;
 }
 
-/// The manifest of a pair: the targets that correspond to joints fit the Kinect's space.
+/// The manifest of a pair. The Kinect is fitted to the targets that correspond to its joints.
 Manifest recording_manifest(const std::string& kinect, const std::string& vicon) {
   Manifest out;
   out.streams.push_back(stream_of("mocap", vicon, "keraal_vicon"));
   out.streams.push_back(stream_of("kinect", kinect, "keraal_kinect"));
-  // The targets lie on the skin near joints, so their names are paired here by hand.
+  // The targets lie on the skin near joints, so this list pairs them with joints.
   SpaceOptions& space = out.spaces["kinect"];
   space.method = "fit";
   space.joints = {{"SpineBase", "Hips"},         {"Head", "Head"},
@@ -63,7 +64,7 @@ struct DevicePair {
   std::string kinect, vicon;
 };
 
-/// Pairs the files of both devices by the rest of their names.
+/// Pairs files of the two devices whose names are otherwise equal.
 Result<Corpus> list_keraal(const ImportInput& input) {
   Corpus out{.name = "Keraal",
              .licence = "BSD-2-Clause",
@@ -72,7 +73,7 @@ Result<Corpus> list_keraal(const ImportInput& input) {
                  "Dataset for Human Body Movement Analysis. IJCNN 2024",
              .classes = {{"keraal", "exercises of the back"}},
              .class_id = "keraal"};
-  // Sorted by key, so takes have the same order in every import.
+  // The map is sorted, so takes have the same order in every import.
   std::map<std::string, DevicePair> pairs;
   for (const SourceFile& file : input.sources) {
     const auto name = recording_of(file.name);

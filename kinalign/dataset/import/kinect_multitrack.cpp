@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports KinectMultiTrack: logs of two Kinect v2 that see one person, as skeletons 0 and 1 of a
-// table.
+// Imports KinectMultiTrack: logs of two Kinects v2 that see one person. The skeletons of both are
+// in one table, as numbers 0 and 1.
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/sources/formats.h"
 
@@ -13,7 +13,8 @@ namespace {
 // The built-in layout that reads these logs.
 constexpr std::string_view layout = "kinect_multitrack";
 
-/// A log is known by its columns, so its beginning is read. A file that can't be opened is none.
+/// True for a log. It is recognised by its columns, so its first bytes are read. A file that can't
+/// be opened is not a log.
 bool is_log(FileSystem& files, const SourceFile& file) {
   if (!has_ending(file.name, ".csv")) return false;
   auto opened = InputFile::open(files, file.path, 4096);
@@ -24,7 +25,8 @@ bool is_log(FileSystem& files, const SourceFile& file) {
   return format && format->name == layout;
 }
 
-/// The digits after `lead`: "10" in "Study_10_Kinect_0_Time_..."; empty if there are none.
+/// The digits after `lead`: with "Study_", "Study_10_Kinect_0_Time_..." gives "10". Empty if there
+/// are none.
 std::string number_behind(std::string_view text, std::string_view lead) {
   const auto at = text.find(lead);
   if (at == text.npos) return "";
@@ -33,7 +35,7 @@ std::string number_behind(std::string_view text, std::string_view lead) {
   return std::string(text.substr(0, end));
 }
 
-/// Both Kinects are in one table; each stream selects its rows.
+/// The manifest of a log. Both Kinects are in one table, and each stream selects its rows.
 Manifest log_manifest(const std::string& path) {
   Manifest out;
   constexpr std::array<const char*, 2> names{"kinect0", "kinect1"};
@@ -41,12 +43,12 @@ Manifest log_manifest(const std::string& path) {
     out.streams.push_back(stream_of(names[k], path, std::string(layout)));
     out.streams.back().select = {{"Skeleton#", std::to_string(k)}};
   }
-  out.streams.back().clock = "shared";  // the server stamped both
-  out.spaces[names[1]].method = "fit";  // the logger's own calibration is off by some degrees
+  out.streams.back().clock = "shared";  // the server stamped both Kinects
+  out.spaces[names[1]].method = "fit";  // the logger's own calibration is wrong by some degrees
   return out;
 }
 
-/// A log is a take; its study is the subject, its arrangement of Kinects the action.
+/// Lists each log as a take. The study is the subject, the arrangement of the Kinects the action.
 Result<Corpus> list_kinect_multitrack(const ImportInput& input) {
   Corpus out{.name = "KinectMultiTrack",
              .licence = "MIT",
@@ -60,7 +62,7 @@ Result<Corpus> list_kinect_multitrack(const ImportInput& input) {
     if (!is_log(input.files, file)) continue;
     const std::string stem(stem_of(file.name));
     const std::string study = number_behind(stem, "Study_"), rig = number_behind(stem, "Kinect_");
-    // The user's words serve only files whose names state nothing.
+    // The user's subject and action are used only if the file's name states none.
     const std::string subject = study.empty() ? input.subject : study;
     const std::string action = rig.empty() ? input.action : "kinect" + rig;
     if (subject.empty() || action.empty()) {

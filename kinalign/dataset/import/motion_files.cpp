@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports any folder of BVH, C3D, TRC or MVNX: each file is a take of one stream. Folders and names
-// give subject and action (file_names.h).
+// Imports any folder of BVH, C3D, TRC or MVNX files: each file becomes a take with one stream. The
+// names of folders and files state subject and action (file_names.h).
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/file_names.h"
 
@@ -11,13 +11,13 @@ namespace kinalign {
 
 namespace {
 
-// The endings of the four kinds; the functions below exist once for each of them.
+// The endings of the four kinds of file. The functions below are instantiated for each of them.
 constexpr std::string_view bvh = ".bvh", c3d = ".c3d", mvnx = ".mvnx", packed_mvnx = ".mvnx.gz",
                            trc = ".trc";
 
 template <const std::string_view& ending>
 bool is_one(FileSystem&, const SourceFile& file) {
-  // MVNX is often packed; it is read without unpacking it first.
+  // MVNX files are often packed; they are read without unpacking them first.
   if (ending == mvnx && has_ending(file.name, packed_mvnx)) return true;
   return has_ending(file.name, ending);
 }
@@ -27,12 +27,12 @@ std::string without_packing(const std::string& name) {
   return has_ending(name, packed_mvnx) ? name.substr(0, name.size() - 3) : name;
 }
 
-/// The folder that the user gave, as the name of a collection without one.
+/// The folder that the user gave. Its name becomes the name of the collection.
 std::string folder_name(const std::vector<SourceFile>& sources) {
   const std::filesystem::path path(sources.front().path);
   std::error_code fault;
   std::filesystem::path up = std::filesystem::weakly_canonical(path, fault).parent_path();
-  // The name has one slash for each folder between the given folder and the file.
+  // A source's name has one slash for each folder between the given folder and the file.
   const std::string& name = sources.front().name;
   for (auto slash = std::count(name.begin(), name.end(), '/'); slash > 0; --slash) {
     up = up.parent_path();
@@ -40,7 +40,7 @@ std::string folder_name(const std::vector<SourceFile>& sources) {
   return up.filename().string();
 }
 
-/// Each file is a take; files without a subject are left out.
+/// Lists each file as a take. Files without a subject are left out.
 template <const std::string_view& ending>
 Result<Corpus> list_motion_files(const ImportInput& input) {
   constexpr const char* unnamed = "motion";
@@ -54,11 +54,11 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
     files.push_back(file);
     names.push_back(without_packing(file.name));
   }
-  // Names are judged together: folders mean people only if all files agree.
+  // All names are read together: folders mean people only if this fits all files.
   const auto says = read_file_names(names);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string subject = says[i].subject.empty() ? input.subject : says[i].subject;
-    // A name that is only a number states no action.
+    // If a name is only a number, the action has a default name.
     const std::string named = says[i].action.empty() ? unnamed : says[i].action;
     if (subject.empty()) {
       out.left_out.push_back({files[i].name, "no folder or name states the person (--subject ID)"});
@@ -74,7 +74,7 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
 
 template <const std::string_view& ending>
 CorpusKind kind(std::string_view name, std::string_view known_by) {
-  // MVNX states its unit and axes, so none may be given.
+  // MVNX states its unit and axes, so the user can't give others.
   return {name, known_by, true, is_one<ending>, list_motion_files<ending>, ending != mvnx};
 }
 

@@ -20,15 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Removes the folders `parent`/LEAD-PID of imports whose processes have ended.
+/// Removes folders `parent`/LEAD-PID of import processes that have ended.
 void remove_abandoned(const std::string& parent, const std::string& lead) {
   for (const std::string& name : names_in_folder(parent).value_or(std::vector<std::string>{})) {
     if (!name.starts_with(lead)) continue;
     pid_t process = 0;
     const std::string_view number = std::string_view(name).substr(lead.size());
     if (!parse_integer(number, process) || process <= 0) continue;
-    // A process that can't be signalled but exists still runs. A folder of this process is left
-    // over from before.
+    // A process that exists but can't be signalled is still running. A folder with the id of this
+    // process remains from an earlier process.
     const bool runs = process != ::getpid() && (::kill(process, 0) == 0 || errno != ESRCH);
     std::error_code ignored;
     if (!runs) fs::remove_all(fs::path(parent) / name, ignored);
@@ -41,7 +41,7 @@ Result<void> fill_in(const fs::path& from, const fs::path& to) {
   fs::recursive_directory_iterator at(from, fault);
   for (; !fault && at != fs::recursive_directory_iterator(); at.increment(fault)) {
     const fs::path target = to / at->path().lexically_relative(from);
-    // Files that exist stay: takes may have been made from them.
+    // A file that exists is kept, because a take may have been made from it.
     if (at->is_directory(fault) || is_there(target.string())) continue;
     KA_TRY(make_folders(target.parent_path().string()));
     fs::rename(at->path(), target, fault);
@@ -63,17 +63,17 @@ Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent
 Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
                                   const std::string& stem, const std::string& sha256,
                                   const FillFolder& fill) {
-  // Eight digits tell sources apart; is_unpacked() knows this form.
+  // Eight digits of the hash distinguish sources; is_unpacked() recognises this form.
   const std::string own = stem + "-" + sha256.substr(0, 8);
   const fs::path to = fs::path(parent) / own;
-  // The process id is in the name, since another process may unpack the same source.
+  // The hidden name contains the process id, because another process may unpack the same source.
   const std::string lead = "." + own + "-";
-  // An import that was killed could not remove its folder.
+  // An import process that was killed could not remove its folder, so it is removed here.
   remove_abandoned(parent, lead);
   const fs::path sibling = fs::path(parent) / (lead + std::to_string(::getpid()));
   UnfinishedFolder unfinished(sibling.string());
   KA_TRY(make_folders(sibling.string()));
-  // The content is made under the hidden name, where no take looks for it.
+  // The files are made in the folder with the hidden name, where no take looks for them.
   KA_TRY(fill([&](const std::string& file) -> Result<OutputFile> {
     const fs::path path = sibling / file;
     KA_TRY(make_folders(path.parent_path().string()));
@@ -81,9 +81,9 @@ Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
   }));
   std::error_code fault;
   fs::rename(sibling, to, fault);
-  // After the rename the hidden name is free, and nothing is left to remove.
+  // After the rename, the folder with the hidden name does not exist, so nothing has to be removed.
   if (!fault) unfinished.keep();
-  // The folder exists from an earlier import: only its missing files are added.
+  // If the folder exists from an earlier import, only its missing files are added.
   if (fault && is_there(to.string())) {
     KA_TRY(fill_in(sibling, to));
   } else if (fault) {

@@ -12,17 +12,17 @@
 
 namespace kinalign {
 
-/// Creates a file in the folder; subfolders in `name` are made.
+/// A function that creates a file in the folder; subfolders in `name` are created, too.
 using PutFile = std::function<Result<OutputFile>(const std::string& name)>;
 using FillFolder = std::function<Result<void>(const PutFile& put)>;
 
-/// The folder `parent`/STEM-HASH for the content of `source`. The hash is the file's, so the same
-/// source always has the same folder. If the folder exists, only missing files are added (dataset
-/// rm --raw removed them), and all others stay.
+/// The folder `parent`/STEM-HASH with the content of `source`. The hash is that of the file, so the
+/// same source always has the same folder. If the folder exists, only missing files are added
+/// (`dataset rm --raw` may have removed them); all other files stay.
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
                                     const std::string& source, const FillFolder& fill);
 
-/// The same for content made from several files. `sha256`: a hash of everything that it depends on.
+/// The same for content from several files. `sha256`: a hash of all data that decide the content.
 Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
                                   const std::string& stem, const std::string& sha256,
                                   const FillFolder& fill);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports NTU RGB+D: S001C002P003R001A004.skeleton is setup, camera, person, repetition and action.
+// Imports NTU RGB+D. A name S001C002P003R001A004.skeleton states setup, camera, person, repetition
+// and action.
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/file_names.h"
 #include "kinalign/formats/points/ntu_skeleton.h"
@@ -17,18 +18,19 @@ namespace {
 struct ClipName {
   std::uint32_t setup = 0, camera = 0, person = 0, repetition = 0, action = 0;
 
-  /// Unique for each clip of a person's action: 1712 is setup 17, camera 1, repetition 2.
+  /// Each clip of a person's action has another run: 1712 is setup 17, camera 1, repetition 2.
   std::uint32_t run() const { return 100 * setup + 10 * camera + repetition; }
   /// True for actions of two people (rose1.ntu.edu.sg); the second person has no number.
   bool is_mutual() const { return (action >= 50 && action <= 60) || action >= 106; }
-  // The classes of the corpus's own list of actions.
+  // The classes are those of the corpus's list of actions.
   std::string_view class_id() const {
     if (is_mutual()) return "mutual";
     return (action >= 41 && action <= 49) || action >= 103 ? "medical" : "daily";
   }
 };
 
-/// The numbers of a file's name; absent for other files.
+/// The numbers in a clip's file name; absent if the name is not of the form
+/// S001C002P003R001A004.skeleton.
 std::optional<ClipName> clip_of(std::string_view name) {
   ClipName out;
   std::string_view rest = stem_of(name);
@@ -39,7 +41,8 @@ std::optional<ClipName> clip_of(std::string_view name) {
   return fits && rest.empty() ? std::optional(out) : std::nullopt;
 }
 
-/// The body seen longest; for actions of two people also the next one. `bodies` are sorted by this.
+/// The manifest of a clip: the body that is seen longest, and for actions of two people also the
+/// second one. `bodies` are sorted by the time for which they are seen.
 Manifest clip_manifest(const std::string& path, const std::vector<NtuBody>& bodies,
                        bool is_mutual) {
   Manifest out;
@@ -53,7 +56,7 @@ Manifest clip_manifest(const std::string& path, const std::vector<NtuBody>& bodi
   return out;
 }
 
-/// A clip is a take; clips without a skeleton are left out.
+/// Lists each clip as a take. Clips without a skeleton are left out.
 Result<Corpus> list_ntu(const ImportInput& input) {
   Corpus out{.name = "NTU RGB+D",
              .licence = "for academic research alone, by agreement with ROSE Lab",
@@ -69,9 +72,9 @@ Result<Corpus> list_ntu(const ImportInput& input) {
     if (!clip) continue;
     const std::string stem(stem_of(file.name)), action = fmt::format("A{:03}", clip->action);
     InputFile opened = KA_TRY(InputFile::open(input.files, file.path));
-    // The bodies must be read to know which one to select.
+    // All bodies are read to find out which one is seen longest.
     const auto bodies = KA_TRY(ntu_bodies([&opened] { return opened.next(); }, file.path));
-    // Each clip is read to its end, so the user can stop between clips.
+    // The user can stop the import after each clip.
     if (!go_on(input.progress, "reading", out.takes.size(), input.sources.size())) {
       return Failure(interruption(file.path));
     }
@@ -81,7 +84,7 @@ Result<Corpus> list_ntu(const ImportInput& input) {
     }
     out.takes.push_back({fmt::format("{:03}", clip->person), action, clip->run(),
                          clip_manifest(file.path, bodies, clip->is_mutual()), stem});
-    // The corpus numbers its actions and gives no names in the files.
+    // The files state numbers of actions, but no names.
     if (find_id(out.actions, action) == nullptr) {
       out.actions.push_back({action, std::string(clip->class_id()), ""});
     }

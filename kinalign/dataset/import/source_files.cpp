@@ -21,7 +21,7 @@ Failure unreadable_folder(const std::string& path, const std::error_code& fault)
   return Failure(Error{path, 0, "a folder that can be read", fault.message()});
 }
 
-/// Links to folders are not followed, since they may form a circle.
+/// Lists the files in a folder. Links to folders are not followed, because they may form a circle.
 Result<void> list_folder(const fs::path& top, std::vector<SourceFile>& out) {
   std::error_code fault;
   fs::recursive_directory_iterator at(top, fault);
@@ -33,7 +33,7 @@ Result<void> list_folder(const fs::path& top, std::vector<SourceFile>& out) {
       continue;
     }
     std::error_code gone;
-    // A file that disappears meanwhile is passed over.
+    // A file that disappears meanwhile is skipped.
     if (!at->is_regular_file(gone)) continue;
     out.push_back({at->path().string(), at->path().lexically_relative(top).generic_string()});
   }
@@ -41,7 +41,8 @@ Result<void> list_folder(const fs::path& top, std::vector<SourceFile>& out) {
   return {};
 }
 
-/// Archives are known by their first bytes. A gzip must also have the ending of a packed tar.
+/// True for an archive, which is recognised by its first bytes. A gzip must also have the ending of
+/// a packed tar.
 Result<bool> is_archive(FileSystem& files, const std::string& path) {
   // An NPZ is a ZIP, too, but importers read it as a whole.
   if (has_ending(path, ".npz")) return false;
@@ -50,7 +51,7 @@ Result<bool> is_archive(FileSystem& files, const std::string& path) {
   return looks_like_archive({head.data(), KA_TRY(file.read_at(0, head))}, path);
 }
 
-/// Unpacks an archive into a folder of its own.
+/// Unpacks an archive into a separate folder and returns the folder.
 Result<std::string> unpack(FileSystem& files, const std::string& path,
                            const std::string& raw_folder, const Progress& progress) {
   // Files are unpacked one by one, block by block, so a large archive needs little memory.
@@ -75,7 +76,7 @@ Result<std::string> unpack(FileSystem& files, const std::string& path,
 }  // namespace
 
 Result<ArchiveBytes> archive_bytes(FileSystem& files, const std::string& path) {
-  // The reader of the archive jumps in the file, so the file stays open.
+  // The reader of the archive reads at any place of the file, so the file stays open.
   const auto file = std::make_shared<InputFile>(KA_TRY(InputFile::open(files, path, 1)));
   return ArchiveBytes{path, file->size(), [file](std::uint64_t at, std::span<char> to) {
                         return file->read_at(at, to);
@@ -99,7 +100,7 @@ Result<std::vector<SourceFile>> list_sources(FileSystem& files,
     }
   }
   std::sort(out.begin(), out.end(), [](const SourceFile& a, const SourceFile& b) {
-    // Sources may have files of one name; their paths then decide.
+    // Sources may have files with the same name; then the paths decide the order.
     return a.name != b.name ? a.name < b.name : a.path < b.path;
   });
   return out;

@@ -14,11 +14,12 @@ namespace kinalign {
 
 struct SourceFile {
   std::string path;  // for opening it
-  std::string name;  // below the folder that the user gave, or a file's own name: "Kinect/m01.txt"
+  std::string name;  // path below the folder that the user gave: "Kinect/m01.txt"
 };
 
-/// The files of all sources, sorted by name. Names that begin with a dot, and files that macOS adds
-/// to archives, are skipped. An archive is unpacked into its own folder below `raw_folder`.
+/// The files of all sources, sorted by name. Files whose names begin with a dot, and files that
+/// macOS adds to archives, are skipped. An archive is unpacked into its own folder below
+/// `raw_folder`.
 Result<std::vector<SourceFile>> list_sources(FileSystem& files,
                                              const std::vector<std::string>& sources,
                                              const std::string& raw_folder,
@@ -29,7 +30,7 @@ Result<ArchiveBytes> archive_bytes(FileSystem& files, const std::string& path);
 
 /// The name without folder and ending: "Kinect/m01_s01.txt" gives "m01_s01".
 std::string_view stem_of(std::string_view name);
-/// True if the name ends with `ending`, in any case of letters.
+/// True if the name ends with `ending`; capital and small letters count as equal.
 bool has_ending(std::string_view name, std::string_view ending);
 
 }  // namespace kinalign

@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 10> movements{"deep squat",
                                                      "standing shoulder internal-external rotation",
                                                      "standing shoulder scaption"};
 
-/// The piece that a file's name states; absent for other files.
+/// The movement, person and repetition in a file's name; absent if the name has another form.
 std::optional<PieceName> piece_of(std::string_view name) {
   PieceName out;
   std::string_view rest = stem_of(name);
@@ -39,33 +39,35 @@ std::optional<PieceName> piece_of(std::string_view name) {
   return out.incorrect || rest == "_positions" ? std::optional(out) : std::nullopt;
 }
 
-/// A pack has all pieces of one person: "s01.npz".
+/// True for a pack, which has all repetitions of one person: "s01.npz".
 bool is_piece_pack(const SourceFile& file) {
   std::string_view stem = stem_of(file.name);
   std::uint32_t number = 0;
   return has_ending(file.name, ".npz") && take_digits(stem, "s", 2, number) && stem.empty();
 }
 
-/// Adds the pairs of texts. Whole movements, from which the pieces were cut, are skipped.
+/// Adds the text files of both devices in pairs. Files of whole movements are skipped, because the
+/// repetitions were cut from them.
 void add_texts(const std::vector<SourceFile>& sources, double vicon_hz, PiecePairs& out) {
   for (const SourceFile& file : sources) {
     const auto piece = piece_of(file.name);
     if (!piece) continue;
-    // Both devices have files of the same name; the folder tells them apart.
+    // Both devices have files of the same name, so the folder decides to which device a file
+    // belongs.
     const bool is_kinect = file.path.find("/Kinect/") != std::string::npos;
     const bool is_vicon = file.path.find("/Vicon/") != std::string::npos;
     // A file outside of both folders belongs to no device.
     if (is_kinect == is_vicon) continue;
     PiecePair& pair = out[*piece];
     std::string& path = is_kinect ? pair.kinect : pair.vicon;
-    // The first file of a repetition stays.
+    // If a repetition has several files, the first one is used.
     if (!path.empty()) continue;
     path = file.path;
     if (is_vicon) pair.vicon_hz = vicon_hz;
   }
 }
 
-/// Packs are unpacked to texts first and then read like the texts of the source.
+/// Adds the pairs of packs. A pack is first unpacked to text files, which are then read as above.
 Result<void> add_packs(const ImportInput& input, PiecePairs& out) {
   for (const SourceFile& file : input.sources) {
     if (!is_piece_pack(file)) continue;
@@ -77,18 +79,18 @@ Result<void> add_packs(const ImportInput& input, PiecePairs& out) {
     PiecePairs packed;
     add_texts(KA_TRY(list_sources(input.files, {folder}, input.raw_folder, input.progress)), 50.0,
               packed);
-    out.merge(packed);  // a piece that exists as text keeps the text
+    out.merge(packed);  // a repetition that exists as a text file keeps that file
   }
   return {};
 }
 
-/// The Kinect is fitted to the markers.
+/// The manifest of a pair. The Kinect is fitted to the markers.
 Manifest pair_manifest(const PiecePair& pair) {
   Manifest out;
   out.streams = {marker_stream_of(pair), kinect_stream_of(pair)};
   SpaceOptions& space = out.spaces["kinect"];
   space.method = "fit";
-  // The markers on the skin that are nearest to the joints, in pairs left and right.
+  // For each joint the nearest marker on the skin, in pairs left and right.
   space.joints = {{"UpperArmLeft", "LSHO"}, {"UpperArmRight", "RSHO"}, {"ForearmLeft", "LELB"},
                   {"ForearmRight", "RELB"}, {"HandLeft", "LWRA"},      {"HandRight", "RWRA"},
                   {"LowerLegLeft", "LKNE"}, {"LowerLegRight", "RKNE"}, {"FootLeft", "LANK"},
@@ -123,7 +125,7 @@ std::string PieceName::text() const {
 
 Result<PiecePairs> find_ui_prmd_pairs(const ImportInput& input) {
   PiecePairs pairs;
-  // Texts come first: they have the full rate of the markers.
+  // Text files come first, because they have the full rate of the markers.
   add_texts(input.sources, 100.0, pairs);
   KA_TRY(add_packs(input, pairs));
   return pairs;
@@ -135,7 +137,7 @@ StreamOptions kinect_stream_of(const PiecePair& pair) {
 
 StreamOptions marker_stream_of(const PiecePair& pair) {
   StreamOptions out = stream_of("mocap", pair.vicon, "ui_prmd_vicon");
-  // The layout's own rate is that of the source, 100 Hz; packs have half of it.
+  // The layout states the rate of the source, 100 Hz; packs have half of it.
   if (pair.vicon_hz != 100.0) out.rate_hz = pair.vicon_hz;
   return out;
 }
@@ -149,7 +151,7 @@ Corpus ui_prmd_without_takes() {
              .classes = {{"uiprmd", "movements of rehabilitation"},
                          {"uiprmdinc", "movements of rehabilitation, done wrongly on purpose"}},
              .class_id = "uiprmd"};
-  // Each movement is two actions: done right, and done wrongly on purpose.
+  // Each movement is two actions: done correctly, and done wrongly on purpose.
   for (std::size_t k = 0; k < movements.size(); ++k) {
     const std::string id = fmt::format("m{:02}", k + 1), name(movements[k]);
     out.actions.push_back({id, "uiprmd", name});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports UI-PRMD: a Kinect v2 and Vicon markers, ten movements of rehabilitation, cut into
-// repetitions. Each device's data was cut by hand separately, so the time shift of a pair is not
-// known.
+// Imports UI-PRMD: ten movements of rehabilitation, recorded with a Kinect v2 and Vicon markers and
+// cut into repetitions. The data of each device were cut by hand separately, so the time shift
+// between the two devices is not known.
 #pragma once
 
 #include "kinalign/dataset/import/corpus.h"
@@ -11,7 +11,8 @@
 
 namespace kinalign {
 
-/// The name "m01_s02_e03_positions.txt"; "_inc" marks a repetition done wrongly on purpose.
+/// The parts of a name "m01_s02_e03_positions.txt"; "_inc" marks a repetition that was done wrongly
+/// on purpose.
 struct PieceName {
   std::uint32_t movement = 0, subject = 0, repetition = 0;
   bool incorrect = false;
@@ -27,20 +28,20 @@ struct PiecePair {
   std::string kinect, vicon;  // files of positions; empty: none
   double vicon_hz = 100.0;
 };
-/// Sorted by movement, person and repetition.
+/// All pairs, sorted by movement, person and repetition.
 using PiecePairs = std::map<PieceName, PiecePair>;
 
-/// The pairs of texts and of packs. Packs are unpacked below the raw folder.
+/// Finds the pairs of text files and of packs. Packs are unpacked below the raw folder.
 Result<PiecePairs> find_ui_prmd_pairs(const ImportInput& input);
 
 /// The streams of one pair: `kinect`, and the markers as `mocap`.
 StreamOptions kinect_stream_of(const PiecePair& pair);
 StreamOptions marker_stream_of(const PiecePair& pair);
 
-/// The corpus without its takes.
+/// The name, terms and actions of the corpus, without its takes.
 Corpus ui_prmd_without_takes();
 
-/// Removes pairs that lack a device from `pairs` and notes them as left out.
+/// Removes pairs with only one device from `pairs` and notes them as left out.
 void leave_out_single(PiecePairs& pairs, Corpus& corpus);
 
 }  // namespace kinalign

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports UI-PRMD as pairs for learning, by the corpus's protocol (docs/dataset_import.md): joint
-// centres from the markers, the time shift of each repetition by a search, one rigid transform for
-// a person's movement. Repetitions that fit badly are left out.
+// Imports UI-PRMD as pairs for learning, by the corpus's protocol (docs/dataset_import.md). Joint
+// centres come from the markers, and the time shift of each repetition from a search. One rigid
+// transform is fitted for all repetitions of a person's movement. Repetitions that fit badly are
+// left out.
 #include "kinalign/core/hash.h"
 #include "kinalign/core/parallel.h"
 #include "kinalign/core/text_out.h"
@@ -26,8 +27,9 @@ namespace {
 
 // The rates of the protocol.
 constexpr double kinect_hz = 30.0, truth_hz = 50.0;
-constexpr double most_rms_m = 0.12;      // limit for an accepted repetition
-constexpr std::size_t least_taken = 3;   // repetitions of a person's movement
+constexpr double most_rms_m = 0.12;  // largest rms of an accepted repetition
+constexpr std::size_t least_taken =
+    3;  // least number of accepted repetitions of a person's movement
 constexpr std::size_t shift_stride = 5;  // frames of the truth between those that elbows and knees
                                          // are fitted to
 constexpr double gap_ms = 36.0;  // more than a step of the Kinect, less than two of the truth
@@ -43,7 +45,7 @@ struct Repetition {
   std::vector<std::uint8_t> seen;    // [G,39]
   JointCentres truth;                // [G]
   std::optional<FoundShift> found;   // absent: too little overlap
-  RigidTransform kinect_from_truth;  // the same for a person's movement
+  RigidTransform kinect_from_truth;  // the same for all repetitions of a person's movement
 
   PointPiece rough() const { return {kinect, {}, shared_joint_count, kinect_hz}; }
   PointPiece precise() const {
@@ -64,9 +66,9 @@ Result<PointFrames> all_frames(const PointInput& points) {
   return out;
 }
 
-/// Reads the joints that the Kinect shares with other devices.
+/// Reads the 18 joints that Kinect and markers have in common (motion/shared_joints.h).
 Result<void> read_kinect(const PointInput& points, Repetition& out) {
-  // The layout of the corpus has all shared joints; a missing one is an error.
+  // The corpus's layout has all shared joints, so a missing one is an error.
   const auto joints = KA_TRY(shared_joints_among(points.joint_names));
   const PointFrames frames = KA_TRY(all_frames(points));
   out.kinect.resize(3 * shared_joint_count * frames.size());
@@ -79,10 +81,10 @@ Result<void> read_kinect(const PointInput& points, Repetition& out) {
   return {};
 }
 
-/// Every second frame of markers at 100 Hz is used, since packs contain only those.
+/// Reads the markers. Of 100 Hz only every second frame is used, because packs contain only those.
 Result<void> read_markers(const PointInput& points, Repetition& out) {
   const PointFrames frames = KA_TRY(all_frames(points));
-  // Texts and packs give the same joints in this way.
+  // Thus text files and packs give the same joints.
   const std::size_t stride = out.files.vicon_hz > truth_hz ? 2 : 1;
   for (std::size_t t = 0; t < frames.size(); t += stride) {
     for (std::size_t i = t * marker_count; i < (t + 1) * marker_count; ++i) {
@@ -112,8 +114,8 @@ Result<Repetition> read_repetition(FileSystem& files, const PieceName& name,
   return out;
 }
 
-/// Computes the joints of all repetitions of one person, which share body size and places of
-/// markers.
+/// Computes the joints of all repetitions of one person. These share the body's size and the places
+/// of the markers.
 void put_truth(std::vector<Repetition>& all) {
   std::vector<double> places, few_places;
   std::vector<std::uint8_t> seen, few_seen;
@@ -137,26 +139,27 @@ void put_truth(std::vector<Repetition>& all) {
     one.truth = {{place, place + 3 * cells}, {valid, valid + cells}};
     place += 3 * cells;
     valid += cells;
-    // Invalid cells are interpolated, so that a spline can be fitted. They stay marked as invalid.
+    // Invalid joints are interpolated, so that a spline can be fitted. They remain marked as
+    // invalid.
     fill_invalid(one.truth);
     one.markers = {};
     one.seen = {};
   }
 }
 
-/// The repetitions of one person, right or wrong ones.
+/// The repetitions of one person, either all correct or all wrong ones.
 using Group = std::vector<std::pair<PieceName, PiecePair>>;
 
 /// All repetitions of one person, with their joints and time shifts.
 Result<std::vector<Repetition>> read_person(const ImportInput& input, const Group& group) {
-  // Each thread fills its own place; the order is that of the group.
+  // Each thread fills its own element, so the order is that of the group.
   std::vector<Result<Repetition>> read(group.size());
   parallel_for(group.size(), input.jobs, [&](std::size_t i) {
     read[i] = read_repetition(input.files, group[i].first, group[i].second);
   });
   std::vector<Repetition> out;
   out.reserve(read.size());
-  // The first failure in the order of the group is returned.
+  // If several repetitions failed, the first one in the order of the group is reported.
   for (auto& one : read) out.push_back(KA_TRY(std::move(one)));
   put_truth(out);
   parallel_for(out.size(), input.jobs, [&](std::size_t i) {
@@ -165,10 +168,10 @@ Result<std::vector<Repetition>> read_person(const ImportInput& input, const Grou
   return out;
 }
 
-/// Accepts repetitions of one person's movement: those that pass are moved to `taken`, the others
-/// are noted with the reason.
+/// Decides about the repetitions of one person's movement: accepted ones are moved to `taken`, the
+/// others are noted with the reason.
 void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken, Corpus& corpus) {
-  // A movement needs several good repetitions (least_taken).
+  // A movement needs several accepted repetitions (least_taken).
   const auto fitting = static_cast<std::size_t>(std::count_if(
       movement.begin(), movement.end(), [](const Repetition& one) { return one.fits(); }));
   for (Repetition& one : movement) {
@@ -189,7 +192,7 @@ void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken,
 
 /// Fits one transform for all repetitions of the movement.
 Result<void> put_transform(std::span<Repetition> movement) {
-  // The sums of all repetitions: one transform serves the whole movement.
+  // The sums of all repetitions are used, because one transform is fitted for the whole movement.
   PairMoments moments;
   for (const Repetition& one : movement) {
     add_pairs_at(one.rough(), PieceCurve(one.precise()), one.found->shift_s, moments);
@@ -204,10 +207,11 @@ Result<std::vector<Repetition>> take_person(std::vector<Repetition> all, Corpus&
   std::vector<Repetition> taken;
   for (auto begin = all.begin(); begin != all.end();) {
     const auto end = std::find_if(begin, all.end(), [&](const Repetition& one) {
-      // The repetitions are sorted by movement, so those of one movement follow each other.
+      // The repetitions are sorted by movement, so the repetitions of one movement follow each
+      // other.
       return one.name.movement != begin->name.movement;
     });
-    // The accepted repetitions of this movement are those added from here on.
+    // The accepted repetitions of this movement are added after this index.
     const std::size_t before = taken.size();
     pass_gate({std::make_move_iterator(begin), std::make_move_iterator(end)}, taken, corpus);
     if (taken.size() > before) KA_TRY(put_transform(std::span(taken).subspan(before)));
@@ -225,7 +229,7 @@ PointFrames truth_frames(const Repetition& one) {
   const auto first = std::find_if(valid.begin(), valid.end(), is_valid) - valid.begin();
   const auto behind = valid.rend() - std::find_if(valid.rbegin(), valid.rend(), is_valid);
   const std::size_t begin = static_cast<std::size_t>(first) / shared_joint_count;
-  // Frames without a valid joint at either end are cut off; those between stay as missing.
+  // Frames without a valid joint are cut off at both ends. Between them they stay, as missing.
   const std::size_t end =
       (static_cast<std::size_t>(behind) + shared_joint_count - 1) / shared_joint_count;
   PointFrames out;
@@ -256,8 +260,8 @@ Result<void> write_truth(const Repetition& one, const PutFile& put) {
   return out.commit();
 }
 
-/// The folder with one person's files of joints, made if it does not exist. Its name contains a
-/// hash of all files of the person, since each of them influences every joint.
+/// The folder with one person's files of joints. If it does not exist, it is made. Its name
+/// contains a hash of all files of the person, because each file influences every joint.
 Result<std::string> truth_folder(const ImportInput& input, const std::string& sha256,
                                  const std::vector<Repetition>& taken) {
   const std::string stem = fmt::format("s{}joints", taken.front().name.person());
@@ -270,12 +274,12 @@ Result<std::string> truth_folder(const ImportInput& input, const std::string& sh
 
 Manifest manifest_of(const Repetition& one, const std::string& folder) {
   Manifest out;
-  // The Kinect's frames are the grid of these takes.
+  // The grid of these takes is that of the Kinect's frames.
   out.align.reference = "kinect";
   out.align.gap_ms = gap_ms;
   out.streams = {kinect_stream_of(one.files),
                  stream_of("mocap", folder + "/" + truth_name(one), "trc")};
-  // Kinect frame i belongs to the truth's time shift + i / 30.
+  // Kinect frame i is at the time shift + i / 30 of the truth.
   out.streams.back().offset_ms = -1000.0 * one.found->shift_s;
   SpaceOptions& space = out.spaces["mocap"];
   space.method = "given";
@@ -293,7 +297,7 @@ Manifest manifest_of(const Repetition& one, const std::string& folder) {
 Result<void> add_person(const ImportInput& input, const Group& group, Corpus& corpus) {
   std::vector<Repetition> all = KA_TRY(read_person(input, group));
   Sha256 hash;
-  // The hash includes repetitions that are not accepted: they influence the joints.
+  // The hash also covers repetitions that are not accepted, because they influence the joints.
   for (const Repetition& one : all) hash.update(one.sha256);
   const auto taken = KA_TRY(take_person(std::move(all), corpus));
   // No file of joints is written for a person without an accepted repetition.
@@ -311,8 +315,7 @@ Result<Corpus> list_ui_prmd_joints(const ImportInput& input) {
   PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));
   leave_out_single(pairs, out);
   // Each person is read as a whole, because all repetitions share the body's size.
-  std::map<std::pair<std::uint32_t, bool>, Group>
-      people;  // wrong repetitions are a session of their own
+  std::map<std::pair<std::uint32_t, bool>, Group> people;  // wrong repetitions are a separate group
   for (auto& pair : pairs) {
     people[{pair.first.subject, pair.first.incorrect}].emplace_back(std::move(pair));
   }

@@ -15,11 +15,11 @@ namespace {
 constexpr ArchiveLimits largest_pieces{
     .entries = 100, .bytes = std::uint64_t{512} << 20, .ratio = 1000};
 constexpr std::size_t kinect_columns = 66, vicon_columns = 117;
-/// Decimals of the packed numbers: hundredths of a centimetre and of a degree; tenths of a
-/// millimetre.
+/// Decimals of the packed numbers. The Kinect's are in 0.01 cm and 0.01 degrees, the markers' in
+/// 0.1 mm.
 constexpr int kinect_decimals = 2, vicon_decimals = 1;
 
-/// Values [C,F] stored as differences, taken `times` times. Sums wrap around.
+/// Values [C,F]. They are packed as differences, taken `times` times; sums wrap around.
 struct PackedTable {
   std::vector<std::int16_t> values;
   std::size_t columns = 0, frames = 0;
@@ -41,7 +41,7 @@ Result<PackedTable> read_table(const Npz& npz, const Packing& packing) {
   for (int i = 0; i < packing.decimals; ++i) out.scale *= 10.0;
   out.values.reserve(steps.size());
   for (std::size_t c = 0; c < out.columns; ++c) {
-    // One running sum for each time that differences were taken.
+    // For each time that differences were taken, there is one running sum.
     std::array<std::uint16_t, 2> sums{};
     for (std::size_t f = 0; f < out.frames; ++f) {
       // Unsigned numbers wrap around in a defined way.
@@ -56,10 +56,10 @@ Result<PackedTable> read_table(const Npz& npz, const Packing& packing) {
   return out;
 }
 
-/// Rows of numbers between commas, in the source's form.
+/// The text form of some rows, as in the source: numbers between commas.
 std::string text_of(const PackedTable& table, std::size_t begin, std::size_t rows) {
   std::string out;
-  // The digits are written without the locale.
+  // The digits do not depend on the locale.
   std::array<char, number_room> room{};
   for (std::size_t f = begin; f < begin + rows; ++f) {
     for (std::size_t c = 0; c < table.columns; ++c) {
@@ -72,12 +72,12 @@ std::string text_of(const PackedTable& table, std::size_t begin, std::size_t row
   return out;
 }
 
-/// A row of the pack's index: where a repetition begins in the arrays, and how long it is.
+/// A row of the pack's index: where a repetition begins in the arrays, and its number of rows.
 struct Piece {
   std::int64_t movement, repetition, kinect_begin, kinect_rows, vicon_begin, vicon_rows;
 };
 
-/// True if the rows exist. Written so that no sum can overflow.
+/// True if the rows exist in the table. It is written so that no sum can overflow.
 bool lies_in(std::int64_t begin, std::int64_t rows, const PackedTable& table) {
   const auto all = static_cast<std::int64_t>(table.frames);
   return begin >= 0 && begin <= all && rows >= 0 && rows <= all - begin;
@@ -96,7 +96,7 @@ struct Tables {
   PackedTable offsets, angles, markers;
 };
 
-/// A damaged index must not lead outside of the arrays or to strange file names.
+/// Checks a row of the index. A damaged row could lead outside of the arrays or to bad file names.
 Result<void> check_piece(const Piece& p, const Tables& tables, const std::string& file) {
   const bool fits = p.movement >= 0 && p.movement < 100 && p.repetition >= 0 &&
                     p.repetition < 100 && lies_in(p.kinect_begin, p.kinect_rows, tables.offsets) &&
@@ -107,7 +107,7 @@ Result<void> check_piece(const Piece& p, const Tables& tables, const std::string
                        fmt::format("piece {} of movement {}", p.repetition, p.movement)});
 }
 
-/// Writes the texts of a piece; a device without rows gets no file.
+/// Writes the text files of a repetition. A device without rows gets no file.
 Result<void> write_piece(const Piece& p, const Tables& tables, const std::string& person,
                          const PutFile& put) {
   const std::string name = fmt::format("m{:02}_{}_e{:02}", p.movement, person, p.repetition);
@@ -127,7 +127,7 @@ Result<void> write_piece(const Piece& p, const Tables& tables, const std::string
 Result<void> write_ui_prmd_pieces(const ArchiveBytes& bytes, const std::string& person,
                                   const PutFile& put) {
   const Npz npz = KA_TRY(Npz::read(bytes, largest_pieces));
-  // Six numbers for each piece, in the order of Piece.
+  // The index has six numbers for each repetition, in the order of Piece.
   const auto index = KA_TRY(npz.integers("index", {0, 6}));
   const Tables tables{KA_TRY(read_table(npz, {"kinect_local", kinect_columns, 1, kinect_decimals})),
                       KA_TRY(read_table(npz, {"kinect_euler", kinect_columns, 1, kinect_decimals})),
@@ -135,7 +135,7 @@ Result<void> write_ui_prmd_pieces(const ArchiveBytes& bytes, const std::string& 
   for (std::size_t i = 0; i + 6 <= index.size(); i += 6) {
     const Piece piece{index[i],     index[i + 1], index[i + 2],
                       index[i + 3], index[i + 4], index[i + 5]};
-    // A bad row stops the import before its files are written.
+    // A wrong row stops the import before any of its files is written.
     KA_TRY(check_piece(piece, tables, bytes.name));
     KA_TRY(write_piece(piece, tables, person, put));
   }

@@ -10,9 +10,9 @@
 
 namespace kinalign {
 
-/// Writes Kinect/Positions/m01_s01_e01_positions.txt, Kinect/Angles/m01_s01_e01_angles.txt and
-/// Vicon/Positions/m01_s01_e01_positions.txt for each piece. `person`: "s01". The markers were
-/// packed at 50 Hz, every second row of the source.
+/// Writes three text files for each repetition: Kinect/Positions/m01_s01_e01_positions.txt,
+/// Kinect/Angles/m01_s01_e01_angles.txt and Vicon/Positions/m01_s01_e01_positions.txt. `person`:
+/// "s01". The pack has markers at 50 Hz, every second row of the source.
 Result<void> write_ui_prmd_pieces(const ArchiveBytes& bytes, const std::string& person,
                                   const PutFile& put);
 

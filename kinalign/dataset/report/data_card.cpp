@@ -24,7 +24,7 @@ std::string plain(std::string_view text) {
     if (c == '\n' || c == '\r') {
       out += ' ';
     } else if (c == '<') {
-      // A tag in a description must not become a part of the page.
+      // A tag in a description must not become a tag of the page.
       out += "&lt;";
     } else {
       if (std::string_view("\\`*_[]|#").find(c) != std::string_view::npos) out += '\\';
@@ -34,19 +34,20 @@ std::string plain(std::string_view text) {
   return out;
 }
 
-/// Terms that are missing are named as missing: a reader must not take silence for permission.
+/// A text of dataset.toml, or the words that it is missing. Otherwise a reader could think that a
+/// missing licence permits everything.
 std::string or_not_stated(const std::string& text) {
   return text.empty() ? "not stated in dataset.toml" : plain(text);
 }
 
-/// An absent value is an empty text.
+/// The text of a cell; empty if the cell has no value.
 std::string text_at(const Cell& cell, const TableColumn& column) {
   return std::holds_alternative<std::monostate>(cell) ? "" : cell_text(cell, column);
 }
 
-/// The user's own blocks of the old card, with their marks.
+/// The blocks of text that the user added to the old card, with the marks around them.
 Result<std::string> own_texts(FileSystem& files, const std::string& path) {
-  // A new card has an empty block, which shows the user where own text may stand.
+  // A new card has one empty block, which shows the user where to write.
   const std::string empty = fmt::format("{}\n\n{}\n", own_begin, own_end);
   if (path.empty() || !is_there(path)) return empty;
   const std::string text = KA_TRY(read_whole(files, path, longest_card));
@@ -60,13 +61,13 @@ Result<std::string> own_texts(FileSystem& files, const std::string& path) {
       return Failure(Error{path, line, std::string(own_end) + " behind the own text", "none"});
     }
     out += (out.empty() ? "" : "\n") + text.substr(at, end + own_end.size() - at) + "\n";
-    // The search goes on after this block; a card may have several.
+    // The search continues after this block, because a card may have several.
     at = end;
   }
   return out.empty() ? empty : out;
 }
 
-/// Writes the card part by part into `text_`. Everything comes from the index and dataset.toml, so
+/// Writes the card part by part into `text_`. All of it comes from the index and dataset.toml, so
 /// the same data set gives the same card.
 class Card {
  public:
@@ -74,7 +75,7 @@ class Card {
       : index_(index), catalogue_(index.catalogue()), folder_(folder), software_(software) {}
 
   Result<std::string> written(const std::string& own) {
-    // The order of the parts is that of a reader's questions.
+    // The parts are in the order in which a reader asks for them.
     KA_TRY(put_head(own));
     KA_TRY(put_tables());
     KA_TRY(put_units());
@@ -97,7 +98,7 @@ class Card {
     std::vector<std::string> words;
     for (const auto& row : table.rows) {
       std::string one = plain(text_at(row.at(0), table.columns[0]));
-      // The second column is a number of takes in all queries.
+      // In all queries the second column is a number of takes.
       if (row.size() > 1) one += " (" + text_at(row.at(1), table.columns[1]) + ")";
       words.push_back(one);
     }
@@ -105,10 +106,10 @@ class Card {
   }
 
   Result<void> put_head(const std::string& own) {
-    // Without a name the folder's name is the title.
+    // If the data set has no name, the title is the name of its folder.
     const std::string name =
         catalogue_.name.empty() ? std::string(file_name(folder_)) : catalogue_.name;
-    // The mark below the title shows a later run that kinalign wrote the file.
+    // From the mark below the title a later run sees that kinalign wrote the file.
     line("# " + plain(name));
     line(
         fmt::format("{}: `kinalign dataset report FOLDER --card` writes it again. Text between the "
@@ -119,11 +120,11 @@ class Card {
     const Table sums = KA_TRY(index_.select(
         "select count(*) as takes, count(distinct subject) as people, "
         "coalesce(sum(frames), 0) as frames, coalesce(sum(seconds), 0.0) from takes"));
-    // The sums are numbers; cell_text() writes them as the tables do.
+    // cell_text() writes these sums in the same form as in tables.
     const auto cell = [&](std::size_t c) {
       return cell_text(sums.rows.at(0).at(c), sums.columns[c]);
     };
-    // The best verdict comes first.
+    // Good takes come first.
     const std::string verdicts =
         KA_TRY(joined("select verdict, count(*) as takes from takes group by verdict order by "
                       "case verdict when 'good' then 0 when 'usable' then 1 else 2 end"));
@@ -137,7 +138,7 @@ class Card {
     return {};
   }
 
-  // The tables of the paper, as `kinalign dataset tables` prints them.
+  // The tables of the HFUT-MMD paper, as `kinalign dataset tables` prints them.
   Result<void> put_tables() {
     title("Composition");
     for (auto* const table : {table_by_subject, table_by_class, table_by_modalities}) {
@@ -148,7 +149,7 @@ class Card {
 
   Result<void> put_units() {
     title("Rates, units and axes");
-    // Equal streams of many takes are one row; the list is limited to the most frequent ones.
+    // Equal streams of many takes are one row. Only the most frequent ones are listed.
     Table streams = KA_TRY(
         index_.select("select name, modality, columns, count(*) as takes from streams "
                       "group by name, modality, columns order by count(*) desc, name limit 20"));
@@ -187,12 +188,13 @@ class Card {
         "`kinalign dataset verify` compares every byte with its SHA-256.\n";
   }
 
-  // An example that works for this data set: it opens the take with the most kinds of streams.
+  // A Python example that works for this data set: it opens the take with the most kinds of
+  // streams.
   Result<void> put_reading() {
     const Table takes =
         KA_TRY(index_.select("select name from takes order by (mocap > 0) + (kinect > 0) + (imu > "
                              "0) desc, name limit 1"));
-    // Without a take there is nothing to read.
+    // If the data set has no take, there is no example.
     if (takes.rows.empty()) return {};
     const std::string take = std::get<std::string>(takes.rows[0].at(0));
     const auto name = parse_take_name(take);
@@ -216,7 +218,7 @@ class Card {
     return {};
   }
 
-  // Devices and rigs, with the texts that the lab chose.
+  // Lists devices and rigs, with the texts that the lab chose.
   void put_devices() {
     if (catalogue_.devices.empty() && catalogue_.rigs.empty()) return;
     title("Devices");
@@ -232,7 +234,7 @@ class Card {
     }
   }
 
-  // Only files that exist are listed; they are not read.
+  // Lists the files of splits that exist. They are not read.
   void put_splits() {
     std::vector<std::string> names =
         names_in_folder(folder_ + "/splits").value_or(std::vector<std::string>{});
@@ -243,13 +245,13 @@ class Card {
     line("\n`kinalign dataset split FOLDER --check FILE` checks whether a split still fits.");
   }
 
-  // The terms of use. People with the same consent are listed together.
+  // Lists the terms of use. People with the same consent are listed together.
   void put_terms() {
     title("Terms");
     line("- Licence: " + or_not_stated(catalogue_.licence));
     line("- Citation: " + or_not_stated(catalogue_.citation));
     line("- Contact: " + or_not_stated(catalogue_.contact));
-    // Sorted by the text of the consent.
+    // The map is sorted by the text of the consent.
     std::map<std::string, std::vector<std::string>> consents;
     for (const Subject& one : catalogue_.subjects) {
       consents[one.consent].push_back(one.id);
@@ -273,7 +275,8 @@ class Card {
 Result<std::string> data_card(FileSystem& files, const DatasetIndex& index,
                               const std::string& folder, const std::string& old_card,
                               const std::string& software) {
-  // The own texts are read before anything is written: the card replaces the old file.
+  // The user's texts are read before anything is written, because the new card replaces the old
+  // file.
   const std::string own = KA_TRY(own_texts(files, old_card));
   return Card(index, folder, software).written(own);
 }

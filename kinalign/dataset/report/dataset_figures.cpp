@@ -12,14 +12,14 @@ namespace kinalign {
 
 namespace {
 
-/// The following functions take a value out of a cell; an absent value gives 0, nothing or an empty
-/// text.
+/// The next functions return the value of a cell. Without a value they return 0, nothing or an
+/// empty text.
 std::int64_t whole(const Cell& cell) {
   const auto* value = std::get_if<std::int64_t>(&cell);
   return value == nullptr ? 0 : *value;
 }
 
-/// Counts are never negative; a damaged index gives 0.
+/// A count from a cell. Counts are never negative; a damaged index gives 0.
 std::uint64_t count(const Cell& cell) {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(0, whole(cell)));
 }
@@ -34,7 +34,7 @@ std::string text(const Cell& cell) {
   return value == nullptr ? std::string() : *value;
 }
 
-// The takes to look at first. Absent measures sort as if they were good.
+// The worst takes come first. A missing measure sorts as if it were good.
 constexpr const char* worst_first =
     "select name, subject, class, action, action_name, verdict, worst, frames, seconds, mocap, "
     "kinect, imu, residual_cm, kinect_valid, imu_valid from takes order by "
@@ -42,10 +42,10 @@ constexpr const char* worst_first =
     "coalesce(residual_cm, 0) desc, min(coalesce(kinect_valid, 1), coalesce(imu_valid, 1)), name "
     "limit ?";
 
-/// A take from a row, whose cells have the order of the query.
+/// The take in a row, whose cells are in the order of the query.
 DatasetTake take_of(const std::vector<Cell>& row) {
   DatasetTake take;
-  // The first seven columns of the query.
+  // These are the first seven columns of the query.
   const std::array<std::string*, 7> texts{&take.name,   &take.subject,     &take.class_id,
                                           &take.action, &take.action_name, &take.verdict,
                                           &take.reason};
@@ -70,7 +70,7 @@ Result<void> add_sums(const DatasetIndex& index, DatasetPage& page) {
                    "coalesce(sum(verdict = 'usable'), 0), coalesce(sum(verdict = 'bad'), 0), "
                    "coalesce(sum(seconds), 0.0) from takes"));
   const std::vector<Cell>& row = sums.rows.at(0);
-  // The first eight columns of the query.
+  // These are the first eight columns of the query.
   const std::array<std::uint64_t*, 8> counts{
       &page.takes,      &page.people, &page.mocap_frames, &page.kinect_frames,
       &page.imu_frames, &page.good,   &page.usable,       &page.bad};
@@ -92,16 +92,16 @@ Result<DatasetPage> dataset_figures(const DatasetIndex& index, const std::string
   page.citation = catalogue.citation;
   page.folder = folder;
   KA_TRY(add_sums(index, page));
-  // The limit is a value of the query, so the index need not give all takes.
+  // The query limits the number of rows, so the index does not return all takes.
   const Table rows = KA_TRY(index.select(worst_first, {static_cast<std::int64_t>(most)}));
   for (const auto& row : rows.rows) page.worst.push_back(take_of(row));
-  // No page is known yet; the caller subtracts those that exist.
+  // Here every take counts as one without a page. The caller subtracts those that have a page.
   page.takes_without_page = page.worst.size();
   for (auto* const table : {table_by_subject, table_by_class, table_by_modalities}) {
     page.tables.push_back(KA_TRY(table(index)));
   }
   for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
-    // The index knows only takes with a summary, so the folder is asked for the others.
+    // The index has only takes with a summary, so the others are counted in the folder.
     page.not_built += there.manifest && !there.summary ? 1 : 0;
   }
   return page;
@@ -109,7 +109,7 @@ Result<DatasetPage> dataset_figures(const DatasetIndex& index, const std::string
 
 void add_pictures(FileSystem& files, const std::string& folder, DatasetPage& page) {
   std::vector<TakeName> names;
-  // The pointers lead into the page, which does not change meanwhile.
+  // The pointers point into the page, whose list of takes does not change meanwhile.
   std::vector<DatasetTake*> takes;
   for (DatasetTake& take : page.worst) {
     const auto name = parse_take_name(take.name);
@@ -117,7 +117,7 @@ void add_pictures(FileSystem& files, const std::string& folder, DatasetPage& pag
     names.push_back(*name);
     takes.push_back(&take);
   }
-  // All takes are opened in one go, which needs few child processes.
+  // All takes are opened together, so few child processes are needed.
   auto rows = typical_rows(files, folder, names);
   for (std::size_t i = 0; i < takes.size(); ++i) takes[i]->bodies = std::move(rows[i]);
 }

@@ -11,15 +11,15 @@
 
 namespace kinalign {
 
-/// The most takes in the page's table: 2,000 rows with pictures are 3 MB.
+/// Limit of the number of takes in the page's table: 2,000 rows with pictures are 3 MB.
 inline constexpr std::size_t most_shown_takes = 2000;
 
-/// The whole page but pictures and links. The worst takes come first: bad, usable, good; then by
-/// errors, warnings, distance from the reference, valid samples and name.
+/// All of the page except pictures and links. The takes are sorted by verdict (bad, usable, good),
+/// then by errors, warnings, distance from the reference, valid samples and name.
 Result<DatasetPage> dataset_figures(const DatasetIndex& index, const std::string& folder,
                                     std::size_t most = most_shown_takes);
 
-/// Adds the pictures of takes. No other thread may run, since a child process is forked.
+/// Adds the pictures of takes. No other thread may run, because a child process is forked.
 void add_pictures(FileSystem& files, const std::string& folder, DatasetPage& page);
 
 }  // namespace kinalign

@@ -21,51 +21,52 @@ constexpr std::string_view schema = "kinalign.dataset_pages/1";
 constexpr std::string_view ledger_name = "pages.json";
 constexpr std::size_t longest_ledger = std::size_t{64} << 20;
 constexpr std::size_t head_bytes = 4096;
-// The ledger is written after this number of pages: a stopped run loses at most as many.
+// The ledger (pages.json) is written after this number of pages. If a run is stopped, at most this
+// many pages are made again.
 constexpr std::size_t pages_between_writes = 32;
 
-/// A ledger that can't be read counts as empty: its pages are made again.
+/// Reads the ledger. If it can't be read, it counts as empty, and all pages are made again.
 std::map<std::string, std::string> read_ledger(FileSystem& files, const std::string& path,
                                                const std::string& software) {
   std::map<std::string, std::string> out;
   const auto text = read_whole(files, path, longest_ledger);
   if (!text) return out;
   try {
-    // Any fault of the text makes the ledger count as empty.
+    // If any part of the text is wrong, the ledger counts as empty.
     const Json json = Json::parse(*text);
     if (json.at("schema").get<std::string>() != schema) return out;
-    // Another version may write other pages, so all of them are made again.
+    // Another version of kinalign may write other pages, so all of them are made again.
     if (json.at("software").get<std::string>() != software) return out;
     for (const auto& [name, sha256] : json.at("pages").items()) {
-      // The names become paths that may be removed, so other texts are not accepted.
+      // The names become paths of files that may be removed, so only names of takes are accepted.
       if (parse_take_name(name)) out[name] = sha256.get<std::string>();
     }
   } catch (const Json::exception&) {
-    // Pages that were read before the fault are not trusted either.
+    // Entries before the fault are not used either.
     out.clear();
   }
   return out;
 }
 
-/// The folder from which the names in the take lead to all of its raw files.
+/// The folder with all raw files of a take, in which the names in the take are found.
 std::string inputs_folder(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                           const TakeName& name) {
   const std::string base = folder_of(folder, name);
   const auto manifest = take_manifest(files, folder, catalogue, name);
-  // A take that was added as a take has no raw files.
+  // A take that was added without raw files has no such folder.
   if (!manifest) return "";
   std::string out;
   for (const TakeInput& input : inputs_of(files, *manifest, base, {})) {
     if (!input.path.ends_with("/" + input.name)) return "";
     const std::string one = input.path.substr(0, input.path.size() - input.name.size());
-    // Inputs in several folders can't be given by one folder.
+    // If the inputs are in several folders, no single folder can be given.
     if (!out.empty() && one != out) return "";
     out = one;
   }
   return out;
 }
 
-/// The hashes of all takes by their names, from a table of these two columns.
+/// The hashes of takes by the takes' names, from a table with these two columns.
 std::map<std::string, std::string> hashes_of(const Table& table) {
   std::map<std::string, std::string> out;
   for (const auto& row : table.rows) {
@@ -76,7 +77,7 @@ std::map<std::string, std::string> hashes_of(const Table& table) {
 
 }  // namespace
 
-/// A page states its generator near its beginning, so the first block is enough.
+/// A page contains the mark near its beginning, so only the first block is read.
 bool is_own_page(FileSystem& files, const std::string& path, std::string_view mark) {
   auto file = InputFile::open(files, path, head_bytes);
   if (!file) return false;
@@ -89,19 +90,20 @@ TakePages::TakePages(FileSystem& files, std::string folder, std::string place, s
       folder_(std::move(folder)),
       place_(std::move(place)),
       software_(std::move(software)) {
-  // File names are appended to the folder's path below.
+  // Names of files are appended to this path below.
   if (!place_.ends_with('/')) place_ += '/';
   pages_ = read_ledger(files_, place_ + std::string(ledger_name), software_);
 }
 
 std::string TakePages::page_of(const std::string& name, const std::string& sha256) const {
   const auto known = pages_.find(name);
-  // The hash proves that the page shows the take's present bytes.
+  // Equal hashes show that the page was made from the take's present bytes.
   const bool current = known != pages_.end() && known->second == sha256;
   return current && is_there(path_of_page(name)) ? name + ".html" : "";
 }
 
-/// The pages that are missing or old. A file that is no page of kinalign is never replaced.
+/// Plans the pages that are missing or old. If a file with a page's name is not a page of kinalign,
+/// this fails, and the file is not replaced.
 Result<std::vector<PageJob>> TakePages::plan(const Catalogue& catalogue,
                                              const std::map<std::string, std::string>& hashes,
                                              const std::vector<std::string>& takes) const {
@@ -120,9 +122,10 @@ Result<std::vector<PageJob>> TakePages::plan(const Catalogue& catalogue,
   return jobs;
 }
 
-/// Only pages of the ledger are removed: kinalign made these and no others.
+/// Removes pages of takes that do not exist any more. Only pages in the ledger are removed, because
+/// kinalign made these.
 std::uint64_t TakePages::remove_old(const std::map<std::string, std::string>& known) {
-  // Entries leave the ledger even if their file was removed by hand.
+  // The entry is removed from the ledger, even if the user has removed the page already.
   std::uint64_t removed = 0;
   std::erase_if(pages_, [&](const auto& page) {
     if (known.contains(page.first)) return false;
@@ -132,7 +135,7 @@ std::uint64_t TakePages::remove_old(const std::map<std::string, std::string>& kn
   return removed;
 }
 
-/// The ledger replaces the old one in one step, so it is never half written.
+/// Writes the ledger. It replaces the old one in one step, so it is never incomplete.
 Result<void> TakePages::remember() const {
   const Json json{{"schema", schema}, {"software", software_}, {"pages", pages_}};
   OutputFile out =
@@ -158,7 +161,7 @@ Result<PagesMade> TakePages::make(const DatasetIndex& index, const std::vector<s
   std::uint64_t done = 0;
   bool stopped = false;
   parallel_for(to_make.size(), jobs, [&](std::size_t i) {
-    // After the user stopped the run, no further page is begun.
+    // If the user has stopped the run, no further page is begun.
     if (std::lock_guard lock(mutex); stopped) return;
     const Result<void> made = make_page(to_make[i]);
     const std::lock_guard lock(mutex);
@@ -168,13 +171,13 @@ Result<PagesMade> TakePages::make(const DatasetIndex& index, const std::vector<s
       return;
     }
     pages_[to_string(to_make[i].name)] = to_make[i].sha256;
-    // A failure here is no loss: the ledger is written again at the end.
+    // A failure does no harm here, because the ledger is written again at the end.
     if (++out.made % pages_between_writes == 0) (void)remember();
   });
-  // The ledger is written after a stop, too, so that finished pages are kept.
+  // If the run was stopped, the ledger is written, too, so that finished pages are kept.
   KA_TRY(remember());
   if (stopped) return Failure(interruption());
-  // Pages end in the order of the threads; the report must not depend on it.
+  // The threads finish pages in any order, so the failures are sorted.
   std::sort(out.failed.begin(), out.failed.end(),
             [](const Error& a, const Error& b) { return a.file < b.file; });
   return out;

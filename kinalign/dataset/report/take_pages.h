@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages of takes, in a folder for their data set's page: which exist and which have to be made.
-// A file pages.json states the bytes that each page was made from.
+// The pages of takes, in a folder for the data set's page: which pages exist and which have to be
+// made. A file pages.json states, for each page, the hash of the take from which it was made.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -21,7 +21,7 @@ struct PageJob {
   TakeName name;
   std::string take, page;  // paths
   std::string inputs;      // folder of the take's raw files; empty: not known
-  std::string sha256;      // the take's
+  std::string sha256;      // SHA-256 of the take
 };
 
 /// Makes one page. Called from several threads at once.
@@ -33,19 +33,20 @@ struct PagesMade {
   std::vector<Error> failed;
 };
 
-/// The pages in one folder, with the ledger pages.json. A page is up to date if the ledger has the
-/// take's hash and the file exists. Pages of another version of the software count as missing.
+/// The pages in one folder, with their list pages.json, called the ledger. A page is up to date if
+/// the ledger has the take's present hash and the page exists. Pages that another version of
+/// kinalign made count as missing.
 class TakePages {
  public:
-  /// `folder`: of the data set. `place`: folder of the pages, which may not exist yet.
+  /// `folder`: the data set's folder. `place`: the folder of the pages, which may not exist yet.
   TakePages(FileSystem& files, std::string folder, std::string place, std::string software);
 
-  /// "NAME.html" if a page of these bytes by this software exists; else empty.
+  /// "NAME.html" if this version has made the page from a take with this hash; else empty.
   std::string page_of(const std::string& name, const std::string& sha256) const;
 
   /// Makes the missing and old pages of `takes`, and removes pages of takes that the index lacks. A
-  /// page that fails does not stop others. Fails if the user stops it, or if a page's name belongs
-  /// to a file that is no page of kinalign.
+  /// page that fails does not stop others. Fails if the user stops the run, or if a file with a
+  /// page's name is not a page of kinalign.
   Result<PagesMade> make(const DatasetIndex& index, const std::vector<std::string>& takes,
                          std::size_t jobs, const MakePage& make_page, const Progress& progress);
 
@@ -62,7 +63,8 @@ class TakePages {
   std::map<std::string, std::string> pages_;  // take's name -> SHA-256 of the take
 };
 
-/// True if the first 4096 bytes of the file contain `mark`, so kinalign wrote it.
+/// True if the first 4096 bytes of the file contain `mark`, which shows that kinalign wrote the
+/// file.
 bool is_own_page(FileSystem& files, const std::string& path, std::string_view mark);
 
 }  // namespace kinalign

@@ -16,11 +16,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Eighths of the take's length, from the middle outwards.
+// The rows are tried at these eighths of the take's length, from the middle outwards.
 constexpr std::array<std::uint64_t, 7> eighths{4, 3, 5, 2, 6, 1, 7};
 constexpr std::size_t most_joints = 1000;
 
-/// One row of a take as bodies, with the count by which rows are compared.
+/// The bodies in one row of a take, and the number of tracked joints, by which rows are compared.
 struct RowOfBodies {
   std::vector<PageBody> bodies;
   std::size_t tracked = 0;  // joints of all bodies
@@ -31,9 +31,9 @@ struct RowOfBodies {
 RowOfBodies bodies_of(const TakeHeader& header, const TakeSlab& slab) {
   RowOfBodies out;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
-    // Nodes have no positions to draw.
+    // Streams of nodes have no positions to draw.
     if (std::holds_alternative<ImuGroup>(header.groups[g].kind)) continue;
-    // One body for each stream with joints.
+    // Each stream with joints gives one body.
     BodyFigures figures(header.groups[g], out.bodies.size());
     figures.add(slab.rows[g], 0, true);
     PageBody body = figures.take_body();
@@ -56,7 +56,7 @@ Result<std::string> typical_row(TakeReader& reader) {
     // The row at this eighth of the take.
     KA_TRY(reader.read(std::min(header.frames / 8 * eighth, header.frames - 1), 1, slab));
     RowOfBodies row = bodies_of(header, slab);
-    // The first of several equal rows stays: it is nearest to the middle.
+    // If several rows are equal, the first one is kept, because it is nearest to the middle.
     if (best.bodies.empty() || row.tracked > best.tracked) best = std::move(row);
     if (best.is_whole) break;
   }
@@ -66,7 +66,7 @@ Result<std::string> typical_row(TakeReader& reader) {
 /// A body from the text of a child process.
 PageBody body_from(const Json& json) {
   PageBody body;
-  // The colours are sent as 0 and 1; bodies_json() writes them.
+  // Colours are written as 0 and 1 by bodies_json().
   const int colour = json.at("colour").get<int>();
   body.colour = colour == 0 ? PageColour::mocap : PageColour::kinect;
   body.in_take_space = json.at("in_take_space").get<bool>();
@@ -76,11 +76,11 @@ PageBody body_from(const Json& json) {
   return body;
 }
 
-/// True if the arrays belong together and parents and states are in range. A drawing would
-/// otherwise read outside of them.
+/// True if the lengths of the arrays fit together, and parents and states are in range. Otherwise
+/// drawing would read outside of the arrays.
 bool fits(const PageBody& body) {
   const std::size_t joints = body.parents.size();
-  // The limit keeps a damaged take from filling the page.
+  // With this limit a damaged take can't make the page too large.
   return joints <= most_joints && body.positions.size() == 3 * joints &&
          body.state.size() == joints &&
          std::all_of(body.state.begin(), body.state.end(), [](std::uint8_t s) { return s <= 2; }) &&
@@ -102,7 +102,8 @@ std::string bodies_json(const std::vector<PageBody>& bodies) {
   return out.dump();
 }
 
-/// Bodies whose arrays do not fit together are left out: a damaged take may have crashed the child.
+/// Bodies whose arrays do not fit together are left out, because a damaged take may have crashed
+/// the child process.
 std::vector<PageBody> parse_bodies_json(std::string_view json) {
   std::vector<PageBody> out;
   try {
@@ -119,7 +120,7 @@ std::vector<PageBody> parse_bodies_json(std::string_view json) {
 std::vector<std::vector<PageBody>> typical_rows(FileSystem& files, const std::string& folder,
                                                 const std::vector<TakeName>& names) {
   std::vector<std::vector<PageBody>> out;
-  // The answers come in the order of the names.
+  // The results come in the order of the names.
   for (const auto& text : ask_takes(files, folder, names, typical_row)) {
     out.push_back(text ? parse_bodies_json(*text) : std::vector<PageBody>{});
   }

@@ -12,14 +12,14 @@
 
 namespace kinalign {
 
-/// The bodies of each take, in the order of `names`, all from one row (K = 1): among seven rows,
-/// from the middle outwards, the first with the most tracked joints. A take that can't be read has
-/// no bodies. Uses ask_takes(), so no other thread may run.
+/// The bodies of each take, in the order of `names`. All bodies of a take are from one row (K = 1).
+/// Seven rows are tried, from the middle outwards, and the first one with the most tracked joints
+/// is used. A take that can't be read has no bodies. Uses ask_takes(), so no other thread may run.
 std::vector<std::vector<PageBody>> typical_rows(FileSystem& files, const std::string& folder,
                                                 const std::vector<TakeName>& names);
 
-/// The text of one row's bodies, which a child process sends, and its parser. The parser trusts
-/// nothing: bodies whose arrays do not fit are left out.
+/// The bodies of one row as text, which a child process sends, and the parser of this text. The
+/// parser leaves out bodies whose arrays do not fit together.
 std::string bodies_json(const std::vector<PageBody>& bodies);
 std::vector<PageBody> parse_bodies_json(std::string_view json);
 

@@ -7,19 +7,20 @@ namespace kinalign {
 
 namespace {
 
-// Rows of the tables that the paper's numbers connect: only person 05 did S4, only person 07 S6,
-// and only person 10, in S2, was recorded without a Kinect.
+// Rows that must be combined because of numbers in both tables: only person 05 did class S4, only
+// person 07 did S6, and only person 10 was recorded without a Kinect, in S2.
 constexpr std::size_t person_10 = 1, person_05 = 2, person_07 = 3;
 constexpr std::size_t baduanjin = 1, wuqinxi = 3, dance = 5;
 constexpr std::uint64_t without_kinect = 29'776;
 
-/// Frames by people and frames by classes: the margins of the table that is sought.
+/// Frames by people and frames by classes. They are the sums of the rows and of the columns of the
+/// table that is computed.
 using Supplies = std::array<std::uint64_t, paper_people.size()>;
 using Demands = std::array<std::uint64_t, paper_classes.size()>;
 
-/// Divides supplies among demands with the same sum, both in order. The north-west corner rule: the
-/// first person's frames fill the first class as far as they go, then the next class. The result
-/// has few cells.
+/// Divides the people's frames among the classes, by the north-west corner rule. The first person's
+/// frames fill the first class and then the next one, and so on. The two arrays must have the same
+/// sum. The result has few cells.
 void transport(Supplies supplies, Demands demands, bool imu, std::vector<PaperCell>& out) {
   for (std::size_t who = 0; who < supplies.size(); ++who) {
     for (std::size_t what = 0; what < demands.size(); ++what) {
@@ -42,8 +43,8 @@ std::size_t PaperPeople::count() const {
 std::vector<PaperCell> paper_cells() {
   Supplies all_three{}, pairs{};
   Demands all_three_of{}, pairs_of{};
-  // First the takes with all three devices. Everybody with nodes had a Kinect, too, apart from the
-  // frames of person 10.
+  // The takes with all three devices come first. All frames with nodes also have a Kinect, except
+  // some frames of person 10.
   for (std::size_t i = 0; i < all_three.size(); ++i) all_three[i] = paper_people[i].frames.imu;
   for (std::size_t i = 0; i < all_three_of.size(); ++i) {
     all_three_of[i] = paper_classes[i].frames.imu;
@@ -56,10 +57,10 @@ std::vector<PaperCell> paper_cells() {
   for (std::size_t i = 0; i < pairs_of.size(); ++i) {
     pairs_of[i] = paper_classes[i].frames.kinect - all_three_of[i];
   }
-  // Their cells are known, so they are left out of the division and added below.
+  // The cells of these two people are known, so they are left out here and added below.
   pairs[person_05] = pairs[person_07] = 0;
   pairs_of[wuqinxi] = pairs_of[dance] = 0;
-  // The order of the cells is the order of the takes.
+  // The takes are made in the order of these cells.
   std::vector<PaperCell> out;
   transport(all_three, all_three_of, true, out);
   transport(pairs, pairs_of, false, out);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 130 of a seed: counter 0, lane 0 draws the first movement; counters 1, 2, ..., lane 0 draw
-// the length of each movement.
+// All random numbers come from stream 130 of a seed. Counter 0, lane 0 draws the first movement;
+// counters 1, 2, ..., lane 0 draw the length of each movement.
 #include "kinalign/dataset/twin/twin_actions.h"
 
 #include "kinalign/dataset/catalogue.h"
@@ -12,8 +12,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr double t_pose_s = 3.5;  // still for two of them; the arms come down in the last 1.3
-// A rest shorter than this is added to the movement before.
+constexpr double t_pose_s =
+    3.5;  // still for two of these seconds; the arms come down in the last 1.3
+// If the rest of the take is shorter than this, the last movement is lengthened.
 constexpr double least_piece_s = 5.0;
 
 /// The mean length of a movement, s. A walk returns to its beginning.
@@ -76,14 +77,14 @@ std::vector<const TwinAction*> twin_actions_of(std::string_view class_id) {
 Programme twin_programme(const TwinAction& action, double length_s, std::uint64_t seed) {
   const RandomStream random(seed, 130);
   const auto count = static_cast<double>(action.pieces.size());
-  // The first movement is drawn, so that takes of one action do not all begin alike.
+  // The first movement is drawn at random, so that takes of one action begin differently.
   auto next = static_cast<std::size_t>(random.uniform(0, 0) * count);
   Programme out{{Piece::t_pose, t_pose_s}};
   double end = t_pose_s;
   for (std::uint64_t number = 1; end < length_s; ++number) {
     const Piece piece = action.pieces[next++ % action.pieces.size()];
     double length = mean_length(piece) * (0.8 + 0.4 * random.uniform(number, 0));
-    // The last movement ends with the take.
+    // The last movement ends at the end of the take.
     if (length_s - end - length < least_piece_s) length = length_s - end;
     out.push_back({piece, length});
     end += length;
@@ -93,7 +94,7 @@ Programme twin_programme(const TwinAction& action, double length_s, std::uint64_
 
 Result<std::string> twin_catalogue(const std::string& name) {
   std::string text = KA_TRY(catalogue_template("hfut-mmd", name));
-  // The template is edited as text; its comments stay.
+  // The template is changed as text, so its comments stay.
   constexpr std::string_view undescribed = "description = \"\"";
   if (const std::size_t at = text.find(undescribed); at != std::string::npos) {
     text.replace(at, undescribed.size(),

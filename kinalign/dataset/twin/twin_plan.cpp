@@ -14,14 +14,14 @@ namespace kinalign {
 
 namespace {
 
-// Fixed times in place of the time of day, so that the same plan gives the same bytes.
+// Fixed times replace the time of day, so that the same plan gives the same bytes.
 constexpr std::int64_t first_start_ns = 1'790'000'000'000'000'000;
 constexpr std::int64_t take_spacing_ns = 120'000'000'000;
-// Measured on takes of 30 s (docs/benchmark.md).
+// These sizes were measured on takes of 30 s (docs/benchmark.md).
 constexpr std::uint64_t bytes_a_frame = 1900, kinect_bytes_a_frame = 800, imu_bytes_a_frame = 450;
 constexpr std::uint64_t bytes_a_take = 40'000;
 
-/// A seed below 2^52, which every JSON parser keeps exactly.
+/// A seed below 2^52. Every JSON parser reads such a number exactly.
 std::uint64_t derived(std::uint64_t seed, std::uint64_t stream, std::uint64_t number) {
   return mix64(mix64(mix64(seed) ^ stream) + number) >> 12;
 }
@@ -42,7 +42,7 @@ std::uint64_t person_number(std::string_view id) {
   return 10 * digit(0) + digit(1);
 }
 
-/// Gives each take a person, an action and a run, in turn.
+/// Gives people, actions and runs to the takes, in turn.
 class TwinPlanner {
  public:
   explicit TwinPlanner(std::uint64_t seed) : seed_(seed) {}
@@ -61,7 +61,8 @@ class TwinPlanner {
     take.kinect = cell.kinect;
     take.imu = cell.imu;
     take.frames = frames;
-    // Streams 131 and 132 keep both seeds independent of each other and of the movements'.
+    // Streams 131 and 132 make both seeds independent of each other and of the movements (stream
+    // 130).
     take.seed = derived(seed_, 131, takes_.size());
     take.person_seed = derived(seed_, 132, person_number(id));
     take.start_ns = first_start_ns + take_spacing_ns * static_cast<std::int64_t>(takes_.size());
@@ -74,7 +75,7 @@ class TwinPlanner {
   std::vector<TwinTake> takes_;
   std::array<std::size_t, paper_people.size()> next_person_{};
   std::array<std::size_t, paper_classes.size()> next_action_{};
-  // The last run of each person and action.
+  // The last run so far of each person and action.
   std::map<std::pair<std::string, std::string>, std::uint32_t> runs_;
 };
 
@@ -83,12 +84,12 @@ class TwinPlanner {
 std::vector<TwinTake> plan_twin(const TwinOptions& options) {
   TwinPlanner planner(options.seed);
   for (const PaperCell& cell : paper_cells()) {
-    // Each cell gets at least one take, even if its share is less than a frame.
+    // Each cell gets at least one take, even if the scaled number of frames is below 1.
     const std::uint64_t wanted = scaled(cell.frames, options.scale);
     const std::uint64_t count =
         std::max<std::uint64_t>(1, (wanted + longest_twin_take - 1) / longest_twin_take);
     for (std::uint64_t i = 0; i < count; ++i) {
-      // The differences of rounded sums add up to the wanted frames exactly.
+      // The differences of rounded sums add up exactly to the wanted number of frames.
       const std::uint64_t frames = wanted * (i + 1) / count - wanted * i / count;
       planner.add_take(cell, std::max(frames, shortest_twin_take));
     }
@@ -98,14 +99,14 @@ std::vector<TwinTake> plan_twin(const TwinOptions& options) {
 
 ModalityFrames TwinCounts::sum() const {
   ModalityFrames out;
-  // Classes and people have the same sums.
+  // The sums over classes equal those over people.
   for (const ModalityFrames& row : classes) add(row, out);
   return out;
 }
 
 void count(const TwinTake& take, std::uint64_t frames, TwinCounts& counts) {
   const ModalityFrames row{frames, take.kinect ? frames : 0, take.imu ? frames : 0};
-  // The index in device_choices.
+  // `choice` is an index into device_choices.
   const std::size_t choice = !take.imu ? 0 : take.kinect ? 2 : 1;
   add(row, counts.people[take.people]);
   add(row, counts.classes[take.of_class]);
@@ -125,7 +126,7 @@ TwinCounts paper_counts(double scale) {
   for (std::size_t i = 0; i < paper_classes.size(); ++i) {
     out.classes[i] = of_table(paper_classes[i].frames);
   }
-  // The paper states no counts by choice of devices; they follow from our division.
+  // The paper does not count frames by choice of devices. These counts follow from our division.
   TwinCounts whole;
   for (const PaperCell& cell : paper_cells()) {
     TwinTake take;
@@ -139,7 +140,7 @@ TwinCounts paper_counts(double scale) {
   return out;
 }
 
-/// An estimate from measured sizes, so that the user can be asked before the disk is filled.
+/// An estimate from measured sizes, so that the user can be asked before the disk is full.
 std::uint64_t bytes_of(const std::vector<TwinTake>& takes) {
   std::uint64_t bytes = 0;
   for (const TwinTake& take : takes) {

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The first arrays of the file, in this order.
+// The first arrays of the file are in this order.
 enum Fixed : std::size_t {
   take_array,
   part_array,
@@ -24,7 +24,7 @@ enum Fixed : std::size_t {
   manifest_array
 };
 
-/// The difference between a take's stream and the windows' stream of that name; empty if they
+/// The difference between a take's stream and the stream of that name in the windows; empty if they
 /// agree.
 std::string difference(const TakeGroup& group, const TakeGroup& other) {
   if (group.kind.index() != other.kind.index())
@@ -44,14 +44,14 @@ std::string difference(const TakeGroup& group, const TakeGroup& other) {
   return "";
 }
 
-/// The columns of a stream in windows: all that do not follow from others.
+/// The columns that a stream has in windows: all that can't be computed from other columns.
 std::vector<TakeColumn> window_columns(const TakeGroup& group) {
   std::vector<TakeColumn> columns = columns_of(group, Precision::single);
   const std::vector<std::string> wanted = window_array_names();
   std::erase_if(columns, [&](const TakeColumn& one) {
     return std::find(wanted.begin(), wanted.end(), one.name) == wanted.end();
   });
-  // A reference has no validity of its own: all of its rows are valid.
+  // The reference has no array "valid", because all of its rows are valid.
   const auto is_valid = [](const TakeColumn& one) { return one.name == "valid"; };
   if (std::none_of(columns.begin(), columns.end(), is_valid)) {
     columns.push_back({"valid", Stored::uint8, {}, {{"values", "0 no, 1 yes"}}});
@@ -67,7 +67,7 @@ Json array_json(const TakeGroup& group, const TakeColumn& column) {
   return out;
 }
 
-/// The origin of windows, with the hash of the take, so that a file can be traced to its bytes.
+/// The facts about a take from which windows were cut. The hash identifies the take's bytes.
 Json take_json(const WindowTake& take, const std::vector<std::string>& parts) {
   return {{"name", to_string(take.name)},  {"subject", take.name.subject},
           {"action", take.name.action},    {"class", take.class_id},
@@ -76,7 +76,8 @@ Json take_json(const WindowTake& take, const std::vector<std::string>& parts) {
           {"sha256", take.summary.sha256}};
 }
 
-/// The stream's facts without bone lengths: each take has its own bones, which are in an array.
+/// The stream's facts without bone lengths. Each take has its own bone lengths, which are in an
+/// array.
 Json windows_stream_json(const TakeGroup& group) {
   Json out = Json::parse(stream_json(group));
   out.erase("rest_offsets");
@@ -87,7 +88,7 @@ Json windows_stream_json(const TakeGroup& group) {
 /// The manifest of a file of windows: takes, streams and the meaning of each array.
 std::string manifest_json(const WindowSource& source, const WindowOptions& options,
                           const WindowStreams& streams, const std::vector<WindowedTake>& takes) {
-  // Without --rate all takes have the same rate, so the first take's will do.
+  // Without the option --rate all takes have the same rate, so the first take's rate is used.
   const double rate =
       options.rate_hz > 0.0 ? options.rate_hz : source.takes[takes.front().index].summary.rate_hz;
   Json out{{"schema", "kinalign.windows/1"}, {"software", take_software()},
@@ -107,14 +108,14 @@ std::string manifest_json(const WindowSource& source, const WindowOptions& optio
   return out.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Adds an array of parents for each skeleton, and one of each take's bones.
+/// Adds for each skeleton an array of parents, and an array of the bones of each take.
 void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>& takes,
                    WindowLayout& layout) {
   std::size_t skeleton = 0;
   for (const TakeGroup& group : streams.groups) {
     const auto* clip = std::get_if<ClipGroup>(&group.kind);
     if (clip == nullptr) continue;
-    // Parents are the same in all takes (difference()), bones are each take's own.
+    // Parents are the same in all takes (difference()). Bones differ from take to take.
     const auto& parents = clip->skeleton.parents;
     layout.contents.emplace_back(layout.arrays.size(), bytes_of(std::span<const int>(parents)));
     layout.arrays.push_back(npz_numbers(group.name + "_parents", Stored::int32, {parents.size()}));
@@ -131,7 +132,7 @@ void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>
   }
 }
 
-/// The arrays of one number per window, and the manifest as a text without dimensions.
+/// Adds the arrays with one number per window, and the manifest as an array that is one text.
 WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
   WindowLayout out;
   out.arrays = {npz_numbers("take", Stored::int32, {windows}),
@@ -140,14 +141,14 @@ WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
                 npz_numbers("time_ns", Stored::int64, {windows}),
                 npz_numbers("rows", Stored::int32, {windows})};
   NpzTexts text = npz_texts("manifest", {manifest});
-  // NumPy reads a text without dimensions as one string.
+  // If a text array has no dimensions, NumPy reads it as one string.
   text.array.shape.clear();  // a scalar
   out.contents.emplace_back(out.arrays.size(), std::move(text.bytes));
   out.arrays.push_back(std::move(text.array));
   return out;
 }
 
-/// The value in windows of a take that lacks the array.
+/// The value that replaces an array which a take lacks.
 int value_of_absent(std::string_view array) {
   if (array == "valid") return 1;
   return array == "time_interval_ns" ? -1 : 0;
@@ -167,7 +168,7 @@ std::vector<std::string> window_array_names() {
 
 void WindowStreams::add(const TakeHeader& header, const std::vector<std::size_t>& found) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    // If one take has the array, all windows get it.
+    // If one take has the array, all windows have it.
     groups[g].resampled |= header.groups[found[g]].resampled;
     groups[g].interval_known |= header.groups[found[g]].interval_known;
   }
@@ -218,7 +219,7 @@ Result<WindowFile> WindowFile::create(FileSystem& files, const NewFile& target,
 
 Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<std::size_t>& groups,
                                 const TakeSlab& rows) {
-  // The order of the arrays is that of `Fixed`.
+  // The arrays are in the order of `Fixed`.
   KA_TRY(writer_.append(take_array, one(static_cast<int>(origin.take))));
   KA_TRY(writer_.append(part_array, one(origin.part)));
   KA_TRY(writer_.append(first_array, one(static_cast<std::int64_t>(origin.place.first))));
@@ -230,13 +231,13 @@ Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<st
   return {};
 }
 
-/// Writes the arrays of one stream; arrays that the take lacks are filled.
+/// Writes the arrays of one stream. Arrays that the take lacks get a fixed value.
 Result<void> WindowFile::append_stream(const std::vector<WindowLayout::Column>& columns,
                                        std::size_t length, const AnyRows& rows) {
   const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
     const auto column = std::find_if(columns.begin(), columns.end(),
                                      [&](const WindowLayout::Column& c) { return c.name == name; });
-    // Windows have no arrays that follow from others, such as a skeleton's local positions.
+    // Windows lack arrays that can be computed from others, such as a skeleton's local positions.
     if (column == columns.end()) return {};
     const auto put = [&](std::string_view bytes) { return writer_.append(column->array, bytes); };
     const std::span given(values);
@@ -245,7 +246,7 @@ Result<void> WindowFile::append_stream(const std::vector<WindowLayout::Column>& 
       return numbers_.store(given, column->stored, put);
     } else {
       if (!given.empty()) return put(bytes_of(given));
-      // The take lacks the array; the same value stands in every cell.
+      // The take lacks the array, so all cells get the same value.
       const auto value = static_cast<Value>(value_of_absent(name));
       const std::vector<Value> all(length * column->row_values, value);
       return put(bytes_of(std::span<const Value>(all)));

@@ -10,12 +10,12 @@ namespace kinalign {
 
 namespace {
 
-/// Rows of a take without a gap between them.
+/// Rows of a take that have no gap between them.
 struct Stretch {
   std::uint64_t begin = 0, end = 0;
 };
 
-/// Cuts the rows at steps longer than 1.5 times the median.
+/// Cuts the rows of a take where a step is longer than 1.5 times the median.
 std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   if (stamps.empty()) return {};
   std::vector<Duration> steps;
@@ -24,7 +24,7 @@ std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   if (steps.empty()) return out;
   const Duration median = upper_median(steps);
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    // Whole numbers: a step of 1.5 medians or less is no gap.
+    // The comparison uses whole numbers. A step of exactly 1.5 medians is no gap.
     if (2 * steps[i] <= 3 * median) continue;
     out.back().end = i + 1;
     out.push_back({i + 1, stamps.size()});
@@ -32,17 +32,18 @@ std::vector<Stretch> stretches_of(std::span<const Time> stamps) {
   return out;
 }
 
-/// The number of rows of the windows' grid in a stretch.
+/// The number of rows in a stretch, at the rate of the windows.
 std::uint64_t grid_rows(std::span<const Time> stamps, const Stretch& stretch, double rate_hz) {
   if (rate_hz <= 0.0) return stretch.end - stretch.begin;
   const double seconds =
       std::chrono::duration<double>(stamps[stretch.end - 1] - stamps[stretch.begin]).count();
-  // A last row that is late by rounding still counts.
+  // If rounding puts the last row slightly after the end, it still counts.
   constexpr double rounding = 1e-6;  // share of a row
   return static_cast<std::uint64_t>(seconds * rate_hz + rounding) + 1;
 }
 
-/// The window of `rows` rows that begins at row `offset` of the stretch's grid.
+/// The window of `rows` rows that begins at row `offset` of the stretch, at the rate of the
+/// windows.
 WindowPlace place_at(std::span<const Time> stamps, const Stretch& stretch, double rate_hz,
                      std::uint64_t offset, std::uint64_t rows) {
   if (rate_hz <= 0.0) {
@@ -53,7 +54,7 @@ WindowPlace place_at(std::span<const Time> stamps, const Stretch& stretch, doubl
     return grid_stamp(stamps[stretch.begin], rate_hz, row);
   };
   const Time begin = stamp(offset), end = stamp(offset + rows - 1);
-  // Both ends of the window lie between these rows of the take, which are read.
+  // These rows of the take are read: from the last one before the window to the first one after it.
   const auto before = std::upper_bound(stamps.begin(), stamps.end(), begin) - 1;
   const auto behind = std::min(std::lower_bound(before, stamps.end(), end), stamps.end() - 1);
   return {begin, static_cast<std::uint64_t>(before - stamps.begin()),
@@ -70,14 +71,16 @@ WindowPlaces place_windows(std::span<const Time> stamps, const WindowGrid& grid)
       out.places.push_back(place_at(stamps, stretch, grid.rate_hz, offset, count));
     };
     if (rows < grid.length) {
-      // A short stretch gives one window with fewer rows, or none if it is too short.
+      // A stretch shorter than a window gives one window with fewer rows. If it is shorter than
+      // half a window, it gives none.
       if (2 * rows >= grid.length) add(0, rows);
       if (2 * rows < grid.length) out.rows_left_out += stretch.end - stretch.begin;
       continue;
     }
     std::uint64_t offset = 0;
     for (; offset + grid.length <= rows; offset += grid.step) add(offset, grid.length);
-    // The last window would leave rows at the end; one more window ends with the stretch.
+    // If the last window leaves rows at the end, one more window is added that ends with the
+    // stretch.
     const bool has_rest = offset - grid.step + grid.length < rows;
     if (has_rest) add(rows - grid.length, grid.length);
   }

@@ -9,16 +9,16 @@
 namespace kinalign {
 
 /// Reads the `grid.length` rows of a window into `out`. If the window has fewer rows, its last row
-/// is repeated, and no cell of the added rows is valid.
-/// At the take's own rate rows are copied. At another rate they lie between two rows of the take:
-/// vectors on the line between both, rotations on the shorter arc (slerp). Such a cell is valid if
-/// both are, has the worse state of both, and the larger interval and distance. No filter is
-/// applied before, so motion faster than half the new rate is aliased.
+/// is repeated, and no cell of the added rows is valid. At the take's own rate, rows are copied.
+/// At another rate, rows are interpolated between two rows of the take: vectors on the straight
+/// line, rotations on the shorter arc (slerp). A cell is valid if it is valid in both rows. It gets
+/// the worse state of the two, and the larger interval and distance. There is no low-pass filter
+/// before, so motion faster than half the new rate is aliased.
 /// `raw`: memory for the take's rows.
 Result<void> read_window(TakeReader& reader, const WindowPlace& place, const WindowGrid& grid,
                          TakeSlab& raw, TakeSlab& out);
 
-/// The share of valid cells of a window's stream, over its first `rows` rows.
+/// The share of valid cells in one stream of a window, over its first `rows` rows.
 double valid_share(const TakeSlab& window, std::size_t stream, std::uint64_t rows);
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The takes are read twice: the first pass finds the windows that are kept, since an NPZ states the
-// sizes of its arrays at its beginning; the second pass writes them.
+// The takes are read twice. The first pass finds the windows that are kept, because an NPZ states
+// the sizes of its arrays at its beginning. The second pass writes these windows.
 #include "kinalign/dataset/windows/windows.h"
 
 #include "kinalign/core/find_named.h"
@@ -22,14 +22,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The names of a take's streams, from its summary: no take has to be opened for them.
+/// The names of a take's streams. They come from its summary, so the take is not opened.
 std::set<std::string> streams_of(const WindowTake& take) {
   std::set<std::string> out;
   for (const StreamSummary& stream : take.summary.streams) out.insert(stream.name);
   return out;
 }
 
-/// The first of the streams that a take lacks; empty if it has all.
+/// The first of these streams that a take lacks; empty if the take has all of them.
 std::string lacking(const std::vector<std::string>& names, const WindowTake& take) {
   const auto there = streams_of(take);
   const auto lacks = std::find_if(names.begin(), names.end(),
@@ -37,7 +37,7 @@ std::string lacking(const std::vector<std::string>& names, const WindowTake& tak
   return lacks == names.end() ? "" : *lacks;
 }
 
-/// The wanted streams; if none are given, those that all takes have.
+/// The streams that the user wants; if none are given, those that all takes have.
 Result<std::vector<std::string>> chosen_streams(const WindowSource& source,
                                                 const WindowOptions& options) {
   if (!options.streams.empty()) return options.streams;
@@ -52,12 +52,12 @@ Result<std::vector<std::string>> chosen_streams(const WindowSource& source,
   return Failure(Error{"", 0, "a stream that all takes have, or --stream", "no such stream"});
 }
 
-/// Without --rate all takes must have the same rate, within 0.5 %.
+/// Fails if the takes have different rates (by more than 0.5 %) and the option --rate is not given.
 Result<void> check_rates(const WindowSource& source, const WindowOptions& options) {
   if (options.rate_hz > 0.0) return {};
   const double rate = source.takes.front().summary.rate_hz;
   for (const WindowTake& take : source.takes) {
-    // Rates that were estimated from stamps differ a little from take to take.
+    // Rates that were estimated from stamps differ slightly between takes.
     const double other = take.summary.rate_hz;
     constexpr double tolerance = 0.005;
     if (std::abs(other - rate) <= tolerance * rate) continue;
@@ -69,9 +69,9 @@ Result<void> check_rates(const WindowSource& source, const WindowOptions& option
   return {};
 }
 
-/// The data of both passes. The first pass fills `takes_` with the places of the kept windows. The
-/// second pass reads these places again and writes them. `raw_` and `window_` are memory that all
-/// windows share.
+/// The data of both passes. The first pass stores the places of the kept windows in `takes_`. The
+/// second pass reads these places and writes the windows. All windows share the memory of `raw_`
+/// and `window_`.
 class Job {
  public:
   Job(FileSystem& files, const WindowSource& source, const WindowOptions& options,
@@ -121,7 +121,7 @@ Result<void> Job::done_with(std::size_t take, std::uint64_t passes) {
   return go_on(progress_, "windows", done_, total_) ? Result<void>() : Failure(interruption());
 }
 
-/// The groups of those names, in that order.
+/// The groups with these names, in this order.
 std::vector<TakeGroup> groups_of(const TakeHeader& header, const std::vector<std::string>& names) {
   std::vector<TakeGroup> out;
   for (const std::string& name : names) {
@@ -130,7 +130,7 @@ std::vector<TakeGroup> groups_of(const TakeHeader& header, const std::vector<std
   return out;
 }
 
-/// Windows have the streams of the first take in the spaces that most takes have.
+/// Chooses the streams of the windows: those of the first take in the spaces that most takes have.
 Result<void> Job::set_streams(const std::vector<std::string>& names) {
   struct Spaces {
     std::vector<TakeGroup> groups;  // from the first take with these spaces
@@ -138,12 +138,12 @@ Result<void> Job::set_streams(const std::vector<std::string>& names) {
   };
   std::vector<Spaces> all;
   for (std::size_t take = 0; take < source_.takes.size(); ++take) {
-    // Takes that lack a stream have no say in the choice of spaces.
+    // Takes that lack a stream are not counted for the choice of spaces.
     if (!lacking(names, source_.takes[take]).empty()) continue;
     const TakeReader reader = KA_TRY(open(take));
     std::vector<TakeGroup> groups = groups_of(reader.header(), names);
     const auto same = [&](const Spaces& one) {
-      // Only the spaces are compared: takes in another space can't be in one array.
+      // Only the spaces are compared, because data in different spaces must not be in one array.
       return std::equal(one.groups.begin(), one.groups.end(), groups.begin(), groups.end(),
                         [](const TakeGroup& a, const TakeGroup& b) { return a.space == b.space; });
     };
@@ -151,14 +151,14 @@ Result<void> Job::set_streams(const std::vector<std::string>& names) {
     if (known != all.end()) ++known->takes;
     if (known == all.end()) all.push_back({std::move(groups), 1});
   }
-  // The spaces of most takes are chosen, so that the fewest takes are left out.
+  // The spaces of most takes are chosen, so that as few takes as possible are left out.
   const auto most = std::max_element(
       all.begin(), all.end(), [](const Spaces& a, const Spaces& b) { return a.takes < b.takes; });
   if (most != all.end()) streams_.groups = std::move(most->groups);
   return {};
 }
 
-/// The reasons for leaving out takes: "has no stream imu (2 takes); ...".
+/// The reasons why takes were left out, as text: "has no stream imu (2 takes); ...".
 std::string Job::reasons() const {
   std::map<std::string, std::size_t> counts;
   for (const TakeLeftOut& one : made.takes_left_out) ++counts[one.why];
@@ -170,7 +170,7 @@ std::string Job::reasons() const {
   return out.empty() ? "none" : out;
 }
 
-/// A window is kept if each of its streams has enough valid cells. It must be read for that.
+/// Reads a window; true if each of its streams has enough valid cells.
 Result<bool> Job::is_valid(TakeReader& reader, const WindowPlace& place,
                            const std::vector<std::size_t>& groups) {
   KA_TRY(read_window(reader, place, grid_, raw_, window_));
@@ -187,10 +187,10 @@ Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
     if (clip != nullptr) out.rest_offsets.push_back(clip->skeleton.rest_offsets);
   }
   const WindowPlaces found = place_windows(KA_TRY(reader.stamps()), grid_);
-  // Rows of short stretches are counted for the user.
+  // Rows in short stretches are counted and reported to the user.
   made.rows_left_out += found.rows_left_out;
   for (const WindowPlace& place : found.places) {
-    // Without a limit no window has to be read in this pass.
+    // Without a limit for valid cells, windows need not be read in this pass.
     const bool kept = options_.valid <= 0.0 || KA_TRY(is_valid(reader, place, out.groups));
     if (kept) out.places.push_back(place);
     if (!kept) ++made.too_little_valid;
@@ -198,7 +198,7 @@ Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
   return out;
 }
 
-/// Finds the windows of one take. False: the take has none and is left out.
+/// Finds the windows of one take. Returns false if it has none, and leaves it out.
 Result<bool> Job::find_in(std::size_t take, const std::vector<std::string>& names) {
   const WindowTake& of = source_.takes[take];
   const auto leave_out = [&](std::string why) {
@@ -209,10 +209,10 @@ Result<bool> Job::find_in(std::size_t take, const std::vector<std::string>& name
     return leave_out("has no stream " + lacks);
   }
   TakeReader reader = KA_TRY(open(take));
-  // A take with other joints or nodes than the first is left out, not an error.
+  // If a take has other joints or nodes than the first one, it is left out; this is no error.
   const auto fits = streams_.find_in(reader.header());
   if (!fits) return leave_out(fits.error().found);
-  // The arrays are complete only when all takes were seen.
+  // The list of arrays is complete only after all takes were seen.
   streams_.add(reader.header(), *fits);
   WindowedTake found = KA_TRY(windowed(take, reader));
   made.windows[of.part] += found.places.size();
@@ -227,11 +227,11 @@ Result<void> Job::find(const std::vector<std::string>& names) {
   made.windows.assign(source_.parts.size(), 0);
   KA_TRY(set_streams(names));
   for (std::size_t take = 0; take < source_.takes.size(); ++take) {
-    // A take that is left out needs no second pass.
+    // A take that was left out is not read in the second pass, so both of its passes are done.
     const bool is_kept = KA_TRY(find_in(take, names));
     KA_TRY(done_with(take, is_kept ? 1 : 2));
   }
-  // Without a window the error says why each take was left out.
+  // If no window is found, the error states why the takes were left out.
   if (!takes_.empty()) return {};
   return Failure(Error{source_.folder, 0, "at least one window", reasons()});
 }
@@ -245,7 +245,7 @@ Result<void> Job::write(const NewFile& target) {
     TakeReader reader = KA_TRY(open(take.index));
     for (const WindowPlace& place : take.places) {
       KA_TRY(read_window(reader, place, grid_, raw_, window_));
-      // The index is that in the file's list, which has no left-out takes.
+      // The index `i` is that in the file's list of takes, which has only takes with windows.
       KA_TRY(file.append({i, source_.takes[take.index].part, place}, take.groups, window_));
     }
     KA_TRY(done_with(take.index, 1));

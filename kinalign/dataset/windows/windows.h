@@ -18,9 +18,9 @@ namespace kinalign {
 /// The choices of the user; docs/windows.md explains them.
 struct WindowOptions {
   std::int64_t length = 64, step = 32;  // rows
-  double rate_hz = 0.0;                 // 0: the takes' own, which must all be the same
-  double valid = 0.5;                   // least share of valid cells, for each stream of a window
-  std::vector<std::string> streams;     // empty: those that all takes have
+  double rate_hz = 0.0;                 // 0: the rate of the takes, which must be the same for all
+  double valid = 0.5;  // least share of valid cells that each stream of a window must have
+  std::vector<std::string> streams;  // empty: those that all takes have
 };
 
 /// A take to cut, with its part of the split as an index in WindowSource::parts.
@@ -31,11 +31,11 @@ struct WindowTake {
   std::uint8_t part = 0;
 };
 
-/// The takes and the facts about their data set that the file states.
+/// The takes, and the facts about their data set that are written into the file.
 struct WindowSource {
-  std::string folder;                   // the data set's
-  std::string name, licence, citation;  // the data set's
-  std::vector<std::string> parts;       // the split's; only "all" without a split
+  std::string folder;                   // of the data set
+  std::string name, licence, citation;  // of the data set
+  std::vector<std::string> parts;       // of the split; only "all" without a split
   std::vector<WindowTake> takes;
 };
 
@@ -49,7 +49,8 @@ struct TakeLeftOut {
 struct WindowsMade {
   std::vector<std::uint64_t> windows;  // for each part
   std::uint64_t rows_left_out = 0;     // rows of takes in stretches shorter than half a window
-  std::uint64_t too_little_valid = 0;  // windows that were left out for that reason
+  std::uint64_t too_little_valid =
+      0;  // windows that were left out because they have too few valid cells
   std::vector<TakeLeftOut> takes_left_out;
 };
 
@@ -59,10 +60,10 @@ struct NewFile {
   Overwrite overwrite = Overwrite::no;
 };
 
-/// Writes `target` in a child process, since HDF5 can crash on a hostile file. Left out are takes
-/// that lack a stream, whose streams are in other spaces than in most takes, or whose joints or
-/// nodes differ from those of the first take in these spaces. Fails if rates differ and `rate_hz`
-/// is 0, if no stream is in all takes, or if no window is left.
+/// Writes `target` in a child process, because HDF5 can crash on a hostile file. Takes are left out
+/// if they lack a stream, if their streams are in other spaces than in most takes, or if their
+/// joints or nodes differ from those of the first take in these spaces. Fails if rates differ and
+/// `rate_hz` is 0, if no stream is in all takes, or if no window is left.
 Result<WindowsMade> write_windows(FileSystem& files, const WindowSource& source,
                                   const WindowOptions& options, const NewFile& target,
                                   const Progress& progress);
