@@ -41,7 +41,7 @@ struct BuildJob {
   BuildReason reason = BuildReason::first;
 };
 
-/// The takes that a share has to make, longest first.
+/// The takes that this process has to make, longest first.
 struct BuildPlan {
   std::vector<BuildJob> jobs;
   std::size_t at_once = 1;       // takes

@@ -84,7 +84,7 @@ void ContentCheck::add_bone(const ClipRows& rows, std::size_t cell, std::size_t 
   group.global_most[joint] = std::max(group.global_most[joint], between.norm());
 }
 
-/// Counts broken numbers of a skeleton, and measures its bones.
+/// Counts wrong numbers of a skeleton (contents.h), and measures its bones.
 void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& group) const {
   const std::size_t joints = group.parents.size();
   for (std::size_t r = 0; r < count; ++r) {
@@ -108,7 +108,7 @@ void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& grou
   }
 }
 
-/// Counts broken numbers of valid points.
+/// Counts wrong numbers of valid points (contents.h).
 void ContentCheck::add_rows(const PointRows& rows, std::size_t, Group& group) const {
   for (std::size_t cell = 0; cell < rows.valid.size(); ++cell) {
     if (rows.valid[cell] == 0) continue;
@@ -132,7 +132,7 @@ void ContentCheck::add_vector(const std::vector<double>& all, std::size_t cell, 
   }
 }
 
-/// Counts broken numbers of valid samples.
+/// Counts wrong numbers of valid samples (contents.h).
 void ContentCheck::add_rows(const ImuRows& rows, std::size_t, Group& group) const {
   for (std::size_t cell = 0; cell < rows.valid.size(); ++cell) {
     if (rows.valid[cell] == 0) continue;

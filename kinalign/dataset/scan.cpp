@@ -45,7 +45,7 @@ UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
 }
 
 UnfinishedFolder::~UnfinishedFolder() {
-  // If the import fails, all new folders are removed, and no folder that existed before.
+  // If the import fails, all new folders are removed. Folders that existed before stay.
   if (kept_) return;
   std::error_code ignored;
   fs::remove_all(path_, ignored);

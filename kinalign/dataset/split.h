@@ -59,7 +59,8 @@ Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& c
                          const SplitOptions& options);
 
 /// Checks a split. Errors: a take in two parts, found by its name, its bytes, or the bytes of a raw
-/// file with samples; a person in two parts if the method forbids it; a take that does not exist.
+/// file with samples; a person in two parts if the method forbids it; a take that does
+/// not exist.
 /// One warning states how many takes have changed since the split was made. Notes name other people
 /// in two parts. The most severe findings come first.
 Findings check_split(const Split& split, const std::vector<SplitTake>& takes,

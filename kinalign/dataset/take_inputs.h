@@ -31,7 +31,7 @@ std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions
 /// further files of a recording in the same folder.
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known);
-/// The same for a take that was never built. Every file is opened to find its further files.
+/// The raw files of a take that was never built. Every file is opened to find its further files.
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base);
 
 /// True if each input still has the bytes from which the take was made. If an input has the same

@@ -10,7 +10,7 @@ namespace kinalign {
 
 /// The measures of one repetition. A measure is absent if no valid frames exist for it.
 struct ProtocolMarks {
-  std::optional<double> position_cm;  // MPJPE
+  std::optional<double> position_cm;  // MPJPE: mean distance of a joint from the truth
   /// PA-MPJPE: the position error after a similarity fit of each frame with at least 12 valid
   /// joints.
   std::optional<double> fitted_cm;

@@ -10,10 +10,8 @@ namespace kinalign {
 namespace {
 
 /// E_s of one window: the Frobenius norm of the second differences, divided by T + 2. The first and
-/// the last frame are repeated once. The paper writes
-/// Y O
-/// / (T + 2). The corners of its matrix O give first differences; these are 0 because of the
-/// repetition.
+/// the last frame are repeated once. The paper writes |Y O| / (T + 2). The corners of its matrix O
+/// give first differences; these are 0 because of the repetition.
 double roughness(std::span<const double> places, std::size_t joints) {
   const std::size_t width = 3 * joints, frames = places.size() / width;
   const auto at = [&](std::size_t t, std::size_t c) {

@@ -27,8 +27,8 @@ struct OwnRootJoints {
   std::size_t root = 0;
   std::size_t hip_left = 0, hip_right = 0, shoulder_left = 0, shoulder_right = 0;
 };
-/// Moves each frame [T,J,3], in any unit, so that its root is at x = z = 0, and rotates it about y
-/// so that its left side (hips and shoulders) points to +x. A frame without a direction is not
+/// Moves each frame [T,J,3], in any unit, so that its root is at x = z = 0. Then rotates it about
+/// y, so that its left side (hips and shoulders) points to +x. A frame without a direction is not
 /// rotated.
 std::vector<double> own_root(std::span<const double> positions, std::size_t joints,
                              const OwnRootJoints& own);

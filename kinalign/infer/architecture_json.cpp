@@ -92,7 +92,7 @@ Result<std::size_t> count_of(const Json& json, const std::string& key, const std
 }
 
 /// Reads layers and counts them, so that a hostile text is refused early.
-/// The recursion needs no limit of its own: strict_json.h limits the depth of the text.
+/// The recursion needs no limit here, because strict_json.h limits the depth of the text.
 class Reader {
  public:
   /// Reads a list of layers. `path` names the layer that holds the list in messages.

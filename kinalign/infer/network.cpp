@@ -81,7 +81,7 @@ class Run {
     if (sequence.block) workspace_.give_back(*sequence.block);
   }
 
-  /// The same values in a block that may be changed; a copy if `in` is the caller's input.
+  /// Returns the values of `in` in a block that may be changed. The caller's input is copied.
   Sequence owned(Sequence in) {
     if (in.block) return in;
     const Sequence out = fresh(in.frames, in.channels);

@@ -69,7 +69,7 @@ class Network {
            std::vector<float>& out) const;
 
  private:
-  // These two run the same prepared layers in other ways.
+  // These two classes run the same prepared layers in other ways.
   friend class OnlineNetwork;
   friend class WindowNetwork;
   explicit Network(std::unique_ptr<const PreparedNetwork> prepared);

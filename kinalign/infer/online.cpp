@@ -16,7 +16,7 @@ namespace {
 /// All vectors get their size when the state is made. A step allocates nothing.
 struct LayerState {
   const PreparedLayer* layer = nullptr;
-  Values out;           // [outputs]
+  Values out;           // [outputs] the result of the last frame
   Values ring;          // conv: each of the last `rows` frames is stored twice, `rows` frames apart
   std::size_t row = 0;  // 0 ... rows - 1, place of the next frame
   std::size_t rows = 0;

@@ -27,7 +27,7 @@ struct LayerWindow {
   const PreparedLayer* layer = nullptr;
   std::size_t before = 0, after = 0;  // number of frames before and after that a result depends on
   std::size_t channels = 0;
-  Values out;                // [rows, channels]
+  Values out;                // [rows, channels] the results
   std::size_t computed = 0;  // number of valid rows of `out`
   std::vector<std::vector<LayerWindow>> branches;
   std::vector<Rows> found;  // the branches' results in the current run
@@ -209,7 +209,7 @@ bool are_bounded(const std::vector<Layer>& layers) {
 /// The data that are kept between runs: the number of frames, and the results of each layer.
 struct WindowNetwork::State {
   const Network* network = nullptr;
-  std::size_t frames = 0;           // of the previous run that are still in the window
+  std::size_t frames = 0;           // frames of the previous run that are still in the window
   std::vector<LayerWindow> layers;  // empty: the network runs over the whole window each time
   Values scratch;
   Workspace workspace;

@@ -44,7 +44,7 @@ struct DenoiseTraining {
 
 /// Statistics of the training features, stored in the model.
 struct DenoiseScales {
-  std::vector<float> input_mean, input_scale;  // [C]
+  std::vector<float> input_mean, input_scale;  // one number for each input channel
   std::vector<float> answer_mean;              // [3 Jout] m, mean of truth minus base
 };
 

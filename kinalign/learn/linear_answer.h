@@ -10,7 +10,7 @@ namespace kinalign {
 /// A convolution over time in the form of torch::conv1d, with zeros beyond both ends.
 struct LinearAnswer {
   torch::Tensor weight;  // [N,C,kernel] float32
-  torch::Tensor bias;    // [N]
+  torch::Tensor bias;    // [N] one number for each output
   torch::Tensor left;    // [N] mean square error over the rows
 };
 

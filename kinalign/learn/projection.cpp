@@ -175,7 +175,7 @@ class Constraints {
       const auto frames = standing_frames(foot, layout.rate_hz);
       const auto stands = to_torch({frames.begin(), frames.end()}, {whole(frames.size())});
       places.push_back(whole(*answered));
-      // One column for each foot joint that input and answer both have.
+      // One column for each foot joint that both the input and the output have.
       columns.push_back(stands.slice(0, 1) * stands.slice(0, 0, -1));
     }
     feet_ = torch::tensor(places, torch::kInt64);

@@ -33,8 +33,8 @@ struct DenoiseModel {
   bool states_spread = false;  // the network also outputs each joint's expected error (spread)
   double spread_factor = 1.0;  // corrects the spread that the network outputs
   Steadying steadying;
-  std::vector<float> input_mean, input_scale;  // [C]
-  std::vector<float> answer_mean;              // [3 Jout] m
+  std::vector<float> input_mean, input_scale;  // one number for each input channel
+  std::vector<float> answer_mean;              // [3 Jout] m, mean of truth minus base
   Architecture architecture;                   // the first network ("net")
   std::optional<Architecture> second;          // optional network that refines the joints
   std::map<std::string, Tensor> tensors;       // names begin with "net." or "second."

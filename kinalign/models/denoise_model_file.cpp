@@ -139,7 +139,7 @@ std::string misfit(const DenoiseModel& model) {
 
 }  // namespace
 
-// The scales are tensors of their own in the file. read_denoise_model() takes them out again, so
+// The scales are separate tensors in the file. read_denoise_model() takes them out again, so
 // that only the networks' tensors remain.
 std::string write_denoise_model(const DenoiseModel& model) {
   std::map<std::string, Architecture> networks{{"net", model.architecture}};

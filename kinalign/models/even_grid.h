@@ -51,10 +51,11 @@ JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places
 /// the state is the worse one of the two samples. If the model has a head and a root, a joint more
 /// than 1.6 m from the root is missing, too.
 ///
-/// Fails if there are fewer than two samples, if stamps fall, if the root or the first left/right
-/// pair of body_joints() is absent, if the median period is more than 2 times or less than 1/4 of
-/// the grid's period, if the grid has 10,000,000 frames or more, if the body is smaller than 0.4 m
-/// or larger than 2.6 m, or if the head is more than 0.2 m below the root in nine of ten frames.
+/// Fails if there are fewer than two samples, if stamps fall, or if the root or the first
+/// left/right pair of body_joints() is absent. Fails if the median period of the samples is more
+/// than 2 times or less than 1/4 of the grid's period, or if the grid has 10,000,000 frames or
+/// more. Also fails if the body is smaller than 0.4 m or larger than 2.6 m, or if the head is more
+/// than 0.2 m below the root in nine of ten frames.
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
                                const EvenGrid& grid);

@@ -14,7 +14,7 @@ void hold(JointFrames& body, double rate_hz);
 /// The values were found by trials on UI-PRMD. A lower `least_hz` makes a still joint calmer; a
 /// higher `slope` lets the filter follow fast motion.
 struct OneEuro {
-  double least_hz = 1.2;       // cut-off frequency at rest
+  double least_hz = 1.2;       // cut-off frequency at rest, Hz
   double slope = 3.0;          // Hz added to the cut-off for each m/s
   double derivative_hz = 1.0;  // cut-off frequency of the speed's low-pass
 };

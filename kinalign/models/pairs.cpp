@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// A stream with fewer joints that a Kinect has does not come from a Kinect.
+/// If fewer joints of a stream have the name of a Kinect's joint, the stream is not from a Kinect.
 constexpr std::size_t least_known = 10;
 
 /// The joint names of a stream. Fails if there is no such stream or it has no names; the message
@@ -126,7 +126,8 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
                        std::size_t least) {
   const auto joints = KA_TRY(joints_of(windows, input));
   const Chosen chosen = choose(joints);
-  // Not built in one braced list: GCC leaks the earlier members if a later one returns early.
+  // This is not one braced list, because GCC leaks its earlier members if a later one returns
+  // early.
   auto outputs = KA_TRY(joints_of(windows, truth));
   Pairs out{
       .inputs = chosen.names, .outputs = std::move(outputs), .rate_hz = windows.facts.rate_hz};

@@ -17,8 +17,8 @@ namespace kinalign {
 /// All arrays have the same T rows, at the rate of the file.
 struct Pair {
   JointFrames input;
-  std::vector<float> truth;         // [T,Jout,3] m
-  std::vector<std::uint8_t> valid;  // [T,Jout]
+  std::vector<float> truth;         // [T,Jout,3] m, the true positions
+  std::vector<std::uint8_t> valid;  // [T,Jout] 0: the truth is not known
   std::string take, subject, action;
   std::string part;  // name of the split's part, for example "train"
 };
@@ -39,8 +39,9 @@ struct Pairs {
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
                        std::size_t least);
 
-/// The same for the joints of a model, found by the Kinect's names (kinect_names()). Joints that a
-/// stream lacks are missing in the input and not valid in the truth.
+/// The pairs of two streams for the joints of a model, found by the Kinect's names
+/// (kinect_names()). Joints that a stream lacks are missing in the input and not valid in the
+/// truth.
 Result<Pairs> pairs_for(const Windows& windows, const std::string& input, const std::string& truth,
                         const Pairs& joints, std::size_t least);
 

@@ -87,8 +87,8 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
   return plan;
 }
 
-/// The rest direction to each joint from its parent. If the direction is not known, that of a known
-/// joint below is used (for a clavicle), else that of the parent (for a finger).
+/// The rest direction to each joint from its parent. If it is not known, the direction of a known
+/// joint below is used (for a clavicle), else the direction of the parent (for a finger).
 std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
   const auto names = kinect_names(body.names);
   std::vector<std::optional<Vec3>> ways;

@@ -261,8 +261,8 @@ Result<void> join(const Arrays& arrays, const Places& places, Windows& out,
 }
 
 Result<Places> places_of(const Arrays& arrays, const std::string& name) {
-  // Filled member by member: GCC leaks the earlier members of a braced list if a later one returns
-  // early.
+  // Members are filled one by one, because GCC leaks the earlier members of a braced list if a
+  // later member returns early.
   Places out;
   out.take = KA_TRY(integers(arrays, "take", name));
   out.part = KA_TRY(integers(arrays, "part", name));

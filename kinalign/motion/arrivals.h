@@ -73,7 +73,7 @@ class ArrivalSurveyor {
     std::uint64_t count = 0, near = 0;
     std::uint64_t run = 0;  // number of successive near steps up to this sample
     std::int64_t first = 0, t = 0;
-    double step = 0.0;   // step before this sample, ns
+    double step = 0.0;   // time since the previous sample, ns
     double pause = 0.0;  // upper bound of the delay, from visible pauses, ns
     double doubt = 0.0;  // further delay that usual steps may hide, at most late_steps steps, ns
     bool flush = false;  // all samples so far belong to a flush

@@ -20,7 +20,7 @@ struct EndSite {
 
 /// Joints, each parent before its children.
 struct Skeleton {
-  std::vector<std::string> joint_names;  // [J] unique
+  std::vector<std::string> joint_names;  // [J] each name once
   std::vector<int> parents;              // [J] parents[j] < j; -1: a root
   std::vector<Vec3> rest_offsets;        // [J] m, from the parent, in the parent's space
   std::vector<EndSite> end_sites;        // not among the joints; in the order of the file

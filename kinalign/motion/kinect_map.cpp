@@ -126,7 +126,7 @@ Trial tried(const Skeleton& skeleton, const Table& table) {
 Result<KinectMap> kinect_map(const Skeleton& skeleton) {
   std::optional<Trial> best;
   std::string_view best_name;
-  // The table with the fewest missing joints also serves the message.
+  // If no table fits, the message is about the table with the fewest missing joints.
   for (const auto& [name, table] : known) {
     Trial trial = tried(skeleton, table);
     if (best && trial.missing.size() >= best->missing.size()) continue;

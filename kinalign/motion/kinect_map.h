@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the places of a Kinect's 25 joints in another skeleton: at a joint, or at a share of the
-// way from a joint to another joint or to its end site. Joints are mapped by height. A map by name
-// would be wrong by 10 to 14 cm in the spine. Remaining differences (widths, the Kinect's place of
-// a knee) are left to a calibration.
+// Finds the places of a Kinect's 25 joints in another skeleton. Such a place is at a joint, or at a
+// share of the way from a joint to another joint or to its end site. Joints are mapped by height. A
+// map by name would be wrong by 10 to 14 cm in the spine. Remaining differences (widths, the
+// Kinect's place of a knee) are left to a calibration.
 #pragma once
 
 #include "kinalign/core/error.h"

@@ -16,8 +16,8 @@ namespace kinalign {
 struct MahonyOptions {
   // Near the truth a tilt error e and a bias error b obey e' = b - tilt_gain e, b' = -bias_gain e.
   // This is critically damped if bias_gain is a quarter of tilt_gain squared, with the time
-  // constant 2 / tilt_gain, here 20 s. The paper's experiments used 1/s and 0.3/s2 (from memory,
-  // not verified), which is too fast for swinging limbs. The errors by which these gains were
+  // constant 2 / tilt_gain, here 20 s. Mahony et al. used 1/s and 0.3/s2 (from memory, not
+  // verified), which is too fast for swinging limbs. The errors by which these gains were
   // chosen are in docs/imu_noise.md.
   double tilt_gain = 0.1;              // kP, 1/s; times a step it must be below 2
   double bias_gain = 0.0025;           // kI, 1/s2

@@ -19,7 +19,7 @@ enum class Tracking : std::uint8_t { missing = 0, inferred = 1, tracked = 2 };
 struct PointFrames {
   std::vector<Time> stamps;       // [T] as given by the device; may repeat and step back
   std::vector<double> positions;  // [T,J,3] m
-  std::vector<Tracking> state;    // [T,J]
+  std::vector<Tracking> state;    // [T,J] of each point in each frame
 
   std::size_t size() const { return stamps.size(); }
 };

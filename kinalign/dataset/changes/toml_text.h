@@ -19,7 +19,7 @@ Result<std::string> with_id_renamed(const std::string& toml, const std::string& 
                                     const std::string& file);
 
 /// A take's manifest under another name: subject, action and paths of raw files below sourcedata/
-/// are changed. A text that can't be edited is written anew, without its comments.
+/// are changed. A text that can't be edited is replaced by a new one without comments.
 Result<std::string> manifest_of_renamed(const std::string& toml, const TakeName& from,
                                         const TakeName& to, const std::string& file);
 

@@ -19,7 +19,7 @@ namespace kinalign {
 struct CorpusTake {
   std::string subject, action;
   std::uint32_t run = 0;  // 0: the corpus does not number repetitions
-  Manifest manifest;      // its paths can be opened
+  Manifest manifest;      // its paths can be opened without a folder before them
   std::string from;       // the take's name in the corpus, for messages
 };
 

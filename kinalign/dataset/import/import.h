@@ -41,8 +41,9 @@ struct Imported {
 /// Called after each take with the numbers of finished takes and of all takes.
 using ImportStep = std::function<void(std::uint64_t done, std::uint64_t takes)>;
 
-/// Fails if the corpus is unknown or has no take, if a unit or an up axis is given for files that
-/// state their own, or if a file can't be read or written. Takes added before a failure stay.
+/// Imports a corpus. Fails if the corpus is unknown or has no take, or if a file can't be read or
+/// written. Also fails if a unit or an up axis is given for files that state their own. Takes that
+/// were added before a failure stay.
 Result<Imported> import_corpus(FileSystem& files, const std::string& folder,
                                const ImportRequest& request, const Progress& progress,
                                const ImportStep& step);

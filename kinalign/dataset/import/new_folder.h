@@ -22,7 +22,8 @@ using FillFolder = std::function<Result<void>(const PutFile& put)>;
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
                                     const std::string& source, const FillFolder& fill);
 
-/// The same for content from several files. `sha256`: a hash of all data that decide the content.
+/// Like unpacked_folder(), but for content from several files. `sha256`: a hash of all data that
+/// decide the content.
 Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
                                   const std::string& stem, const std::string& sha256,
                                   const FillFolder& fill);

@@ -30,8 +30,8 @@ constexpr double kinect_hz = 30.0, truth_hz = 50.0;
 constexpr double most_rms_m = 0.12;  // largest rms of an accepted repetition
 constexpr std::size_t least_taken =
     3;  // least number of accepted repetitions of a person's movement
-constexpr std::size_t shift_stride = 5;  // frames of the truth between those that elbows and knees
-                                         // are fitted to
+// Elbows and knees are fitted to one of this many frames of the truth.
+constexpr std::size_t shift_stride = 5;
 constexpr double gap_ms = 36.0;  // more than a step of the Kinect, less than two of the truth
 constexpr std::size_t marker_count = plug_in_gait_markers.size();
 
@@ -40,10 +40,10 @@ struct Repetition {
   PieceName name;
   PiecePair files;
   std::string sha256;                // hash of the files' hashes
-  std::vector<double> kinect;        // [F,18,3] m
-  std::vector<double> markers;       // [G,39,3] m, 50 Hz
-  std::vector<std::uint8_t> seen;    // [G,39]
-  JointCentres truth;                // [G]
+  std::vector<double> kinect;        // [F,18,3] m, the joints in F frames
+  std::vector<double> markers;       // [G,39,3] m, in G frames at 50 Hz
+  std::vector<std::uint8_t> seen;    // [G,39] 1: the marker was seen
+  JointCentres truth;                // G frames of joints
   std::optional<FoundShift> found;   // absent: too little overlap
   RigidTransform kinect_from_truth;  // the same for all repetitions of a person's movement
 

@@ -7,8 +7,8 @@ namespace kinalign {
 
 namespace {
 
-// Rows that must be combined because of numbers in both tables: only person 05 did class S4, only
-// person 07 did S6, and only person 10 was recorded without a Kinect, in S2.
+// Some rows of both tables belong together, as their numbers show. Only person 05 did class S4, and
+// only person 07 did S6. Only person 10 was recorded without a Kinect, in class S2.
 constexpr std::size_t person_10 = 1, person_05 = 2, person_07 = 3;
 constexpr std::size_t baduanjin = 1, wuqinxi = 3, dance = 5;
 constexpr std::uint64_t without_kinect = 29'776;

@@ -45,7 +45,7 @@ struct TakeLeftOut {
   std::string why;
 };
 
-/// The outcome, for the user.
+/// The counts of windows and of left-out data, for the user.
 struct WindowsMade {
   std::vector<std::uint64_t> windows;  // for each part
   std::uint64_t rows_left_out = 0;     // rows of takes in stretches shorter than half a window

@@ -65,7 +65,7 @@ void lose_nodes(NodeFrames& nodes) { std::fill(nodes.valid.begin(), nodes.valid.
 // used.
 FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws& draws,
                       std::uint64_t seed, std::uint64_t number) {
-  // Two streams for each crop: choices, and errors of nodes.
+  // Each crop has two random streams, one for choices and one for errors of nodes.
   const RandomStream random(seed, 2 * number), of_errors(seed, 2 * number + 1);
   NodeErrors errors = draws.errors;
   if (random.uniform(0, lane_heading) < draws.unknown_heading) errors.yaw_deg = draws.unknown_deg;

@@ -19,8 +19,8 @@ enum class Devices : std::uint8_t { both, kinect, nodes };
 struct FuseDraws {
   Devices devices = Devices::both;  // a device that is not listed is always missing
   NodeErrors errors{.yaw_deg = 8.0};
-  /// Probabilities per crop: large heading errors, as before a Kinect has seen the person; the
-  /// whole Kinect missing; all nodes missing; a limb of the Kinect or one node missing for a while.
+  /// Probabilities per crop. `unknown_heading`: large heading errors, as before a Kinect has seen
+  /// the person. `lost_part`: a limb of the Kinect or one node is missing for some time.
   double unknown_heading = 0.15, without_kinect = 0.2, without_nodes = 0.2, lost_part = 0.5;
   /// Share of lost parts that are a limb of the Kinect; the others are nodes.
   double lost_limb = 0.7;
@@ -49,7 +49,8 @@ void lose_nodes(NodeFrames& nodes);
 
 /// Applies the random variations. `input`: nodes without errors. The same seed and number give the
 /// same result.
-/// Called for each crop of a batch, and for each validation sequence with all losses set to 0.
+/// Called for each crop of a batch, and for each validation sequence with probability 0 for
+/// missing devices and parts.
 FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws& draws,
                       std::uint64_t seed, std::uint64_t number);
 

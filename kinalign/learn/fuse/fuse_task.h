@@ -38,13 +38,13 @@ class FuseTask : public TrainingTask {
     torch::Tensor input;  // [B,T,C] standardised
     /// [B,T,bones+1,3,3] in the space of the frame; the last one is the root's.
     torch::Tensor rotations;
-    torch::Tensor offsets;  // [B,J,3] m
+    torch::Tensor offsets;  // [B,J,3] m, rest offsets of the person's joints
     /// [B,T,3] dm from the Kinect's SpineBase to the root, in the space of the frame.
     torch::Tensor way;
     torch::Tensor placed;  // [B,T] 1 if the Kinect sees SpineBase, else 0
   };
   Batch draw(std::uint64_t seed, std::uint64_t step) const { return draw(seed, step, all()); }
-  /// Only the given part of the batch.
+  /// Draws the given part of a batch.
   Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
 
   /// Replaces the scales found from the data by those of a model, to continue its training.
@@ -62,7 +62,7 @@ class FuseTask : public TrainingTask {
   BatchPart all() const { return BatchShare().part(static_cast<std::int64_t>(training_.batch)); }
   void add(const PoseSequence& sequence, const FuseInput& input, Rows& rows) const;
   Batch tensors_of(Rows rows, std::size_t batch, std::size_t frames) const;
-  // The constructor calls both, in this order.
+  // The constructor calls these two functions in this order.
   void find_scales();
   void make_judged();
 

@@ -20,7 +20,7 @@ torch::Tensor rotations_of(const torch::Tensor& answers) {
   const auto six = answers.reshape({answers.size(0), answers.size(1), bones, 6}) + identity;
   // norm() has the gradient 0 at 0, whereas sqrt() of a sum of squares has no gradient there.
   const auto unit = [&](const torch::Tensor& x) { return x / (x.norm(2, {-1}, true) + least); };
-  // The same steps as turn_of_six(), so that training and use agree.
+  // The steps are those of turn_of_six(), so that training and use agree.
   const auto a = unit(six.slice(3, 0, 3)), second = six.slice(3, 3, 6);
   const auto b = unit(second - (a * second).sum(-1, true) * a);
   return torch::stack({a, b, torch::cross(a, b, -1)}, 3);

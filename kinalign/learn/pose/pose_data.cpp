@@ -136,7 +136,7 @@ class GlobalFrames {
     frame_ = t;
   }
 
-  /// [pose_joints] global rotations, with the file's own zero.
+  /// The global rotations of pose_joints, relative to the rest pose of the file.
   const std::vector<Mat3>& rotations() const { return all_rotations_; }
 
   Vec3 position(std::size_t joint) const {
@@ -165,7 +165,7 @@ class GlobalFrames {
 
 /// Nodes without errors, at the file's rate.
 struct NodeMotion {
-  std::vector<Mat3> orientation;  // [T,N]
+  std::vector<Mat3> orientation;  // [T,N] of each node in each frame
   std::vector<Vec3> position;     // [T,N] m
 };
 

@@ -25,8 +25,8 @@ struct PoseLoss {
 
 struct PoseTraining {
   PoseLoss loss{};
-  NodeErrors errors{};        // drawn anew for each crop
-  Variety variety{};          // drawn anew for each crop
+  NodeErrors errors{};        // drawn again for each crop
+  Variety variety{};          // drawn again for each crop
   bool standardised = false;  // scale channels to mean 0 and deviation 1, as DIP does
   std::size_t batch = 32, crop = 64;
 };
@@ -63,10 +63,10 @@ class PoseTask : public TrainingTask {
   struct Batch {
     torch::Tensor input;      // [B,T,C] standardised
     torch::Tensor rotations;  // [B,T,bones,3,3] (rotations_of())
-    torch::Tensor offsets;    // [B,J,3] m
+    torch::Tensor offsets;    // [B,J,3] m, rest offsets of the person's joints
   };
   Batch draw(std::uint64_t seed, std::uint64_t step) const { return draw(seed, step, all()); }
-  /// Only the given part of the batch.
+  /// Draws the given part of a batch.
   Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
   /// Replaces the scales found from the data by those of a model, to continue its training.
   void use_scales(std::vector<float> mean, std::vector<float> scale);

@@ -32,7 +32,7 @@ class UprightFrames {
   std::vector<Eigen::Matrix3d> turns() const;
 
  private:
-  std::vector<bool> in_trunk_;              // [J]
+  std::vector<bool> in_trunk_;              // [J] true: the joint belongs to root, trunk or head
   std::vector<Eigen::Matrix3d> from_root_;  // [J] sums of the rotations relative to the root
   Vec3 vertical_ = Vec3::Zero();            // sum of the vertical in the root's space
   std::size_t count_ = 0;

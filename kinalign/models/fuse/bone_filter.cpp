@@ -72,9 +72,10 @@ JointFrames smoothed_kinect(const FuseInput& input, const Smoothing& smoothing) 
   return out;
 }
 
-/// Filters one frame after another. A bone that no device measures keeps its last rotation against
-/// `world_` has the rotations of the current frame; `held_` has the rotations relative to the
-/// parent in the last frame. `layout` and `options` must outlive this object.
+/// Filters one frame after another. A bone that no device measures keeps its last rotation
+/// relative to its parent. `world_` has the rotations of the current frame; `held_` has the
+/// rotations relative to the parent in the last frame. `layout` and `options` must outlive this
+/// object.
 class BoneFilter {
  public:
   BoneFilter(const FuseLayout& layout, const PoseBody& body, const BoneFilterOptions& options)

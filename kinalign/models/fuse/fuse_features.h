@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Input channels of a network that fuses a Kinect and inertial nodes, the same in training and in
 // use. Both devices share one grid and one world; each may be absent. All channels are in one space
-// that moves with the body: the orientation of the root's node if it is valid, else the heading of
-// the hips and shoulders that the Kinect sees.
+// that moves with the body. Its rotation is that of the root's node if the node is valid, else the
+// heading of the hips and shoulders in the Kinect's data.
 #pragma once
 
 #include "kinalign/models/joint_frames.h"
@@ -18,7 +18,7 @@ namespace kinalign {
 /// T frames of both devices. An absent device has no valid sample and no seen joint.
 struct FuseInput {
   NodeFrames nodes;    // calibrated, [T,N]
-  JointFrames kinect;  // [T,J]
+  JointFrames kinect;  // [T,J] the joints, in the same world as the nodes
 
   std::size_t frames() const { return nodes.frames(); }
 };
@@ -90,8 +90,8 @@ class FuseFeatureMaker {
 };
 
 struct FuseFeatures {
-  std::vector<float> input;      // [T,C]
-  std::vector<FuseSpace> space;  // [T]
+  std::vector<float> input;      // [T,C] the channels of each frame
+  std::vector<FuseSpace> space;  // [T] the space of each frame
 };
 
 /// The features of all frames.

@@ -42,8 +42,8 @@ FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
 
 /// A network's output for rows `first` ... `end` - 1 of a sequence.
 struct FuseAnswers {
-  std::span<const FuseSpace> spaces;  // [T]
-  std::span<const float> answers;     // [T,answers]
+  std::span<const FuseSpace> spaces;  // [T] the space of each frame
+  std::span<const float> answers;     // [T,answers] the network's output
   std::size_t first = 0, end = 0;
 };
 
@@ -60,7 +60,7 @@ class Fuser {
   /// measurements of nodes and Kinect (turn_to_nodes(), turn_to_seen()), placed where the
   /// Kinect's joints lie, and smoothed if the model says so.
   FusedPose solve(const FuseInput& input) { return solve(input, headings(input)); }
-  /// The same with known headings.
+  /// Estimates the pose of a sequence with known headings.
   FusedPose solve(const FuseInput& input, const std::vector<HeadingState>& headings);
   /// Only the headings [T,N].
   std::vector<HeadingState> headings(const FuseInput& input);

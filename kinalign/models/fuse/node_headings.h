@@ -87,7 +87,7 @@ class HeadingFilter {
 
   const FuseLayout* layout_;
   HeadingOptions options_;
-  std::vector<Filter> filters_;  // [N]
+  std::vector<Filter> filters_;  // [N] one filter for each node
 };
 
 /// Directions of the nodes' bones [T,N]; empty if not seen.
@@ -106,10 +106,10 @@ NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames
 std::vector<HeadingState> node_headings(HeadingFilter filter, const NodeFrames& nodes,
                                         const NodeDirections& directions);
 
-/// The rotation about the vertical, rad, from the world of all nodes to the Kinect's world: the
-/// median difference between the heading of hips and shoulders and that of the root's node. Empty
-/// if both are seen together for less than a second. The filters start from this value, although
-/// the headings of single nodes may differ from it.
+/// The rotation about the vertical, rad, from the world of all nodes to the Kinect's world. It is
+/// the median difference between two headings: that of hips and shoulders, and that of the root's
+/// node. Empty if both are seen together for less than a second. The filters start from this value,
+/// although the headings of single nodes may differ from it.
 std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& input);
 /// Rotates the world of all nodes about the vertical by `yaw`, rad.
 void turn_world(NodeFrames& nodes, double yaw);

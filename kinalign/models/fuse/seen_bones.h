@@ -45,13 +45,14 @@ std::optional<SeenDirection> direction_at(const JointFrames& kinect, std::size_t
 
 /// Turns each bone whose two joints are tracked in frame `t` towards the Kinect's direction, along
 /// the shortest way. The share of the angle is one half, and less for large angles (a quarter at 45
-/// degrees). A network answers an unknown movement with a similar one that it has learnt; the seen
+/// degrees). For an unknown movement a network outputs a similar one that it has learnt; the seen
 /// joints correct the difference. `root`: in the world. `rotations` [B]: relative to the root.
 void turn_to_seen(std::span<const SeenBone> bones, const JointFrames& kinect, std::size_t t,
                   const Eigen::Quaternionf& root, std::span<Turn> rotations);
 
-/// Exchanges left and right joints in frames in which the Kinect takes a person's back for the
-/// front: the direction across its hips is more than 120 degrees from that of the root's node.
+/// Exchanges left and right joints in frames in which the Kinect mistakes a person's back for the
+/// front. In such frames the Kinect's direction across the hips and that of the root's node differ
+/// by more than 120 degrees.
 void unexchange(const FuseLayout& layout, FuseInput& input);
 
 }  // namespace kinalign

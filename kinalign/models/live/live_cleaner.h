@@ -55,7 +55,7 @@ class LiveCleaner {
   JointFrames window_;
   Seen plain_, mirrored_;
   std::size_t next_ = 0;        // the row of the window that is answered next
-  std::vector<float> answers_;  // all answers so far, before bones get constant lengths
+  std::vector<float> answers_;  // all joints so far, before bones get constant lengths
 };
 
 }  // namespace kinalign

@@ -128,7 +128,7 @@ void LiveFuser::find_headings(std::size_t end) {
   while (headings_.size() < frames * nodes) append_to(headings_, states_);
 }
 
-/// The network's answers for rows before `end`. Features of rows before next_ are already made.
+/// The network's output for rows before `end`. Features of rows before next_ are already made.
 /// Features of later rows are made again with new headings; only those before `answered` are final.
 std::span<const float> LiveFuser::answers_to_both(const FuseInput& corrected, std::size_t answered,
                                                   std::size_t end) {

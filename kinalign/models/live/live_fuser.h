@@ -37,8 +37,8 @@ class LiveFuser {
   /// True once the rotation between the devices' worlds is known. This needs one second in which
   /// both devices see the person. Before that no pose is returned.
   bool is_turned() const { return yaw_.has_value(); }
-  /// Call when the nodes have a new calibration: their headings are estimated anew from the next
-  /// frame on.
+  /// Call when the nodes have a new calibration: from the next frame on, their headings are
+  /// estimated without earlier frames.
   void begin_headings();
 
   /// Takes the next frame; `input` contains only this frame.
@@ -63,8 +63,8 @@ class LiveFuser {
   struct Seen {
     FuseFeatureMaker maker;
     WindowNetwork network;
-    std::vector<float> rows{};        // [window, channels] standardised
-    std::vector<FuseSpace> spaces{};  // [window]
+    std::vector<float> rows{};        // [window, channels] the standardised channels
+    std::vector<FuseSpace> spaces{};  // one space for each frame of the window
 
     void make(const FuseModel& model, const FuseInput& input, std::size_t row);
     void forget_first();
@@ -83,7 +83,7 @@ class LiveFuser {
   FuseInput waiting_;          // frames received before the yaw is known
   FuseInput window_;
   Seen kinect_, both_;                  // the state of both_.maker is that of row next_
-  std::vector<HeadingState> headings_;  // [window,N]
+  std::vector<HeadingState> headings_;  // [window,N] of each node in each frame
   std::size_t next_ = 0;                // the row of the window that is answered next
   std::size_t forgotten_ = 0;
   HeadingFilter filter_;

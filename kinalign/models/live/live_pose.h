@@ -31,7 +31,7 @@ class LivePose {
 
   /// Appends all frames that can be answered now. `now`: arrival of the newest message.
   void advance(Time now, std::vector<LivePoseFrame>& out);
-  /// Call when no further samples come: answers all remaining frames.
+  /// Call when no further samples come: appends all remaining frames.
   void finish(std::vector<LivePoseFrame>& out);
 
  private:

@@ -19,7 +19,7 @@ struct BodyModel {
   ModelFacts facts;
   PoseBody body;          // the mean body of the training people
   bool smoothing = true;  // smooth whole sequences: weights 1, 4, 6, 4, 1 over five frames
-  std::vector<float> input_mean, input_scale;  // [C]
+  std::vector<float> input_mean, input_scale;  // one number for each input channel
   Architecture architecture;
   std::map<std::string, Tensor> tensors;  // names begin with "net."
 };

@@ -57,8 +57,8 @@ class NodeCurve {
     }
   }
 
-  /// Writes the node at `time` to place `at` if it lies between two samples at most 0.2 s apart.
-  /// Times must rise from call to call.
+  /// Writes the node's sample at `time` to place `at`, if `time` is between two samples at most 0.2
+  /// s apart. Times must rise from call to call.
   void put(Time time, std::size_t at, double rate_hz, WornFrames& out) {
     const auto& stamps = track_.stamps;
     while (next_ < stamps.size() && stamps[next_] < time) ++next_;

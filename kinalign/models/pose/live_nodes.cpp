@@ -39,7 +39,7 @@ void LiveNodes::insert(Node& node, const NodeReadings& sample) {
   Quat q = sample.orientation.value_or(Quat::Identity());
   if (!node.has_orientation) {
     const double step =
-        // The same first step as in even_nodes.cpp.
+        // The first step is that of even_nodes.cpp.
         node.filtered ? seconds(sample.stamp - *node.filtered) : 1e-3;
     node.filter.update(step, {*sample.angular_velocity, *sample.acceleration});
     node.filtered = sample.stamp;

@@ -88,7 +88,7 @@ std::optional<TPose> LiveWorn::wanted_t_pose() const {
   if (!still) return std::nullopt;
   const TPose found{still->first + searched_, still->count};
   const bool goes_on = found.first + found.count == recent_.frames() &&
-                       // 3 s: the longest still stretch of first_still().
+                       // first_still() returns at most 3 s.
                        static_cast<double>(found.count) < 3.0 * rate;
   return goes_on ? std::nullopt : std::optional(found);
 }

@@ -20,7 +20,7 @@ struct TPoseSeconds {
 };
 
 struct LiveWornOptions {
-  /// Counted from the first frame; absent: the first still stretch is used.
+  /// The T-pose, counted from the first frame. Absent: the first stretch without motion is used.
   std::optional<TPoseSeconds> t_pose{};
   std::optional<Headings> headings{};  // see CalibrationOptions
 };
@@ -39,8 +39,8 @@ struct LiveWornFrame {
   NodeFrames nodes;  // one frame
 };
 
-/// Frames of the grid have a number from the root's first sample on. recent_ holds frames
-/// forgotten_ ... made_ - 1, so frame f has index f - forgotten_ in it.
+/// Frames of the grid are numbered from the root's first sample on. `recent_` contains the frames
+/// `forgotten_` ... `made_` - 1, so frame f has the index f - `forgotten_` in it.
 class LiveWorn {
  public:
   /// After a mark, the T-pose is expected to be held for this long.

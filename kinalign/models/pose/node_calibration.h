@@ -85,9 +85,9 @@ struct CalibrationOptions {
   /// docs/pose.md says and their headings by mounting are more than 35 degrees apart; else
   /// `shared`.
   std::optional<Headings> headings{};
-  /// For each node its world_from_node in a T-pose that faces +z, if it is known better than by
-  /// worn_in_t_pose(): a node whose orientation is already its bone's has the identity. Absent:
-  /// worn as docs/pose.md says. Empty: all nodes are worn so.
+  /// For each node its world_from_node in a T-pose that faces +z, if this is known better than by
+  /// worn_in_t_pose(). If a node already states the orientation of its bone, it is the identity.
+  /// Absent: the node is worn as docs/pose.md says. An empty list: all nodes are worn so.
   std::vector<std::optional<Quat>> worn{};
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The places of nodes on a body, for models of poses: the bone that carries each node, that bone's
-// direction in a T-pose, and the directions of the node's axes if it is worn as docs/pose.md says.
+// The places of nodes on a body, for models of poses. Each place states the bone that carries the
+// node and the bone's direction in a T-pose. It also states the directions of the node's axes, if
+// the node is worn as docs/pose.md says.
 #pragma once
 
 #include "kinalign/models/pose/pose_body.h"

@@ -71,7 +71,7 @@ inline constexpr std::array<std::string_view, 15> pose_bones{
 /// [B] than joints [J].
 struct PoseBody {
   Skeleton skeleton;               // joint 0 is the only root
-  std::vector<std::string> bones;  // [B] names
+  std::vector<std::string> bones;  // [B] names of the bones
   std::vector<int> turned_by;      // [J] index of the bone; -1: the root's rotation
 };
 

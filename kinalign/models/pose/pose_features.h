@@ -24,7 +24,7 @@ struct NodeFrames {
   std::vector<float> orientation;
   std::vector<float> acceleration;      // [T,N,3] m/s2, in the world, without gravity
   std::vector<float> angular_velocity;  // [T,N,3] rad/s, in the bone's space
-  std::vector<std::uint8_t> valid;      // [T,N]
+  std::vector<std::uint8_t> valid;      // [T,N] 0: the sample must not be used
 
   std::size_t frames() const { return nodes == 0 ? 0 : valid.size() / nodes; }
 };
@@ -79,7 +79,7 @@ class PoseFeatureMaker {
 
   /// Fills `out` [channels] from frame `t` of `nodes`, which must be the layout's nodes.
   void make(const NodeFrames& nodes, std::size_t t, std::span<float> out);
-  /// The same in the space of `root`, a given rotation in the world, in place of the root's node.
+  /// Fills `out` in the space of `root`, a given rotation in the world, and not of the root's node.
   void make_in(const Eigen::Quaternionf& root, const NodeFrames& nodes, std::size_t t,
                std::span<float> out);
   /// The root's rotation in the world, for the last frame made.
@@ -91,7 +91,7 @@ class PoseFeatureMaker {
 };
 
 struct PoseFeatures {
-  std::vector<float> input;              // [T,C]
+  std::vector<float> input;              // [T,C] the channels of each frame
   std::vector<Eigen::Quaternionf> root;  // [T] rotation of the root in the world
 };
 

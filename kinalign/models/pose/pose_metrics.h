@@ -12,13 +12,13 @@ namespace kinalign {
 
 /// Mean errors over all frames.
 struct PoseErrors {
-  double sip_deg = 0.0;    // global rotation of thighs and upper arms
-  double angle_deg = 0.0;  // global rotation of all bones but neck and head
-  double head_deg = 0.0;   // global rotation of neck and head
+  double sip_deg = 0.0;    // rotation error of thighs and upper arms
+  double angle_deg = 0.0;  // rotation error of all bones but neck and head
+  double head_deg = 0.0;   // rotation error of neck and head
   /// Position error of the joints for which is_scored_joint() is true.
   double position_cm = 0.0;
-  double jitter = 0.0;       // m/s3, mean third difference of these joints in the answer
-  double true_jitter = 0.0;  // m/s3, the same in the truth
+  double jitter = 0.0;       // m/s3, mean third difference of these joints in the estimated pose
+  double true_jitter = 0.0;  // m/s3, mean third difference in the true pose
   std::size_t frames = 0;
 
   double jitter_ratio() const { return true_jitter > 0.0 ? jitter / true_jitter : 0.0; }
@@ -28,7 +28,7 @@ struct PoseErrors {
 
 /// The ground truth of a pose.
 struct TruePose {
-  std::span<const Turn> rotations;     // [T,B]
+  std::span<const Turn> rotations;     // [T,B] of each bone in each frame
   std::span<const Vec3> rest_offsets;  // [J] m, used for the answer too
 };
 

@@ -7,7 +7,8 @@
 
 namespace kinalign {
 
-// Binomial weights. Matrices are averaged, not quaternions, because these have two signs.
+// The weights are binomial. Matrices are averaged and not quaternions, because q and -q are the
+// same rotation.
 void smooth_turns(std::size_t bones, std::vector<Turn>& rotations) {
   static constexpr std::array<float, 5> weights{1.0F, 4.0F, 6.0F, 4.0F, 1.0F};
   const std::vector<Turn> before = rotations;

@@ -37,7 +37,7 @@ class PoseSolver {
 
   /// Estimates the pose of a sequence. `nodes`: the layout's nodes at the layout's rate.
   SolvedPose solve(const NodeFrames& nodes);
-  /// The same without smoothing.
+  /// Estimates the pose of a sequence without smoothing.
   SolvedPose answer(const NodeFrames& nodes);
   /// A skeleton with constant bones (clip_frames()). The first frame has the stamp `start`.
   Clip clip(const NodeFrames& nodes, Time start);

@@ -22,7 +22,7 @@ struct JointSource {
 struct PoseSkeleton {
   std::vector<std::string> file_names;
   std::vector<int> file_parents;
-  std::vector<JointSource> joints;  // [pose_joints]
+  std::vector<JointSource> joints;  // one source for each of pose_joints
   bool is_cmu = true;               // the limbs' rotations refer to CMU's rest pose
 
   std::size_t file_joints() const { return file_names.size(); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs a model of poses on live frames with a fixed delay, for any network: the network runs over a
 // window of the newest frames. If the delay covers all later frames that network and smoothing use,
-// the answers equal those of PoseSolver::solve() over the whole sequence, bit by bit.
+// the poses equal those of PoseSolver::solve() over the whole sequence, bit by bit.
 #pragma once
 
 #include "kinalign/infer/window_network.h"
@@ -44,7 +44,7 @@ class WindowSolver {
   std::size_t ahead_, behind_;
   PoseFeatureMaker maker_;
   std::vector<float> rows_;               // [window,C] standardised channels
-  std::deque<Eigen::Quaternionf> roots_;  // [window]
+  std::deque<Eigen::Quaternionf> roots_;  // the root's rotation in each frame of the window
   std::size_t next_ = 0;                  // the row of the window that is answered next
   WindowNetwork network_;
 };

@@ -17,9 +17,9 @@ namespace {
 struct Curves {
   std::size_t joints = 0;
   std::vector<double> times;      // [T] s from the first frame
-  std::vector<double> positions;  // [T,J,3]
+  std::vector<double> positions;  // [T,J,3] m, of each joint in each frame
   std::vector<double> bends;      // [T,J,3] second derivatives of the positions
-  std::vector<double> rotations;  // [T,J,4]
+  std::vector<double> rotations;  // [T,J,4] w,x,y,z, of each joint in each frame
   // [T,J,6] angular rates at both ends of the interval that begins with the frame.
   std::vector<double> slopes;
 };

@@ -46,9 +46,9 @@ struct Row {
 };
 
 struct Blocks {
-  std::vector<Interval> intervals;  // [n]
+  std::vector<Interval> intervals;  // [n] between n + 1 knots
   std::vector<Row> rows;            // [n+1]; the first and the last row are not used
-  std::vector<Vec3> rates;          // [n+1]
+  std::vector<Vec3> rates;          // [n+1] angular rate at each knot
 };
 
 /// The part of the elimination that does not depend on the rates.
@@ -97,7 +97,8 @@ double sweep(Blocks& s) {
 constexpr int most_sweeps = 10;       // the limit of SciPy
 constexpr double negligible = 1e-13;  // rad in one interval; the curve changes by a seventh of this
 
-/// Sweeps until the further change is negligible. It is estimated from how fast the changes shrink.
+/// Sweeps until the further change is negligible. This change is estimated from how fast the
+/// changes shrink.
 void iterate(Blocks& s) {
   double last = 0.0;
   for (int i = 0; i < most_sweeps; ++i) {

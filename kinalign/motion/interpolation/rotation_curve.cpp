@@ -28,7 +28,7 @@ struct Cubics {
         two(std::make_unique_for_overwrite<Four[]>(n)),
         three(std::make_unique_for_overwrite<Four[]>(n)) {}
 
-  std::unique_ptr<Four[]> one, two, three;  // [n]
+  std::unique_ptr<Four[]> one, two, three;  // [n] for each interval: knot c1, knot c2, knot c3
 };
 
 KA_INLINE void multiply(const double* q, const Vector& v, Four& to) {

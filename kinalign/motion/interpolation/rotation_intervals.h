@@ -17,7 +17,7 @@ using Columns = std::array<std::vector<double>, 3>;
 /// For each of n intervals its length, and the rotation vector from its left knot to its right
 /// knot.
 struct RotationIntervals {
-  std::vector<double> length;  // [n] s
+  std::vector<double> length;  // [n] s, of each interval
   Columns vector;              // [n] at most pi long, rad
 
   std::size_t size() const { return length.size(); }
@@ -29,7 +29,7 @@ void measure_intervals(const RotationKnots& knots, RotationIntervals& to);
 
 /// The derivatives of each interval's rotation vector at its two ends, rad/s.
 struct RotationSlopes {
-  Columns begin, end;  // [n]
+  Columns begin, end;  // [n] at the left and the right knot of each interval
 };
 
 /// Quantities that depend only on the length of a rotation vector r. Let H be the rotation by r /

@@ -5,10 +5,9 @@
 // that follow the knots at half their rotation: z[k] = H(r[0]) ... H(r[k-1]) w[k]. The vectors r
 // are expressed in the same spaces. In the system of rotation_slopes.h this replaces W by D and w
 // by z. The terms with D - 1, D^-1 - 1 and b are all of the order of
-// r
-// ^2 / 24. They are moved to the right side and found by iteration. The left side is then the same
-// tridiagonal system of scalars for x, y and z. With knots 0.3 rad apart, each sweep reduces the
-// error to 1/300.
+// |r|^2 / 24. They are moved to the right side and found by iteration. The left side is then the
+// same tridiagonal system of scalars for x, y and z. With knots 0.3 rad apart, each sweep reduces
+// the error to 1/300.
 //
 // Second, the rows of such a system depend on each other in sequence. The knots are therefore cut
 // into eight pieces, which vector code sweeps in parallel. A piece starts from the result of its
@@ -149,7 +148,7 @@ Pieces cut(const RotationIntervals& in) {
   return s;
 }
 
-/// The forward half of the elimination: each row's solution from those before it.
+/// The forward half of the elimination: each row's solution follows from the rows before it.
 KA_EVERY_PROCESSOR
 void forwards(std::span<Row> rows) {
   for (std::size_t j = 1; j + 1 < rows.size(); ++j) {
@@ -258,7 +257,8 @@ constexpr double negligible = 1e-13;  // rad in one interval; the curve changes 
 // worse.
 constexpr int most_sweeps = 8;
 
-/// Sweeps until the further change is negligible. It is estimated from how fast the changes shrink.
+/// Sweeps until the further change is negligible. This change is estimated from how fast the
+/// changes shrink.
 /// Returns false if the changes do not shrink fast.
 bool settle(const Pieces& s) {
   double last = take_back(s);

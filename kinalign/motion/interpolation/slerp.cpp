@@ -49,7 +49,8 @@ struct Samples {
   Lane left, right;               // weights of both knots
 };
 
-// Shoemake's weights sin((1 - f) a) / sin(a) and sin(f a) / sin(a).
+// Computes Shoemake's weights sin((1 - f) a) / sin(a) and sin(f a) / sin(a), where a is the angle
+// of the arc and f the fraction of the interval.
 KA_EVERY_PROCESSOR
 void weigh(Samples& s) {
   for (std::size_t i = 0; i < block; ++i) {

@@ -15,8 +15,8 @@ constexpr std::size_t spline_reach = 60;
 
 /// Rows of C channels at strictly rising times (s, from a nearby origin).
 struct Knots {
-  std::span<const double> times;   // [T]
-  std::span<const double> values;  // [T,C]
+  std::span<const double> times;   // [T] s, one for each row
+  std::span<const double> values;  // [T,C] the rows
   std::size_t channels = 0;
 };
 

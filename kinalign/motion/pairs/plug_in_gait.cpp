@@ -143,8 +143,8 @@ struct PelvisSize {
   double depth_m = 0.0, width_m = 0.0;
 };
 
-/// One size for all frames, because the bones do not change. A median resists frames with wrong
-/// labels.
+/// One size for all frames, because the bones do not change. Frames with wrong labels hardly
+/// change a median.
 PelvisSize pelvis_size(const MarkerFrames& markers) {
   std::vector<double> depths, widths;
   for (std::size_t t = 0; t < markers.frames(); ++t) {

@@ -24,7 +24,7 @@ inline constexpr std::array<std::string_view, 39> plug_in_gait_markers{
 /// The arrays belong to the caller.
 struct MarkerFrames {
   std::span<const double> positions;   // [F,39,3] m; a marker that is not seen holds zeros
-  std::span<const std::uint8_t> seen;  // [F,39]
+  std::span<const std::uint8_t> seen;  // [F,39] 0: the marker was not seen
 
   std::size_t frames() const { return seen.size() / plug_in_gait_markers.size(); }
 };
