@@ -30,10 +30,9 @@ struct StreamSummary {
   std::uint64_t columns = 0;            // joints or nodes
   double valid = 1.0, inferred = 0.0;   // shares of rows x columns
   std::uint64_t gaps = 0;
-  double gap_s = 0.0;  // sum of the lengths of all gaps
-  std::optional<std::int64_t>
-      interval_ns;  // half-width of the widest interval of a stamp; absent: not known
-  std::vector<std::string> nodes;  // for a group of nodes: the places where they are worn
+  double gap_s = 0.0;                       // sum of the lengths of all gaps
+  std::optional<std::int64_t> interval_ns;  // largest half-width of intervals; absent: not known
+  std::vector<std::string> nodes;           // for a group of nodes: the places where they are worn
 };
 
 /// The facts of one take for lists, splits and reports. They are written when the take is made or

@@ -22,8 +22,7 @@ struct Pattern {
   std::regex text;
 };
 
-constexpr std::size_t address_patterns =
-    2;  // the number of patterns for addresses, which come first
+constexpr std::size_t address_patterns = 2;  // number of patterns for addresses; they come first
 
 /// Patterns of texts that could identify a person. Addresses come first (address_patterns).
 const std::array<Pattern, 4>& patterns() {

@@ -27,9 +27,8 @@ namespace {
 
 // The rates of the protocol.
 constexpr double kinect_hz = 30.0, truth_hz = 50.0;
-constexpr double most_rms_m = 0.12;  // largest rms of an accepted repetition
-constexpr std::size_t least_taken =
-    3;  // least number of accepted repetitions of a person's movement
+constexpr double most_rms_m = 0.12;     // largest rms of an accepted repetition
+constexpr std::size_t least_taken = 3;  // least accepted repetitions of a person's movement
 // Elbows and knees are fitted to one of this many frames of the truth.
 constexpr std::size_t shift_stride = 5;
 constexpr double gap_ms = 36.0;  // more than a step of the Kinect, less than two of the truth

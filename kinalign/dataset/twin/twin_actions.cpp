@@ -12,8 +12,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double t_pose_s =
-    3.5;  // still for two of these seconds; the arms come down in the last 1.3
+constexpr double t_pose_s = 3.5;  // two seconds are still; the arms come down in the last 1.3
 // If the rest of the take is shorter than this, the last movement is lengthened.
 constexpr double least_piece_s = 5.0;
 

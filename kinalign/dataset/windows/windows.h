@@ -49,8 +49,7 @@ struct TakeLeftOut {
 struct WindowsMade {
   std::vector<std::uint64_t> windows;  // for each part
   std::uint64_t rows_left_out = 0;     // rows of takes in stretches shorter than half a window
-  std::uint64_t too_little_valid =
-      0;  // windows that were left out because they have too few valid cells
+  std::uint64_t too_little_valid = 0;  // windows left out because of too few valid cells
   std::vector<TakeLeftOut> takes_left_out;
 };
 

@@ -23,9 +23,8 @@ struct FuseErrors {
   /// Joints that the Kinect does not track or puts more than 20 cm off.
   double hidden_cm = 0.0;
   double seen_trunk_cm = 0.0, seen_arms_cm = 0.0, seen_legs_cm = 0.0;  // the other joints
-  double place_cm =
-      0.0;  // position error of the root in the Kinect's world; no meaning for nodes alone
-  double sip_deg = 0.0;  // rotation of thighs and upper arms relative to the root
+  double place_cm = 0.0;  // of the root in the Kinect's world; not defined for nodes alone
+  double sip_deg = 0.0;   // rotation of thighs and upper arms relative to the root
   /// `frames`: number of frames. `hidden`: number of hidden joints, summed over frames.
   std::size_t frames = 0, hidden = 0;
 };
