@@ -18,9 +18,8 @@ bool is_control(char32_t code) {
   return cursor || marks || within(0x202a, 0x202e) || within(0x2066, 0x2069);
 }
 
-/// The text with '?' for control characters and for bytes that are not UTF-8. Control characters in
-/// `but` are kept.
-/// Each invalid byte becomes one '?', so the rest of a damaged text stays readable.
+/// Replaces control characters and bytes that are not UTF-8 by '?'. Control characters in `but` are
+/// kept. Each invalid byte becomes one '?', so the rest of a damaged text stays readable.
 std::string without_controls(std::string_view text, std::string_view but = "") {
   std::string out;
   while (!text.empty()) {
@@ -51,8 +50,9 @@ std::string to_string(const Error& error) {
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
   if (text.size() <= most) return without_controls(text);
-  // Bytes of the form 10xxxxxx continue a character. The cut moves back to a first byte.
-  std::size_t cut = most;  // never within a UTF-8 character, which has at most four bytes
+  // A byte of the form 10xxxxxx continues a character. The cut moves back to a character's first
+  // byte.
+  std::size_t cut = most;  // a UTF-8 character has at most four bytes
   while (cut > most - 3 && (static_cast<unsigned char>(text[cut]) & 0xc0U) == 0x80U) --cut;
   std::string out = without_controls(text.substr(0, cut)) + "...";
   return out;

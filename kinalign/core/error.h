@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors are values with a place. A function that can fail returns Result<T>. A reader that can
-// continue after a fault collects Findings.
+// Errors are values that name the file and the line. A function that can fail returns Result<T>. A
+// reader that can continue after a fault collects Findings.
 #pragma once
 
 #include <tl/expected.hpp>
@@ -13,9 +13,8 @@
 
 namespace kinalign {
 
-/// The kind of an error, for code that gives advice. That code asks for the kind and never searches
-/// the words of a message. There is a kind only for what some code asks for; any other error is
-/// `other`.
+/// The kind of an error, for code that prints advice. Such code compares the kind and never
+/// searches the words of a message. An error about which no code gives advice has the kind `other`.
 enum class ErrorKind : std::uint8_t {
   other,
   interrupted,           // the user stopped the job
@@ -27,34 +26,34 @@ enum class ErrorKind : std::uint8_t {
   port_taken,            // another program has the port
   port_forbidden,        // this user may not open the port
   address_elsewhere,     // no interface of this machine has the address
-  lost_process,          // another process of the same training ended; that one says why
+  lost_process,          // another process of the same training ended and reports the reason
   no_such_joint,         // an option names a joint that the stream does not have
   no_such_node,          // an option names a node that the stream does not have
   too_few_joints,        // a fit needs more named joints
   no_common_span,        // the streams do not overlap in time
-  no_rows_in_recording,  // a recording has no device, or nothing of it can be read as the stream
+  no_rows_in_recording,  // a recording has no device, or no rows for this stream
 };
-/// The largest kind. The guarded process of kinalign/formats/take sends kinds as numbers and checks
-/// them against this limit.
+/// The largest kind. A process that reads HDF5 files (formats/take/guarded.h) sends kinds as
+/// numbers. The receiver checks the numbers against this limit.
 inline constexpr ErrorKind last_error_kind = ErrorKind::no_rows_in_recording;
 
 /// An error, worded for the person who has to repair the file.
 struct Error {
   std::string file;       // name as given by the user; empty if there is no file
   std::int64_t line = 0;  // counted from 1; 0 for binary files, whose byte offset is in `found`
-  std::string expected;   // "three numbers after OFFSET"
-  std::string found;      // "two", or the text of the file, see shown()
-  ErrorKind kind = ErrorKind::other;  // for advice; not part of the message
+  std::string expected;   // for example "three numbers after OFFSET"
+  std::string found;      // for example "two", or the text of the file, see shown()
+  ErrorKind kind = ErrorKind::other;  // for advice; the message does not contain it
 };
 
-/// The message: "walk.bvh:12: expected 2 frames, found 1".
+/// The message, for example "walk.bvh:12: expected 2 frames, found 1".
 std::string to_string(const Error& error);
 
 /// Text from a file or from a network in a form that a message may show: at most 40 bytes, without
 /// control characters and without line ends.
 std::string shown(std::string_view text);
 
-/// For map_error() of a Result: gives an error without a file this one.
+/// For map_error() of a Result: sets the error's file to `file` if the error has none.
 inline auto in_file(std::string file) {
   return [file = std::move(file)](Error error) {
     if (error.file.empty()) error.file = file;
@@ -101,7 +100,7 @@ struct FileFindings {
   }
 };
 
-/// The word for people and for JSON, for example "warning".
+/// The severity's word in messages and in JSON, for example "warning".
 std::string_view to_string(Severity severity);
 
 /// A value, or the Error that prevented it. Exceptions of libraries are caught in the file that
@@ -110,16 +109,16 @@ template <class T>
 using Result = tl::expected<T, Error>;  // replace by std::expected when it is available
 using Failure = tl::unexpected<Error>;
 
-/// A failure at a file as a whole.
+/// A failure that concerns a whole file, so it has no line.
 inline Failure refuse(std::string_view file, std::string expected, std::string found) {
   return Failure(Error{std::string(file), 0, std::move(expected), std::move(found)});
 }
-/// A failure without a place, which a caller adds.
+/// A failure without a file. The caller adds the file.
 inline Failure refuse(std::string expected, std::string found) {
   return refuse("", std::move(expected), std::move(found));
 }
 
-/// The value of KA_TRY. A function, because a Result<void> has no value that could be dereferenced.
+/// Returns the value for KA_TRY. KA_TRY can't dereference a Result<void>, which has no value.
 template <class T>
 T unwrap(Result<T>&& result) {
   if constexpr (!std::is_void_v<T>) return *std::move(result);
@@ -132,7 +131,7 @@ T unwrap(Result<T>&& result) {
 #define KA_TRY(expression) KA_TRY_AS(KA_TRY_JOIN(ka_result_, __COUNTER__), expression)
 #define KA_TRY_JOIN(a, b) KA_TRY_JOINED(a, b)
 #define KA_TRY_JOINED(a, b) a##b
-// A statement expression of GCC and Clang: its value is that of its last statement.
+// This is a statement expression of GCC and Clang. Its value is the value of its last statement.
 #define KA_TRY_AS(result, expression)                                     \
   __extension__({                                                         \
     auto result((expression));                                            \

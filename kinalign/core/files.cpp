@@ -24,7 +24,7 @@ std::string kind_of(mode_t mode) {
   return "a device";
 }
 
-/// A temporary name in the same folder, for this process only, hidden from ls.
+/// A temporary name in the same folder. The name contains the process id, and ls hides it.
 std::string hidden_name(const std::string& path) {
   return std::string(folder(path)) + "." + std::string(file_name(path)) + "." +
          std::to_string(::getpid()) + ".part";
@@ -46,7 +46,7 @@ ssize_t PosixFiles::read_at(int fd, void* data, std::size_t size, off_t at) {
 ssize_t PosixFiles::write_at(int fd, const void* data, std::size_t size, off_t at) {
   return ::pwrite(fd, data, size, at);
 }
-// fallocate(), not posix_fallocate(), which writes zeros if the file system can't allocate.
+// posix_fallocate() is not used: it writes zeros if the file system can't allocate.
 int PosixFiles::allocate(int fd, off_t size) { return ::fallocate(fd, 0, 0, size); }
 int PosixFiles::truncate(int fd, off_t size) { return ::ftruncate(fd, size); }
 int PosixFiles::sync(int fd) { return ::fsync(fd); }
@@ -59,8 +59,8 @@ int PosixFiles::remove(const char* path) { return ::unlink(path); }
 int PosixFiles::close(int fd) { return ::close(fd); }
 
 Result<InputFile> InputFile::open(FileSystem& files, std::string path, std::size_t piece) {
-  // O_NONBLOCK: without it, opening a pipe without a writer would wait for ever. Regular files
-  // ignore it.
+  // Without O_NONBLOCK, opening a pipe without a writer would wait for ever. Regular files ignore
+  // the flag.
   OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_NONBLOCK, 0));
   struct stat status {};
   if (file.fd() < 0 || ::fstat(file.fd(), &status) != 0) return unreadable(path, errno);
@@ -74,7 +74,8 @@ Result<InputFile> InputFile::open(FileSystem& files, std::string path, std::size
 
 Result<std::string_view> InputFile::next() {
   for (;;) {
-    // One read(2) a piece, so a piece may be shorter than the buffer before the end, too.
+    // Each piece is one read(2), so a piece may be shorter than the buffer before the end of the
+    // file, too.
     const ssize_t got = file_.files().read(file_.fd(), buffer_.data(), buffer_.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {  // a disk may be unable to read a single page
@@ -92,7 +93,7 @@ Result<std::size_t> InputFile::read_at(std::uint64_t at, std::span<char> to) con
 }
 
 Result<void> make_new_folder(const std::string& path) {
-  // mkdir(2) checks and creates in one step, so of two programs only one succeeds.
+  // mkdir(2) checks and creates in one step, so only one of two programs succeeds.
   if (::mkdir(path.c_str(), 0777) == 0) return {};
   if (errno == EEXIST) return refuse(path, "no file or folder of that name", "an existing one");
   return refuse(path, "a folder that can be made", std::strerror(errno));
@@ -111,7 +112,7 @@ Result<std::string> read_whole(FileSystem& files, const std::string& path, std::
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
     if (piece.empty()) return text;
-    // The bytes that arrive are counted. size() may be wrong by now.
+    // The bytes that arrive are counted, because size() may be out of date.
     if (text.size() + piece.size() > most) {
       return refuse(path, "at most " + std::to_string(most) + " bytes", "more");
     }
@@ -157,7 +158,7 @@ Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overw
     file.unfinished_ = "/proc/self/fd/" + std::to_string(file.fd_);
     return file;
   }
-  // These three errors mean that O_TMPFILE is not supported. Other errors concern the folder.
+  // These three errors mean that O_TMPFILE is not supported. Any other error concerns the folder.
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) {
     return failed(file.path_, "a folder that can be written", errno);
   }
@@ -175,7 +176,8 @@ Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overw
 OutputFile::OutputFile(FileSystem& files, std::string path, Overwrite overwrite)
     : files_(&files), path_(std::move(path)), overwrite_(overwrite) {}
 
-// The source keeps neither descriptor nor hidden name, so its destructor can't remove the file.
+// After the move the source has neither descriptor nor hidden name, so its destructor can't remove
+// the file.
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : files_(other.files_),
       path_(std::move(other.path_)),
@@ -203,7 +205,7 @@ void OutputFile::discard() {
   hidden_path_.clear();
 }
 
-// After a failed write the file has an unknown part of the bytes.
+// After a failed write the file contains an unknown part of the bytes.
 Result<void> OutputFile::spoiled(const std::string& expected, int code) {
   discard();  // an incomplete file is never committed
   return failed(path_, expected, code);
@@ -217,7 +219,7 @@ Result<void> OutputFile::write(std::string_view bytes) {
 }
 
 Result<void> OutputFile::write_at(std::uint64_t at, std::string_view bytes) {
-  // The rest always ends at `end`, so its length gives its position.
+  // `rest` always ends at `end`, so its length gives its position.
   const int code = put_all(bytes, [&, end = at + bytes.size()](std::string_view rest) {
     return files_->write_at(fd_, rest.data(), rest.size(), static_cast<off_t>(end - rest.size()));
   });
@@ -227,7 +229,7 @@ Result<void> OutputFile::write_at(std::uint64_t at, std::string_view bytes) {
 Result<void> OutputFile::reserve(std::uint64_t size) {
   while (size > 0 && files_->allocate(fd_, static_cast<off_t>(size)) != 0) {
     if (errno == EINTR) continue;
-    // The work continues without the reservation. write() then finds out that the disk is full.
+    // The program continues without reserved space. A later write() reports a full disk.
     if (errno == EOPNOTSUPP || errno == ENOSYS) return {};
     return spoiled("room for " + std::to_string(size) + " bytes", errno);
   }
@@ -239,7 +241,8 @@ Result<std::size_t> OutputFile::read_at(std::uint64_t at, std::span<char> to) co
 }
 
 Result<void> OutputFile::place() {
-  // link() to a free name, not rename(): it fails if another program has taken the name meanwhile.
+  // link() is used instead of rename(), because it fails if another program has taken the name
+  // meanwhile.
   const std::string from = hidden_path_.empty() ? unfinished_ : hidden_path_;
   if (files_->link(from.c_str(), path_.c_str()) == 0) return {};
   if (errno != EEXIST) return failed(path_, "a folder that can be written", errno);

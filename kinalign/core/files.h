@@ -38,8 +38,8 @@ class FileSystem {
   virtual int close(int fd) = 0;
 };
 
-/// The real file system. It has no state; the outermost part of a program makes one and passes it
-/// down.
+/// The real file system. It has no state. The outermost part of a program creates it and passes it
+/// to the other parts.
 class PosixFiles : public FileSystem {
  public:
   int open(const char* path, int flags, mode_t mode) override;
@@ -93,14 +93,14 @@ class InputFile {
   static Result<InputFile> open(FileSystem& files, std::string path,
                                 std::size_t piece = piece_size);
 
-  /// The next piece; empty at the end. Valid until the next call.
+  /// The next piece; empty at the end of the file. It is valid until the next call.
   Result<std::string_view> next();
 
-  /// Fills `to` from byte `at` on and returns the number of bytes, fewer at the end of the file.
-  /// Does not change the position of next().
+  /// Fills `to` from byte `at` on. Returns the number of bytes, which is smaller at the end of the
+  /// file. The call does not change the position of next().
   Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
 
-  /// At the time of opening: for progress only, it may have changed.
+  /// The size when the file was opened. It may have changed since, so it serves for progress only.
   std::uint64_t size() const { return size_; }
   const std::string& path() const { return path_; }
 
@@ -108,7 +108,7 @@ class InputFile {
   InputFile(OpenFile file, std::string path, std::uint64_t size, std::size_t piece)
       : file_(std::move(file)), path_(std::move(path)), size_(size), buffer_(piece) {}
 
-  // next() returns views of buffer_, whose size is that of a piece.
+  // next() returns views of buffer_. The size of buffer_ is the size of a piece.
   OpenFile file_;
   std::string path_;
   std::uint64_t size_;
@@ -116,20 +116,20 @@ class InputFile {
   std::uint64_t at_ = 0;  // position of next()
 };
 
-/// Reads a whole file, for small ones (manifests, layouts). Fails above `most` bytes.
+/// Reads a whole small file, such as a manifest or a layout. Fails above `most` bytes.
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most);
 
 /// Makes the folder and its parents if they do not exist.
 Result<void> make_folders(const std::string& path);
 
-/// Makes a folder in an existing folder. Fails if anything has that name.
+/// Makes a folder in an existing folder. Fails if the name exists already.
 Result<void> make_new_folder(const std::string& path);
 
 enum class Overwrite { no, yes };
 
-/// A file that appears only when it is complete. It is written without a name in the target's
-/// folder, or with a name that begins with a dot if the file system does not support this. commit()
-/// syncs it and moves it into place. Until then, and if the program is killed, `path` is unchanged.
+/// A file that appears only when it is complete. It is written into the target's folder without a
+/// name. If the file system does not support this, its name begins with a dot. commit() syncs the
+/// file and moves it to `path`. Until then, and if the program is killed, `path` is unchanged.
 class OutputFile {
  public:
   /// Fails at once if `path` exists and may not be overwritten.
@@ -141,12 +141,13 @@ class OutputFile {
   ~OutputFile();
 
   Result<void> write(std::string_view bytes);
-  /// Writes at any place, also after the end; bytes between read as zeros.
+  /// Writes at any position, also after the end. Bytes that were never written read as zeros.
   Result<void> write_at(std::uint64_t at, std::string_view bytes);
   /// Allocates disk space for a file of that length, so that a full disk is reported before the
-  /// work. The file then reads as zeros. Does nothing if the file system can't allocate.
+  /// work begins. The file then reads as zeros. Does nothing if the file system can't allocate.
   Result<void> reserve(std::uint64_t size);
-  /// Reads bytes written before; returns the number of bytes, fewer at the end of the file.
+  /// Reads bytes that were written before. Returns the number of bytes, which is smaller at the end
+  /// of the file.
   Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
   Result<void> commit();
 
@@ -164,7 +165,8 @@ class OutputFile {
   std::string path_;
   Overwrite overwrite_;
   int fd_ = -1;
-  // Path of the file before commit(): /proc/self/fd/N of a file without a name, else hidden_path_.
+  // Path of the file before commit(). It is /proc/self/fd/N for a file without a name, else
+  // hidden_path_.
   std::string unfinished_;
   std::string hidden_path_;  // the name with a dot; empty if the file has no name
 };
@@ -177,7 +179,7 @@ Result<void> copy_file(FileSystem& files, const std::string& from, const std::st
 
 /// The part of a path after its last '/'.
 std::string_view file_name(std::string_view path);
-/// The folder of a path, up to and including the last '/'; "" if the path names none.
+/// The folder of a path, up to and including the last '/'; "" if the path names no folder.
 std::string_view folder(std::string_view path);
 
 }  // namespace kinalign

@@ -8,8 +8,8 @@
 
 namespace kinalign {
 
-/// The first element of `all` with that name; nullptr if there is none. For short lists, since it
-/// searches from the front.
+/// The first element of `all` with that name; nullptr if there is none. The search starts at the
+/// front, so it is for short lists.
 template <class All>
 auto* find_named(All& all, std::string_view name) {
   const auto found = std::find_if(std::begin(all), std::end(all),

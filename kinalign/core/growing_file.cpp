@@ -22,8 +22,8 @@ Result<GrowingFile> GrowingFile::create(FileSystem& files, std::string path) {
   return GrowingFile(OpenFile(files, fd), std::move(path));
 }
 
-// The bytes are written at size_, not at the file's end, so bytes of a failed append can't shift
-// them.
+// The bytes are written at size_ instead of the file's end. Bytes of a failed append after size_
+// are overwritten.
 Result<void> GrowingFile::append(std::string_view bytes) {
   if (ragged_) KA_TRY(cut(size_));
   const int code = put_all(bytes, [&, end = size_ + bytes.size()](std::string_view rest) {
@@ -32,7 +32,7 @@ Result<void> GrowingFile::append(std::string_view bytes) {
   });
   if (code != 0) {
     ragged_ = true;
-    // If the cut fails, too, ragged_ stays true and the next append() tries it again.
+    // If the cut fails, too, ragged_ stays true and the next append() tries the cut again.
     (void)cut(size_);
     return failed(path_, "room to write", code);
   }
@@ -59,9 +59,9 @@ Result<void> GrowingFile::sync() const {
   while (file_.files().sync(file_.fd()) != 0) {
     if (errno != EINTR) return failed(path_, "data that reach the disk", errno);
   }
-  // Some file systems can't sync a folder; the sync of the file itself matters.
+  // Some file systems can't sync a folder. The result is ignored, because the data are synced.
   if (!std::exchange(named_, true)) sync_folder(file_.files(), path_);
-  // Writes to a removed file succeed, but its data are lost when it is closed.
+  // Writes to a removed file succeed, but the system deletes the data when the file is closed.
   struct stat status {};
   const bool removed =
       ::fstat(file_.fd(), &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that grows under its final name, for recordings: after a kill or a power cut it contains
-// all bytes appended before. For results that must be complete or absent use OutputFile.
+// A file that grows under its final name, for recordings. After a kill it contains all appended
+// bytes, and after a power cut all synced bytes. OutputFile serves results that must be complete or
+// absent.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -14,8 +15,8 @@ namespace kinalign {
 
 class GrowingFile {
  public:
-  /// Creates an empty file of that name without waiting for the disk. Fails if the name exists;
-  /// nothing is ever overwritten.
+  /// Creates an empty file of that name without waiting for the disk. Fails if the name exists: no
+  /// file is ever overwritten.
   static Result<GrowingFile> create(FileSystem& files, std::string path);
   GrowingFile(GrowingFile&&) = default;
   GrowingFile& operator=(GrowingFile&&) = delete;
@@ -27,13 +28,13 @@ class GrowingFile {
   Result<void> append(std::string_view bytes);
   /// Cuts the file to an earlier size.
   Result<void> cut(std::uint64_t size);
-  /// Fills `to` with the bytes appended at `at`.
+  /// Fills `to` with the bytes from position `at` on.
   Result<void> read_at(std::uint64_t at, std::span<char> to) const;
-  /// Waits until all appended bytes are on the disk, and at the first call also the file's name.
-  /// Fails, too, if the file was removed. Another thread may call it during append(), one thread at
-  /// a time.
+  /// Waits until all appended bytes are on the disk. The first call also waits for the file's name.
+  /// Fails if the file was removed, too. One other thread at a time may call sync() during
+  /// append().
   Result<void> sync() const;
-  /// Closes the file. Synced bytes can't be lost by this.
+  /// Closes the file. Synced bytes are safe even if closing fails.
   void close();
 
   std::uint64_t size() const { return size_; }

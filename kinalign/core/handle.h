@@ -8,8 +8,8 @@
 
 namespace kinalign {
 
-/// One object owns a descriptor at a time. Assignment swaps, so the other object closes the old
-/// one.
+/// At any time one object owns the descriptor. Assignment swaps the two descriptors, so the other
+/// object closes the old one.
 class Handle {
  public:
   Handle() = default;

@@ -11,8 +11,8 @@
 namespace kinalign {
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-  // Both calls fail only without memory or if the library lacks SHA-256. No file could be verified
-  // then.
+  // Both calls fail only without memory, or if the library lacks SHA-256. The program then can't
+  // verify any file.
   if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) std::abort();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits a text into lines; the text arrives in pieces cut at any place.
+// Splits a text into lines. The text arrives in pieces, which may be cut anywhere.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,11 +14,10 @@ class LineSplitter {
  public:
   static constexpr std::size_t longest = std::size_t{1} << 20;
 
-  /// Calls `use(line)` -> Result<void> for each line completed by `piece`, without its line end: a
-  /// line feed, or carriage return and line feed.
-  /// number() is then the line's number, counted from 1. The character after the line is
-  /// readable and can't belong to a number. Fails if a call of `use` fails, and on a line longer
-  /// than `longest`.
+  /// Calls `use(line)` -> Result<void> for each line that `piece` completes. The line is passed
+  /// without its line end (a line feed, or carriage return and line feed). During the call number()
+  /// is the line's number, counted from 1. The character after the line is readable and can't
+  /// belong to a number. Fails if `use` fails, and if a line is longer than `longest`.
   template <class Use>
   Result<void> feed(std::string_view piece, Use&& use) {
     while (!piece.empty()) {
@@ -26,7 +25,7 @@ class LineSplitter {
       const bool whole = end != std::string_view::npos;
       const std::string_view part = piece.substr(0, end);
       piece.remove_prefix(whole ? end + 1 : piece.size());
-      // A binary file may have no line end at all, and must not fill the memory.
+      // A binary file may have no line end at all. The limit keeps it from filling the memory.
       if (carry_.size() + part.size() > longest) return too_long();
       // A line that is complete within the piece is used in place, without a copy.
       if (whole && carry_.empty()) {
@@ -42,7 +41,7 @@ class LineSplitter {
     return {};
   }
 
-  /// Call at the end of the text: a last line without a line end is a line, too.
+  /// Call this at the end of the text: a last line without a line end is a line, too.
   template <class Use>
   Result<void> finish(Use&& use) {
     if (carry_.empty()) return {};
@@ -52,7 +51,7 @@ class LineSplitter {
   }
 
   std::int64_t number() const { return number_; }
-  /// True if the text so far ends within a line.
+  /// True if the text so far ends within a line, before the line end.
   bool within_line() const { return !carry_.empty(); }
 
  private:

@@ -8,10 +8,9 @@ namespace kinalign {
 
 namespace {
 
-/// The distance by optimal string alignment. It keeps three rows of the table of distances between
-/// prefixes.
-/// A swap of two neighbouring letters counts as one change, as do an insertion, an omission and a
-/// replacement. Each part of the text is changed once only.
+/// The number of changes that turn `a` into `b` (optimal string alignment distance). A change
+/// inserts, removes or replaces a letter, or swaps two neighbours. No letter is changed twice. Only
+/// three rows of the table of distances between prefixes are kept.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), two_before(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -20,7 +19,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
     before.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      // changed: the letters are paired, at no cost if they are equal.
+      // `changed`: the last two letters are paired, at no cost if they are equal.
       const std::size_t changed = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
       row[j] = std::min({before[j] + 1, row[j - 1] + 1, changed});
       const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
@@ -30,7 +29,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// The first known names as text: "a, b, c, ...".
+/// The first few known names as one text: "a, b, c, ...".
 std::string first_of(const std::vector<std::string>& known) {
   constexpr std::size_t most = 8;
   std::string list;
@@ -44,11 +43,11 @@ std::string first_of(const std::vector<std::string>& known) {
 }  // namespace
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
-  // A name in a file may have any length; only its beginning is compared.
+  // A name in a file may have any length, so only its beginning is compared.
   constexpr std::size_t longest = 64;
   const std::string_view start = name.substr(0, longest);
   std::string best;
-  // One more than the letters that may differ: a third of the name, and one of a short name.
+  // A third of the letters may differ, and at least one letter. `least` is one more than that.
   std::size_t least = std::max<std::size_t>(1, start.size() / 3) + 1;
   for (const std::string& other : known) {
     const std::size_t letters = distance(start, other);

@@ -27,8 +27,8 @@ constexpr std::array<char, 200> digit_pairs = [] {
 
 bool is_digit(char c) { return static_cast<unsigned>(c - '0') < 10; }
 
-/// True if a number that is out of the range of a double is too small (1e-999, which becomes 0) and
-/// not too large (1e999). Decided by the power of ten of its first digit other than 0.
+/// For a number out of the range of a double: true if it is too small (1e-999, which becomes 0),
+/// false if it is too large (1e999). The power of ten of its first digit other than 0 decides.
 bool too_small(std::string_view number) {
   const auto exponent_at = std::min(number.find_first_of("eE"), number.size());
   const std::string_view digits = number.substr(0, exponent_at);
@@ -38,19 +38,19 @@ bool too_small(std::string_view number) {
   const bool negative = exponent.starts_with('-');
   if (negative || exponent.starts_with('+')) exponent.remove_prefix(1);
   std::int64_t power = 0;
-  // The limit keeps an exponent of many digits from overflowing.
+  // The limit prevents an overflow if the exponent has many digits.
   for (const char c : exponent) power = std::min(power * 10 + (c - '0'), std::int64_t{1} << 40);
   return point - first + (negative ? -power : power) < 0;
 }
 
-/// The general case: numbers of more than 15 digits, with an exponent, or no number at all.
+/// The general case: more than 15 digits, an exponent, or text that is not a number.
 const char* parse_any(const char* at, const char* end, double& value) {
   const char* digits = at + (*at == '-' ? 1 : 0);
   if (digits == end || (!is_digit(*digits) && *digits != '.'))
     return nullptr;  // refuses "inf" and "nan"
   const auto [behind, fault] = std::from_chars(at, end, value);
-  // std::from_chars does not say whether a number is too large or too small. A number that is too
-  // small becomes 0 with its sign.
+  // std::from_chars does not report whether a number is too large or too small. A too small number
+  // becomes 0 with its sign.
   if (fault == std::errc::result_out_of_range) {
     const std::string_view text(at, static_cast<std::size_t>(behind - at));
     if (!too_small(text)) return nullptr;
@@ -68,10 +68,10 @@ char* put_whole(char* at, std::int64_t whole) {
   return at;
 }
 
-/// Writes a number below 2^52. `all` is a whole number of 10^-decimals, and `value` is the double
-/// next to it. Both have the same whole part, because the next integer is 10^-decimals away and
-/// doubles are closer. Not inlined: saving registers for it would cost put_number() 1 % of its
-/// time.
+/// Writes a number below 2^52 with `decimals` digits after the point. `all` is the number in units
+/// of 10^-decimals, and `value` is the double nearest to it. Both have the same whole part, because
+/// neighbouring doubles are closer together than 10^-decimals. The function is not inlined, because
+/// inlining it costs put_number() 1 % of its time.
 __attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_t all,
                                              int decimals) {
   const auto power = static_cast<std::int64_t>(ten[static_cast<std::size_t>(decimals)]);
@@ -81,7 +81,8 @@ __attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_
   if (decimals == 0) return at;
   *at++ = '.';
   int left = decimals;
-  // An odd number of digits: the last digit is written alone, the others in pairs from the right.
+  // If the number of digits is odd, the last digit is written alone. The others are written in
+  // pairs from the right.
   if (left % 2 != 0) {
     at[left - 1] = static_cast<char>('0' + fraction % 10);
     fraction /= 10;
@@ -99,7 +100,7 @@ __attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_
 const char* parse_number(const char* at, const char* end, double& value) {
   if (at != end && *at == '+') {
     ++at;
-    // "+-1" is no number, although std::from_chars would read "-1".
+    // "+-1" is not a number, but std::from_chars would read "-1" after the sign.
     if (at != end && *at == '-') return nullptr;
   }
   const char* p = at;
@@ -118,7 +119,8 @@ const char* parse_number(const char* at, const char* end, double& value) {
     after = p - fraction;
     count += after;
   }
-  // More digits may have overflowed `whole`; parse_any() reads the text again from its beginning.
+  // `whole` may have overflowed with more digits, so parse_any() reads the text again from its
+  // beginning.
   if (count == 0 || count > 15 || (*p | 32) == 'e') return parse_any(at, end, value);
   const double magnitude = static_cast<double>(whole) / ten[static_cast<std::size_t>(after)];
   value = minus ? -magnitude : magnitude;
@@ -126,7 +128,7 @@ const char* parse_number(const char* at, const char* end, double& value) {
 }
 
 bool parse_number(std::string_view text, double& value) {
-  // The copy has a fixed size, so longer texts are refused.
+  // The copy has a fixed size, so longer texts are not accepted.
   if (text.empty() || text.size() > 400) return false;
   std::array<char, 401> copy{};  // ends with a character that can't belong to a number
   std::memcpy(copy.data(), text.data(), text.size());
@@ -144,11 +146,11 @@ int decimals_of(std::string_view number) {
 char* put_number(char* at, double value, int decimals) {
   const double scale = ten[static_cast<std::size_t>(decimals)];
   const double magnitude = std::abs(value), scaled = magnitude * scale;
-  // Below 2^52 the nearest integer is exact. If any number with these decimals reads back as the
-  // value, this one does.
+  // Below 2^52 the nearest integer is exact. If any number with these decimals reads back as
+  // `value`, this number does.
   if (!(scaled < 4e15)) return std::to_chars(at, at + number_room, value).ptr;
   auto all = static_cast<std::int64_t>(scaled);
-  // Without a branch to predict.
+  // Rounds up without a branch, which a processor may predict wrongly.
   all += static_cast<std::int64_t>(scaled - static_cast<double>(all) >= 0.5);
   // The digits must read back as the same double. parse_number() divides in the same way.
   if (static_cast<double>(all) / scale != magnitude) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts numbers to text and back, exactly, and independent of the locale.
+// Converts numbers to text and back, exactly and independently of the locale.
 #pragma once
 
 #include <charconv>
@@ -13,17 +13,17 @@
 
 namespace kinalign {
 
-/// Reads a decimal number at `at`. A character that can't belong to it (a blank, a comma) must
-/// follow before or at `end`, and `end` itself must be readable. Numbers of up to 15 digits take
-/// one integer and one exact division, which is correctly rounded and equals std::from_chars bit
-/// for bit; others use std::from_chars. A leading '+' is accepted, "nan" and "inf" are not. Returns
-/// the position after the number, or nullptr if there is none.
+/// Reads a decimal number at `at`. A character that can't belong to a number (a blank, a comma)
+/// must follow at `end` or earlier, and `end` itself must be readable. Numbers of up to 15 digits
+/// take one integer and one exact division. The result is correctly rounded and equals
+/// std::from_chars bit for bit. Other numbers use std::from_chars. A leading '+' is accepted; "nan"
+/// and "inf" are not. Returns the position after the number, or nullptr if there is no number.
 const char* parse_number(const char* at, const char* end, double& value);
 
-/// True if the whole of `text` is one number; see the other parse_number().
+/// True if all of `text` is one number, by the rules of the other parse_number().
 bool parse_number(std::string_view text, double& value);
 
-/// True if the whole of `text` is one integer in the type's range, without blanks and without '+'.
+/// True if all of `text` is one integer in the type's range. Blanks and '+' are not accepted.
 template <std::integral Integer>
 bool parse_integer(std::string_view text, Integer& value) {
   const char* end = text.data() + text.size();
@@ -31,18 +31,19 @@ bool parse_integer(std::string_view text, Integer& value) {
   return fault == std::errc{} && behind == end;
 }
 
-/// Larger numbers of any unit can't be meant, and are refused in files.
+/// No measured quantity is larger than this in any unit, so files with larger numbers are refused.
 constexpr double largest_number = 1e15;
 
-/// The number of digits after the decimal point: 4 for "12.3400". 0 with an exponent or without a
-/// point.
+/// The number of digits after the decimal point: 4 for "12.3400". The result is 0 if the number has
+/// an exponent or no point.
 int decimals_of(std::string_view number);
 
 /// The most characters that put_number() writes.
 constexpr std::size_t number_room = 40;
 
-/// Writes `value` with `decimals` (0 to 15) digits after the point if that reads back as the same
-/// double; otherwise in the shortest form that does. Returns the position after the last character.
+/// Writes `value` with `decimals` (0 to 15) digits after the point if this text reads back as the
+/// same double. Otherwise writes the shortest text that does. Returns the position after the last
+/// character.
 char* put_number(char* at, double value, int decimals);
 /// The characters of put_number() as a text.
 std::string number_text(double value, int decimals);

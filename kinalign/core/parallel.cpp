@@ -13,8 +13,8 @@ namespace kinalign {
 void parallel_for(std::size_t count, std::size_t jobs,
                   const std::function<void(std::size_t)>& body) {
   const std::size_t threads = std::min(count, std::max<std::size_t>(jobs, 1));
-  // `next` gives each index to one thread, in rising order. A thread whose call threw takes no
-  // further index; the others continue.
+  // `next` gives each index to one thread, in rising order. If a call throws, its thread takes no
+  // further index. The other threads continue.
   std::atomic<std::size_t> next{0};
   std::atomic_flag thrown;
   // Written by the one thread that set `thrown`, and read after all threads have ended.
@@ -26,8 +26,8 @@ void parallel_for(std::size_t count, std::size_t jobs,
       if (!thrown.test_and_set()) fault = std::current_exception();
     }
   };
-  // The caller's thread works, too, so one thread less is started. The inner block ends when all
-  // threads have ended, because std::jthread joins in its destructor.
+  // The caller's thread works, too, so `jobs` - 1 threads are started. The destructor of
+  // std::jthread joins, so the inner block ends when all threads have ended.
   {
     std::vector<std::jthread> others;
     try {

@@ -11,8 +11,8 @@
 
 namespace kinalign {
 
-/// Called occasionally with a description of the work, the amount done and the total (bytes,
-/// frames). Returns false if the user wants to stop. An empty Progress reports nothing.
+/// Called now and then with a description of the work, the amount done and the total, in bytes or
+/// frames. Returns false if the user wants to stop. An empty Progress reports nothing.
 using Progress =
     std::function<bool(std::string_view what, std::uint64_t done, std::uint64_t total)>;
 
@@ -21,7 +21,7 @@ inline bool go_on(const Progress& progress, std::string_view what, std::uint64_t
   return !progress || progress(what, done, total);
 }
 
-/// The error of a job that was told to stop.
+/// The error of a job that the user stopped.
 inline Error interruption(std::string file = {}) {
   return {std::move(file), 0, "the end of the job", "an interruption", ErrorKind::interrupted};
 }

@@ -17,21 +17,20 @@ namespace kinalign {
 class TextOut {
  public:
   static Result<TextOut> create(FileSystem& files, std::string path, Overwrite overwrite) {
-    // Room for two blocks: the buffer is flushed at the end of a line, after it has passed one
-    // block.
+    // The buffer has room for two blocks. The first end of a line after one full block flushes it.
     return TextOut(KA_TRY(OutputFile::create(files, std::move(path), overwrite)));
   }
   explicit TextOut(OutputFile file) : file_(std::move(file)) { held_.reserve(2 * most_held); }
 
   void text(std::string_view piece) { held_ += piece; }
 
-  /// Writes `before` (unless it is '\0') and then the value rounded to `decimals` (0 to 9).
+  /// Writes `before` (unless it is '\0') and then `value`, rounded to `decimals` (0 to 9) decimals.
   void number(char before, double value, int decimals) {
     constexpr std::array<double, 10> scales{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
     const double scale = scales[static_cast<std::size_t>(decimals)];
     std::array<char, number_room> room{};
-    // "+ 0.0" turns -0.0 into 0.0, so that "-0.0000" is never written.
-    // The value is rounded here, because put_number() keeps every digit that a double has.
+    // The value is rounded here, because put_number() writes every digit that a double has. Adding
+    // 0.0 turns -0.0 into 0.0, so "-0.0000" is never written.
     const double rounded = std::nearbyint(value * scale) / scale + 0.0;
     const char* end = put_number(room.data(), rounded, decimals);
     if (before != '\0') held_ += before;
@@ -64,7 +63,7 @@ class TextOut {
     return {};
   }
 
-  // Text in held_ is not in the file yet. The file gets its name in commit() only.
+  // The file does not contain the text in held_ yet, and has no name before commit().
   OutputFile file_;
   std::string held_;
 };

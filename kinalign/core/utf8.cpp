@@ -5,8 +5,8 @@ namespace kinalign {
 
 Character first_character(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text.front());
-  // The first byte tells how many bytes follow. 0xc0 and 0xc1 could only begin a code that has a
-  // shorter form, so they are invalid.
+  // The first byte determines how many bytes follow. 0xc0 and 0xc1 are invalid: they could only
+  // begin a code that has a shorter form.
   const std::size_t more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : lead >= 0xc2 ? 1 : 0;
   char32_t code = more == 0 ? lead : lead & (0x3fU >> more);
   bool good = more == 0 ? lead < 0x80 : lead < 0xf5 && more < text.size();
@@ -15,8 +15,8 @@ Character first_character(std::string_view text) {
     good = (next & 0xc0U) == 0x80;
     code = code << 6U | (next & 0x3fU);
   }
-  // Smaller codes have a shorter form, which is the only valid one.
-  // Codes from 0xd800 to 0xdfff are halves of UTF-16 pairs and no characters.
+  // A smaller code has a shorter form, and only the shortest form is valid. Codes from 0xd800 to
+  // 0xdfff are halves of UTF-16 pairs and not characters.
   constexpr char32_t least[] = {0, 0x80, 0x800, 0x10000};
   good = good && code >= least[more] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
   return good ? Character{code, more + 1} : Character{};
