@@ -14,13 +14,13 @@ namespace kinalign {
 
 namespace {
 
-// 2^40 bytes; no file that is read here comes near it.
+// The limit is far above the size of any file that kinalign reads.
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40;
 constexpr std::size_t longest_header = 65536, most_dimensions = 32;
 
-/// Parser of the header's dict: {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }. numpy
-/// evaluates it as Python; this parser takes only the form that numpy writes.
-/// The keys may stand in any order, each once. Everything else is refused.
+/// Parses the header, a Python dict: {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }.
+/// numpy evaluates the header as Python. This parser accepts only the form that numpy writes. The
+/// keys may stand in any order, each once.
 class HeaderText {
  public:
   explicit HeaderText(std::string_view text) : text_(text) {}
@@ -33,7 +33,8 @@ class HeaderText {
       if (!key || !take(":")) return false;
       bool taken = false;
       if (*key == "descr") taken = !std::exchange(descr, true) && parse_descr(out);
-      // True would mean Fortran order, in which the first index varies fastest.
+      // True would mean Fortran order, in which the first index varies fastest. Only False is
+      // accepted.
       if (*key == "fortran_order") taken = !std::exchange(order, true) && take("False");
       if (*key == "shape") taken = !std::exchange(shape, true) && parse_shape(out);
       if (!taken) return false;
@@ -76,7 +77,7 @@ class HeaderText {
     return value;
   }
 
-  /// Reads the type of the values: "<f4", "|u1", "<U12".
+  /// Reads the type of the values, for example "<f4", "|u1" or "<U12".
   bool parse_descr(NpyHeader& out) {
     const auto descr = quoted();
     if (!descr || descr->size() < 3) return false;
@@ -84,7 +85,7 @@ class HeaderText {
     std::uint64_t size = 0;
     if (!parse_integer(descr->substr(2), size)) return false;
     out.kind = (*descr)[1];
-    // A text of n characters takes 4 n bytes: numpy stores UTF-32.
+    // numpy stores text as UTF-32, so a text of n characters takes 4 n bytes.
     if (out.kind == 'U') {
       if (order != '<' || size == 0 || size > longest_header) return false;
       out.value_bytes = 4 * size;
@@ -95,7 +96,7 @@ class HeaderText {
                        (whole && (size == 1 || size == 2 || size == 4 || size == 8)) ||
                        (out.kind == 'f' && (size == 4 || size == 8));
     out.value_bytes = size;
-    // Single bytes have no byte order, which numpy writes as '|'.
+    // Single bytes have no byte order. numpy writes '|' for them.
     return known && (order == '<' || (order == '|' && size == 1));
   }
 
@@ -116,18 +117,18 @@ class HeaderText {
 
 template <class Value>
 Value value_at(const NpyArray& array, std::size_t index) {
-  // memcpy, because the values in the file need not be aligned.
+  // memcpy is used, because the values in the file may not be aligned.
   static_assert(std::endian::native == std::endian::little);
   Value value;
   std::memcpy(&value, array.bytes.data() + index * sizeof(Value), sizeof(Value));
   return value;
 }
 
-/// Appends a Unicode character as UTF-8; '?' for a number that is no character.
+/// Appends a Unicode character as UTF-8. A number that is not a character becomes '?'.
 void put_utf8(std::string& out, std::uint32_t code) {
   const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
   if (code < 0x80) return put(code);
-  // Halves of UTF-16 pairs are no characters.
+  // Halves of UTF-16 pairs are not characters.
   if (code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) return put('?');
   if (code < 0x800) {
     put(0xC0 | code >> 6);
@@ -162,7 +163,7 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
   // Version 1 has two bytes for the header's length, later versions have four.
   const std::size_t length_bytes = version == 1 ? 2 : 4, at = 8 + length_bytes;
   std::size_t length = 0;
-  // The length is little-endian, so its last byte counts most.
+  // The length is little-endian: its last byte is the most significant.
   for (std::size_t i = length_bytes; i-- > 0 && bytes.size() >= at;) {
     length = length << 8 | static_cast<unsigned char>(bytes[8 + i]);
   }
@@ -178,8 +179,8 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
   out.data_at = at + length;
   std::uint64_t all = std::max<std::size_t>(out.value_bytes, 1);
   for (const std::uint64_t one : out.shape) {
-    // Checked before each product, so that none can overflow. A length of 0 counts as 1: the others
-    // must be sane, too.
+    // The check comes before each product, so that no product overflows. A length of 0 counts as 1,
+    // so the other lengths are checked, too.
     if (one > 0 && all > most_bytes / one)
       return refuse(name, "an array below 2^40 bytes", "a larger array");
     all *= std::max<std::uint64_t>(one, 1);
@@ -197,7 +198,7 @@ Result<NpyArray> read_npy(std::string_view file, std::string_view name) {
                 std::to_string(out.bytes.size()));
 }
 
-// The kind tells signed and unsigned numbers of one width apart.
+// An array of kind 'i' has signed values; the other kinds are read as unsigned.
 std::int64_t integer_at(const NpyArray& array, std::size_t index) {
   const auto as = [&]<class Small, class Whole>(Small, Whole) {
     return array.header.kind == 'i' ? static_cast<std::int64_t>(value_at<Small>(array, index))
@@ -223,7 +224,7 @@ double number_at(const NpyArray& array, std::size_t index) {
 
 std::string text_at(const NpyArray& array, std::size_t index) {
   std::string out;
-  // numpy fills short texts with zeros.
+  // numpy pads short texts with zeros.
   const std::size_t letters = array.header.value_bytes / 4;
   for (std::size_t i = 0; i < letters; ++i) {
     const auto code = value_at<std::uint32_t>(array, index * letters + i);

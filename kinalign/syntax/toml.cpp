@@ -13,34 +13,35 @@ namespace {
 
 using Kind = Value::Kind;
 
-/// Advice for a line in which toml++ found a fault, such as [device.my suit], whose name needs
-/// quotes; else empty.
-/// The name begins after the brackets and the first dot, and ends at the first closing bracket.
+/// Advice for a line in which toml++ found a fault: a table name such as [device.my suit] needs
+/// quotes. The result is empty for other lines. The name begins after the brackets and the first
+/// dot, and ends at the first closing bracket.
 std::string quotes_advice(std::string_view text, std::int64_t line) {
   for (std::int64_t at = 1; at < line; ++at) {
     const auto end = text.find('\n');
     if (end == std::string_view::npos) return "";
     text.remove_prefix(end + 1);
   }
-  // The lines before the fault are gone; the rest is cut after its first line.
+  // The lines before the fault are removed. Now the text is cut after its first line.
   text = text.substr(0, text.find_first_of("\r\n"));
   const auto begin = text.find_first_not_of(" \t["), end = text.find(']');
   if (!text.starts_with('[') || end == std::string_view::npos || begin >= end) return "";
   const std::string_view key = text.substr(begin, end - begin);
   const auto dot = key.find('.');
   const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
-  // With a dot or a quote in it the name may be right in another way; advice would be a guess.
+  // If the name contains a dot or a quote, quotes may not be the right advice, so none is given.
   const bool blank = name.find(' ') != std::string_view::npos;
   if (!blank || name.find_first_of(".\"'") != std::string_view::npos) return "";
   const std::string_view table = key.substr(0, key.size() - name.size());
   return " (a name with blanks stands in quotes: [" + shown(table) + "\"" + shown(name) + "\"])";
 }
 
-/// The most bytes of a path. Every value holds its path, and value_of() recurses once per part, so
-/// a hostile file must not choose its length.
+/// The longest path of a value in bytes. Every value contains its path, and value_of() recurses
+/// once per part. Without a limit, a hostile file could use up memory and stack.
 constexpr std::size_t longest_path = 250;
 
-/// The first node whose path, `before` bytes above it, is longer than that; nullptr if none is.
+/// The first node whose path is too long; nullptr if there is none. `before`: the length of the
+/// path above the node, bytes.
 const toml::node* beyond_limit(const toml::node& node, std::size_t before) {
   if (before > longest_path) return &node;
   const toml::node* found = nullptr;
@@ -64,13 +65,13 @@ Value value_of(const toml::node& node, std::string key, std::string path);
 std::vector<Value> entries_in_order(const toml::table& table, const std::string& path) {
   std::vector<std::pair<std::string, const toml::node*>> entries;
   for (const auto& [key, value] : table) entries.emplace_back(key.str(), &value);
-  // Errors and the order of streams follow the file, and not the alphabet.
+  // Errors and streams keep the order of the file instead of the alphabet.
   std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
     const auto& at = a.second->source().begin;
     const auto& bt = b.second->source().begin;
     return at.line != bt.line ? at.line < bt.line : at.column < bt.column;
   });
-  // The path of an entry, "stream.mocap.gap_ms", names its table in messages.
+  // Messages show the whole path of an entry, for example "stream.mocap.gap_ms".
   const std::string before = path.empty() ? "" : path + ".";
   std::vector<Value> out;
   out.reserve(entries.size());
@@ -82,9 +83,9 @@ Value value_of(const toml::node& node, std::string key, std::string path) {
   Value out;
   out.key = std::move(key);
   out.path = std::move(path);
-  // A node without a place gets line 1, because line 0 means JSON.
+  // A node without a position in the file gets line 1, because line 0 stands for JSON.
   out.line = std::max<std::int64_t>(node.source().begin.line, 1);
-  // A date or time is the only kind of node that the tests below do not recognise.
+  // Only dates and times are not recognised by the tests below, so they are the default.
   out.kind = Kind::date;
   if (const auto* truth = node.as_boolean()) out.set(Kind::truth, truth->get());
   if (const auto* whole = node.as_integer()) out.set(Kind::whole, whole->get());
@@ -105,7 +106,7 @@ std::string toml_text(bool value) { return value ? "true" : "false"; }
 std::string toml_text(std::int64_t value) { return std::to_string(value); }
 std::string toml_text(const std::string& value) { return toml_string(value); }
 std::string toml_text(double value) {  // the shortest text that reads back exactly
-  // A dot is added to whole numbers, because TOML would read "3" as an integer.
+  // Whole numbers get a point, because TOML would read "3" as an integer.
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
@@ -132,7 +133,7 @@ std::string toml_text(const std::map<std::string, One>& values) {
 
 Result<void> read_toml(std::string_view text, std::string_view name,
                        const std::function<Result<void>(const Value& top)>& read) {
-  // toml++ throws. From here on a fault in the text is an error with its line.
+  // toml++ throws exceptions. They are caught here and become errors with a line.
   try {
     const toml::table top = toml::parse(text, name);
     if (const toml::node* node = beyond_limit(top, 0)) {
@@ -175,7 +176,7 @@ std::string toml_list(const std::vector<std::string>& texts) { return toml_text(
 std::string toml_options(const Fields& fields, const Fields& defaults) {
   const auto write = [](const auto* value) { return toml_text(*value); };
   std::string text;
-  // Texts are compared and not values, so one function serves all types of options.
+  // The texts of the values are compared instead of the values, so one function serves all types.
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string value = std::visit(write, fields[i].value);
     if (value == std::visit(write, defaults[i].value)) continue;

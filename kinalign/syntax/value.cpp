@@ -16,9 +16,8 @@ namespace {
 
 using Kind = Value::Kind;
 
-/// Sets an option of each type.
-/// Each operator() checks kind and range and names the expected form in its error. std::visit
-/// chooses the operator by the option's type.
+/// Sets an option from a value. There is one operator() for each type of option, and std::visit
+/// chooses among them. Each one checks kind and range, and its error names the expected form.
 class Setter {
  public:
   Setter(const Field& field, const Value& value) : field_(field), value_(value) {}
@@ -34,7 +33,7 @@ class Setter {
     *to = *number;
     return {};
   }
-  /// 3.0 is no whole number: its text makes it a number with a point.
+  /// 3.0 is not accepted as a whole number, because the point makes it a number of another kind.
   Result<void> operator()(std::int64_t* to) const {
     if (value_.kind != Kind::whole || !number_in(value_)) {
       return wrong(value_, ranged("a whole number"));
@@ -52,7 +51,7 @@ class Setter {
     *to = *text;
     return {};
   }
-  /// null is JSON's way to leave out an optional value. TOML has no null.
+  /// In JSON, null leaves out an optional value. TOML has no null.
   template <class Number>
   Result<void> operator()(std::optional<Number>* to) const {
     if (value_.kind == Kind::null) return {};
@@ -66,13 +65,13 @@ class Setter {
     }
     return {};
   }
-  /// In a take's parameters (JSON) an absent list is written as an empty one.
+  /// The JSON in a take writes an absent list as an empty list.
   Result<void> operator()(std::vector<double>* to) const {
     if (value_.line == 0 && value_.kind == Kind::list && value_.items.empty()) return {};
     *to = KA_TRY(numbers());
     return {};
   }
-  /// A whole number counts as its text: { "Skeleton#" = 0 }.
+  /// A whole number is converted to its text, as in { "Skeleton#" = 0 }.
   Result<void> operator()(std::map<std::string, std::string>* to) const {
     for (const Value& one : KA_TRY(entries_of(value_))) {
       if (one.kind == Kind::whole) {
@@ -97,9 +96,9 @@ class Setter {
   }
 
  private:
-  /// The number, if the value is one within the range.
+  /// The number if `value` is a number within the range; otherwise empty.
   std::optional<double> number_in(const Value& value) const {
-    // Integers are accepted where numbers are expected, so "gap_ms = 200" needs no point.
+    // Integers are accepted as numbers, so "gap_ms = 200" needs no point.
     const auto* whole = std::get_if<std::int64_t>(&value.scalar);
     const auto* number = std::get_if<double>(&value.scalar);
     if (whole == nullptr && number == nullptr) return std::nullopt;
@@ -108,8 +107,8 @@ class Setter {
     return x;
   }
 
-  /// The numbers of a list, or a single number where any count is allowed.
-  /// A fault is reported at the line of the number, which may stand lines below the list's key.
+  /// The numbers of a list. A single number is accepted if the option allows any count. An error
+  /// names the line of the faulty number, which may be below the line of the list's key.
   Result<std::vector<double>> numbers() const {
     const std::string wanted = field_.count == 0
                                    ? ranged("a number or a list of numbers")
@@ -126,7 +125,8 @@ class Setter {
     if (field_.count != 0 && out.size() != field_.count) {
       return at(value_, value_.name() + " as " + wanted, fmt::format("{} numbers", out.size()));
     }
-    // Four numbers are a rotation. Zeros or degrees would have a length far from 1.
+    // A list of four numbers is a rotation. Zeros or degrees have a length far from 1 and are
+    // refused.
     if (field_.count == 4) KA_TRY(check_rotation(out));
     return out;
   }
@@ -138,7 +138,7 @@ class Setter {
               fmt::format("a length of {:.6g}", length));
   }
 
-  /// An option without a lower limit has no range in its message, even if it has an upper one.
+  /// If an option has no lower limit, the message names no range, even if there is an upper limit.
   std::string ranged(const std::string& kind) const {
     if (!(field_.least > -unlimited)) return kind;
     return fmt::format("{} from {} to {}", kind, field_.least, field_.most);
@@ -158,7 +158,7 @@ class Setter {
 }  // namespace
 
 const Value* Value::find(std::initializer_list<std::string_view> keys) const {
-  // Only tables have keys. The values of a list repeat the list's own key.
+  // Only tables have keys. The values of a list repeat the key of the list.
   const Value* found = this;
   for (const std::string_view wanted : keys) {
     if (!found->is_table()) return nullptr;
@@ -191,7 +191,7 @@ std::string shown(const Value& value) {
       return "a table";
     case Kind::text:
       return "\"" + shown(std::get<std::string>(value.scalar)) + "\"";
-    // The three kinds that hold a number or a truth value.
+    // The remaining kinds contain a number or a truth value.
     default:
       return std::visit([](const auto& scalar) { return fmt::format("{}", scalar); }, value.scalar);
   }
@@ -214,7 +214,7 @@ Result<void> set_option(const Field& field, const Value& value) {
 }
 
 Result<void> read_options(const Value& table, const Fields& fields, const OtherKeys& others) {
-  // The entries are visited in the file's order, so the first fault of the file is reported.
+  // The entries are visited in the order of the file, so the first fault of the file is reported.
   for (const Value& entry : KA_TRY(entries_of(table))) {
     if (const auto other = others.find(entry.key); other != others.end()) {
       KA_TRY(other->second(entry));
@@ -226,7 +226,7 @@ Result<void> read_options(const Value& table, const Fields& fields, const OtherK
       KA_TRY(set_option(*field, entry));
       continue;
     }
-    // The suggestion may be any key that would have been accepted here.
+    // The error suggests the nearest key among all accepted keys.
     std::vector<std::string> known;
     for (const auto& [key, read] : others) known.push_back(key);
     for (const Field& one : fields) known.push_back(one.name);

@@ -11,11 +11,12 @@ namespace kinalign {
 
 namespace {
 
-// The limits on the depth of elements, and on the bytes of a tag, a comment or a text.
+// Limits on the depth of elements, and on the bytes of a tag, a comment or a text.
 constexpr int deepest = 64;
 constexpr std::size_t longest = std::size_t{1} << 20;
 
-/// Names count without their prefix, so readers need not know which one a document chose.
+/// Names are compared without their namespace prefix, because each document may choose its own
+/// prefix.
 std::string_view without_prefix(std::string_view name) {
   const auto colon = name.find(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
@@ -31,24 +32,24 @@ std::optional<std::string_view> XmlAttributes::find(std::string_view name) const
   return std::nullopt;
 }
 
-/// Expat's callbacks, and the error of the handler, which Expat can't pass on.
-/// `handler` belongs to the caller and is set by every call of parse(). `error` is the first error;
-/// after it the callbacks do nothing.
+/// Expat's callbacks and their data. Expat can't pass on a handler's error, so `error` keeps the
+/// first error. After an error the callbacks do nothing. `handler` belongs to the caller and is set
+/// by every call of parse().
 struct XmlFeed::State {
   std::string file;
   XML_Parser parser = nullptr;
   XmlHandler* handler = nullptr;
   std::string text;
-  // `text` grows until the next tag. A call of end() hands it on and empties it.
-  std::string start;  // first bytes of the document, until Expat has got them
+  // `text` grows until the next tag. A call of end() passes it on and empties it.
+  std::string start;  // first bytes of the document, kept until Expat gets them
   bool started = false;
   int depth = 0;
-  std::uint64_t fed = 0, last_event = 0;  // bytes
+  std::uint64_t fed = 0, last_event = 0;  // positions in bytes
   std::optional<Error> error;
 
   std::int64_t line() const { return static_cast<std::int64_t>(XML_GetCurrentLineNumber(parser)); }
 
-  /// Keeps the first error only, because later ones follow from it. Expat then ends XML_Parse()
+  /// Keeps the first error only, because later errors follow from it. Expat then ends XML_Parse()
   /// with an error, too.
   void stop(Error what) {
     if (error) return;
@@ -64,7 +65,7 @@ struct XmlFeed::State {
   }
 
   static State& of(void* data) {
-    // Bytes fed since the last event are those of an open tag or comment, which Expat keeps.
+    // All bytes fed after the last event belong to an open tag or comment, which Expat keeps.
     State& self = *static_cast<State*>(data);
     self.last_event =
         static_cast<std::uint64_t>(std::max<XML_Index>(XML_GetCurrentByteIndex(self.parser), 0));
@@ -74,7 +75,7 @@ struct XmlFeed::State {
   static void begin(void* data, const char* name, const char** attributes) {
     State& self = of(data);
     if (self.error) return;
-    // Characters before a child element belong to no end tag, so they are dropped.
+    // Text before a child element is dropped, because handlers receive text at end tags only.
     self.text.clear();
     if (++self.depth > deepest) {
       self.stop({"", 0, "elements nested at most 64 deep", "deeper elements"});
@@ -95,7 +96,7 @@ struct XmlFeed::State {
     self.text.append(text, static_cast<std::size_t>(size));
     if (self.text.size() > longest) self.stop({"", 0, "texts of at most 1 MiB", "a longer text"});
   }
-  // Entities that expand to others could make a small document fill the memory.
+  // An entity may contain further entities, so a small document could fill the memory.
   // NOLINTNEXTLINE(readability-function-size): Expat's signature
   static void entity(void* data, const char* name, int, const char*, int, const char*, const char*,
                      const char*, const char*) {
@@ -119,7 +120,7 @@ std::int64_t XmlFeed::line() const { return state_->line(); }
 
 bool XmlFeed::ends_too_early() const {
   if (state_->error) return false;
-  // The errors that a document gives if it is cut at any place.
+  // Expat reports these errors if a document is cut off anywhere.
   switch (XML_GetErrorCode(state_->parser)) {
     case XML_ERROR_NO_ELEMENTS:
     case XML_ERROR_UNCLOSED_TOKEN:
@@ -134,17 +135,17 @@ bool XmlFeed::ends_too_early() const {
 Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handler) {
   State& s = *state_;
   s.handler = &handler;
-  // Pieces are at most 64 KiB, so the size fits into an int.
+  // A piece has at most 64 KiB, so its size fits into an int.
   const auto status =
       XML_Parse(s.parser, piece.data(), static_cast<int>(piece.size()), last ? 1 : 0);
   s.fed += piece.size();
-  // The handler's error comes first. Expat would only report that the parsing was stopped.
+  // The handler's error is returned first, because Expat only reports that the handler stopped it.
   if (s.error) return Failure(*s.error);
   if (status == XML_STATUS_ERROR) {
     return Failure(
         Error{s.file, s.line(), "well-formed XML", XML_ErrorString(XML_GetErrorCode(s.parser))});
   }
-  // Expat keeps a tag or a comment until it is complete, so its length must be limited here.
+  // Expat stores a tag or a comment until it is complete, so the length is limited here.
   if (!last && s.fed - std::min(s.last_event, s.fed) > longest) {
     return Failure(
         Error{s.file, s.line(), "tags and comments of at most 1 MiB", "a longer tag or comment"});
@@ -152,8 +153,8 @@ Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handl
   return {};
 }
 
-/// Expat guesses the encoding from its first piece. It must get four bytes at once; otherwise it
-/// would guess from a single one.
+/// Expat guesses the encoding from the first piece. The first piece therefore has at least four
+/// bytes, because one byte is not enough for the guess.
 Result<void> XmlFeed::feed(std::string_view piece, XmlHandler& handler) {
   constexpr std::size_t enough = 4;
   State& s = *state_;
@@ -164,7 +165,8 @@ Result<void> XmlFeed::feed(std::string_view piece, XmlHandler& handler) {
     if (s.start.size() < enough) return {};
     KA_TRY(begin(handler));
   }
-  // The length of a tag is checked after each piece, so a piece must be small beside the limit.
+  // The length of a tag is checked after each piece, so a piece must be much smaller than the
+  // limit.
   constexpr std::size_t most = std::size_t{64} << 10;
   for (; !piece.empty(); piece.remove_prefix(std::min(piece.size(), most))) {
     KA_TRY(parse(piece.substr(0, most), false, handler));
@@ -178,7 +180,7 @@ Result<void> XmlFeed::begin(XmlHandler& handler) {
 }
 
 Result<void> XmlFeed::finish(XmlHandler& handler) {
-  // A document shorter than four bytes has not reached Expat yet.
+  // If the document has fewer than four bytes, Expat has not received them yet.
   if (!state_->started) KA_TRY(begin(handler));
   return parse("", true, handler);
 }

@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// A view of Expat's array. It is valid during begin() only.
+/// A view of Expat's array of attributes. It is valid during XmlHandler::begin() only.
 class XmlAttributes {
  public:
   /// `pairs`: name, value, name, value, ..., nullptr
@@ -22,22 +22,20 @@ class XmlAttributes {
   const char* const* pairs_;
 };
 
-/// Receives the elements. Names come without a prefix: `frame` for `<mvn:frame>`. An error without
-/// a place gets the line.
-/// After an error no further call is made.
+/// Receives the elements of a document. Names have no prefix: `frame` for `<mvn:frame>`. XmlFeed
+/// adds the line to an error without a line. After an error no further function is called.
 class XmlHandler {
  public:
   virtual ~XmlHandler() = default;
-  /// Name and attributes are Expat's memory: copy what is needed after the call.
+  /// Name and attributes are memory of Expat. The handler must copy what it needs after the call.
   virtual Result<void> begin(std::string_view name, const XmlAttributes& attributes) = 0;
   /// `text`: the characters since the previous tag.
   virtual Result<void> end(std::string_view name, std::string_view text) = 0;
 };
 
-/// Hostile documents fail: those that define entities, nest elements deeper than 64, or have tags
-/// or texts above 1 MiB.
-/// Expat passes a text on in parts of its own choice. This class joins them, and keeps the first
-/// error with its line.
+/// Parses a document that arrives in pieces. Hostile documents fail: those that define entities,
+/// nest elements deeper than 64, or have tags or texts above 1 MiB. Expat delivers a text in parts,
+/// and this class joins the parts. It also keeps the first error with its line.
 class XmlFeed {
  public:
   explicit XmlFeed(std::string file);
@@ -46,9 +44,9 @@ class XmlFeed {
   XmlFeed& operator=(const XmlFeed&) = delete;
 
   Result<void> feed(std::string_view piece, XmlHandler& handler);
-  /// Call at the end of the document. Fails if an element is still open.
+  /// Call this at the end of the document. It fails if an element is still open.
   Result<void> finish(XmlHandler& handler);
-  /// True if the only fault is that the document ends too early; the part before is well-formed.
+  /// True if the document ends too early and has no other fault.
   bool ends_too_early() const;
   std::int64_t line() const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the fields of messages, in network order (big-endian, RFC 1700) or in little-endian order,
-// and writes datagrams in network order. Running past the end is not reported at once: one check
-// after a layout replaces a check for each field.
+// Reads the fields of messages in network order (big-endian, RFC 1700) or in little-endian order,
+// and writes datagrams in network order. A read past the end is only recorded. One check after all
+// fields therefore replaces a check for each field.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace kinalign {
 
-/// Reads fields from the front. Past the end it returns zeros, and `complete` is false.
+/// Reads fields from the front. Past the end it returns zeros, and complete() is false.
 template <std::endian order>
 class FieldReader {
  public:
@@ -24,7 +24,7 @@ class FieldReader {
     const auto bytes = take_bytes(sizeof(T));
     if (bytes.empty()) return T{0};
     std::uint64_t value = 0;
-    // Byte by byte: neither the alignment nor the byte order of the machine matters.
+    // The value is read byte by byte, so alignment and byte order of the machine do not matter.
     for (std::size_t i = 0; i < sizeof(T); ++i) {
       value = value << 8 | bytes[order == std::endian::big ? i : sizeof(T) - 1 - i];
     }
@@ -40,7 +40,7 @@ class FieldReader {
   /// Returns `count` bytes, or none if fewer are left.
   std::span<const std::uint8_t> take_bytes(std::uint64_t count) {
     if (count > left()) {
-      // The rest is dropped too, so that a shorter field after the missing one can't succeed.
+      // The rest is skipped too, so that no shorter field after the missing one is read.
       at_ = bytes_.size();
       complete_ = false;
       return {};
@@ -62,8 +62,8 @@ class FieldReader {
 };
 using ByteReader = FieldReader<std::endian::big>;
 
-/// Writes fields one after another. A field that does not fit is not written, and `complete` is
-/// false.
+/// Writes fields one after another. A field that does not fit is not written, and complete() is
+/// then false.
 class ByteWriter {
  public:
   explicit ByteWriter(std::span<std::uint8_t> bytes) : bytes_(bytes) {}
@@ -84,8 +84,8 @@ class ByteWriter {
   std::size_t written() const { return at_; }
 
  private:
-  // at_ <= bytes_.size(), and the first `at_` bytes are written. A field is written whole or not at
-  // all.
+  // The first `at_` bytes are written, and at_ <= bytes_.size(). A field is written completely or
+  // not at all.
   std::span<std::uint8_t> bytes_;
   std::size_t at_ = 0;
   bool complete_ = true;

@@ -7,17 +7,18 @@ namespace kinalign {
 
 namespace {
 
-// nonce, T2, T3. A request has as many zero bytes, so that the answer is not longer.
+// Size of nonce, T2 and T3. A request contains as many zero bytes, so that the answer is not longer
+// than the request.
 constexpr std::size_t times_size = 4 + 8 + 8;
 
-/// Reads the fields of a request. The room for the answer's times must be zero.
+/// Reads the fields of a request. The bytes reserved for the answer's times must be zero.
 NodeRefusal take_request(const NodeHead& head, ByteReader& reader, ClocklessRequest& request) {
   if (head.byte21 > 1) return NodeRefusal::too_many_samples;
   request.origin = head.origin;
   request.has_battery = (head.flags & battery_flag) != 0;
   request.battery_mv = head.battery_mv;
   request.has_sample = head.byte21 != 0;
-  // Version 1 keeps these bytes at 0, so a later version can give them a meaning.
+  // In version 1 these bytes must be 0, so that a later version can give them a meaning.
   for (std::size_t i = 0; i < times_size; ++i) {
     if (reader.take<std::uint8_t>() != 0) return NodeRefusal::reserved_bits;
   }
@@ -25,7 +26,7 @@ NodeRefusal take_request(const NodeHead& head, ByteReader& reader, ClocklessRequ
   return NodeRefusal::none;
 }
 
-/// Answer and confirm differ only in the type.
+/// Reads the fields of an answer or of a confirm. Both datagrams have the same fields.
 template <class Stamped>
 NodeRefusal take_times(const NodeHead& head, ByteReader& reader, Stamped& stamped) {
   if (head.byte21 != 0) return NodeRefusal::reserved_bits;
@@ -39,7 +40,7 @@ NodeRefusal take_times(const NodeHead& head, ByteReader& reader, Stamped& stampe
 
 std::span<const std::uint8_t> encode(const ClocklessRequest& request, const MacKey* key,
                                      std::span<std::uint8_t> out) {
-  // Without a battery the field is zero on the wire, whatever the structure contains.
+  // If there is no battery, the battery field of the datagram is zero, whatever `request` contains.
   const std::uint8_t flags = request.has_battery ? battery_flag : 0;
   const std::uint8_t count = request.has_sample ? 1 : 0;
   const std::uint16_t battery = request.has_battery ? request.battery_mv : std::uint16_t{0};

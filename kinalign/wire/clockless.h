@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exchange with a node without a counter (section 3.2 of the HFUT-MMD paper): request, answer,
-// confirm. Layout: docs/formats/imu_node.md.
+// The exchange with a node without a counter (section 3.2 of the HFUT-MMD paper). It has three
+// datagrams: request, answer and confirm. Layout: docs/formats/imu_node.md.
 #pragma once
 
 #include "kinalign/wire/node_datagram.h"
@@ -14,13 +14,13 @@ struct ClocklessRequest {
   bool has_battery = false;
   std::uint16_t battery_mv = 0;
   bool has_sample = false;
-  NodeSample sample;  // its age is 0 if the node does not know it
+  NodeSample sample;  // age_us is 0 if the node does not know the sample's age
 
   bool operator==(const ClocklessRequest&) const = default;
 };
 
-/// Stamps of the host's raw monotonic clock, ns. The host uses its own record of them; the copies
-/// are only compared with it.
+/// Stamps of the host's raw monotonic clock, ns. The host computes with its own record of these
+/// stamps. It only compares the copies in datagrams with that record.
 struct ClocklessTimes {
   std::uint32_t nonce = 0;
   std::uint64_t t2_ns = 0;  // arrival of the request
@@ -29,27 +29,27 @@ struct ClocklessTimes {
   bool operator==(const ClocklessTimes&) const = default;
 };
 
-/// A datagram that only carries these times.
+/// The form of an answer and of a confirm, which contain only these times.
 template <DatagramType type>
 struct ClocklessStamped {
-  DatagramOrigin origin;  // that of the request
+  DatagramOrigin origin;  // the origin of the request
   ClocklessTimes times;
 
   bool operator==(const ClocklessStamped&) const = default;
 };
 /// Sent by the host to the node. It is never longer than the request.
 using ClocklessAnswer = ClocklessStamped<DatagramType::answer>;
-/// Sent by the node to the host at once. It contains a copy of the answer's fields.
+/// Sent by the host to the node directly after the answer. It repeats the answer's fields.
 using ClocklessConfirm = ClocklessStamped<DatagramType::confirm>;
 
-/// Writes the datagram to the front of `out`. Empty if there is not enough space.
+/// Writes the datagram to the front of `out`. The result is empty if `out` is too small.
 [[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessRequest& request,
                                                    const MacKey* key, std::span<std::uint8_t> out);
 template <DatagramType type>
 [[nodiscard]] std::span<const std::uint8_t> encode(const ClocklessStamped<type>& stamped,
                                                    const MacKey* key, std::span<std::uint8_t> out);
 
-/// After a refusal the last argument is default-constructed.
+/// If decoding is refused, the last argument is default-constructed.
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessRequest& request);
 template <DatagramType type>
 NodeRefusal decode(const Envelope& envelope, const MacKey* key, ClocklessStamped<type>& stamped);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of n bits that a sender counts up and that wrap around: unwraps them, and tells which of
-// them arrived. The window of numbers is that of RFC 4303 section 3.4.3.
+// A sender numbers its packets with n bits, and the numbers wrap around. This file unwraps the
+// numbers and keeps which of them arrived. The window of exactly known numbers follows RFC 4303
+// section 3.4.3.
 #pragma once
 
 #include <algorithm>
@@ -10,22 +11,23 @@
 
 namespace kinalign {
 
-/// Steps from one number of `bits` bits (1 to 64) to another, by the shorter way around the wrap.
-/// Negative: backwards.
+/// The difference between two numbers of `bits` bits (1 to 64), by the shorter way around the wrap.
+/// It is negative if `to` is behind `from`.
 constexpr std::int64_t steps_between(std::uint64_t from, std::uint64_t to, unsigned bits) {
   const unsigned unused = 64 - bits;
   return static_cast<std::int64_t>((to - from) << unused) >> unused;
 }
 
-/// The value of a number of `bits` bits that is nearest to `expected`.
+/// Among all values that end in the same `bits` bits as `number`: the value nearest to `expected`.
 constexpr std::int64_t unwrapped(std::uint64_t number, unsigned bits, std::int64_t expected) {
   const auto from = static_cast<std::uint64_t>(expected);
   const auto steps = static_cast<std::uint64_t>(steps_between(from, number, bits));
   return static_cast<std::int64_t>(from + steps);
 }
 
-/// Keeps which numbers arrived: the newest and the 1023 before it exactly, of the others only how
-/// many. Takes 0.2 kB. Differences are computed modulo 2^64, so numbers of 64 bits may wrap, too.
+/// Keeps which numbers arrived. The newest number and the 1023 numbers before it are kept exactly;
+/// older ones are only counted. A Counter takes 0.2 kB. Differences are computed modulo 2^64, so
+/// numbers of 64 bits may wrap, too.
 class Counter {
  public:
   static constexpr std::int64_t window = 1024;
@@ -36,18 +38,19 @@ class Counter {
   }
 
   enum class Place : std::uint8_t {
-    ahead,      // newer than all others, or the first one
-    late,       // older than the newest, and did not arrive yet
+    ahead,      // newer than all others, or the first number
+    late,       // older than the newest, and did not arrive before
     duplicate,  // it arrived before
-    behind      // too old to know
+    behind      // too old: not known whether it arrived
   };
 
-  /// Unwraps a number as sent to the value nearest to the newest. The first number stays as it is.
+  /// Unwraps a number to the value nearest to the newest number. The first number stays as it is.
   constexpr std::int64_t unwrap(std::uint64_t sent, unsigned bits = 32) const {
-    // The values nearest to the middle are the numbers themselves.
+    // A number is the nearest value to the middle of its own range, so the first number is
+    // unchanged.
     return unwrapped(sent, bits, empty() ? std::int64_t{1} << (bits - 1) : newest_);
   }
-  /// Judges an unwrapped number. Changes nothing.
+  /// Classifies an unwrapped number and changes nothing.
   constexpr Place place_of(std::int64_t number) const {
     const std::int64_t steps = steps_to(number);
     if (empty() || steps > 0) return Place::ahead;
@@ -55,11 +58,11 @@ class Counter {
     const auto bits = static_cast<std::uint64_t>(number);
     return (seen_[word_of(bits)] & bit_of(bits)) != 0 ? Place::duplicate : Place::late;
   }
-  /// Marks an unwrapped number as received. It must be ahead or late.
+  /// Marks an unwrapped number as received. Its place must be `ahead` or `late`.
   constexpr void take(std::int64_t number) {
     if (empty()) first_ = newest_ = number;
     const std::int64_t steps = steps_to(number);
-    // Skipped numbers did not arrive yet. Their bits belonged to numbers 1024 before.
+    // The skipped numbers have not arrived yet. Their bits were those of the numbers 1024 earlier.
     auto at = static_cast<std::uint64_t>(number);
     for (std::int64_t k = 0; k < std::min(steps, window); ++k, --at) {
       seen_[word_of(at)] &= ~bit_of(at);
@@ -74,9 +77,9 @@ class Counter {
   constexpr bool empty() const { return taken_ == 0; }
   constexpr std::int64_t first() const { return first_; }  // the lowest number that arrived
   constexpr std::int64_t newest() const { return newest_; }
-  /// Steps from the newest number to another one; negative: backwards.
+  /// The difference between a number and the newest one; negative for an older number.
   constexpr std::int64_t steps_to(std::int64_t number) const { return difference(number, newest_); }
-  /// How many numbers between the first and the newest did not arrive.
+  /// The count of numbers between the first and the newest that did not arrive.
   constexpr std::uint64_t missing() const {
     return empty() ? 0 : static_cast<std::uint64_t>(difference(newest_, first_)) + 1 - taken_;
   }

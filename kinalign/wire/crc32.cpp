@@ -7,8 +7,8 @@ namespace kinalign {
 
 namespace {
 
-// The change of the remainder by four bits. The table has 64 bytes instead of 1024, to save memory
-// in the node's firmware.
+// The effect of four bits on the remainder. A table for four bits has 64 bytes, and a table for
+// eight bits has 1024. The node's firmware has little memory.
 constexpr std::array<std::uint32_t, 16> nibbles = [] {
   std::array<std::uint32_t, 16> table{};
   for (std::uint32_t i = 0; i < 16; ++i) {

@@ -17,15 +17,15 @@ constexpr void put_hex(std::span<const std::uint8_t> bytes, std::span<char> out)
   }
 }
 
-/// The value of a digit in either case, 0 to 15; -1: not a digit.
+/// The value of a digit in either case, 0 to 15; -1 if the character is not a digit.
 constexpr int hex_value(char digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';
-  // Sets the bit that makes a letter lower case.
+  // This bit makes a letter lower case.
   const char lower = static_cast<char>(digit | 0x20);
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-/// Fills `bytes`. Returns false if the text does not consist of exactly that many digits.
+/// Fills `bytes`. Returns false unless the text consists of exactly two digits per byte.
 constexpr bool take_hex(std::span<const char> text, std::span<std::uint8_t> bytes) {
   if (text.size() != 2 * bytes.size()) return false;
   for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers in little-endian order, as in recordings, Noitom's packets and XDF. Data in network order
-// uses wire/bytes.h.
+// Numbers in little-endian order, as in recordings, in Noitom's packets and in XDF files.
+// wire/bytes.h handles data in network order.
 #pragma once
 
 #include <cassert>
@@ -11,12 +11,12 @@
 
 namespace kinalign {
 
-/// The number at position `at`. All its bytes must be present.
+/// The number at position `at`. All its bytes must be within `bytes`.
 template <std::unsigned_integral T>
 T little_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   assert(at <= bytes.size() && sizeof(T) <= bytes.size() - at);
   std::uint64_t value = 0;
-  // Byte by byte: neither the alignment nor the byte order of the machine matters.
+  // The value is read byte by byte, so alignment and byte order of the machine do not matter.
   for (std::size_t i = sizeof(T); i-- > 0;) value = value << 8 | bytes[at + i];
   return static_cast<T>(value);
 }

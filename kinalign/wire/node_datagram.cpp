@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-// In the order of NodeRefusal.
+// The names in the order of NodeRefusal.
 constexpr std::array<const char*, node_refusals> names{
     "none",       "too_short",        "bad_magic",   "unknown_version", "wrong_length",
     "bad_crc",    "wrong_type",       "no_key",      "no_mac",          "wrong_mac",
@@ -21,13 +21,13 @@ using Mac = std::array<std::uint8_t, node_mac_size>;
 Mac mac_of(const MacKey& key, std::span<const std::uint8_t> bytes) {
   const std::uint64_t hash = siphash_2_4(key, bytes);
   Mac mac{};
-  // The lowest byte first, as SipHash's reference implementation and OpenSSL write it.
+  // The lowest byte comes first, as in SipHash's reference implementation and in OpenSSL.
   for (std::size_t i = 0; i < mac.size(); ++i) mac[i] = static_cast<std::uint8_t>(hash >> 8 * i);
   return mac;
 }
 
-/// Compares in constant time. Otherwise the time would tell how many bytes agree, and a forger
-/// could find the MAC byte by byte.
+/// Compares in constant time. If the time depended on the number of equal bytes, a forger could
+/// find the MAC byte by byte.
 bool same(const Mac& mac, std::span<const std::uint8_t> claimed) {
   std::uint8_t difference = 0;
   for (std::size_t i = 0; i < mac.size(); ++i) {
@@ -37,9 +37,10 @@ bool same(const Mac& mac, std::span<const std::uint8_t> claimed) {
 }
 
 NodeRefusal check_mac(const Envelope& envelope, const MacKey* key) {
-  // The recorder had the key; a reader of the file need not have it.
+  // The recorder had the key and checked the MAC. A reader of the recording needs no key.
   if (envelope.mac_was_checked) return NodeRefusal::none;
-  // A node with a key must send a MAC, so a forger can't avoid the check by leaving it out.
+  // If a node has a key, its datagrams must contain a MAC. Otherwise a forger could avoid the check
+  // by sending no MAC.
   if (!envelope.has_mac) return key == nullptr ? NodeRefusal::none : NodeRefusal::no_mac;
   if (key == nullptr) return NodeRefusal::no_key;
   // The MAC covers every byte before it, and the CRC follows it.
@@ -49,8 +50,8 @@ NodeRefusal check_mac(const Envelope& envelope, const MacKey* key) {
                                                                      : NodeRefusal::wrong_mac;
 }
 
-/// The flags that version 1 allows in a datagram. An ignored flag could be one that changes the
-/// meaning of a field, so unknown flags are refused.
+/// The flags that version 1 allows in a datagram. Unknown flags are refused, because a flag may
+/// change the meaning of a field.
 std::uint8_t known_flags(DatagramType type) {
   if (type == DatagramType::frame) return mac_flag | battery_flag | echo_flag;
   return type == DatagramType::request ? mac_flag | battery_flag : mac_flag;
@@ -68,7 +69,8 @@ NodeRefusal open_envelope(std::span<const std::uint8_t> datagram, Envelope& enve
   if (head.take<std::uint32_t>() != node_magic) return NodeRefusal::bad_magic;
   envelope.version = head.take<std::uint8_t>();
   if (envelope.version != node_protocol_version) return NodeRefusal::unknown_version;
-  // Only magic and version have the same place in every version. The rest is read after this check.
+  // Only magic and version have the same position in every version, so the other fields are read
+  // after the version's check.
   const auto type = static_cast<DatagramType>(head.take<std::uint8_t>());
   if (head.take<std::uint16_t>() != datagram.size()) return NodeRefusal::wrong_length;
   ByteReader end(datagram.last(node_crc_size));
@@ -79,7 +81,7 @@ NodeRefusal open_envelope(std::span<const std::uint8_t> datagram, Envelope& enve
   const DatagramOrigin origin{head.take<std::uint32_t>(), head.take<std::uint32_t>(),
                               head.take<std::uint32_t>()};
   const bool has_mac = (head.take<std::uint8_t>() & mac_flag) != 0;
-  // The MAC's flag was found, but the datagram ends before a MAC.
+  // The flags announce a MAC, but the datagram is too short for a MAC.
   if (datagram.size() < node_datagram_size(0, has_mac)) return NodeRefusal::wrong_fields;
   envelope = {node_protocol_version, type, origin, has_mac, datagram, false};
   return NodeRefusal::none;
@@ -120,12 +122,12 @@ NodeRefusal unseal(const Envelope& envelope, DatagramType type, const MacKey* ke
   if (envelope.type != type) return NodeRefusal::wrong_type;
   const NodeRefusal refusal = check_mac(envelope, key);
   if (refusal != NodeRefusal::none) return refusal;
-  // Byte 20 holds the flags. It follows magic, version, type, length and the origin.
+  // Byte 20 contains the flags. It follows magic, version, type, length and origin.
   ByteReader reader(envelope.datagram.subspan(20));
   head = {type, envelope.origin, reader.take<std::uint8_t>(), reader.take<std::uint8_t>(),
           reader.take<std::uint16_t>()};
   if ((head.flags & ~known_flags(type)) != 0) return NodeRefusal::reserved_bits;
-  // A value without its flag is a fault of the sender.
+  // A sender must not send a battery voltage without the battery flag.
   if ((head.flags & battery_flag) == 0 && head.battery_mv != 0) return NodeRefusal::reserved_bits;
   fields = envelope.datagram.subspan(
       node_head_size, envelope.datagram.size() - node_datagram_size(0, envelope.has_mac));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The common part of all datagrams between node and host. Layout: docs/formats/imu_node.md. A
-// datagram is read in two steps, because the key depends on the node. open_envelope returns the
-// claimed node; decode (node_frame.h, node_reply.h, clockless.h) checks the MAC and returns the
-// fields.
+// The common part of all datagrams between a node (a sensor) and the host. Layout:
+// docs/formats/imu_node.md. A datagram is read in two steps, because each node has its own key.
+// open_envelope() returns the claimed node. decode() (node_frame.h, node_reply.h, clockless.h) then
+// checks the MAC and returns the fields.
 #pragma once
 
 #include "kinalign/wire/siphash.h"
@@ -15,21 +15,22 @@ namespace kinalign {
 
 inline constexpr std::uint8_t node_protocol_version = 1;
 inline constexpr std::uint32_t node_magic = 0x4b414e44;  // "KAND", the first bytes of a datagram
-// bytes; a buffer of this size holds any datagram
-// A frame of 30 full samples with a MAC has this size; node_frame.cpp checks it.
+// The size of the largest datagram, bytes: a frame of 30 full samples with a MAC. node_frame.cpp
+// checks this size.
 inline constexpr std::size_t max_node_datagram = 1410;
 
-/// The key of one node. A nullptr in place of a key means that the node has none.
+/// The key of one node. A null pointer instead of a key means that the node has no key.
 using MacKey = SipHashKey;
 
-// These are the numbers in the datagram.
+// The values of DatagramType are the numbers in the datagram.
 enum class DatagramType : std::uint8_t { frame = 1, reply, request, answer, confirm };
 
-/// The node of a datagram. In a datagram of the host, the origin of the answered datagram.
+/// The sender of a datagram from a node. A datagram from the host repeats the origin of the
+/// datagram that it answers.
 struct DatagramOrigin {
   std::uint32_t node_id = 0;
   std::uint32_t boot_id = 0;   // new at every start of the node
-  std::uint32_t sequence = 0;  // number of the frame or request since the start; wraps
+  std::uint32_t sequence = 0;  // number of the frame or request since the node's start; wraps
 
   bool operator==(const DatagramOrigin&) const = default;
 };
@@ -39,20 +40,20 @@ enum class [[nodiscard]] NodeRefusal : std::uint8_t{
     none,
     too_short,
     bad_magic,
-    unknown_version,  // Envelope::version contains it
-    wrong_length,     // differs from the length field
+    unknown_version,  // Envelope::version contains the version
+    wrong_length,     // the size differs from the length field
     bad_crc,
     wrong_type,
-    no_key,     // it has a MAC, but there is no key to check it
+    no_key,     // the datagram has a MAC, but the receiver has no key to check it
     no_mac,     // the node has a key, but the datagram has no MAC
-    wrong_mac,  // a receiver first tries the node's old key while that is valid
+    wrong_mac,  // the receiver also tries the node's old key while that key is valid
     reserved_bits,
     too_many_samples,
     wrong_fields,  // the fields are shorter or longer than the datagram
 };
-inline constexpr std::size_t node_refusals = 13;  // including `none`: for an array of counts
+inline constexpr std::size_t node_refusals = 13;  // including `none`
 
-/// The same word as in docs/formats/imu_node.md: "bad_crc".
+/// The name of a refusal, as in docs/formats/imu_node.md, for example "bad_crc".
 const char* refusal_name(NodeRefusal refusal);
 
 /// A datagram that arrived undamaged. Anyone may have sent it: until the MAC is checked, the origin
@@ -62,7 +63,7 @@ struct Envelope {
   DatagramType type{};
   DatagramOrigin origin;
   bool has_mac = false;
-  std::span<const std::uint8_t> datagram;  // the caller's bytes, which must outlive the envelope
+  std::span<const std::uint8_t> datagram;  // a view of the caller's bytes
   /// Set by readers of recordings: the recorder checked the MAC when the datagram arrived.
   bool mac_was_checked = false;
 };

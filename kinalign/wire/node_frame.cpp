@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t clock_size = 8 + 4 + 4 + 8;  // n_tx and the echo
 
-// The limit of the datagram's size follows from that of the samples.
+// The largest frame must have the size max_node_datagram.
 static_assert(node_datagram_size(clock_size + max_node_samples * max_sample_size, true) ==
               max_node_datagram);
 
@@ -20,7 +20,7 @@ NodeRefusal take_samples(ByteReader& reader, NodeFrame& frame) {
   return NodeRefusal::none;
 }
 
-/// Reads the fields of a frame. Without an echo its fields must be zero.
+/// Reads the fields of a frame. If the frame has no echo, the fields of the echo must be zero.
 NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& frame) {
   if (head.byte21 > max_node_samples) return NodeRefusal::too_many_samples;
   frame.origin = head.origin;
@@ -31,7 +31,7 @@ NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& fram
   frame.has_echo = (head.flags & echo_flag) != 0;
   frame.echo = {reader.take<std::uint32_t>(), reader.take<std::uint32_t>(),
                 reader.take<std::uint64_t>()};
-  // A sender that forgets the flag must not lose its echo without notice.
+  // A sender that forgets the echo flag would otherwise lose its echoes without notice.
   if (!frame.has_echo && frame.echo != ReplyEcho{}) return NodeRefusal::reserved_bits;
   return take_samples(reader, frame);
 }
@@ -40,7 +40,7 @@ NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& fram
 
 std::span<const std::uint8_t> encode(const NodeFrame& frame, const MacKey* key,
                                      std::span<std::uint8_t> out) {
-  // The loops below must not run past the array.
+  // The loops below must not read beyond the array.
   if (frame.sample_count > max_node_samples) return {};
   const auto samples = std::span(frame.samples).first(frame.sample_count);
   std::size_t fields = clock_size;

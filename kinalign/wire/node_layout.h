@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Head and end of a node's datagram, for the files that know the fields between them: encode_as and
-// decode_as add head and end to the fields of one type. Layout: docs/formats/imu_node.md.
+// The head and the end that all datagrams of a node share. Each type of datagram has its own file
+// for the fields in between. encode_as() and decode_as() join head, fields and end. Layout:
+// docs/formats/imu_node.md.
 #pragma once
 
 #include "kinalign/wire/bytes.h"
@@ -23,7 +24,7 @@ struct NodeHead {
   DatagramType type{};
   DatagramOrigin origin;
   std::uint8_t flags = 0;  // without the MAC's flag
-  // Number of samples in a frame or request, state in a reply; else 0.
+  // The number of samples in a frame or request; the state in a reply; 0 in other datagrams.
   std::uint8_t byte21 = 0;
   std::uint16_t battery_mv = 0;
 };
@@ -36,12 +37,12 @@ ByteWriter begin_datagram(std::span<std::uint8_t> out, std::size_t size, const N
 /// Adds MAC and CRC in the last bytes of a datagram.
 std::span<const std::uint8_t> seal(std::span<std::uint8_t> datagram, const MacKey* key);
 
-/// Checks type and MAC before it returns anything. `fields`: the bytes between head and end.
+/// Checks type and MAC before it returns anything. `fields` becomes the bytes between head and end.
 NodeRefusal unseal(const Envelope& envelope, DatagramType type, const MacKey* key, NodeHead& head,
                    std::span<const std::uint8_t>& fields);
 
-/// Encodes a datagram to the front of `out`; `put(writer)` writes its `fields` bytes. Empty if
-/// there is not enough space.
+/// Encodes a datagram to the front of `out`; `put(writer)` writes its `fields` bytes. The result is
+/// empty if `out` is too small.
 template <class Put>
 std::span<const std::uint8_t> encode_as(const NodeHead& head, std::size_t fields, const MacKey* key,
                                         std::span<std::uint8_t> out, Put put) {
@@ -52,8 +53,8 @@ std::span<const std::uint8_t> encode_as(const NodeHead& head, std::size_t fields
   return seal(out.first(size), key);
 }
 
-/// Decodes a datagram. Fills `out` with take(head, reader, out) if everything else is right. After
-/// a refusal `out` is default-constructed.
+/// Decodes a datagram. If all checks pass, take(head, reader, out) fills `out`. If decoding is
+/// refused, `out` is default-constructed.
 template <class Out, class Take>
 NodeRefusal decode_as(DatagramType type, const Envelope& envelope, const MacKey* key, Out& out,
                       Take take) {
@@ -64,7 +65,7 @@ NodeRefusal decode_as(DatagramType type, const Envelope& envelope, const MacKey*
   if (refusal != NodeRefusal::none) return refusal;
   ByteReader reader(fields);
   refusal = take(head, reader, out);
-  // The fields end before the last one was read, or bytes follow that no field explains.
+  // The datagram is too short for its fields, or has bytes after the last field.
   if (refusal == NodeRefusal::none && (!reader.complete() || reader.left() != 0)) {
     refusal = NodeRefusal::wrong_fields;
   }

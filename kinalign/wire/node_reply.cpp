@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-// reply sequence, nonce, h_tx
+// Size of reply sequence, nonce and h_tx.
 constexpr std::size_t fields_size = 4 + 4 + 8;
 constexpr std::uint8_t locked_state = 1;
 

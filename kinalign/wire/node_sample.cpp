@@ -16,9 +16,9 @@ std::uint8_t flags_of(const NodeSample& sample) {
       (sample.has_acceleration && sample.gravity_included ? gravity_flag : 0));
 }
 
-/// Unknown flags, and gravity without an acceleration, are refused.
+/// True if all flags are known. The gravity flag without an acceleration counts as unknown.
 bool known(std::uint8_t flags) {
-  // Without an acceleration, gravity in it has no meaning.
+  // Gravity is a property of the acceleration, so the flag has no meaning without one.
   const bool gravity_of_nothing = (flags & gravity_flag) != 0 && (flags & acceleration_flag) == 0;
   return flags < 2 * gravity_flag && !gravity_of_nothing;
 }
@@ -50,7 +50,7 @@ SampleFaults faults(const NodeSample& sample) {
 }
 
 std::size_t encoded_size(const NodeSample& sample) {
-  // Age and flags, then the vectors and the quaternion that are present.
+  // Age (4 bytes) and flags (1 byte), then the vectors and the quaternion that are present.
   return 4U + 1U + (sample.has_acceleration ? 12U : 0U) + (sample.has_angular_velocity ? 12U : 0U) +
          (sample.has_orientation ? 16U : 0U);
 }
@@ -66,7 +66,7 @@ void put_sample(ByteWriter& writer, const NodeSample& sample) {
 bool take_sample(ByteReader& reader, NodeSample& sample) {
   sample.age_us = reader.take<std::uint32_t>();
   const auto flags = reader.take<std::uint8_t>();
-  // The flags decide which fields follow, so nothing can be read after an unknown one.
+  // The flags determine which fields follow. If a flag is unknown, the rest can't be read.
   if (!known(flags)) return false;
   sample.has_acceleration = (flags & acceleration_flag) != 0;
   sample.has_angular_velocity = (flags & angular_velocity_flag) != 0;

@@ -12,22 +12,22 @@ namespace {
 constexpr std::int64_t ns_per_s = 1'000'000'000;
 constexpr std::int64_t from_1900_to_1970_s = 2'208'988'800;
 
-/// Returns whether `left` bytes after the extension fields can be a MAC: a key id alone (a
-/// crypto-NAK), or with a digest of 16 or 20 bytes (RFC 7822 section 7.5). Before version 4 also a
-/// digest of 8 bytes (RFC 1305), but no key id alone.
+/// True if the `left` bytes after the extension fields can be a MAC. In version 4 a MAC is a key id
+/// alone (a crypto-NAK), or a key id with a digest of 16 or 20 bytes (RFC 7822 section 7.5). Before
+/// version 4 it may also have a digest of 8 bytes (RFC 1305), but is never a key id alone.
 bool is_mac(std::size_t left, std::uint8_t version) {
   return left == 20 || left == 24 || left == (version == 4 ? 4U : 12U);
 }
 
 /// Checks the bytes after the header: extension fields, then a MAC or nothing. Only version 4 has
-/// extension fields (type, length, at least 16 bytes; the last one has at least 28 bytes if no MAC
-/// follows).
+/// extension fields. Each one contains its type and its length, and has at least 16 bytes. If no
+/// MAC follows, the last field has at least 28 bytes.
 bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
   constexpr std::size_t least_field = 16, least_last_field = 28;
   while (version == 4 && rest.size() >= least_last_field) {
     ByteReader field(rest);
-    field.take<std::uint16_t>();  // the type: all types are skipped, none is answered
-    // The length counts the field's own four bytes of type and length.
+    field.take<std::uint16_t>();  // the type: fields of all types are skipped
+    // The field's length includes the four bytes of type and length.
     const std::size_t length = field.take<std::uint16_t>();
     if (length < least_field || length % 4 != 0 || length > rest.size()) return false;
     if (length == rest.size()) return length >= least_last_field;
@@ -39,13 +39,13 @@ bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
 }  // namespace
 
 NtpStamp ntp_from_time(Time t) {
-  // The remainder of a time before 1970 is negative. One second is then borrowed.
+  // Before 1970 the remainder is negative, so one second is borrowed.
   const std::int64_t rest = to_ns(t) % ns_per_s;
   const std::int64_t s = to_ns(t) / ns_per_s - (rest < 0 ? 1 : 0);
   const std::int64_t ns = rest < 0 ? rest + ns_per_s : rest;
-  // The shift below drops the bits of the era.
+  // NTP seconds have 32 bits. The shift below drops the higher bits, which count the eras.
   const auto seconds_1900 = static_cast<std::uint64_t>(s + from_1900_to_1970_s);
-  // Rounded to the nearest. 999,999,999 ns stay below 2^32.
+  // The fraction is rounded to the nearest. For 999,999,999 ns it is still below 2^32.
   const std::uint64_t fraction = ((static_cast<std::uint64_t>(ns) << 32) + ns_per_s / 2) / ns_per_s;
   const std::uint64_t bits = seconds_1900 << 32 | fraction;
   return {bits == 0 ? 1 : bits};
@@ -61,7 +61,7 @@ NtpPacket ntp_header(std::span<const std::uint8_t> datagram) {
   ByteReader reader(datagram);
   NtpPacket packet;
   const auto first = reader.take<std::uint8_t>();
-  // From the top: leap indicator (2 bits), version (3), mode (3).
+  // The bits from the top: leap indicator (2), version (3), mode (3).
   packet.leap = static_cast<NtpLeap>(first >> 6);
   packet.version = first >> 3 & 7;
   packet.mode = first & 7;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names are those of section 2 of the paper: v0 to v3 are the state, m is a word of the
-// message.
+// The names come from section 2 of the SipHash paper (see siphash.h). v0 to v3 are the state, and m
+// is a word of the message.
 #include "kinalign/wire/siphash.h"
 
 #include <bit>
@@ -30,7 +30,7 @@ struct State {
       v2 = std::rotl(v2, 32);
     }
   }
-  // Two rounds per word: the 2 in SipHash-2-4.
+  // Two rounds per word, as the 2 in SipHash-2-4 says.
   void absorb(std::uint64_t m) {
     v3 ^= m;
     rounds(2);
@@ -48,10 +48,10 @@ std::uint64_t siphash_2_4(const SipHashKey& key, std::span<const std::uint8_t> b
               k1 ^ 0x7465646279746573};
   const std::uint64_t length = bytes.size();
   for (; bytes.size() >= 8; bytes = bytes.subspan(8)) state.absorb(word(bytes.first(8)));
-  // The last word holds the bytes that are left, and the length modulo 256 in its top byte.
+  // The last word contains the remaining bytes. Its top byte is the length modulo 256.
   state.absorb(length << 56 | word(bytes));
   state.v2 ^= 0xff;
-  // Four rounds at the end: the 4 in SipHash-2-4.
+  // Four rounds at the end, as the 4 in SipHash-2-4 says.
   state.rounds(4);
   return state.v0 ^ state.v1 ^ state.v2 ^ state.v3;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SipHash-2-4 with 64 bits: J.-P. Aumasson, D. J. Bernstein, "SipHash: a fast short-input PRF",
-// INDOCRYPT 2012. Without the key its results look random and cannot be predicted. It is used as
-// the MAC of the node's datagrams, and as the hash of tables whose keys are chosen by unknown
-// senders.
+// INDOCRYPT 2012. Without the key its results look random and cannot be predicted. It serves as the
+// MAC (message authentication code) of the node's datagrams. It is also the hash of tables whose
+// keys are chosen by unknown senders.
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three time axes that cannot be subtracted, compared or assigned across axes. Files of recordings
-// contain only Time, which a TimeModel (kinalign/clock) converts to the take's axis. A live node
-// has NodeTime, and the machine that receives it has HostTime. A LiveClock or HostFromNode
-// (kinalign/clock) converts from NodeTime to HostTime.
+// Three time axes. The compiler refuses to subtract, compare or assign times of different axes.
+// Files of recordings contain only Time, which a TimeModel (kinalign/clock) converts to the take's
+// axis. A live node has NodeTime, and the machine that receives its data has HostTime. A LiveClock
+// or HostFromNode (kinalign/clock) converts from NodeTime to HostTime.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace kinalign {
 using Duration = std::chrono::nanoseconds;
 
 struct UtcClock {};   // since 1970-01-01 UTC, leap seconds not counted (POSIX); ends in 2262
-struct HostClock {};  // CLOCK_MONOTONIC_RAW of one run of one host: never stepped, never slewed
+struct HostClock {};  // CLOCK_MONOTONIC_RAW since one start of a host: never stepped or slewed
 struct NodeClock {};  // since the node booted; meaningful only together with its boot id
 
 using Time = std::chrono::time_point<UtcClock, Duration>;
@@ -24,15 +24,16 @@ using NodeTime = std::chrono::time_point<NodeClock, Duration>;
 constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
 constexpr Time utc_time(std::int64_t ns) { return Time{Duration{ns}}; }
 
-/// later - earlier, ns. The result may exceed the range of Duration.
-// An unsigned subtraction is exact even if the signed difference would overflow.
+/// later - earlier, ns. The unsigned subtraction is exact even if the signed difference would
+/// exceed the range of Duration.
 constexpr std::uint64_t step_between(Time earlier, Time later) {
   return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
 }
 
-/// For arithmetic: seconds from a nearby origin, never from 1970 (a double keeps 0.24 us there).
+/// A duration in seconds. Stamps are first subtracted from a nearby origin, because a double of
+/// seconds since 1970 is only exact to 0.24 us.
 constexpr double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
-/// The opposite, cut to whole nanoseconds.
+/// The inverse of seconds(), cut to whole nanoseconds.
 constexpr Duration from_seconds(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
 
 }  // namespace kinalign
